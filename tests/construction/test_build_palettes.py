@@ -330,15 +330,15 @@ def test_a_mistake_is_told_with_the_file_and_what_to_write(tmp_path, text):
 def test_what_is_no_palette_file_is_told(tmp_path):
     bad = tmp_path / "b.yaml"
     bad.write_text("name: [")
-    with pytest.raises(InputError, match="is not YAML"):
+    with pytest.raises(InputError, match="is not valid YAML"):
         load_palette(str(bad))
     deep = tmp_path / "d.yaml"
     deep.write_text("[" * 20_000)
-    with pytest.raises(InputError, match="is not YAML"):
+    with pytest.raises(InputError, match="is not valid YAML"):
         load_palette(str(deep))
     aliases = tmp_path / "a.yaml"
     aliases.write_text("name: &n x\nabout: *n\n")
-    with pytest.raises(InputError, match=r"is not YAML \(aliases \(\*name\) are not read\)"):
+    with pytest.raises(InputError, match=r"is not valid YAML \(aliases \(\*name\) are not read\)"):
         load_palette(str(aliases))
     big = tmp_path / "big.yaml"
     big.write_text("#" * (2 << 20))
@@ -357,7 +357,7 @@ def test_what_is_no_palette_file_is_told(tmp_path):
 def test_yaml_makes_no_objects(tmp_path):
     path = tmp_path / "p.yaml"
     path.write_text("!!python/object/apply:os.getcwd []")
-    with pytest.raises(InputError, match="is not YAML"):
+    with pytest.raises(InputError, match="is not valid YAML"):
         load_palette(str(path))
 
 

@@ -96,7 +96,8 @@ def test_old_words_for_ceiling_and_lights_still_count():
         (
             "plaque",
             "a\nb",
-            r"a text of up to 60 printable characters, got 'a\nb'",
+            "build.plaque must be auto, off or a text of up to 60 printable characters, "
+            r"got 'a\nb'",
         ),
     ):
         with pytest.raises(UsageError) as caught:

@@ -104,5 +104,5 @@ def test_a_manifest_of_another_version_or_a_broken_one(tmp_path):
     told(tmp_path, {"no longer": 1, "find": {"gone": 2}, "capture": {}})
     assert resume_parameters(tmp_path, "build", STAGES, Parameters()).parameters == Parameters()
     told(tmp_path, {"find": {"cluster_radius": "wide"}})
-    with pytest.raises(DamagedFileError, match="states cluster_radius 'wide'"):
+    with pytest.raises(DamagedFileError, match="an invalid value for cluster_radius: 'wide'"):
         resume_parameters(tmp_path, "build", STAGES, Parameters())

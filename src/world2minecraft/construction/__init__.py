@@ -1,4 +1,4 @@
-"""Stage 7: structure, placements and furniture become blocks in the room's real colours."""
+"""Stage 7: build blocks in the room's real colours from its structure, furniture and objects."""
 
 from typing import TYPE_CHECKING, Any
 

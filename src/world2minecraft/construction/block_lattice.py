@@ -1,7 +1,7 @@
-"""Where the blocks stand in the room: the block lattice, and cells resampled onto it.
+"""The block lattice of a room, and the resampling of cells onto it.
 
-Every array of a build is in room axes, ``[x, y, z]`` with z up, one entry a block; only the
-finished volume is carried to block axes, by ``coordinates.grid_to_block_axes``.
+Every array of a build is in room axes, ``[x, y, z]`` with z up and one entry per block. Only the
+finished volume is converted to block axes, by ``coordinates.grid_to_block_axes``.
 """
 
 from dataclasses import dataclass
@@ -20,12 +20,17 @@ MARGIN = 2  # The shell and the invisible edge stand outside the room.
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """A box of blocks over a grid of cells.
+    """The box of blocks that covers a grid of cells.
 
-    ``corner`` is the world position of the block at index (0, ny - 1, 0): the least x, y and z
-    in block axes. ``shape`` counts blocks along room x, y, z. A room point p lies at lattice
-    coordinate ``p * blocks_per_metre + offset``. ``upper`` holds the first layer above the floor
-    of each upper storey, rising.
+    A point p of the room has the lattice coordinate ``p * blocks_per_metre + offset``.
+
+    Attributes:
+        corner: World position of the block at index (0, ny - 1, 0): the minimum x, y and z in block
+            axes.
+        shape: Number of blocks along room x, y and z.
+        corner_m: Position of the lattice corner in the room in metres.
+        blocks_per_metre: Scale of the build.
+        upper: Index of the first layer above the floor of each upper storey, in increasing order.
     """
 
     corner: tuple[int, int, int]
@@ -36,7 +41,7 @@ class Lattice:
 
     @property
     def offset(self) -> np.ndarray:
-        """float64 [3]: the lattice coordinate of the room's origin."""
+        """The lattice coordinate of the room's origin, float64 [3]."""
         at = apply(room_to_block(self.corner_m, self.blocks_per_metre), np.zeros(3))
         east, up, south = at - self.corner
         return np.array([east, self.shape[1] - south, up])
@@ -48,50 +53,50 @@ class Lattice:
 
     @property
     def grounds(self) -> tuple[int, ...]:
-        """The first layer above the floor of each storey, from the ground up."""
+        """The index of the first layer above the floor of each storey, from bottom to top."""
         return (self.ground, *self.upper)
 
     @property
     def storeys(self) -> tuple[tuple[int, int], ...]:
-        """For each storey its first layer above the floor, and the one past its last."""
+        """The layer range of each storey: the first layer above its floor and the exclusive end."""
         tops = (*(ground - 1 for ground in self.upper), self.shape[2])
         return tuple(zip(self.grounds, tops, strict=True))
 
     def ground_under(self, height: float) -> int:
-        """Return the ground on which something stands whose bottom is at a lattice height."""
+        """Return the ground layer of the storey that contains a lattice height."""
         return max(
             (ground for ground in self.upper if ground <= height + UNDER_FLOOR),
             default=self.ground,
         )
 
     def coordinates_of(self, points_m: np.ndarray) -> np.ndarray:
-        """Return the lattice coordinates, float64 [..., 3], of room points in metres."""
+        """Convert room points in metres to lattice coordinates, float64 [..., 3]."""
         return np.asarray(points_m) * self.blocks_per_metre + self.offset
 
     def edges_of(self, grid: OccupancyGrid, axis: int) -> np.ndarray:
-        """Return the lattice coordinates, float64 [N + 1], of the cell edges along an axis."""
+        """Return the lattice coordinates of the cell edges along an axis, float64 [N + 1]."""
         edges_m = grid.origin_m[axis] + np.arange(grid.shape[axis] + 1) * grid.voxel_m
         edges = edges_m * self.blocks_per_metre + self.offset[axis]
         return np.round(edges, 9)  # So that 12.5 * 0.08 does not fall short of a whole block.
 
 
 def is_exact(grid: OccupancyGrid, blocks_per_metre: float) -> bool:
-    """Whether one voxel is one block, so that cells go by integer maps."""
+    """Return whether blocks and cells have the same size, so that they map one to one."""
     return abs(grid.voxel_m * blocks_per_metre - 1) < 1e-9
 
 
 def snap_corner_m(grid: OccupancyGrid, corner_m: np.ndarray) -> np.ndarray:
-    """Return the corner as the nearest whole multiple of the voxel, float64 [2]."""
+    """Round a corner to the nearest multiple of the voxel size, float64 [2]."""
     return np.round(np.asarray(corner_m, np.float64) / grid.voxel_m) * grid.voxel_m
 
 
 def lattice_over(
     grid: OccupancyGrid, corner_m: np.ndarray, blocks_per_metre: float, top_m: float = 0.0
 ) -> Lattice:
-    """Return the lattice that holds the whole grid, the floor layer and a margin.
+    """Return the lattice that covers a whole grid, the floor layer and a margin.
 
     Raises:
-        UsageError: it would have more than ``MAX_BLOCKS`` blocks.
+        UsageError: If the lattice would have more than ``MAX_BLOCKS`` blocks.
     """
     ends_m = np.stack([grid.origin_m, grid.origin_m + np.array(grid.shape) * grid.voxel_m])
     ends_m[1, 2] = max(ends_m[1, 2], top_m)
@@ -109,14 +114,14 @@ def lattice_over(
 
 
 def overlap_weights(edges: np.ndarray, count: int) -> np.ndarray:
-    """Return how much of each block [0, count) each cell covers along one axis.
+    """Compute the share of each block that each cell covers along one axis.
 
     Args:
-        edges: float64 [N + 1], rising lattice coordinates of the cell edges.
-        count: the number of blocks.
+        edges: Increasing lattice coordinates of the cell edges, float64 [N + 1].
+        count: Number of blocks along the axis.
 
     Returns:
-        float32 [count, N], 0 to 1.
+        The covered shares in [0, 1], float32 [count, N].
     """
     starts = np.arange(count)[:, None]
     low = np.maximum(edges[None, :-1], starts)
@@ -125,10 +130,10 @@ def overlap_weights(edges: np.ndarray, count: int) -> np.ndarray:
 
 
 def center_weights(edges: np.ndarray, count: int) -> np.ndarray:
-    """Return which cells belong to which block along one axis, float32 [count, N] of 0 and 1.
+    """Assign cells to blocks along one axis, as 0/1 weights float32 [count, N].
 
-    A cell belongs to the block that holds its centre, and a block smaller than a cell to the
-    cell that holds its own.
+    A cell belongs to the block that contains its centre. A block smaller than a cell belongs to the
+    cell that contains the block's centre.
     """
     centres = (edges[:-1] + edges[1:]) / 2
     starts = np.arange(count)[:, None]
@@ -138,7 +143,7 @@ def center_weights(edges: np.ndarray, count: int) -> np.ndarray:
 
 
 def resample(values: np.ndarray, weights: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
-    """Return ``values`` [X, Y, Z] summed along each axis by weights [blocks, cells]."""
+    """Sum ``values`` [X, Y, Z] along each axis with weights [blocks, cells]."""
     result = values.astype(np.float32)
     for axis in range(3):
         result = weighted_sum(weights[axis], result, axis)
@@ -146,7 +151,7 @@ def resample(values: np.ndarray, weights: tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def weighted_sum(weights: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
-    """Return ``values`` summed along one axis by ``weights`` float32 [blocks, cells]."""
+    """Sum ``values`` along one axis with ``weights`` float32 [blocks, cells]."""
     # A kernel that computed with infinity leaves the processor's flag up, and numpy's product of
     # matrices, which does not lower it first, would warn of a value that is not there.
     with np.errstate(invalid="ignore"):
@@ -155,7 +160,7 @@ def weighted_sum(weights: np.ndarray, values: np.ndarray, axis: int) -> np.ndarr
 
 
 def volume_shares(mask: np.ndarray, grid: OccupancyGrid, lattice: Lattice) -> np.ndarray:
-    """Return the share of each block's volume, float32, that cells of a mask [X, Y, Z] fill."""
+    """Return the share of each block's volume, float32, that the cells of a mask [X, Y, Z] fill."""
     weights = [
         overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in range(3)
     ]
@@ -163,18 +168,18 @@ def volume_shares(mask: np.ndarray, grid: OccupancyGrid, lattice: Lattice) -> np
 
 
 def face_shares(mask: np.ndarray, edges: list[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
-    """Return the share of a block's face that the cells in it cover, seen along its best axis.
+    """Return the share of each block that the cells cover in projection along the best axis.
 
-    A sheet one cell thin that crosses a block covers it wholly, seen square on, though it fills
-    a third of its volume: so thin things survive.
+    A sheet of one cell that crosses a block covers the whole block in projection although it fills
+    only a third of its volume. Thin structures are preserved this way.
 
     Args:
-        mask: bool [X, Y, Z].
-        edges: the lattice coordinates of the cell edges along each axis.
-        shape: the number of blocks along each axis.
+        mask: Bool [X, Y, Z] mask of cells.
+        edges: Lattice coordinates of the cell edges along each axis.
+        shape: Number of blocks along each axis.
 
     Returns:
-        float32 [shape], 0 to 1.
+        The covered shares in [0, 1], float32 of the given shape.
     """
     cover = [overlap_weights(edges[axis], shape[axis]) for axis in range(3)]
     member = [center_weights(edges[axis], shape[axis]) for axis in range(3)]

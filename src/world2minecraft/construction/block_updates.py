@@ -1,7 +1,7 @@
-"""Block updates of a canvas: connections and supports as the game would have them.
+"""Block updates of a build: connections and supports as the game would compute them.
 
-A world file gets no block updates, so a pane that does not state its connections stands alone, and
-a torch without its wall hangs there until somebody builds next to it.
+A world file receives no block updates on loading. A glass pane without stated connections stays
+unconnected, and a torch without its wall stays in the air until a neighbouring block changes.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ _LEAVES = ("falls", "pops off", "breaks", "flows")
 
 
 def connect_neighbours(canvas: Canvas) -> None:
-    """Give all that joins its neighbours its connections and shape, in place."""
+    """Set, in place, the connections and shapes of blocks such as panes, fences and stairs."""
     states, palette = update_connections(grid_to_block_axes(canvas.states), canvas.palette)
     known = len(canvas.palette)
     numbers = np.concatenate([np.arange(known, dtype=np.uint16), canvas.ids_of([*palette[known:]])])
@@ -24,10 +24,10 @@ def connect_neighbours(canvas: Canvas) -> None:
 
 
 def apply_block_updates(canvas: Canvas) -> int:
-    """Connect a canvas and take away, in place, what would fall, pop off, break or flow.
+    """Connect the blocks of a canvas and remove, in place, blocks that would fall, pop off or flow.
 
     Returns:
-        How many blocks were taken away.
+        The number of removed blocks.
     """
     taken = 0
     for _ in range(ROUNDS):

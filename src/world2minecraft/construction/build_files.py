@@ -1,4 +1,4 @@
-"""The files of a build: the world, the schematic, the data pack and the scene's labels."""
+"""The output files of a build: world, schematic, data pack and scene labels."""
 
 from pathlib import Path
 
@@ -23,17 +23,18 @@ def write_build(
 ) -> None:
     """Write ``world/``, ``room.schem``, ``datapack.zip``, ``scene.json`` and ``scene.npz``.
 
-    The data pack is left out for games before 1.20.
+    The data pack is omitted for Minecraft versions before 1.20.
 
     Args:
-        folder: where to write; made when it is not there.
-        volume: the room.
-        mc_version: the game to write for, such as ``1.20.1``.
-        name: the world's name, as the game lists it.
+        folder: Output folder; created if it does not exist.
+        volume: The blocks of the room.
+        mc_version: Minecraft version to write for, such as ``1.20.1``.
+        name: Name of the world in the game's list.
 
     Raises:
-        UnknownNameError: the version is not known. OutputError: the folder cannot be written.
-        UsageError: the game is older than what the build is made of.
+        UnknownNameError: If the Minecraft version is unknown.
+        OutputError: If the folder cannot be written.
+        UsageError: If the Minecraft version lacks a block of the build.
     """
     target = Path(folder)
     version = game_version(mc_version)

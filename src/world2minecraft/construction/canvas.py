@@ -1,4 +1,4 @@
-"""The blocks of a room while they are being set: states, classes and instances in room axes."""
+"""A mutable volume of blocks with their states, classes and instances in room axes."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ UNSEEN_BLOCKS = (AIR, LIGHT, BARRIER)
 
 
 class Canvas:
-    """A volume that grows block by block. Arrays are [X, Y, Z] of the lattice, z up."""
+    """A mutable volume of blocks. All arrays have the shape [X, Y, Z] of the lattice, z up."""
 
     def __init__(self, lattice: Lattice):
         self.lattice = lattice
@@ -28,7 +28,7 @@ class Canvas:
         self._ids: dict[str, int] = {AIR: 0}
 
     def id_of(self, state: str) -> int:
-        """Return the number of a block state, completed with its block's default properties."""
+        """Return the palette index of a block state, completed with its default properties."""
         full = str(complete(parse_state(state)))
         if full not in self._ids:
             if len(self._ids) > np.iinfo(np.uint16).max:
@@ -39,17 +39,17 @@ class Canvas:
         return self._ids[full]
 
     def ids_of(self, states: list[str]) -> np.ndarray:
-        """Return the numbers, uint16 [N], of N block states."""
+        """Return the palette indices, uint16 [N], of N block states."""
         return np.array([self.id_of(state) for state in states], np.uint16)
 
     def mask_of(self, *states: str) -> np.ndarray:
-        """Return bool [X, Y, Z]: where one of these states stands."""
+        """Return the bool [X, Y, Z] mask of the blocks that have one of the given states."""
         numbers = [self._ids[state] for state in states if state in self._ids]
         return np.isin(self.states, numbers)
 
     @property
     def free(self) -> np.ndarray:
-        """Bool [X, Y, Z]: air, or a block that a player walks through unseen (light)."""
+        """Bool [X, Y, Z] mask of air and invisible passable blocks (light)."""
         return self.mask_of(AIR, LIGHT)
 
     def put(
@@ -59,18 +59,18 @@ class Canvas:
         class_id: int,
         instance: int = 0,
     ) -> None:
-        """Set blocks at a mask or at index arrays, with their class and instance."""
+        """Set the blocks at a mask or at index arrays, with their class and instance."""
         self.states[at] = ids
         self.semantic[at] = class_id
         self.instance[at] = instance
 
     @property
     def palette(self) -> tuple[str, ...]:
-        """The block states in the order of their numbers."""
+        """The block states in the order of their palette indices."""
         return tuple(self._ids)
 
     def volume(self) -> BlockVolume:
-        """Return the blocks in block axes, the palette sorted and without unused states."""
+        """Return the blocks in block axes, with a sorted palette without unused states."""
         used = np.unique(self.states)
         names = sorted(self.palette[number] for number in used if number)
         order = {name: number for number, name in enumerate(names, 1)} | {AIR: 0}

@@ -1,4 +1,4 @@
-"""The colours of cells and of the blocks that cover them, in Oklab."""
+"""Oklab colours of cells and of the blocks that cover them."""
 
 import numpy as np
 
@@ -26,17 +26,17 @@ NEAR_BLOCKS = 2.0  # So far a block that nobody saw takes the colour of the near
 
 
 def coloured_cells(grid: OccupancyGrid) -> np.ndarray:
-    """Return bool [X, Y, Z]: which cells carry a colour. Black, exactly 0, stands for none."""
+    """Return the bool [X, Y, Z] mask of cells with a colour; black (exactly 0) means no colour."""
     return grid.occupied & grid.colour.any(-1)
 
 
 def cell_colours(grid: OccupancyGrid, expose: bool, saturation: float) -> np.ndarray:
-    """Return the Oklab colours of all cells, float32 [X, Y, Z, 3]; zero where there is none.
+    """Return the Oklab colours of all cells, float32 [X, Y, Z, 3]; cells without colour are 0.
 
     Args:
-        grid: the room.
-        expose: whether to light a dim room and take away its colour cast.
-        saturation: the factor on the chroma of clear colours; greys stay as they are.
+        grid: The grid of the room.
+        expose: Whether to brighten a dark room and remove its colour cast.
+        saturation: Factor on the chroma of saturated colours; greys are not changed.
     """
     seen = coloured_cells(grid)
     result = np.zeros((*grid.shape, 3), np.float32)
@@ -53,10 +53,10 @@ def cell_colours(grid: OccupancyGrid, expose: bool, saturation: float) -> np.nda
 
 
 def boost_saturation(oklab: np.ndarray, saturation: float) -> np.ndarray:
-    """Return Oklab colours, float32 [N, 3], with the chroma of clear ones multiplied.
+    """Multiply the chroma of saturated Oklab colours, float32 [N, 3].
 
-    Greys stay as they are, and so do the hues of wood, which a stronger chroma turns into those
-    of bricks and oranges.
+    Greys are not changed, nor are the hues of wood, which would otherwise turn into brick or
+    orange.
     """
     chroma = np.hypot(oklab[:, 1], oklab[:, 2])
     clear = np.clip((chroma - FAINT_CHROMA) / (CLEAR_CHROMA - FAINT_CHROMA), 0, 1)
@@ -69,10 +69,10 @@ def boost_saturation(oklab: np.ndarray, saturation: float) -> np.ndarray:
 
 
 def unify_paints(oklab: np.ndarray) -> np.ndarray:
-    """Return the colours of a room's things, float32 [N, 3], each strong paint made one colour.
+    """Unify the variants of each dominant strong hue in Oklab colours, float32 [N, 3].
 
-    Haze, shade and the mixing of neighbours in a cell make purple, brown and pink of one red. Where
-    much of a room is of one strong hue, what lies near that hue takes its colour.
+    Haze, shadow and mixed cells turn one red into purple, brown and pink. If a strong hue covers
+    much of a room, the colours close to this hue are replaced by its colour.
     """
     result = oklab.astype(np.float32)
     chroma = np.hypot(oklab[:, 1], oklab[:, 2])
@@ -102,10 +102,10 @@ def _turn(degrees: np.ndarray) -> np.ndarray:
 
 
 def exposure_gains(linear: np.ndarray) -> np.ndarray:
-    """Return the factors, float64 [3], that light a dim room and take away its colour cast.
+    """Compute the gain per channel, float64 [3], that brightens and white-balances a room.
 
     Args:
-        linear: float64 [N, 3], the linear light of its surfaces.
+        linear: Linear light of the room's surfaces, float64 [N, 3].
     """
     if len(linear) < MIN_CELLS:
         return np.ones(3)
@@ -122,19 +122,19 @@ def exposure_gains(linear: np.ndarray) -> np.ndarray:
 
 
 def block_colour(block: str) -> np.ndarray:
-    """Return the Oklab colour, float32 [3], of a block state."""
+    """Return the Oklab colour of a block state, float32 [3]."""
     return srgb_to_oklab(np.array(colour_of(block), np.uint8))
 
 
 def group_medians(
     groups: np.ndarray, colours: np.ndarray, count: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the median colour of each group, float32 [count, 3], and how many it has, int [count].
+    """Compute the median colour of each group, float32 [count, 3], and its size, int [count].
 
     Args:
-        groups: int [N], the group of each colour.
-        colours: float32 [N, 3].
-        count: the number of groups; an empty one has median 0.
+        groups: Group index of each colour, int [N].
+        colours: Colours, float32 [N, 3].
+        count: Number of groups; the median of an empty group is 0.
     """
     sizes = np.bincount(groups, minlength=count)
     starts = np.cumsum(sizes) - sizes
@@ -151,15 +151,18 @@ def group_medians(
 def fill_colours(
     colours: np.ndarray, known: np.ndarray, wanted: np.ndarray, default: np.ndarray
 ) -> np.ndarray:
-    """Return the colours, float32 [N, 3], at ``wanted``: each its own, or the nearest known one.
+    """Return the colours of the ``wanted`` cells, filled from the nearest cell with a known colour.
 
-    Far from all known ones it is their median: a floor under a table is like the rest of it.
+    Cells far from every known colour get the median of all known colours.
 
     Args:
-        colours: float32 [X, Y, Z, 3].
-        known: bool [X, Y, Z], where ``colours`` holds one.
-        wanted: bool [X, Y, Z] with N cells set.
-        default: float32 [3], for all where none is known.
+        colours: Colours of all cells, float32 [X, Y, Z, 3].
+        known: Bool [X, Y, Z] mask of the cells with a valid colour.
+        wanted: Bool [X, Y, Z] mask with N cells set.
+        default: Colour to use if no colour is known, float32 [3].
+
+    Returns:
+        The colours of the N wanted cells, float32 [N, 3].
     """
     if not known.any():
         return np.broadcast_to(default, (int(wanted.sum()), 3)).astype(np.float32)

@@ -1,4 +1,4 @@
-"""What a room is built from, and the colours of its cells as objects take them."""
+"""The input of a build, and the cell colours that are transferred to objects."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from world2minecraft.geometry.morphology import dilate_faces
 
 
 class BuildSource(NamedTuple):
-    """What a room is built from."""
+    """The input of a build: the grid, its colours, the palette and the parameters."""
 
     grid: OccupancyGrid
     colours: np.ndarray  # float32 [X, Y, Z, 3], Oklab, of the grid's cells; 0 where there is none
@@ -24,14 +24,14 @@ class BuildSource(NamedTuple):
 
 
 class ColourSamples(NamedTuple):
-    """The cells that colour a thing, and the block that each of them colours."""
+    """Cells that provide the colour of an object, and the block that each cell colours."""
 
     cells: np.ndarray  # int [N, 3]
     blocks: np.ndarray  # int [N, 3], of the lattice
 
 
 class ColourSource:
-    """The colours of a room's cells, as things take them."""
+    """Provides the colours of a room's cells for the blocks of objects."""
 
     def __init__(
         self, grid: OccupancyGrid, colours: np.ndarray, coloured: np.ndarray, close_tops: bool
@@ -48,9 +48,9 @@ class ColourSource:
         )  # What lies inside an object says nothing of how it looks.
 
     def with_tops(self, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return an object's cells with its top closed, and the cells that colour them.
+        """Return an object's cells with its top closed, and the cell that colours each of them.
 
-        A chair has none: what is unseen beside its back lies under the table before it.
+        The top of a chair is not closed, since unseen cells beside its back are under a table.
         """
         if not (self.close_tops and len(cells)):
             return cells, cells
@@ -62,10 +62,10 @@ class ColourSource:
     def stretched(
         self, cells: np.ndarray, placement: Placement, low: np.ndarray, shape: Sequence[int]
     ) -> "ColourSamples":
-        """Return what colours a design when the placement's box is stretched over it.
+        """Return the colour samples of a placement stretched to the box of its block design.
 
-        The snapped design stands up to half a block off the object; its front must take the
-        colours of the object's front all the same.
+        A design snapped to blocks can be up to half a block away from the object. Stretching
+        ensures that the front of the design gets the colours of the object's front.
         """
         cells, samples = self.with_tops(cells)
         size = placement.size_m[[1, 0, 2]] if placement.quarter_turns % 2 else placement.size_m
@@ -76,7 +76,7 @@ class ColourSource:
         return ColourSamples(samples[near], np.clip(blocks, 0, np.array(shape) - 1) + low)
 
     def colours_of(self, samples: "ColourSamples") -> tuple[np.ndarray, np.ndarray]:
-        """Return the colours, float32 [N, 3], of cells and which of them are one, bool [N]."""
+        """Return the colours of samples, float32 [N, 3], and the bool [N] mask of valid colours."""
         at = tuple(samples.cells.T)
         usable = self.coloured[at] & self.exposed[at]
         return self.colours[at], usable if usable.any() else self.coloured[at]

@@ -1,12 +1,12 @@
-"""Vanilla furniture designs on the canvas, in the real colours of their objects.
+"""Placement of furniture designs made of vanilla blocks, in the real colours of their objects.
 
-The materials of a design state which roles take the object's colour. Roles of one material take one
-colour, the median of their cells, so that a chair's legs and seat are of one wood; each becomes the
-nearest block of its kind that has all the shapes it needs. Where a wood or stone is plainly wrong
-(red cupboards), the nearest of all blocks that have these shapes is used. Plain blocks are painted
-one by one. A template of another package without materials is recoloured by the names of its
-blocks: the room chooses the wood and the dye, and a full block of a distant colour becomes a plain
-one.
+The materials of a design state which roles take the object's colour. All roles of one material
+share one colour, the median of their cells, so the legs and the seat of a chair get the same wood.
+Each role becomes the block of its kind closest in colour that has all required shapes. If wood or
+stone is clearly wrong (red cupboards), any block with these shapes may be used. Full blocks are
+painted individually. A template of another package without materials is recoloured by its block
+names: wood and dye are chosen from the room, and a full block of a very different colour is
+replaced by a plain one.
 """
 
 from collections.abc import Mapping, Sequence
@@ -63,7 +63,7 @@ OWN_COLOUR = 0.1  # Oklab distance up to which a design's full block keeps its o
 
 
 class CanvasWindow(NamedTuple):
-    """The part of a design that lies on the canvas, and what stands there."""
+    """The part of a design that is inside the canvas, and the blocks already set there."""
 
     box: tuple[slice, ...]  # of the design
     low: np.ndarray  # int [3], its first block on the canvas
@@ -72,20 +72,20 @@ class CanvasWindow(NamedTuple):
     held: np.ndarray  # bool [X, Y, Z], something stands there or beside it
 
     def is_flush(self, filled: np.ndarray) -> bool:
-        """Whether most of a thing's blocks, bool [X, Y, Z], lie in a wall: a picture, a socket."""
+        """Return whether most blocks of an object, bool [X, Y, Z], are inside a wall."""
         return bool((filled & self.wall).sum() > 0.5 * filled.sum())
 
 
 def canvas_window(
     canvas: Canvas, within: np.ndarray, low: np.ndarray, shape: tuple[int, ...]
 ) -> CanvasWindow:
-    """Return the window of a design of a shape that begins at ``low``.
+    """Return the part of the canvas that a design would cover.
 
     Args:
-        canvas: what is built so far.
-        within: bool [X, Y, Z], where things may stand.
-        low: int [3], the design's first block.
-        shape: its blocks along each axis.
+        canvas: The blocks built so far.
+        within: Bool [X, Y, Z] mask of the blocks where objects are allowed.
+        low: First block of the design, int [3].
+        shape: Number of blocks of the design along each axis.
     """
     high = np.minimum(low + shape, np.array(canvas.lattice.shape) - 1)
     start = np.maximum(low, [1, 1, canvas.lattice.ground])
@@ -100,7 +100,7 @@ def canvas_window(
 
 
 class ObjectColours(NamedTuple):
-    """What is known of an object's colours, in its own box of blocks."""
+    """The known colours of an object, in its own box of blocks."""
 
     colours: np.ndarray  # float32 [X, Y, Z, 3], Oklab
     known: np.ndarray  # bool [X, Y, Z]
@@ -116,16 +116,16 @@ def recolour_design(
     palette: Palette,
     parameters: BuildParameters,
 ) -> list[str]:
-    """Return the state of each block of a design in the object's colours.
+    """Return the block states of a design in the colours of an object.
 
     Args:
-        blocks: N blocks.
-        cells: int [N, 3], where they stand in the box of ``own_colours``.
-        materials: what each role is made of; blocks of other roles stay.
-        own_colours: the object's colours.
-        class_id: the object's class.
-        palette: the blocks that plain roles may become.
-        parameters: how colours are weighed.
+        blocks: The N blocks of the design.
+        cells: Position of each block in the box of ``own_colours``, int [N, 3].
+        materials: Material of each role; blocks of other roles are not changed.
+        own_colours: Colours of the object.
+        class_id: Class of the object.
+        palette: Blocks that full-block roles may use.
+        parameters: Weights of the colour comparison.
     """
     states = [block.state for block in blocks]
     if own_colours.paint is None and not own_colours.known.any():
@@ -247,7 +247,7 @@ def _nearest(
 
 
 class ObjectLabel(NamedTuple):
-    """Whose blocks are set."""
+    """The class and the instance number of the blocks of an object."""
 
     class_id: int
     instance: int
@@ -256,9 +256,9 @@ class ObjectLabel(NamedTuple):
 def design_box(
     design: BlockDesign, placement: Placement, lattice: Lattice
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first block and the size, int [3] each in room axes, of a design in its place.
+    """Return the first block and the size, int [3] each in room axes, of a placed design.
 
-    Handles and the like that stand out to the front do not push the rest into the wall behind.
+    Parts that protrude at the front, such as handles, do not push the rest into the wall behind.
     """
     along, up, across = design.size
     size = np.array([along, across, up])
@@ -283,9 +283,9 @@ def design_box(
 def body_box(
     design: BlockDesign, placement: Placement, lattice: Lattice, low: np.ndarray, size: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first block and the size, int [3] each, of a design without what stands out.
+    """Return the first block and the size, int [3] each, of a design without its protruding parts.
 
-    An object's front colours the front of its body, not the handles before it.
+    The front of an object colours the front of the body, not the handles before it.
     """
     axis, out = placement.quarter_turns % 2, _protrusion(design, placement, lattice)
     along = np.arange(3) == axis
@@ -302,7 +302,7 @@ def _protrusion(design: BlockDesign, placement: Placement, lattice: Lattice) -> 
 
 
 def filled_blocks(design: BlockDesign) -> np.ndarray:
-    """Return the blocks that a design fills, bool [X, Y, Z] in room axes."""
+    """Return the bool [X, Y, Z] mask, in room axes, of the blocks that a design fills."""
     along, up, across = design.size
     filled = np.zeros((along, across, up), bool)
     filled[tuple(_cells_of(design).T)] = True
@@ -326,17 +326,17 @@ def place_design(
     within: np.ndarray,
     parameters: BuildParameters | None = None,
 ) -> None:
-    """Set a design, as far as nothing stands there, in the object's colours.
+    """Set the blocks of a design in the colours of its object, without overwriting other blocks.
 
     Args:
-        canvas: where to set it.
-        design: blocks with offsets in block axes.
-        low: int [3], its first block on the canvas, in room axes.
-        thing: the object's class and instance.
-        own_colours: the object's colours in its box of blocks.
-        palette: the blocks that may replace the design's own full ones.
-        within: bool [X, Y, Z], where things may stand.
-        parameters: how colours are weighed.
+        canvas: Canvas to modify.
+        design: Blocks with offsets in block axes.
+        low: First block of the design on the canvas, int [3] in room axes.
+        thing: Class and instance of the object.
+        own_colours: Colours of the object in its box of blocks.
+        palette: Blocks that may replace the full blocks of the design.
+        within: Bool [X, Y, Z] mask of the blocks where objects are allowed.
+        parameters: Weights of the colour comparison.
     """
     shape = canvas.states.shape
     local = _cells_of(design)
@@ -386,7 +386,7 @@ def _in_colour(state: str, colour: np.ndarray, thing: ObjectLabel, palette: Pale
 
 
 def recolour_state(state: str, colour: np.ndarray) -> str:
-    """Return a state of the same kind in the wood or dye nearest to an Oklab colour."""
+    """Return the state of the same kind of block in the wood or dye closest to an Oklab colour."""
     namespace, _, rest = state.partition(":")
     name, bracket, properties = rest.partition("[")
     for kinds, sample in ((WOODS, "_planks"), (DYES, "_wool")):

@@ -1,7 +1,7 @@
-"""Passable doorways: what one can walk through in the room, one can walk through in the world.
+"""Passable doorways: openings a person can walk through stay passable in the world.
 
-A gap in a wall that lies across two blocks would be closed by both of them at a block a metre. So
-gaps are found in the cells, and opened in the blocks at least one wide and two high.
+At one block per metre, a gap in a wall that spans two blocks would be closed by both. Gaps are
+therefore found in the cells and opened in the blocks, at least one block wide and two high.
 """
 
 from itertools import pairwise
@@ -24,7 +24,7 @@ PLAYER_BLOCKS = 2
 
 
 class Gap(NamedTuple):
-    """A gap in a wall that runs along ``axis``, in cells: [start, stop) along it and across it."""
+    """A gap in a wall along ``axis``, in cells: half-open ranges along and across the wall."""
 
     axis: int
     along: tuple[int, int]
@@ -34,13 +34,13 @@ class Gap(NamedTuple):
 def open_doorways(
     walls: np.ndarray, grid: OccupancyGrid, lattice: Lattice, storey: tuple[int, int]
 ) -> None:
-    """Take away, in place, the wall blocks that stand in a storey's doorways.
+    """Remove, in place, the wall blocks in the doorways of a storey.
 
     Args:
-        walls: bool [X, Y, Z] of the lattice.
-        grid: what was seen.
-        lattice: where the blocks stand.
-        storey: its first layer above the floor, and the one past its last.
+        walls: Bool [X, Y, Z] mask of wall blocks.
+        grid: Grid of the room.
+        lattice: Block lattice of the room.
+        storey: First layer above the floor of the storey, and its exclusive end.
     """
     ground, top = storey
     free = (grid.labels == 0) & (grid.source != UNSEEN)
@@ -51,12 +51,12 @@ def open_doorways(
 
 
 def find_gaps(grid: OccupancyGrid, free: np.ndarray, floor_m: float) -> list[Gap]:
-    """Return the gaps in the walls over a floor through which a body goes, in the order of cells.
+    """Find the gaps in the walls of a storey that a person fits through, in cell order.
 
     Args:
-        grid: what was seen.
-        free: bool [X, Y, Z], the cells that were seen free.
-        floor_m: how high the floor lies.
+        grid: Grid of the room.
+        free: Bool [X, Y, Z] mask of the cells seen as free.
+        floor_m: Height of the floor in metres.
     """
     layers = [round((floor_m + m - grid.origin_m[2]) / grid.voxel_m) for m in BODY_M]
     low, high = np.clip(layers, 0, grid.shape[2])

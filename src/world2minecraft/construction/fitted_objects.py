@@ -1,7 +1,7 @@
-"""Objects as shapes on the block lattice: fitted in their own frame, turned, and put in place.
+"""Objects as block shapes: fitted in their own frame, rotated and placed on the lattice.
 
-Half blocks are an array ``halves`` uint8 [X, Y, Z] with bit 1 for the lower half of a block and bit
-2 for the upper. They are used where no finer shape exists in an object's colours; each becomes a
+Half blocks are an array ``halves`` uint8 [X, Y, Z], with bit 1 for the lower and bit 2 for the
+upper half of a block. They are used if no finer shape exists in an object's colours; each becomes a
 full block.
 """
 
@@ -24,12 +24,12 @@ LAID_ON = (SemanticClass.TABLE,)  # Things lie on these; a top in mid-block woul
 
 
 def halves_from_layers(layers: np.ndarray) -> np.ndarray:
-    """Return halves, uint8 [X, Y, Z], of a bool array [X, Y, 2 Z] with two layers a block."""
+    """Convert a bool array [X, Y, 2 Z], two layers per block, to half blocks uint8 [X, Y, Z]."""
     return (layers[:, :, 0::2] * LOWER + layers[:, :, 1::2] * UPPER).astype(np.uint8)
 
 
 class Design(NamedTuple):
-    """Shapes on the lattice, and which part each block belongs to (1 where there are none)."""
+    """Block shapes on the lattice, with the part number of each block (1 if there are no parts)."""
 
     low: np.ndarray  # int [3], the lattice index of the first block
     numbers: np.ndarray  # intp [X, Y, Z], of the shape set
@@ -38,7 +38,7 @@ class Design(NamedTuple):
 
     @property
     def filled(self) -> np.ndarray:
-        """Bool [X, Y, Z]."""
+        """Bool [X, Y, Z] mask of the filled blocks."""
         return self.numbers > 0
 
     def moved(self, step: np.ndarray) -> "Design":
@@ -46,19 +46,19 @@ class Design(NamedTuple):
         return self._replace(low=self.low + step)
 
     def cut(self, low: np.ndarray, box: tuple[slice, ...], numbers: np.ndarray) -> "Design":
-        """Return the part of the design in a box of it that begins at ``low``, with new shapes."""
+        """Return the part of the design in a box that begins at ``low``, with new shape numbers."""
         return Design(low, numbers, np.where(numbers > 0, self.part[box], 0), self.shapes)
 
 
 def design_of_halves(low: np.ndarray, halves: np.ndarray, part: np.ndarray | None = None) -> Design:
-    """Return half blocks, uint8 [X, Y, Z], as a design of full blocks that begins at ``low``."""
+    """Convert half blocks, uint8 [X, Y, Z], to a design of full blocks that begins at ``low``."""
     numbers = (halves > 0).astype(np.intp)
     own = numbers.astype(np.int16) if part is None else np.where(halves > 0, part, 0)
     return Design(low, numbers, own, shape_set(frozenset()))
 
 
 def single_block_design(place: np.ndarray) -> Design:
-    """Return a single full block at a place, int [3]."""
+    """Return a design of one full block at a block position, int [3]."""
     ones = np.ones((1, 1, 1), np.intp)
     return Design(place, ones, ones.astype(np.int16), shape_set(frozenset()))
 
@@ -66,9 +66,9 @@ def single_block_design(place: np.ndarray) -> Design:
 def design_of_parts(
     placement: Placement, parts: Sequence[Part], lattice: Lattice, kinds: frozenset[str]
 ) -> Design:
-    """Return a placement's parts as shapes, turned and in place.
+    """Convert the parts of a placement to block shapes, rotated and in place.
 
-    Equal parts at one scale come out equal, wherever they stand.
+    Equal parts give equal shapes at the same scale, independent of their position.
     """
     sizes = placement.size_m * lattice.blocks_per_metre
     middle = lattice.coordinates_of(placement.center_m)
@@ -98,7 +98,7 @@ def _fit_of_parts(boxes, blocks_per_metre, kinds, counts, bottom, flush) -> Part
 
 
 def rotate_middle(fit: Fit, quarter_turns: int) -> np.ndarray:
-    """Return where the middle of a fit lies in its box after quarter turns, float64 [2]."""
+    """Return the centre of a fit in its box after quarter turns, float64 [2]."""
     x, y = fit.middle.tolist()
     wide, long = fit.numbers.shape[:2]
     for _ in range(quarter_turns % 4):
@@ -107,7 +107,7 @@ def rotate_middle(fit: Fit, quarter_turns: int) -> np.ndarray:
 
 
 def base_layer(bottom: float, lattice: Lattice) -> tuple[int, int]:
-    """Return the layer where something begins, and the sub-cell in it: whole or half a block."""
+    """Return the layer of an object's bottom and its sub-cell, rounded to a whole or half block."""
     half = float(np.floor(2 * bottom + 0.5) / 2)
     ground = float(lattice.ground_under(half))
     half = ground if half < ground + 1 else half

@@ -1,7 +1,7 @@
-"""Floating blocks of a build: joined to what carries them, or removed where they are crumbs.
+"""Floating blocks of a build: connected to their support, or removed if they are small.
 
-A scan loses thin things: the cord of a lamp, the bracket of a shelf, the foot of a screen. In the
-game such things would float.
+A scan misses thin structures, such as the cord of a lamp, the bracket of a shelf or the foot of a
+screen. Without them, the objects would float in the game.
 """
 
 import numpy as np
@@ -21,11 +21,11 @@ WAYS = ((0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1))
 
 
 def support_floaters(canvas: Canvas) -> None:
-    """Join floating parts of objects to what carries them, in place, or take them away.
+    """Connect the floating parts of objects to a support, in place, or remove them.
 
-    Parts touch by faces, edges or corners. A part is joined by the shortest straight way to
-    something carried: upward by a chain, else by more of its own block. One that has nothing
-    within reach goes down to whatever lies under it.
+    Blocks that touch by faces, edges or corners are one part. A part is connected to the nearest
+    supported block in a straight line: upward by a chain, otherwise by more of its own block. If
+    nothing is within reach, the part is lowered onto whatever is below it.
     """
     solid = np.isin(canvas.semantic, (*OBJECT_CLASSES, *STRUCTURE_CLASSES))
     parts, count = label_components(solid)
@@ -43,10 +43,10 @@ def support_floaters(canvas: Canvas) -> None:
 
 
 def close_gaps(canvas: Canvas) -> None:
-    """Close, in place, the half blocks of air between things and what they stand on.
+    """Close, in place, gaps of half a block between objects and their support.
 
-    A thing cannot begin in the middle of the block whose lower half a table's top takes. So a
-    lower slab under it is made whole, and an upper slab of its own is put down.
+    An object cannot begin in the upper half of a block whose lower half is a table top. A lower
+    slab below the object is made a full block, and an upper slab of the object is lowered.
     """
     things = np.isin(canvas.semantic, (SemanticClass.OBJS, SemanticClass.TVS))
     on = things[:, :, 1:] & (canvas.semantic[:, :, :-1] > 0)

@@ -1,8 +1,8 @@
-"""Light for a room: hanging lamps, and invisible light blocks where it would still be dark.
+"""Light for a room: hanging lamps, and invisible light blocks in dark places.
 
-A lamp hangs from the ceiling by chains where there is room to walk under it, and else lies flush in
-the ceiling. Where no ceiling was built nothing can hang. Light blocks start as a lattice; more are
-added where a floor or any air of the room stays too dark. Lamps and glowing furniture count.
+A lamp hangs from the ceiling by chains if a person can walk under it, otherwise it is set flush
+into the ceiling. Without a ceiling no lamp hangs. Light blocks start as a regular lattice; more are
+added where a floor or the air of the room stays too dark. Lamps and glowing furniture are included.
 """
 
 from typing import NamedTuple
@@ -52,12 +52,12 @@ def hang_lamps(canvas: Canvas, footprints: tuple[np.ndarray, ...], palette: Pale
     """Hang lamps, in place, in every storey that has a ceiling.
 
     Args:
-        canvas: its finished blocks.
-        footprints: bool [X, Y] for each storey, the columns within its rooms.
-        palette: what may be used; none hangs where it leaves out what lamps are made of.
+        canvas: Canvas with the finished blocks.
+        footprints: Bool [X, Y] mask of the columns within the rooms, for each storey.
+        palette: Allowed blocks; no lamp is placed if the palette excludes the lamp's blocks.
 
     Returns:
-        How many hang.
+        The number of lamps.
     """
     if not all(map(palette.allows, (CHAIN, LANTERN, SHADE, DOWNLIGHT))):
         return 0
@@ -159,11 +159,11 @@ def _fits(canvas: Canvas, room: _Room, x: int, y: int, wide: int, depth: int) ->
 
 
 def put_lights(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
-    """Light a canvas in place, storey by storey.
+    """Place light blocks in a canvas, in place, storey by storey.
 
     Args:
-        canvas: its finished blocks.
-        footprints: bool [X, Y] for each storey, the columns within its rooms.
+        canvas: Canvas with the finished blocks.
+        footprints: Bool [X, Y] mask of the columns within the rooms, for each storey.
     """
     gives = np.array([emitted_light(state) for state in canvas.palette], np.uint8)[canvas.states]
     clear = passes_light(canvas.palette)[canvas.states]
@@ -224,14 +224,14 @@ def _top_of(canvas: Canvas, ground: int) -> int:
 
 
 def passes_light(palette: tuple[str, ...]) -> np.ndarray:
-    """Return which states let block light through, bool [N]: those that fill no whole cube."""
+    """Return the bool [N] mask of states that block light passes, which are not full cubes."""
     return np.array([lets_light_through(state) for state in palette], bool)
 
 
 def walkable_cells(
     states: np.ndarray, palette: tuple[str, ...], footprint: np.ndarray, ground: int
 ) -> np.ndarray:
-    """Return the columns, bool [X, Y], where a player stands on the floor: two blocks of air."""
+    """Return the bool [X, Y] mask of the columns with two blocks of air above the floor."""
     numbers = [i for i, state in enumerate(palette) if state in (AIR, LIGHT)]
     free = np.isin(states[:, :, ground : ground + 2], numbers).all(2)
     floor = states[:, :, ground - 1] != 0

@@ -1,7 +1,7 @@
-"""Meanings of mod blocks: block ids to classes and designs, by words in their names.
+"""Meanings of mod blocks: map block ids to classes and designs by words in their names.
 
-Mods of furniture name hundreds of blocks by a few words, so a palette lists words. Of all that
-occur in a block's name the longest says what it is, the last of two as long.
+Furniture mods name hundreds of blocks by a few words, so a palette lists these words. The longest
+word in a block's name decides; of equally long words, the last one.
 """
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ MAX_OBJECTS = 65_535
 
 
 class Meaning(NamedTuple):
-    """A class, and the design that shows it best; "" where none does."""
+    """A class, and the furniture design that shows it best ("" if there is none)."""
 
     class_id: int
     design: str
@@ -28,7 +28,7 @@ class Meaning(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Meanings:
-    """The words of a palette. ``namespaces`` are the beginnings of those that it speaks of."""
+    """The word list of a palette, and the namespace prefixes of the blocks to which it applies."""
 
     namespaces: tuple[str, ...]
     words: Mapping[str, Meaning]
@@ -38,7 +38,7 @@ class Meanings:
         return sorted(self.words, key=len, reverse=True)
 
     def of(self, state: str) -> Meaning | None:
-        """Return what a block state stands for; None where no word tells.
+        """Return the meaning of a block state, or None if no word matches.
 
         Example:
             >>> Meanings(("mod",), {"chair": Meaning(5, "chair")}).of("mod:oak_chair[facing=east]")
@@ -55,10 +55,10 @@ class Meanings:
 
 
 def parse_meanings(raw: Any) -> Meanings:
-    """Return the meanings that ``reads`` of a palette file holds.
+    """Parse the ``reads`` entry of a palette file.
 
     Raises:
-        ValueError: it holds none.
+        ValueError: If the entry is invalid.
     """
     if not isinstance(raw, dict) or set(raw) != {"namespaces", "words"}:
         raise ValueError("reads must contain exactly the keys namespaces and words")
@@ -73,10 +73,10 @@ def parse_meanings(raw: Any) -> Meanings:
 
 
 def label_volume(volume: BlockVolume, meanings: Meanings) -> BlockVolume:
-    """Return a volume with the class and the object of every block whose meaning is known.
+    """Assign classes and instances to the blocks of a volume whose meaning is known.
 
-    Blocks of one design that touch by a face are one object; those of structure are none. Labels
-    that the volume has already stay.
+    Face-connected blocks of the same design form one object; structure blocks form none. Existing
+    labels of the volume are kept.
     """
     known = [meanings.of(state) for state in volume.palette]
     classes = np.array([0 if one is None else one.class_id for one in known], np.uint8)

@@ -1,8 +1,8 @@
-"""The furniture blocks of a mod in the place of a template, where they are of its size.
+"""Furniture blocks of a mod, used instead of a template of about the same size.
 
-Mods make furniture of one block, or of a few, for a world of a block a metre or two. So a piece
-is used only where the object comes to about as many blocks; else the program's own design stands
-there. Which way a block faces, and how it joins those beside it, stands in the palette's file.
+Mods provide furniture of one or a few blocks for worlds of one or two blocks per metre. A mod piece
+is therefore used only if the object covers about as many blocks; otherwise the built-in design is
+used. The palette file states the orientation of each block and how it connects to its neighbours.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,13 +32,13 @@ def mod_furniture(
     blocks_per_metre: float,
     colour: np.ndarray | None,
 ) -> BlockDesign | None:
-    """Return a palette's own blocks for a placement, turned; None where none is of its size.
+    """Return the mod blocks for a placement, rotated, or None if no piece has a matching size.
 
     Args:
-        pieces: the palette's.
-        placement: what stands where.
-        blocks_per_metre: the scale.
-        colour: the object's Oklab colour, float32 [3], where it is known.
+        pieces: Furniture pieces of the palette.
+        placement: Placement of the object.
+        blocks_per_metre: Scale of the build.
+        colour: Oklab colour of the object, float32 [3], or None if unknown.
     """
     if not pieces or placement.template == "cells":
         return None
@@ -66,15 +66,15 @@ def place_mod_furniture(
     grid: OccupancyGrid,
     within: np.ndarray,
 ) -> list[Placement]:
-    """Set a palette's own blocks where it has some; return the placements that are left.
+    """Place the mod furniture of a palette and return the placements that remain.
 
     Args:
-        canvas: where the shell stands.
-        pieces: the palette's.
-        placements: all furniture.
-        colours: float32 [X, Y, Z, 3], Oklab, of the grid's cells; zero where there is none.
-        grid: the room.
-        within: bool [X, Y, Z], where things may stand.
+        canvas: Canvas with the finished shell.
+        pieces: Furniture pieces of the palette.
+        placements: Placements of all furniture.
+        colours: Oklab colours of the grid's cells, float32 [X, Y, Z, 3]; 0 is no colour.
+        grid: Grid of the room.
+        within: Bool [X, Y, Z] mask of the blocks where objects are allowed.
     """
     left = []
     for placement in placements if pieces else ():

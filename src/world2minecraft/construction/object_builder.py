@@ -1,4 +1,4 @@
-"""Objects as blocks: templates by their parts or idioms, the rest from their own cells."""
+"""Build objects as blocks, from template parts or designs, or from their own cells."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -68,7 +68,7 @@ FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
 
 class ObjectBuilder:
-    """Sets the objects of one room on a canvas whose shell stands."""
+    """Places the objects of a room on a canvas with a finished shell."""
 
     def __init__(
         self,
@@ -94,7 +94,7 @@ class ObjectBuilder:
         )
 
     def put_all(self, placements: Sequence[Placement]) -> None:
-        """Set every placement, then the object cells that no block near them shows."""
+        """Place all templates, then the object cells that no nearby block represents."""
         if self.parameters.close_tops:
             self.plates.put_worktops(self.grid, self.colours, self.coloured)
         voxels = self.parameters.style == "voxels"
@@ -191,7 +191,7 @@ class ObjectBuilder:
     def put_cells(
         self, cells: np.ndarray, class_id: int, number: int, solid: Solid | None = None
     ) -> None:
-        """Set an object from its own cells; ``solid`` is what they are fitted to, where known."""
+        """Place an object from its cells, fitted to ``solid`` if given."""
         if not len(cells):
             return
         cells, samples = self.colour_source.with_tops(cells)
@@ -241,11 +241,11 @@ class ObjectBuilder:
         self._put_shapes(design.cut(window.low, window.box, numbers), samples, thing)
 
     def put_template(self, placement: Placement, cells: np.ndarray, *, forced: bool) -> bool:
-        """Set a template by its vanilla design at small scales, else by its parts.
+        """Place a template: as its vanilla design at small scales, otherwise by its parts.
 
         Returns:
-            False where its parts would stand in space that was seen free: nothing is set then,
-            unless it is ``forced``.
+            False, without placing anything, if the parts would be in space seen as free and
+            ``forced`` is False; otherwise True.
         """
         thing = ObjectLabel(placement.class_id, placement.object_id)
         found = block_design(placement, self.lattice.blocks_per_metre)

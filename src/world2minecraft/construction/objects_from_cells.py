@@ -1,7 +1,7 @@
-"""Objects built from their own cells: as solids for the fit, or resampled to full blocks.
+"""Objects built from their own cells: as solids for shape fitting, or resampled to full blocks.
 
-Closed objects are filled and equal ones share one solid. Where no finer shape exists in the colours
-of an object it becomes full blocks, resampled so that thin parts survive.
+Closed objects are filled, and copies of an object share one solid. If no finer shape exists in the
+colours of an object, it is resampled to full blocks in a way that preserves thin parts.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -68,15 +68,15 @@ class HalfBlockShape(NamedTuple):
 def resample_cells(
     cells: np.ndarray, grid: OccupancyGrid, lattice: Lattice, share: float, shift: bool
 ) -> HalfBlockShape:
-    """Return the half blocks that show cells.
+    """Resample the cells of an object to half blocks.
 
     Args:
-        cells: int [N, 3], indices into the grid, at least one.
-        grid: where the cells lie.
-        lattice: where the blocks stand.
-        share: the least share of a block's face that the cells cover.
-        shift: whether the object may move by up to half a block sideways, and a quarter up or
-            down, to fall on the lattice crisply.
+        cells: Indices of at least one cell of the grid, int [N, 3].
+        grid: Grid of the cells.
+        lattice: Block lattice of the room.
+        share: Minimum share of a block's face that the cells must cover.
+        shift: Whether the object may move by up to half a block sideways and a quarter block up or
+            down, to align with the lattice.
     """
     low_cell, high_cell = cells.min(0), cells.max(0) + 1
     mask = np.zeros(high_cell - low_cell, bool)
@@ -142,14 +142,14 @@ def _blur(profile: np.ndarray, edges: np.ndarray) -> float:
 
 
 class Solid(NamedTuple):
-    """What an object is fitted to, in its own frame: cells turned back by its quarter turns."""
+    """The fitting target of an object: cells in its own frame, with its quarter turns undone."""
 
     mask: np.ndarray  # bool [X, Y, Z]
     turns: int
 
 
 class CellsDesign(NamedTuple):
-    """A design, the block of each cell, int [N, 3], and how well it shows them."""
+    """A design fitted to cells, the block of each cell, int [N, 3], and the scores of the fit."""
 
     design: Design
     blocks: np.ndarray
@@ -157,12 +157,12 @@ class CellsDesign(NamedTuple):
 
 
 def enclosed_cells(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> np.ndarray:
-    """Return the unseen cells, int [N, 3], within a closed object: under its skin and beside it.
+    """Return the unseen cells inside a closed object, int [N, 3].
 
     Args:
-        cells: int [M, 3], the object's own.
-        grid: where they lie.
-        class_id: the object's.
+        cells: Cells of the object, int [M, 3].
+        grid: Grid of the cells.
+        class_id: Class of the object.
     """
     if class_id not in CLOSED:
         return np.zeros((0, 3), int)
@@ -179,7 +179,7 @@ def enclosed_cells(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> np.
 
 
 def make_solid(cells: np.ndarray, inner: np.ndarray, turns: int) -> Solid:
-    """Return cells, int [N, 3], and what they enclose, [M, 3], as a solid of its own frame."""
+    """Combine the cells of an object, int [N, 3], and its inner cells, int [M, 3], to a solid."""
     low = cells.min(0)
     mask = np.zeros(cells.max(0) + 1 - low, bool)
     mask[tuple((cells - low).T)] = True
@@ -188,10 +188,10 @@ def make_solid(cells: np.ndarray, inner: np.ndarray, turns: int) -> Solid:
 
 
 def share_solids(solids: Mapping[int, Solid], classes: Mapping[int, int]) -> dict[int, Solid]:
-    """Return the solids by number, those of copies replaced by what most of the copies have.
+    """Replace the solids of copies by the majority shape of all copies.
 
-    Two objects of one class are copies where their sizes differ by a cell or two and most of
-    what they fill is the same: four chairs come out as four equal chairs.
+    Two objects of the same class are copies if their sizes differ by at most two cells and most of
+    their cells coincide. Four similar chairs become four equal chairs.
     """
     groups: list[list[int]] = []
     for number in solids:
@@ -246,18 +246,19 @@ def fit_cells(
     flush: bool = False,
     hangs: bool = False,
 ) -> CellsDesign:
-    """Return an object's cells as shapes in place.
+    """Fit block shapes to an object's cells and place them.
 
     Args:
-        cells: int [N, 3], indices into the grid, at least one; they say where it stands.
-        solid: what is fitted, as of ``make_solid`` or ``share_solids``.
-        grid: where the cells lie.
-        lattice: where the blocks stand.
-        kinds: the kinds of shape that may be used.
-        shift: whether the object may move by up to half a block sideways, and a quarter up or
-            down, to fall on the lattice crisply.
-        flush: whether its top must end with a block where it nearly does: things lie on tables.
-        hangs: whether it hangs on a wall where it does not begin at a floor.
+        cells: Indices of at least one cell of the grid, int [N, 3]; they define the position.
+        solid: Fitting target, from ``make_solid`` or ``share_solids``.
+        grid: Grid of the cells.
+        lattice: Block lattice of the room.
+        kinds: Kinds of shape that may be used.
+        shift: Whether the object may move by up to half a block sideways and a quarter block up or
+            down, to align with the lattice.
+        flush: Whether the top must end at a block boundary if it nearly does, so that objects can
+            rest on it.
+        hangs: Whether the object hangs on a wall if it does not begin at a floor.
     """
     low, high = cells.min(0), cells.max(0) + 1
     ends = np.array([[lattice.edges_of(grid, a)[at[a]] for a in range(3)] for at in (low, high)])
@@ -285,9 +286,10 @@ def fit_cells(
 
 
 def kinds_for_sheet(kinds: frozenset[str], solid: Solid, side: float) -> frozenset[str]:
-    """Return the kinds that suit an object: an upright sheet takes no stairs, which fray it.
+    """Return the kinds of shape that suit an object; upright sheets exclude stairs.
 
-    Where no panel exists in its colour it is of full blocks. ``side`` is a cell's, in blocks.
+    Without a panel in its colour, a sheet is built of full blocks. ``side`` is the cell size in
+    blocks.
     """
     thick = min(np.ptp(_bulk(solid.mask, axis)) for axis in (0, 1)) * side
     if thick > SHEET:
@@ -296,7 +298,7 @@ def kinds_for_sheet(kinds: frozenset[str], solid: Solid, side: float) -> frozens
 
 
 class Body(NamedTuple):
-    """The bulk of an object in its own frame, and how it is stretched to end with blocks."""
+    """The main volume of an object in its own frame, and how it is stretched to whole blocks."""
 
     sides: np.ndarray  # float64 [3], the sides of a cell in blocks, stretched
     middle: np.ndarray  # float64 [2], the middle of the bulk off that of the box, in cells
@@ -385,7 +387,7 @@ def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target
 def make_solids(
     placements: Sequence[Placement], held: Mapping[int, np.ndarray], colour_source: ColourSource
 ) -> dict[int, Solid]:
-    """Return what placements are fitted to, copies alike, by the id of each."""
+    """Return the fitting target of each placement by its id, equal for copies."""
     solids: dict[int, Solid] = {}
     for one in placements:
         if len(held[id(one)]):
@@ -403,11 +405,11 @@ def good_fits(
     lattice: Lattice,
     kinds_of: Callable[[np.ndarray, Placement], frozenset[str]],
 ) -> dict[int, CellsDesign]:
-    """Return the fits of what has a template, by the id of the placement, where they are good.
+    """Fit the placements that have a template and return the good fits by placement id.
 
-    The guard of reference/fit.md: an object that loses over half of its thin parts, or is
-    missed by more than the least IoU, goes to the library instead; so do all chairs of a kind
-    where one does, for they are to be equal.
+    A fit is rejected, and the library design used instead, if the object loses more than half of
+    its thin parts or misses the minimum IoU (see reference/fit.md). If one chair of a kind is
+    rejected, all chairs of that kind are, so that they look the same.
     """
     side = colour_source.grid.voxel_m * lattice.blocks_per_metre
     made: dict[int, CellsDesign] = {}

@@ -1,8 +1,7 @@
-"""Steps of one block by which an object avoids others that were placed before it.
+"""One-block shifts by which an object avoids objects that were placed earlier.
 
-Boxes that touch in metres may share a layer of blocks once each is snapped to the lattice. What
-comes later then loses a side, or all of itself where it is small; a step of one block keeps it
-whole.
+Boxes that touch in metres can share a layer of blocks after snapping to the lattice. The later
+object would lose a side, or disappear if it is small. A shift by one block keeps it complete.
 """
 
 import numpy as np
@@ -15,12 +14,12 @@ UP = ((0, 0, 1),)
 
 
 def best_place(blocks: np.ndarray, counts: np.ndarray, free: np.ndarray) -> np.ndarray | None:
-    """Return the free block, int64 [3], that most of an object's cells lie in or by, or None.
+    """Return the free block, int64 [3], in or next to most of an object's cells, or None.
 
     Args:
-        blocks: int [N, 3], the blocks of its cells, each once.
-        counts: int [N], how many cells lie in each.
-        free: bool, the blocks of the whole lattice that nothing takes.
+        blocks: Distinct blocks of the object's cells, int [N, 3].
+        counts: Number of cells in each block, int [N].
+        free: Bool mask of the unoccupied blocks of the whole lattice.
     """
     near = np.concatenate([blocks + step for step in ((0, 0, 0), *UP, *SIDEWAYS)])
     places = np.unique(near, axis=0)
@@ -37,14 +36,14 @@ def best_place(blocks: np.ndarray, counts: np.ndarray, free: np.ndarray) -> np.n
 def best_step(
     filled: np.ndarray, low: np.ndarray, free: np.ndarray, opened: np.ndarray, stands: bool
 ) -> np.ndarray:
-    """Return the step, int64 [3], after which least of a thing's blocks are taken.
+    """Return the shift, int64 [3], after which the fewest blocks of an object are occupied.
 
     Args:
-        filled: bool [X, Y, Z], the blocks of the thing.
-        low: int [3], where it begins.
-        free: bool, the blocks of the whole lattice that nothing takes.
-        opened: bool of that shape, the blocks that were seen free.
-        stands: whether it stands on a floor; what does not may be lifted onto what it lies on.
+        filled: Bool [X, Y, Z] mask of the object's blocks.
+        low: First block of the object, int [3].
+        free: Bool mask of the unoccupied blocks of the whole lattice.
+        opened: Bool mask, of the same shape, of the blocks seen as free.
+        stands: Whether the object stands on a floor; otherwise it may be lifted onto its support.
     """
     cells = np.argwhere(filled) + low
     steps = ((0, 0, 0), *(() if stands else UP), *SIDEWAYS)

@@ -1,8 +1,8 @@
 """Restriction of a canvas to the blocks that a palette lists.
 
-Every other block becomes the nearest listed one: a shape of another material the same shape of a
-listed one, what fills most of its block a full block. What is small, such as a button, is removed.
-Light and barriers stay: they are invisible.
+Every other block is replaced by the nearest listed block: shapes by the same shape of a listed
+block, mostly filled blocks by a full block. Small blocks such as buttons are removed. Light and
+barrier blocks are kept, since they are invisible.
 """
 
 from collections.abc import Mapping
@@ -32,7 +32,7 @@ MIN_FULL_SHARE = 0.5
 
 
 def restrict_to_palette(canvas: Canvas, palette: Palette) -> None:
-    """Replace all that stands on a canvas and is none of the palette's blocks, in place."""
+    """Replace, in place, all blocks of a canvas that the palette does not allow."""
     if palette.only is None:
         return
     number = np.array(
@@ -46,7 +46,7 @@ def restrict_to_palette(canvas: Canvas, palette: Palette) -> None:
 
 
 def nearest_allowed(state: str, palette: Palette) -> str:
-    """Return a state itself where a palette allows it, else what stands for it; air for none."""
+    """Return the nearest block state that a palette allows, or air if there is none."""
     name = state.partition("[")[0]
     if palette.only is None or name in UNSEEN or name in palette.only:
         return state

@@ -1,11 +1,11 @@
-"""Palettes: which blocks a room may be built of, by name or from a JSON or YAML file.
+"""Palettes: the blocks a room may be built of, by name or from a JSON or YAML file.
 
-A palette lists the full blocks that a surface of each class may be made of. A palette of a mod also
-lists which of its blocks stand for which furniture (``mod_furniture``) and what its blocks mean
-(``block_meanings``). One that lists ``blocks`` is restricted to them (``palette_restriction``). A
-file may extend another palette (``extends``), so that a user's file needs two lines: a name and the
-blocks. Every block is looked up in the game's table, except those of other namespaces, which are of
-mods. docs/palettes.md describes the format.
+A palette lists the full blocks allowed for surfaces of each class. A palette for a mod also lists
+which of its blocks represent which furniture (``mod_furniture``) and what its blocks mean
+(``mod_block_classes``). If a palette lists ``blocks``, the build is restricted to them
+(``palette_restriction``). A file may extend another palette with ``extends``, so a user's file
+needs only a name and the blocks. Every block is checked against the game's block table, except
+blocks of other namespaces, which belong to mods. The format is described in docs/palettes.md.
 """
 
 import json
@@ -55,7 +55,7 @@ _WEATHERING = ("copper",)
 
 
 class PieceBlock(NamedTuple):
-    """One block of a piece of several: front-to-back, side, up from its first; its block."""
+    """One block of a furniture piece, with its offset front to back, sideways and up."""
 
     at: tuple[int, int, int]
     id: str
@@ -64,15 +64,18 @@ class PieceBlock(NamedTuple):
 
 @dataclass(frozen=True)
 class FurniturePiece:
-    """What stands for some templates.
+    """Mod blocks that replace some furniture templates.
 
-    designs: the names of templates, or of families, that it stands for.
-    cells: its blocks; ``{wood}`` and ``{dye}`` in their names take the object's colour.
-    fill: ``one`` as they are; ``row`` across its width, ``floor`` over its footprint, ``box``
-        over all of it, each by the one cell.
-    facing: where ``facing`` looks: ``front``, ``back``, ``left`` or ``right``; none without it.
-    joins: how it joins its like: ``sides`` (north, east ... of tables), ``flags`` (left, right of
-        desks), ``shape`` (the shape of sofas); none for blocks that stand alone.
+    Attributes:
+        designs: Names of the replaced templates or families.
+        cells: Blocks of the piece; ``{wood}`` and ``{dye}`` in their names take the object's
+            colour.
+        fill: ``one`` places the cells once; ``row`` repeats the single cell across the width,
+            ``floor`` over the footprint and ``box`` over the whole volume.
+        facing: Side to which the ``facing`` property points: ``front``, ``back``, ``left`` or
+            ``right``; None if the blocks have no such property.
+        joins: How pieces connect: ``sides`` (north, east, ... of tables), ``flags`` (left, right of
+            desks) or ``shape`` (the shape of sofas); None if they do not connect.
     """
 
     designs: tuple[str, ...]
@@ -83,10 +86,11 @@ class FurniturePiece:
 
 
 def parse_piece(raw: Any) -> FurniturePiece:
-    """Return the piece that an entry of a palette file holds.
+    """Parse a furniture entry of a palette file.
 
     Raises:
-        ValueError: it is none. UsageError: it names no block.
+        ValueError: If the entry is invalid.
+        UsageError: If a block id is invalid.
     """
     known = ("for", "id", "properties", "cells", "fill", "facing", "joins")
     if not isinstance(raw, dict) or not set(raw) <= set(known) or "for" not in raw:
@@ -127,11 +131,21 @@ def _cell(raw: Any) -> PieceBlock:
 
 @dataclass(frozen=True)
 class Palette:
-    """Blocks by class. States are complete; ``slabs`` and ``fences`` go by full block.
+    """The blocks allowed for each class, as complete block states.
 
-    ``preferred`` are the blocks that win where colours are about as near: a table is of wood.
-    ``only`` are the names of all blocks that may be seen; None allows every one. ``furniture``
-    are the pieces of a mod, ``meanings`` what its blocks stand for.
+    Attributes:
+        name: Name of the palette.
+        blocks: Allowed full blocks by class number.
+        preferred: Blocks by class number that win over others of similar colour, such as wood for
+            tables.
+        defaults: Block by class number for surfaces without a known colour.
+        slabs: Slab of each full block.
+        fences: Fence of each full block.
+        glass: Block of windows.
+        pane: Pane of windows.
+        only: Names of all allowed blocks; None allows every block.
+        furniture: Furniture pieces of a mod.
+        meanings: Meanings of the mod's blocks, or None.
     """
 
     name: str
@@ -147,16 +161,16 @@ class Palette:
     meanings: "Meanings | None" = None
 
     def allows(self, state: str) -> bool:
-        """Whether a state, as text, may be used: it is one of ``only``, where there are such."""
+        """Return whether a block state is allowed by the palette."""
         return self.only is None or state.partition("[")[0] in self.only
 
 
 def load_palette(name: str) -> Palette:
-    """Return a palette by its name, or by the path of a file of one's own.
+    """Load a palette by name, or from the path of a palette file.
 
     Raises:
-        UnknownNameError: no palette and no file has this name.
-        InputError: the file is no palette; the message says what it lacks.
+        UnknownNameError: If no palette has this name and no such file exists.
+        InputError: If the file is not a valid palette.
     """
     if name in PALETTE_FILES:
         return load_shipped(name)
@@ -168,16 +182,17 @@ def load_palette(name: str) -> Palette:
 
 
 def shipped_palette_text(name: str) -> str:
-    """Return the text of a palette file of the program."""
+    """Return the text of a built-in palette file."""
     source = files("world2minecraft.construction") / "data" / PALETTE_FILES[name]
     return source.read_text("utf-8")
 
 
 def read_palette(path: Path) -> Palette:
-    """Return the palette of a file.
+    """Read a palette file.
 
     Raises:
-        InputError: there is none, or it is no palette. LimitError: it is too large.
+        InputError: If the file does not exist or is not a valid palette.
+        LimitError: If the file is too large.
     """
     text = read_bytes(path, MAX_BYTES)
     try:
@@ -193,15 +208,16 @@ def read_palette(path: Path) -> Palette:
 
 @cache
 def load_shipped(name: str) -> Palette:
-    """Return a palette of the program by its name."""
+    """Load a built-in palette by name."""
     return parse_palette(json.loads(shipped_palette_text(name)))
 
 
 def parse_palette(raw: Any) -> Palette:
-    """Return the palette that a palette file holds.
+    """Parse the content of a palette file.
 
     Raises:
-        ValueError: it is no palette. UnknownNameError: it names a block that the game lacks.
+        ValueError: If the content is not a valid palette.
+        UnknownNameError: If a block does not exist in the game.
     """
     keys = _mapping("a palette", raw, KEYS)
     name = keys.get("name")

@@ -1,4 +1,4 @@
-"""The parameters of a build, and where each default comes from."""
+"""The parameters of a build and the reasons for their defaults."""
 
 from dataclasses import dataclass
 
@@ -17,42 +17,45 @@ AT_LEAST_1, NOT_BELOW_0, SHARE = "1 or more", "0 or more", "above 0, up to 1"
 
 @dataclass(frozen=True)
 class BuildParameters:
-    """How a room is built. Each default is a decision; its origin stands beside it.
+    """Parameters of the build stage.
 
-    palette: the palette file; see docs/building.md.
-    style: what furniture is made of: ``blocks``, designs in vanilla blocks; ``display``, fine
-        geometry in block_display entities over invisible colliders; ``voxels``, each object's own
-        cells by the best fitting block states.
-    shapes: of which shapes objects are fitted: ``calm``, full blocks, slabs, stairs, trapdoors,
-        posts and carpets; or ``cubes``, full blocks alone.
-    ceiling: ``on`` where it was seen, ``glass`` there or upon the walls, or ``off``, so that one
-        looks in from above.
-    lights: ``hidden``, invisible light blocks, so that the room is lit and safe at night;
-        ``lamps``, that and lamps that hang from the ceiling; or ``off``.
-    plaque: the text of a sign near the spawn; ``auto`` is the scene's name, ``off`` no sign.
-    edge: what stands where the floor ends and no wall was seen: invisible ``barrier`` blocks, so
-        that nobody walks into the void, or ``none``.
-    expose: lift the colours of a dim room and take its colour cast away.
-    structure_colours: at most so many blocks a wall, the floor or the ceiling.
-    object_colours: at most so many blocks an object; a chair has one.
-    saturation: how much clear colours are strengthened.
-    preference: the Oklab distance by which a block of the palette's preferred groups may lie
-        farther off.
-    structure_lightness_weight: how much lightness counts in telling the parts of a wall or floor
-        apart.
-    structure_noticed, object_noticed: the Oklab distance from which a part of a surface deserves
-        a block of its own.
-    lightness_weight: how much lightness counts against hue and chroma (1 = Oklab as it is).
-    calm: the Oklab distance that a block gives up for each neighbour it agrees with.
-    face_share: the share of a block's face that structure must cover.
-    object_share: the same for objects.
-    most_contradicted: the share of a template's blocks that may stand in space seen free. Above
-        it the object is built from its own cells.
-    chair_contradicted: the same for chairs.
-    close_tops: close the unseen holes in the tops of objects (glossy counters give no depth).
-    plane_reach_blocks: surfaces nearer than this to a wall's plane belong to it.
-    plane_area_m2: the least area of a plane that draws others to itself.
-    gap_m: unseen holes in a wall up to this wide are closed.
+    palette: Name of a palette, or path of a palette file; see docs/building.md.
+    style: What furniture is made of. ``blocks`` uses designs of vanilla blocks, ``display`` uses
+        detailed block_display entities over invisible colliders, and ``voxels`` fits block states
+        to the cells of each object.
+    shapes: Block shapes that objects are fitted with. ``calm`` uses full blocks, slabs, stairs,
+        trapdoors, posts and carpets; ``cubes`` uses full blocks only.
+    ceiling: Whether the ceiling is built. ``on`` builds it where it was seen, ``glass`` also covers
+        rooms without a seen ceiling with glass, and ``off`` leaves the room open from above.
+    lights: How the room is lit. ``hidden`` adds invisible light blocks, which also keep it safe at
+        night; ``lamps`` adds hanging lamps as well; ``off`` adds no light.
+    plaque: Text of a sign near the spawn. ``auto`` uses the name of the scene, ``off`` places no
+        sign.
+    edge: Blocks at the edge of the floor where no wall was seen. ``barrier`` places invisible
+        barriers, so that players cannot fall into the void; ``none`` places no blocks.
+    expose: Whether to brighten the colours of a dark room and remove its colour cast.
+    structure_colours: Maximum number of different blocks per wall, floor or ceiling.
+    object_colours: Maximum number of different blocks per object; a chair always has one.
+    saturation: Factor by which the chroma of saturated colours is increased.
+    preference: Additional Oklab distance at which a preferred block of the palette still wins over
+        a block that is closer in colour.
+    structure_lightness_weight: Weight of lightness when a wall or floor is divided into parts of
+        different colour.
+    structure_noticed, object_noticed: Minimum Oklab distance at which a part of a surface gets its
+        own block.
+    lightness_weight: Weight of lightness compared to hue and chroma; 1 is plain Oklab distance.
+    calm: Additional Oklab distance accepted for each neighbouring block of the same kind.
+    face_share: Minimum share of a block's face that structure must cover.
+    object_share: Minimum share of a block's face that an object must cover.
+    most_contradicted: Maximum share of a template's blocks in space seen as free. Above this share,
+        the object is built from its own cells.
+    chair_contradicted: Maximum share of a chair template's blocks in space seen as free.
+    close_tops: Whether to close unseen holes in the tops of objects, such as glossy counters
+        without measured depth.
+    plane_reach_blocks: Maximum distance of a surface from a wall plane to be snapped to it, in
+        blocks.
+    plane_area_m2: Minimum area of a plane that other surfaces are snapped to.
+    gap_m: Maximum width of unseen holes in walls that are closed.
     """
 
     palette: str = parameter("vanilla")

@@ -1,7 +1,7 @@
-"""A plaque near the spawn: a sign with the scene's name, on a wall where one can stand.
+"""A plaque near the spawn: a sign with the name of the scene.
 
-Where the room is larger than life, a click on it makes the player as large as the room, and the
-next one brings the game's size back; see docs/building.md for the commands.
+If the room is larger than life, clicking the sign scales the player up to the room, and clicking
+again restores the normal size. The commands are described in docs/building.md.
 """
 
 from dataclasses import replace
@@ -26,13 +26,13 @@ _FACINGS = ("north", "east", "south", "west")
 
 
 def add_plaque(volume: BlockVolume, name: str) -> BlockVolume:
-    """Return a volume with a sign that says a name, or itself where no place is free for one.
+    """Add a sign with a name to a volume, or return the volume unchanged if no wall is free.
 
-    The sign carries class 0: it is no part of what was seen.
+    The sign has class 0, since it is not part of the scan.
 
     Args:
-        volume: the finished room.
-        name: printable text; what does not fit on two lines is cut.
+        volume: Finished blocks of the room.
+        name: Printable text; text beyond two lines is cut off.
     """
     spawn = find_spawn(volume)
     found = _on_a_wall(volume, spawn) or _on_the_floor(volume, spawn)

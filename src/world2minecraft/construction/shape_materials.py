@@ -1,7 +1,8 @@
-"""The materials of shapes: the blocks that exist in each, and which is nearest to a colour.
+"""The blocks available in each shape, and the block closest to a colour.
 
-Wood and many stones come as slabs and stairs, dyes do not: a clear red costs 3 (dE76) as a full
-block and 24 as a slab. So an object is fitted with the kinds of shape that exist in its colours.
+Wood and many stones exist as slabs and stairs, dyed blocks do not: a clear red has an error of 3
+(dE76) as a full block and of 24 as a slab. Objects are therefore fitted only with the kinds of
+shape that exist in their colours.
 """
 
 from collections.abc import Mapping, Sequence
@@ -57,11 +58,11 @@ class Materials:
         """Return the kinds of shape that exist in an object's colours.
 
         Args:
-            colours: float32 [N, 3], Oklab; none allows every kind.
+            colours: Oklab colours, float32 [N, 3]; an empty array allows every kind.
             full: M full blocks that the object may be made of.
-            handicaps: float64 [M], Oklab distances added to those of each.
-            class_id: of the object.
-            lightness_weight: how much lightness counts against hue and chroma.
+            handicaps: Oklab distances added to that of each full block, float64 [M].
+            class_id: Class of the object.
+            lightness_weight: Weight of lightness compared to hue and chroma.
         """
         offered = [kind for kind in self.blocks if kind not in EXCLUDED_KINDS.get(class_id, ())]
         if not len(colours):
@@ -84,13 +85,13 @@ class Materials:
         return np.round(distances + self.handicaps[kind], 6)
 
     def existing(self, kind: str, full: tuple[str, ...]) -> tuple[str, ...]:
-        """Return which of some full blocks exist as a kind of shape, or nearly in their colour."""
+        """Return the full blocks that exist as a kind of shape, exactly or in a similar colour."""
         distances = self._distances_to(kind, srgb_to_oklab(colours_of(full))).min(1)
         near = {block for block, off in zip(full, distances.tolist(), strict=True) if off <= SAME}
         return tuple(block for block in full if block in near or block in self.own[kind])
 
     def in_all(self, kinds: Sequence[str], full: tuple[str, ...]) -> tuple[str, ...]:
-        """Return which of some full blocks exist in all of some kinds, or all but posts."""
+        """Return the full blocks that exist in all given kinds of shape, or in all except posts."""
         for few in (kinds, [kind for kind in kinds if kind != "post"]):
             held = [set(self.existing(kind, full)) for kind in few]
             able = tuple(block for block in full if all(block in one for one in held))
@@ -99,7 +100,7 @@ class Materials:
         return ()
 
     def shaped_state(self, shape: Shape, block: str) -> str | None:
-        """Return the state of a shape in the colour of a full block; None where there is none."""
+        """Return the state of a shape in the colour of a full block, or None if there is none."""
         if shape.kind == "full":
             return block
         if block in self.own[shape.kind]:
@@ -127,7 +128,7 @@ def _distances(colours, offered, light, handicaps) -> np.ndarray:
 
 
 def materials_of(palette: Palette) -> Materials:
-    """Return what a palette's blocks exist as."""
+    """Return the shapes in which the blocks of a palette exist."""
     full = sorted({block for blocks in palette.blocks.values() for block in blocks})
     slabs, fences = palette.slabs, palette.fences
     woods = {block: name for block, name in fences.items() if "nether_brick" not in name}

@@ -1,9 +1,9 @@
-"""The shell on the canvas: painted floor, walls and ceiling, glass, rugs, pictures, unseen edge.
+"""The shell of a room: painted floor, walls and ceiling, windows, rugs, pictures and the edge.
 
-Rugs and pictures are parts of a flat surface with another paint, distinguished from shade and
-noise. Shade multiplies light, which in Oklab multiplies all three coordinates alike, so hue and
-chroma are compared at one lightness. Lightness itself is compared with a smooth surface fitted over
-the patch, so that the fall of light towards a corner does not count.
+Rugs and pictures are parts of a flat surface with a different paint, which must be distinguished
+from shadow and noise. Shadow multiplies light, and thus all three Oklab coordinates, so hue and
+chroma are compared at equal lightness. Lightness is compared with a smooth surface fitted to the
+patch, so that a gradual change towards a corner does not count.
 """
 
 from typing import NamedTuple
@@ -34,7 +34,7 @@ MIN_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a
 
 
 class PaintThresholds(NamedTuple):
-    """From which differences on a block surely is of another paint, and from which it may be."""
+    """The differences at which a block surely, or possibly, has a different paint."""
 
     hue: float  # Oklab distance of hue and chroma at one lightness
     lightness: float  # infinite: never by lightness alone
@@ -53,13 +53,13 @@ PICTURE = PaintThresholds(0.04, 0.22, 0.015, 0.045, 0.3)
 def find_contrasting_parts(
     mask: np.ndarray, colours: np.ndarray, step_m: float, steps: PaintThresholds
 ) -> np.ndarray:
-    """Return the parts of a flat surface that stand out, int32 [N], numbered from 1; 0: none.
+    """Label the parts of a flat surface that stand out, int32 [N] from 1; 0 is the background.
 
     Args:
-        mask: bool [X, Y, Z] with N blocks in one layer.
-        colours: float32 [N, 3], their Oklab colours in the order of the mask.
-        step_m: the side of a block.
-        steps: from which differences on.
+        mask: Bool [X, Y, Z] mask of N blocks in one layer.
+        colours: Oklab colours of the blocks in mask order, float32 [N, 3].
+        step_m: Block size in metres.
+        steps: Thresholds of the differences.
     """
     places = np.argwhere(mask)
     flat = np.flatnonzero(np.ptp(places, axis=0) > 0) if len(places) else np.zeros(0, int)
@@ -115,12 +115,12 @@ def put_shell(
     shell: Shell,
     source: BuildSource,
 ) -> None:
-    """Paint the surfaces of a shell and set them.
+    """Paint the surfaces of a shell and set their blocks.
 
     Args:
-        canvas: an empty canvas.
-        shell: which blocks are what.
-        source: the colours of the grid's cells, and what may be used.
+        canvas: Empty canvas.
+        shell: Masks of the parts of the shell.
+        source: Colours of the grid's cells and allowed blocks.
     """
     at, palette = tuple(shell.cells.T), source.palette
     tinted, known = block_colours(
@@ -209,12 +209,12 @@ def _put_windows(canvas: Canvas, windows: np.ndarray, palette: Palette) -> None:
 
 
 def put_edge(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
-    """Stand invisible barriers where the floor ends and no wall was seen.
+    """Place invisible barriers at the edge of the floor where no wall was seen.
 
     Args:
-        canvas: the finished shell and objects.
-        footprints: bool [X, Y] for each storey, the columns within its rooms. What lies within
-            the storey below is a stairwell, and stays open.
+        canvas: Canvas with the finished shell and objects.
+        footprints: Bool [X, Y] mask of the columns within the rooms, for each storey. An edge above
+            the storey below is a stairwell and stays open.
     """
     layers = np.flatnonzero((canvas.semantic > 0).any((0, 1)))
     highest = int(layers.max()) if len(layers) else 0

@@ -1,8 +1,8 @@
-"""The shell of a room as blocks: floor, walls with windows, ceiling, by rules and never by fit.
+"""The shell of a room as blocks: floor, walls with windows, and ceiling.
 
-Input: the labelled grid and the lattice. Output: masks of blocks for each part of the shell, each
-part a surface of its own with the cells that colour it. Ceilings are flat, at the heights at which
-they were seen, and closed over their rooms.
+The shell is built by rules, not by fitting, from the labelled grid and the lattice. The result is a
+mask of blocks for each part of the shell, with the cells that colour it. Ceilings are flat, at the
+heights at which they were seen, and closed above their rooms.
 """
 
 from dataclasses import dataclass
@@ -59,14 +59,15 @@ def find_ceiling(
     parameters: BuildParameters,
     coloured: list[tuple[np.ndarray, np.ndarray]],
 ) -> np.ndarray:
-    """Return the ceiling, bool [X, Y, Z]: one flat layer at each height where much was seen.
+    """Return the ceiling, bool [X, Y, Z]: a flat layer at each height at which much of it was seen.
 
     Args:
-        grid: what each cell is.
-        free: bool [x, y, z], the cells that were seen free.
-        lattice: where the blocks stand.
-        parameters: how to build; a ceiling that is off is empty.
-        coloured: gets the cells and the blocks, int [N, 3] each, that colour it.
+        grid: Grid of the room.
+        free: Bool [X, Y, Z] mask of the cells seen as free.
+        lattice: Block lattice of the room.
+        parameters: Build parameters; with ``ceiling`` off, the result is empty.
+        coloured: List to which the cells and blocks, int [N, 3] each, that colour the ceiling are
+            appended.
     """
     ceiling = np.zeros(lattice.shape, bool)
     if parameters.ceiling == "off":
@@ -88,15 +89,15 @@ def find_ceiling(
 def close_ceiling(
     ceiling: np.ndarray, footprint: np.ndarray, shut: np.ndarray, storey: tuple[int, int]
 ) -> None:
-    """Close, in place, a storey's ceiling over its rooms, where much of it was seen.
+    """Close, in place, the ceiling of a storey above its rooms if much of it was seen.
 
-    Scans seldom look up; what was seen free up there stays open.
+    Scans rarely look up. Blocks with space seen as free stay open.
 
     Args:
-        ceiling: bool [X, Y, Z], what was seen of it.
-        footprint: bool [X, Y], the columns within the storey's rooms.
-        shut: bool [X, Y, Z], the blocks in which little space was seen free.
-        storey: its first layer above the floor, and the one past its last.
+        ceiling: Bool [X, Y, Z] mask of the seen ceiling.
+        footprint: Bool [X, Y] mask of the columns within the storey's rooms.
+        shut: Bool [X, Y, Z] mask of the blocks with little space seen as free.
+        storey: First layer above the floor of the storey, and its exclusive end.
     """
     ground, top = storey
     own = ceiling[:, :, ground + 1 : top + 1]
@@ -110,15 +111,15 @@ def close_ceiling(
 def cover_with_glass(
     ceiling: np.ndarray, walls: np.ndarray, footprint: np.ndarray, storey: tuple[int, int]
 ) -> None:
-    """Lay, in place, a ceiling upon the walls of a storey in which none was seen.
+    """Add, in place, a ceiling on top of the walls of a storey in which none was seen.
 
-    Of glass it shuts a room and hides nothing of it.
+    A glass ceiling closes the room without hiding it.
 
     Args:
-        ceiling: bool [X, Y, Z], what there is of it.
-        walls: bool [X, Y, Z], where walls stand.
-        footprint: bool [X, Y], the columns within the storey's rooms.
-        storey: its first layer above the floor, and the one past its last.
+        ceiling: Bool [X, Y, Z] mask of the existing ceiling.
+        walls: Bool [X, Y, Z] mask of the walls.
+        footprint: Bool [X, Y] mask of the columns within the storey's rooms.
+        storey: First layer above the floor of the storey, and its exclusive end.
     """
     ground, top = storey
     layers = np.flatnonzero(walls[:, :, ground:top].any((0, 1)))
@@ -130,9 +131,10 @@ def cover_with_glass(
 
 @dataclass(frozen=True, eq=False)
 class Shell:
-    """Masks bool [X, Y, Z] of the lattice, and the cells [N, 3] and blocks [N, 3] of colours.
+    """The parts of a shell as bool [X, Y, Z] masks, with the cells and blocks that colour them.
 
-    ``patches`` int32 [X, Y, Z] numbers the surfaces that are painted each by itself, from 1.
+    ``patches`` int32 [X, Y, Z] numbers the separately painted surfaces from 1. ``cells`` and
+    ``blocks`` are int [N, 3] and correspond to each other.
     """
 
     floor: np.ndarray
@@ -146,10 +148,10 @@ class Shell:
 
 
 def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParameters) -> Shell:
-    """Return the shell of a room or a house; see docs/building.md for its rules.
+    """Build the shell of a room or a house by the rules described in docs/building.md.
 
-    Walls are found over all storeys at once, so that they stand over one another; the rest is
-    found storey by storey.
+    Walls are found over all storeys at once, so that they are above one another. The other parts
+    are found storey by storey.
     """
     free = (grid.labels == 0) & (grid.source != UNSEEN)
     open_share = volume_shares(free, grid, lattice)

@@ -1,4 +1,4 @@
-"""The spawn of a player: free, on the floor, facing the furnished middle of the room."""
+"""The spawn of the player: on free floor, facing the furnished centre of the room."""
 
 from typing import NamedTuple
 
@@ -19,18 +19,18 @@ CLEARANCE = 3.0  # Blocks to the nearest thing beyond which more room is worth n
 
 
 class Spawn(NamedTuple):
-    """Feet in world block coordinates, and the game's yaw."""
+    """The position of the player's feet in world block coordinates, and the game yaw in degrees."""
 
     position: tuple[float, float, float]
     yaw_deg: float
 
 
 def find_spawn(volume: BlockVolume) -> Spawn:
-    """Return where to stand in a volume.
+    """Find the spawn of a volume.
 
-    It is a free place of the largest walkable part of the floor, with room around it, as far as
-    that goes from the furniture's middle within sight of it. Without any free place it is the top
-    of the room's middle.
+    The spawn is a free position in the largest walkable part of the floor, with space around it, as
+    far as possible from the centre of the furniture but in sight of it. If no position is free, the
+    spawn is above the centre of the room.
     """
     ground = ROOM_CORNER_BLOCK[1] - volume.corner[1]
     standing = standing_cells(volume)
@@ -53,7 +53,7 @@ def find_spawn(volume: BlockVolume) -> Spawn:
 
 
 def standing_cells(volume: BlockVolume) -> np.ndarray:
-    """Return the columns, bool [X, Z], where a player stands on the floor's layer."""
+    """Return the bool [X, Z] mask of the columns in which a player can stand on the floor layer."""
     ground = ROOM_CORNER_BLOCK[1] - volume.corner[1]
     free = np.isin(
         volume.states,

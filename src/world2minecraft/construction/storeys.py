@@ -1,8 +1,8 @@
-"""The storeys of a house: the heights of their floors, and where each begins and ends.
+"""The storeys of a house: the heights of their floors and their layers of blocks.
 
-The floor of the ground storey is layer 63 whatever was seen. An upper storey is a level floor of
-fair size that lies a room's height over the one below; its floor is the layer of blocks that
-holds its surface best.
+The floor of the ground storey is always layer 63. An upper storey is a level floor of sufficient
+size at least a room's height above the storey below; its floor is the layer of blocks closest to
+its surface.
 """
 
 from dataclasses import replace
@@ -21,9 +21,9 @@ MIN_BLOCKS = 3  # A floor, and two blocks to stand in.
 
 
 def upper_floors_m(grid: OccupancyGrid) -> list[float]:
-    """Return the heights of the upper storeys' floors, rising, metres.
+    """Return the heights of the upper storeys' floors in metres, in increasing order.
 
-    A floor's surface is the top of the highest full layer of its cells, for slabs are thick.
+    The surface of a floor is the top of the highest full layer of its cells, since slabs are thick.
     """
     area_m2 = (grid.labels == SemanticClass.FLOOR).sum(axis=(0, 1)) * grid.voxel_m**2
     tops_m = grid.origin_m[2] + np.arange(1, grid.shape[2] + 1) * grid.voxel_m
@@ -41,7 +41,7 @@ def upper_floors_m(grid: OccupancyGrid) -> list[float]:
 
 
 def add_storeys(lattice: Lattice, grid: OccupancyGrid) -> Lattice:
-    """Return the lattice, which knows where the upper storeys of the grid begin."""
+    """Return the lattice with the first layers of the upper storeys found in the grid."""
     grounds: list[int] = []
     for height_m in upper_floors_m(grid):
         level = lattice.ground + round(height_m * lattice.blocks_per_metre)

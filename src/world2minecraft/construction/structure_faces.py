@@ -1,8 +1,8 @@
-"""Walls, windows and ceilings as faces: where a structure cell meets seen free space.
+"""Faces of walls, windows and ceilings, where structure cells meet space seen as free.
 
-A fused wall is a sheet of cells that jitters by a cell or two. Its face, not its middle, is where
-the room ends, so each face votes for the block behind it; faces near one plane are drawn onto
-that plane first, so that walls come out straight and one block thick.
+A fused wall is a sheet of cells that varies by one or two cells. The room ends at its face, not at
+its centre, so each face votes for the block behind it. Faces close to a common plane are first
+moved to that plane, so that walls become straight and one block thick.
 """
 
 from typing import NamedTuple
@@ -18,7 +18,7 @@ MIN_WIDTH_M = 0.24  # Narrower than this, structure is noise or the end of a wal
 
 
 class Faces(NamedTuple):
-    """Faces square to one axis and looking one way (or both, of a sheet with two free sides)."""
+    """Faces perpendicular to an axis with the same direction, or of sheets with two free sides."""
 
     axis: int
     cells: np.ndarray  # intp [N, 3]
@@ -27,7 +27,7 @@ class Faces(NamedTuple):
 
 
 class Votes(NamedTuple):
-    """What faces say of blocks."""
+    """The area and the target block of each face."""
 
     area: np.ndarray  # float32 [X, Y, Z], in block faces
     target: np.ndarray  # intp [N], the block layer along the axis of each face
@@ -38,7 +38,7 @@ class Votes(NamedTuple):
 def find_faces(
     grid: OccupancyGrid, solid: np.ndarray, free: np.ndarray, lattice: Lattice, axis: int
 ) -> list[Faces]:
-    """Return the faces of solid cells square to an axis: towards -, towards +, and of sheets."""
+    """Return the faces of solid cells along an axis: facing -, facing +, and those of sheets."""
     edges = lattice.edges_of(grid, axis)
     thin = max(1, int(0.75 / (edges[1] - edges[0])))
     body, empty = np.moveaxis(solid, axis, 0), np.moveaxis(free, axis, 0)
@@ -97,10 +97,10 @@ def _faces(axis: int, cells: np.ndarray, planes: np.ndarray, side: int) -> Faces
 
 
 def straighten(faces: Faces, voxel_m: float, parameters: BuildParameters) -> Faces:
-    """Return the faces with each plane drawn to the strongest plane within reach.
+    """Move the faces of each plane to the strongest plane within reach.
 
-    The strongest plane takes all faces near it, then the next takes what is left; a plane under
-    ``plane_area_m2`` draws nothing.
+    The strongest plane attracts all faces near it, then the next strongest the remaining faces.
+    Planes with an area below ``plane_area_m2`` attract no faces.
     """
     if not len(faces.planes):
         return faces
@@ -123,7 +123,7 @@ def straighten(faces: Faces, voxel_m: float, parameters: BuildParameters) -> Fac
 
 
 def vote(faces: Faces, grid: OccupancyGrid, lattice: Lattice) -> Votes:
-    """Return the area of faces in front of each block: a face belongs to the block behind it."""
+    """Sum the area of the faces in front of each block; a face belongs to the block behind it."""
     count = lattice.shape[faces.axis]
     if faces.side == 0:
         target = np.floor(faces.planes).astype(np.intp)
@@ -145,8 +145,9 @@ def see_through(
 ) -> np.ndarray:
     """Return the share of each block's face, float32 [X, Y, Z], through which space was seen.
 
-    It is measured in the layer of cells right behind each plane, and -1 where no plane is. A
-    doorway is open there, while the space before a wall that stands back within its block is not.
+    The share is measured in the layer of cells directly behind each plane and is -1 for blocks
+    without a plane. A doorway is open in this layer, while the space in front of a recessed wall is
+    not.
     """
     edges = lattice.edges_of(grid, faces.axis)
     across = [axis for axis in range(3) if axis != faces.axis]
@@ -164,7 +165,7 @@ def see_through(
 
 
 def blocks_behind(votes: Votes, grid: OccupancyGrid, lattice: Lattice) -> np.ndarray:
-    """Return the block, intp [N, 3], that shows the colour of each voting cell."""
+    """Return the block, intp [N, 3], that each voting cell colours."""
     blocks = np.empty_like(votes.cells)
     for axis in range(3):
         edges = lattice.edges_of(grid, axis)

@@ -1,13 +1,13 @@
-"""Painting: each surface of the shell and each object gets its blocks.
+"""Painting: choose the blocks of each surface of the shell and of each object.
 
-A surface takes the block nearest in Oklab among those its class allows. Alone that is noisy, so
-first a few blocks are chosen that serve the whole surface (one more only when it pays), then each
-block weighs its own colour against its neighbours: a plain wall becomes plain, while the edge
-between a red front and a dark counter stays.
+A surface uses the block closest in Oklab among those its class allows. To avoid noise, a few blocks
+are first chosen for the whole surface, and then each block weighs its own colour against its
+neighbours. A plain wall becomes uniform, while the edge between a red front and a dark counter
+stays.
 
-A chair is small and half in the shade of a table, so the median of its cells is that of shadow. Its
-lighter half shows its material, and of a frame with cushions the part that has a hue. Chairs of
-similar colours are a set and share one paint.
+A chair is small and often in the shadow of a table, so its median colour is that of shadow. The
+lighter half of its cells shows its material and, for a frame with cushions, the saturated part
+does. Chairs of similar colours form a set and share one paint.
 """
 
 from collections.abc import Sequence
@@ -53,12 +53,16 @@ def colour_costs(
     handicaps: np.ndarray,
     fading: float = 0.0,
 ) -> np.ndarray:
-    """Return squared distances, float32 [N, M], of Oklab colours [N, 3] to M blocks.
+    """Compute the squared distances, float32 [N, M], between Oklab colours [N, 3] and M blocks.
 
-    The difference of a and b is parted into that of chroma and the rest, which is that of hue.
+    The distance is divided into lightness, chroma and hue.
 
-    ``handicaps`` float [M] are added to the distances, and ``fading`` to those of blocks that would
-    turn a clear colour grey: a purple sofa may be another purple, but no dark stone.
+    Args:
+        colours: Oklab colours, float32 [N, 3].
+        candidates: M block states.
+        lightness_weight: Weight of lightness compared to hue and chroma.
+        handicaps: Distances added for each block, float [M].
+        fading: Distance added for blocks that would turn a saturated colour grey.
     """
     wanted = colours.astype(np.float32)[:, None]
     offered = srgb_to_oklab(colours_of(candidates))
@@ -76,10 +80,10 @@ def colour_costs(
 
 
 def choose_blocks(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
-    """Return the columns of ``costs`` [N, M] that serve all rows best, ``most`` at the most.
+    """Choose at most ``most`` columns of ``costs`` [N, M] that together serve all rows best.
 
-    Greedy: the column that serves all best, then each next one that saves more than it costs;
-    one must be worth it for as many blocks as make a part, at the Oklab distance ``noticed``.
+    The choice is greedy: each further column must save more than it costs, measured by the number
+    of blocks of a part at the Oklab distance ``noticed``.
     """
     price = noticed**2 * max(MIN_BLOCKS, MIN_PART * len(costs))
     chosen = [int(costs.sum(0).argmin())]
@@ -95,7 +99,7 @@ def choose_blocks(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
 
 
 def neighbour_table(positions: np.ndarray) -> np.ndarray:
-    """Return the six face neighbours, int64 [N, 6], of blocks int [N, 3]; N where there is none."""
+    """Return the six face neighbours, int64 [N, 6], of blocks int [N, 3]; N means no neighbour."""
     low = positions.min(0) - 1
     shape = positions.max(0) - low + 2
     flat = np.asarray(np.ravel_multi_index(tuple((positions - low).T), tuple(shape)))
@@ -109,9 +113,9 @@ def neighbour_table(positions: np.ndarray) -> np.ndarray:
 
 
 def smooth_blocks(costs: np.ndarray, positions: np.ndarray, step: float) -> np.ndarray:
-    """Return a column of ``costs`` [N, M] for each block, neighbours agreeing where they can.
+    """Choose a column of ``costs`` [N, M] for each block, preferring agreement with neighbours.
 
-    Blocks of even and of odd places take turns, so that no two neighbours change at once.
+    Blocks of even and odd positions are updated alternately.
     """
     chosen = costs.argmin(1)
     if costs.shape[1] == 1 or step == 0 or len(costs) == 1:
@@ -142,24 +146,24 @@ def paint(
     handicaps: np.ndarray | None = None,
     fading: float = 0.0,
 ) -> np.ndarray:
-    """Return which candidate each block of a surface becomes.
+    """Choose the block of each position of a surface.
 
     Args:
-        colours: float32 [N, 3], the Oklab colours of its blocks.
-        positions: int [N, 3], where they are, each once.
+        colours: Oklab colours of the N positions, float32 [N, 3].
+        positions: Distinct positions, int [N, 3].
         candidates: M block states.
-        most: at most so many different blocks.
-        lightness_weight: how much lightness counts against hue and chroma.
-        calm_step: the Oklab distance given up for each neighbour that agrees.
-        noticed: the Oklab distance from which a part deserves a block of its own.
-        match_weight: the lightness weight with which each part's median is matched at last; None
-            takes ``lightness_weight``. A low weight finds the parts of an unevenly lit floor,
-            a higher one finds the block that is as light as it.
-        handicaps: float [M], Oklab distances added to those of each candidate; None adds none.
-        fading: the Oklab distance added to greys that stand for a clear colour.
+        most: Maximum number of different blocks.
+        lightness_weight: Weight of lightness compared to hue and chroma.
+        calm_step: Oklab distance accepted for each neighbour that agrees.
+        noticed: Minimum Oklab distance at which a part gets its own block.
+        match_weight: Lightness weight of the final match of each part's median; None uses
+            ``lightness_weight``. A low ``lightness_weight`` finds the parts of an unevenly lit
+            floor, a higher ``match_weight`` finds the block of the right lightness.
+        handicaps: Oklab distance added for each candidate, float [M]; None adds no distance.
+        fading: Oklab distance added for greys that represent a saturated colour.
 
     Returns:
-        intp [N], indices into ``candidates``.
+        The indices into ``candidates``, intp [N].
     """
     if not len(colours):
         return np.zeros(0, np.intp)
@@ -211,13 +215,13 @@ def _merge_similar(
 def chair_paints(
     grid: OccupancyGrid, colours: np.ndarray, usable: np.ndarray, lightness_weight: float
 ) -> dict[int, np.ndarray]:
-    """Return the Oklab colour, float32 [3], of each chair by its instance.
+    """Return the Oklab colour, float32 [3], of each chair by instance number.
 
     Args:
-        grid: the room.
-        colours: float32 [X, Y, Z, 3], Oklab.
-        usable: bool [X, Y, Z], the cells whose colour was seen from outside.
-        lightness_weight: how much lightness counts against hue and chroma.
+        grid: Grid of the room.
+        colours: Oklab colours, float32 [X, Y, Z, 3].
+        usable: Bool [X, Y, Z] mask of the cells whose colour was seen from outside.
+        lightness_weight: Weight of lightness compared to hue and chroma.
     """
     chairs = np.equal(grid.labels, SemanticClass.CHAIR) & usable & (grid.instance > 0)
     weight = np.array([lightness_weight, 1, 1], np.float32)
@@ -243,7 +247,7 @@ def chair_paints(
 def lit_colour(colours: np.ndarray) -> np.ndarray:
     """Return the median, float32 [3], of the lighter half of Oklab colours [N, 3].
 
-    Only those with a clear hue count, where they are a fair part.
+    If a sufficient share of the colours is saturated, only these count.
     """
     clear = np.hypot(colours[:, 1], colours[:, 2]) >= MIN_HUE_CHROMA
     counted = colours[clear] if clear.mean() >= MIN_HUE_SHARE else colours
@@ -259,13 +263,13 @@ def _distance(one: np.ndarray, other: np.ndarray, weight: np.ndarray) -> float:
 def block_colours(
     shape: tuple[int, ...], blocks: np.ndarray, colours: np.ndarray, usable: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the median colour of each block, float32 [X, Y, Z, 3], and where there is one, bool.
+    """Compute the median colour of each block, float32 [X, Y, Z, 3], and the mask of valid colours.
 
     Args:
-        shape: the lattice's.
-        blocks: int [N, 3], the block of each colour; those outside are left out.
-        colours: float32 [N, 3], Oklab.
-        usable: bool [N], which of them are colours.
+        shape: Shape of the lattice.
+        blocks: Block of each colour, int [N, 3]; blocks outside the lattice are ignored.
+        colours: Oklab colours, float32 [N, 3].
+        usable: Bool [N] mask of valid colours.
     """
     inside = usable & ((blocks >= 0) & (blocks < np.array(shape))).all(1)
     flat = np.ravel_multi_index(tuple(blocks[inside].T), shape)
@@ -278,7 +282,7 @@ def block_colours(
 
 
 class BlockChoice(NamedTuple):
-    """Which blocks a surface may become."""
+    """The blocks that a surface of a class may use."""
 
     class_id: int  # Whose blocks of the palette may be used.
     palette: Palette
@@ -296,16 +300,16 @@ def paint_surface(
     used: frozenset[str] = frozenset(),
     only: tuple[str, ...] = (),
 ) -> np.ndarray:
-    """Return the block states, object [N], for the N blocks of a mask, all of one surface.
+    """Return the block states, object [N], of the N blocks of one surface.
 
     Args:
-        mask: bool [X, Y, Z].
-        colours: float32 [X, Y, Z, 3], Oklab.
-        known: bool [X, Y, Z], where ``colours`` holds one.
-        choice: which blocks may be used.
-        beside: blocks that the surface is to stand out from: none that looks like them is used.
-        used: blocks that the room already has; they win where they are about as near.
-        only: the blocks of the class that may be used; none stands for all.
+        mask: Bool [X, Y, Z] mask of the surface.
+        colours: Oklab colours, float32 [X, Y, Z, 3].
+        known: Bool [X, Y, Z] mask of valid colours.
+        choice: Blocks that may be used.
+        beside: Blocks the surface must differ from; similar blocks are not used.
+        used: Blocks already used in the room; they win over others of similar colour.
+        only: Blocks of the class that may be used; an empty tuple allows all.
     """
     class_id, palette, parameters, max_blocks = choice
     default = palette.defaults[class_id]
@@ -345,6 +349,6 @@ def _distinct_choices(choices: tuple[str, ...], beside: frozenset[str]) -> tuple
 def place_painted(
     canvas: Canvas, mask: np.ndarray, states: np.ndarray, class_id: int, instance: int = 0
 ) -> None:
-    """Set the blocks of a mask to the states that ``paint_surface`` gave for it."""
+    """Set the blocks of a mask to the states returned by ``paint_surface``."""
     names, index = np.unique(states.astype(str), return_inverse=True)
     canvas.put(mask, canvas.ids_of(names.tolist())[index], class_id, instance)

@@ -1,8 +1,8 @@
-"""Templates as blocks: half blocks from metric parts, and block states for fitted designs.
+"""Templates as blocks: half blocks from metric parts, and block states of fitted designs.
 
-The placement's box is snapped to whole blocks first and the parts are stretched with it, in the
-template's own frame: so a symmetric chair stays symmetric, equal chairs come out equal, and the
-quarter turn comes last.
+The box of a placement is first snapped to whole blocks and its parts are stretched accordingly, in
+the frame of the template. The quarter turn is applied last, so symmetric chairs stay symmetric and
+equal chairs stay equal.
 """
 
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ POST = 0.5  # Blocks: an upright part thinner than this both ways is a post.
 
 
 def within_storeys(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the blocks, bool [X, Y, Z], over the floor of their storey or in its walls."""
+    """Return the bool [X, Y, Z] mask of the blocks above the floor of a storey or in its walls."""
     within = np.zeros(canvas.states.shape, bool)
     walls = canvas.semantic == SemanticClass.WALL
     for (ground, top), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
@@ -46,21 +46,24 @@ def within_storeys(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarr
 
 
 def placement_order(placement: Placement) -> tuple:
-    """Large furniture first, then chairs, then what stands on things; templates before cells."""
+    """Return the sort key of a placement: large furniture, chairs, then objects on other objects.
+
+    Templates are placed before objects built from their cells.
+    """
     rank = LATE_RANKS.get(placement.class_id, 0)
     own = placement.template == OWN_CELLS
     return rank, own, placement.object_id, placement.center_m.tolist(), placement.template
 
 
 class ShapePainter:
-    """Finds the blocks of shapes in a palette."""
+    """Chooses the blocks of shapes from a palette."""
 
     def __init__(self, palette: Palette, parameters: BuildParameters):
         self.palette, self.parameters = palette, parameters
         self.materials = materials_of(palette)
 
     def kinds(self, colours: np.ndarray, class_id: int) -> frozenset[str]:
-        """Return the kinds of shape that exist in the Oklab colours, [N, 3], of an object."""
+        """Return the kinds of shape that exist in an object's Oklab colours [N, 3]."""
         if self.parameters.shapes == "cubes":
             return frozenset(("full",))
         few = colours[:: 1 + len(colours) // MAX_COLOURS]
@@ -73,10 +76,10 @@ class ShapePainter:
     def states(
         self, design: Design, colours: np.ndarray, known: np.ndarray, class_id: int
     ) -> np.ndarray:
-        """Return the states, object [N], of a design's N blocks: its shapes in its colours.
+        """Return the block states, object [N], of a design's N blocks in the object's colours.
 
-        Each kind of shape is painted with what exists in it. Where that would miss the colour, it
-        is a full block of the right one.
+        Each kind of shape is painted with the blocks available in it. If none matches the colour, a
+        full block of the right colour is used instead.
         """
         limit = PAINTS.get(class_id, self.parameters.object_colours)
         choice = BlockChoice(class_id, self.palette, self.parameters, limit)
@@ -110,7 +113,7 @@ class ShapePainter:
 
 
 class HalfBlockDesign(NamedTuple):
-    """A template on the lattice: which part fills each half block, 1 = the first, 0 = none."""
+    """A template on the lattice: the part that fills each half block (from 1; 0 is empty)."""
 
     low: np.ndarray  # int [3], the lattice index of the first block
     halves: np.ndarray  # uint8 [X, Y, Z]
@@ -121,7 +124,7 @@ class HalfBlockDesign(NamedTuple):
 def half_block_design(
     placement: Placement, parts: Sequence[Part], lattice: Lattice
 ) -> HalfBlockDesign:
-    """Return the half blocks of a placement's parts, turned and in place."""
+    """Return the half blocks of a placement's parts, rotated and in place."""
     sizes = placement.size_m * lattice.blocks_per_metre
     middle = lattice.coordinates_of(placement.center_m)
     count, start = _plan(placement, sizes, middle)

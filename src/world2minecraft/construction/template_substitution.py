@@ -1,7 +1,7 @@
-"""Library templates for objects that few blocks per metre could not show.
+"""Library templates for objects that are not recognizable at few blocks per metre.
 
-From its own cells a sofa at two blocks a metre is a wall with a dent, and a plant a green box: no
-block is fine enough to show them. A design of about their size says what they are.
+Built from its cells at two blocks per metre, a sofa is a wall with a dent and a plant a green box.
+A design of about the same size is recognizable.
 """
 
 from collections import Counter
@@ -28,12 +28,12 @@ def substitute_templates(
     cells_of: Callable[[Placement], np.ndarray],
     colour_source: ColourSource,
 ) -> list[Placement]:
-    """Return the placements, those that their cells would not show by a design of the library.
+    """Replace the placements that their cells would not show by library designs.
 
     Args:
-        placements: of a whole room.
-        cells_of: gives the cells, int [N, 3], of a placement.
-        colour_source: their colours.
+        placements: Placements of a whole room.
+        cells_of: Function that returns the cells, int [N, 3], of a placement.
+        colour_source: Colours of the cells.
     """
     count = Counter(one.object_id for one in placements)
     renewed = []
@@ -46,12 +46,12 @@ def substitute_templates(
 
 
 def substitute_template(placement: Placement, alone: bool, colour: np.ndarray | None) -> Placement:
-    """Return a placement by a design of its class where its own cells would show nothing.
+    """Return a placement with a design of its class if its own cells would not be recognizable.
 
     Args:
-        placement: of any template; only what is built from its cells is changed.
-        alone: whether it is the only placement of its object.
-        colour: the Oklab colour of its cells, float [3], where it is known.
+        placement: A placement; only those built from cells are changed.
+        alone: Whether it is the only placement of its object.
+        colour: Oklab colour of its cells, float [3], or None if unknown.
     """
     if placement.template != OWN_CELLS or not alone:
         return placement
@@ -70,7 +70,7 @@ def _candidates(class_id: int, colour: np.ndarray | None) -> Sequence[Template]:
 
 
 def is_green(colour: np.ndarray | None) -> bool:
-    """Whether an Oklab colour, float [3], is that of leaves."""
+    """Return whether an Oklab colour, float [3], is that of leaves."""
     if colour is None:
         return False
     hue = float(np.degrees(np.arctan2(colour[2], colour[1])))

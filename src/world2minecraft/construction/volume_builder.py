@@ -1,4 +1,4 @@
-"""Stage 7: the labelled grid and its placements become a volume of blocks."""
+"""Stage 7: build a volume of blocks from the labelled grid and its placements."""
 
 from collections.abc import Sequence
 
@@ -40,19 +40,19 @@ def build_volume(
     """Build a room of blocks.
 
     Args:
-        grid: what each cell is; colours come from it.
-        placements: furniture in its place; object cells without one are built as they are.
-        instances: the objects, whose cells are those of ``grid.instance``.
-        corner_m: (x_min, y_max) of the room's inner box, which comes to stand at block
-            (0, 64, 0); rounded to whole voxels. None takes the grid's own corner.
-        blocks_per_metre: the scale. At one block a voxel, every occupied cell is one block.
-        parameters: how to build.
-        name: the scene's name for the plaque; without one there is none but where the
-            parameters say a text.
+        grid: Labelled grid with colours.
+        placements: Placements of furniture; object cells without a placement are built as they are.
+        instances: Objects, whose cells are given by ``grid.instance``.
+        corner_m: Corner (x_min, y_max) of the room's inner box in metres, which is placed at block
+            (0, 64, 0); rounded to whole voxels. The default is the corner of the grid.
+        blocks_per_metre: Scale. If a block equals a voxel, every occupied cell becomes one block.
+        parameters: Build parameters.
+        name: Name of the scene for the plaque. Without a name, a plaque is placed only if the
+            parameters contain its text.
 
     Raises:
-        UsageError: the scale is not above 0, or makes too many blocks.
-        UnknownNameError: no palette has this name.
+        UsageError: If the scale is not positive or gives too many blocks.
+        UnknownNameError: If the palette is unknown.
     """
     chosen = parameters or BuildParameters()
     if not 0 < blocks_per_metre < 1e4:
@@ -109,9 +109,9 @@ def _put_room(
 
 
 def grid_corner_m(grid: OccupancyGrid) -> np.ndarray:
-    """Return (x_min, y_max) of the grid's occupied cells, float64 [2], for a room of no known box.
+    """Return the corner (x_min, y_max) of a room without a known box, from its occupied cells.
 
-    A layer of wall cells there counts as shell, outside the corner.
+    The outer layer of wall cells counts as shell and is outside the corner, float64 [2] in metres.
     """
     occupied = np.asarray(grid.occupied.any(2))
     if not occupied.any():

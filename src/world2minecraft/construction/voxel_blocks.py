@@ -1,4 +1,4 @@
-"""One voxel, one block: every occupied cell becomes one full block, by integer maps."""
+"""Voxel builds: convert every occupied cell to one full block."""
 
 import numpy as np
 
@@ -15,10 +15,10 @@ def place_voxels(
     canvas: Canvas,
     source: BuildSource,
 ) -> tuple[np.ndarray, ...]:
-    """Set every occupied cell as one block; return each storey's footprint, bool [X, Y].
+    """Set one block per occupied cell and return the footprint of each storey, bool [X, Y].
 
-    The floor's unseen holes are closed with invisible barriers, which carry class 0: one can walk
-    on them, and the occupied blocks are the occupied cells and no others.
+    Unseen holes in the floor are closed with invisible barriers of class 0 so that players can walk
+    on them, while the visible blocks are exactly the occupied cells.
     """
     grid, colours, coloured, palette, parameters = source
     start = _start(grid, canvas.lattice)

@@ -1,9 +1,9 @@
-"""Glossy worktops and glass tops that gave no depth, completed as one plate over their fronts.
+"""Completion of glossy worktops and glass tops without measured depth.
 
-Polished stone mirrors the light away from a depth sensor. What is left of a worktop is a step from
-seen free space to unseen cells, a rim of a few dark cells over the front and whatever lies on it: a
-ray that crosses the space above a counter leaves free cells above unseen ones. Such a step, level
-with the rim of an object and joined to it, is its top. The plate has one height and one colour.
+Polished stone reflects the light of a depth sensor. A worktop is then visible only as a step from
+free to unseen cells, a rim of a few dark cells above the front, and the objects on it. A step level
+with the rim of an object and connected to it is completed as the object's top. Each plate has one
+height and one colour.
 """
 
 from typing import NamedTuple
@@ -42,15 +42,15 @@ PLATES_FROM = 1.5  # Blocks per metre: below, a counter is one block high.
 
 
 def missing_top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return unseen cells that close the top of an object, and cells that look like them.
+    """Return the unseen cells that close the top of an object, and seen cells that look like them.
 
     Args:
-        grid: the room; its free cells show where the top must be.
-        cells: int [M, 3], the object's own.
+        grid: Grid of the room, whose free cells show where the top must be.
+        cells: Cells of the object, int [M, 3].
 
     Returns:
-        int [N, 3], the unseen cells; int [N, 3], for each the nearest cell of the object that
-        was seen from above.
+        The unseen cells as int [N, 3], and for each the nearest cell of the object that was seen
+        from above, int [N, 3].
     """
     low, box = _box(grid, cells)
     steps, free = _steps(grid, box)
@@ -65,7 +65,7 @@ def missing_top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarra
 
 
 def step_cells(grid: OccupancyGrid, cells: np.ndarray) -> np.ndarray:
-    """Return the unseen cells, int [N, 3], that close the top of an object with cells [M, 3]."""
+    """Return the unseen cells, int [N, 3], that close the top of an object of cells [M, 3]."""
     low, box = _box(grid, cells)
     steps, _ = _steps(grid, box)
     return np.argwhere(_body_and_steps(grid, cells, low, steps)[1]) + low
@@ -107,7 +107,7 @@ def _steps_at_rim(steps: np.ndarray, rim: np.ndarray, reach: int) -> np.ndarray:
 
 
 class Worktop(NamedTuple):
-    """One plate: its blocks, its colour in Oklab, and the height of its top in the room."""
+    """A worktop plate: its blocks, its Oklab colour, and the height of its top in metres."""
 
     columns: np.ndarray  # bool [X, Y] of the lattice
     layer: int
@@ -124,14 +124,14 @@ def find_worktop(
     coloured: np.ndarray,
     lattice: Lattice,
 ) -> Worktop | None:
-    """Return the worktop of an object, None where it has no glossy one.
+    """Find the glossy worktop of an object, or return None.
 
     Args:
-        grid: the room.
-        cells: int [M, 3], the object's own.
-        colours: float32 [X, Y, Z, 3], the Oklab colours of the grid's cells.
-        coloured: bool [X, Y, Z], which cells have one.
-        lattice: where blocks stand.
+        grid: Grid of the room.
+        cells: Cells of the object, int [M, 3].
+        colours: Oklab colours of the grid's cells, float32 [X, Y, Z, 3].
+        coloured: Bool [X, Y, Z] mask of valid colours.
+        lattice: Block lattice of the room.
     """
     if not len(cells):
         return None
@@ -162,10 +162,10 @@ def find_worktop(
 
 
 def join_worktops(tops: dict[int, Worktop]) -> dict[int, Worktop]:
-    """Return the worktops with those that touch at about one height of one height and colour.
+    """Give worktops that touch at about the same height a common height and colour.
 
-    The arms of an L are objects of their own, yet one plate lies over both. The larger part says
-    what they all are, since it was seen best.
+    The arms of an L-shaped kitchen are separate objects under one plate. The values of the largest
+    part are used, since it was seen best.
     """
     by_size = sorted(tops, key=lambda number: (-_area(tops[number]), number))
     result: dict[int, Worktop] = {}
@@ -215,14 +215,14 @@ def _plan(grid: OccupancyGrid, cells: np.ndarray, steps: np.ndarray, level: int)
 
 
 class PlateBuilder:
-    """The worktops of a room by the number of their object."""
+    """Places the worktops of a room, by the number of their object."""
 
     def __init__(self, canvas: Canvas, palette: Palette):
         self.canvas, self.palette, self.lattice = canvas, palette, canvas.lattice
         self.worktops: dict[int, Worktop] = {}
 
     def put_worktops(self, grid: OccupancyGrid, colours: np.ndarray, coloured: np.ndarray) -> None:
-        """Set the glossy worktops; what else their objects are made of comes under and on them."""
+        """Place the glossy worktops, and the other blocks of their objects around them."""
         for number in np.unique(grid.instance[grid.labels == SemanticClass.FURN]):
             cells = np.argwhere((grid.instance == number) & (grid.labels == SemanticClass.FURN))
             top = find_worktop(grid, cells, colours, coloured, self.lattice)
@@ -247,9 +247,9 @@ class PlateBuilder:
         self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
 
     def put_carpets(self) -> None:
-        """Lay carpets for the worktops of a scale at which a plate would be all of a counter.
+        """Place carpets as worktops at scales at which a plate would hide the whole counter.
 
-        So its front keeps its own colour, and its top shows the worktop's.
+        The front of the counter keeps its colour, and the top shows that of the worktop.
         """
         if self.lattice.blocks_per_metre >= PLATES_FROM:
             return
@@ -270,7 +270,7 @@ class PlateBuilder:
                 self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
 
     def plate_over(self, design: Design, number: int) -> None:
-        """Let an object's worktop cover one of its designs that reaches up to it."""
+        """Let an object's worktop replace the top of one of its designs that reaches up to it."""
         top = self.worktops.get(number)
         if top is None or self.lattice.blocks_per_metre < PLATES_FROM:
             return

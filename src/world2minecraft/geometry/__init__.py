@@ -1,1 +1,1 @@
-"""Geometry on points, masks and pictures: planes, boxes, morphology, colour, rotations."""
+"""Geometry of points, masks and images: planes, boxes, morphology, colour and rotations."""

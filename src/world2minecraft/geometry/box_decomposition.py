@@ -1,15 +1,16 @@
-"""Decompose labelled grids into few axis-aligned boxes: exactly, approximately, or overlapping.
+"""Decompose labelled grids into few axis-aligned boxes: exactly, approximately or overlapping.
 
-A shape is labels on a grid, 0 where there is nothing; a box is a row
-``[label, x0, y0, z0, x1, y1, z1]`` with the last corner excluded.
+The input is an integer grid of labels in which 0 is empty. Each output box is a row
+``[label, x0, y0, z0, x1, y1, z1]`` whose upper corner is exclusive.
 
-- ``partition_boxes``: disjoint boxes whose union is the shape. The fewest boxes are hard to find,
-  so the shape is swept in 48 ways (six orders of growth, from eight corners); the best sweep wins.
-- ``simplify_boxes``: fewer disjoint boxes within a bound on the IoU. Each step joins two
-  neighbouring boxes into the box around both, or drops a small one: whichever changes fewest cells
-  for each box that it saves.
-- ``decompose_boxes``: boxes of one label may overlap where a partition would need many more. A disc
-  of cells falls into a box for each step of its rim; overlapping boxes take two steps each.
+- ``partition_boxes`` returns disjoint boxes whose union is exactly the labelled shape. Finding the
+  minimum number of boxes is hard, so the grid is swept in 48 ways (six axis orders, eight corners)
+  and the best sweep is used.
+- ``simplify_boxes`` returns fewer disjoint boxes at a bounded loss of IoU. Each step either merges
+  two neighbouring boxes into their bounding box or drops a small box, whichever changes fewer cells
+  per box saved.
+- ``decompose_boxes`` lets boxes of the same label overlap if a partition needs many more. A disc,
+  for example, needs one disjoint box per step of its rim, but two overlapping boxes are enough.
 """
 
 from itertools import permutations, product
@@ -30,16 +31,16 @@ _ORDERS = np.array([[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1
 
 
 def partition_boxes(labels: np.ndarray) -> np.ndarray:
-    """Return few boxes of one label that are a shape exactly and share no cell.
+    """Partition a labelled grid exactly into few disjoint boxes.
 
     Args:
-        labels: int [X, Y, Z], 0 where there is nothing, else 1 and more.
+        labels: Integer array [X, Y, Z]; 0 is empty, labels are 1 or greater.
 
     Returns:
-        int32 [N, 7], sorted: label, first cell, and the one past the last along each axis.
+        The boxes as sorted int32 [N, 7]: label, first cell and exclusive upper corner.
 
     Raises:
-        ValueError: the labels have not three axes.
+        ValueError: If ``labels`` does not have three axes.
 
     Example:
         >>> partition_boxes(np.array([[[1, 1, 0], [1, 1, 0]]])).tolist()
@@ -126,7 +127,7 @@ def _is_free(labels, done, label, x0, x1, y0, y1, z0, z1):  # pragma: no cover
 
 
 def join_adjacent_boxes(boxes: np.ndarray) -> np.ndarray:
-    """Return boxes, int32 [N, 7], with every two of one label that make one box joined."""
+    """Merge pairs of boxes, int32 [N, 7], that have the same label and together form a box."""
     held = [tuple(row) for row in _sorted(boxes).tolist()]
     for axis in (3, 2, 1):
         others = [0, *(a for n in (1, 2, 3) if n != axis for a in (n, n + 3))]
@@ -147,7 +148,7 @@ def join_adjacent_boxes(boxes: np.ndarray) -> np.ndarray:
 
 
 def rasterize_boxes(boxes: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the labels, int32 of a shape, that boxes int [N, 7] are; later ones cover earlier."""
+    """Return the int32 label grid that boxes, int [N, 7], fill; later boxes take precedence."""
     labels = np.zeros(shape, np.int32)
     for label, x0, y0, z0, x1, y1, z1 in boxes.tolist():
         labels[x0:x1, y0:y1, z0:z1] = label
@@ -165,21 +166,21 @@ def simplify_boxes(
     *,
     enough: int = 1,
 ) -> np.ndarray:
-    """Return fewer boxes that share no cell, their union of at least an IoU with a shape.
+    """Approximate a labelled grid by few disjoint boxes with at least a given IoU.
 
     Args:
-        labels: int [X, Y, Z], 0 where there is nothing.
-        least_iou: from above 0 to 1; at 1 the boxes are the shape exactly. Cells that take
-            another label count by half.
-        open_cells: bool [X, Y, Z], cells without a label that may be filled at no cost, such as
-            those inside an object that no camera saw.
-        enough: boxes are joined no further once they are so few.
+        labels: Integer array [X, Y, Z]; 0 is empty.
+        least_iou: Minimum IoU of the boxes with the grid, in (0, 1]; 1 keeps the shape exactly.
+            Cells that change from one label to another count half.
+        open_cells: Bool [X, Y, Z] mask of empty cells that may be filled at no cost, such as the
+            unseen interior of an object.
+        enough: Number of boxes at which merging stops.
 
     Returns:
-        int32 [N, 7], as ``partition_boxes`` gives them.
+        The boxes as int32 [N, 7], in the format of ``partition_boxes``.
 
     Raises:
-        ValueError: the bound lies outside its range, or ``labels`` have not three axes.
+        ValueError: If ``least_iou`` is out of range or ``labels`` does not have three axes.
     """
     if not 0 < least_iou <= 1:
         raise ValueError(f"least_iou must be above 0 and at most 1, got {least_iou}")
@@ -306,18 +307,19 @@ def _join(boxes, alive, first, second):  # pragma: no cover
 
 
 def decompose_boxes(labels: np.ndarray) -> np.ndarray:
-    """Return few boxes of one label whose union is a shape exactly.
+    """Decompose a labelled grid exactly into few boxes.
 
-    They share no cell, except where boxes that overlap within one label are far fewer.
+    The boxes are disjoint unless overlapping boxes of the same label are far fewer.
 
     Args:
-        labels: int [X, Y, Z], 0 where there is nothing.
+        labels: Integer array [X, Y, Z]; 0 is empty.
 
     Returns:
-        int32 [N, 7], as ``partition_boxes`` gives them; the largest first where they overlap.
+        The boxes as int32 [N, 7], in the format of ``partition_boxes``. Overlapping boxes are
+        sorted from large to small.
 
     Raises:
-        ValueError: the labels have not three axes.
+        ValueError: If ``labels`` does not have three axes.
     """
     disjoint = partition_boxes(labels)
     if len(disjoint) < MIN_COVER_BOXES or labels.size > MAX_COVER_SEARCH_CELLS:
@@ -327,10 +329,10 @@ def decompose_boxes(labels: np.ndarray) -> np.ndarray:
 
 
 def cover_boxes(labels: np.ndarray) -> np.ndarray:
-    """Return few boxes, int32 [N, 7], that cover a shape exactly and may overlap in one label.
+    """Cover a labelled grid exactly with few boxes, int32 [N, 7], that may overlap within a label.
 
-    Greedy from each of eight corners: the first cell that is not covered yet grows into the box
-    that covers most; at last boxes that the others cover are dropped.
+    The search is greedy and starts from each of the eight corners: the first uncovered cell grows
+    into the box that covers the most uncovered cells. Redundant boxes are removed at the end.
     """
     held = np.argwhere(labels)
     if not len(held):

@@ -1,7 +1,8 @@
-"""sRGB to Oklab and back: the space in which the program compares colours.
+"""Colour conversion between sRGB, linear light and Oklab.
 
-Distances in Oklab follow the eye better than those in RGB: a dim red stays nearer to red than to
-brown or grey. The matrices are those of Bjoern Ottosson's definition of 2020.
+All colours are compared in Oklab, because its distances match perception better than those of RGB:
+a dim red is closer to red than to brown or grey. The matrices are from Björn Ottosson's definition
+of 2020.
 """
 
 import numpy as np
@@ -33,36 +34,36 @@ _LINEAR_OF_BYTE = _linear_of_byte()
 
 
 def srgb_to_linear(rgb: np.ndarray) -> np.ndarray:
-    """Return linear light, float64 [..., 3] from 0 to 1, of sRGB bytes, uint8 [..., 3]."""
+    """Convert sRGB bytes, uint8 [..., 3], to linear light, float64 [..., 3] in [0, 1]."""
     return _LINEAR_OF_BYTE[np.asarray(rgb, np.uint8)]
 
 
 def linear_to_srgb(linear: np.ndarray) -> np.ndarray:
-    """Return sRGB bytes, uint8 [..., 3], of linear light; what lies outside 0 to 1 is clipped."""
+    """Convert linear light to sRGB bytes, uint8 [..., 3]; values outside [0, 1] are clipped."""
     share = np.clip(linear, 0.0, 1.0)
     encoded = np.where(share <= 0.0031308, share * 12.92, 1.055 * share ** (1 / 2.4) - 0.055)
     return np.round(encoded * 255).astype(np.uint8)
 
 
 def linear_to_oklab(linear: np.ndarray) -> np.ndarray:
-    """Return Oklab, float32 [..., 3], of linear light, float [..., 3]."""
+    """Convert linear light, float [..., 3], to Oklab, float32 [..., 3]."""
     return (np.cbrt(np.asarray(linear) @ _RGB_TO_LMS.T) @ _LMS_TO_OKLAB.T).astype(np.float32)
 
 
 def oklab_to_linear(oklab: np.ndarray) -> np.ndarray:
-    """Return linear light, float64 [..., 3], of Oklab; it may lie outside 0 to 1."""
+    """Convert Oklab to linear light, float64 [..., 3], without clipping to [0, 1]."""
     return ((np.asarray(oklab, np.float64) @ _OKLAB_TO_LMS.T) ** 3) @ _LMS_TO_RGB.T
 
 
 def srgb_to_oklab(rgb: np.ndarray) -> np.ndarray:
-    """Return Oklab of sRGB bytes.
+    """Convert sRGB bytes to Oklab.
 
     Args:
-        rgb: uint8 [..., 3].
+        rgb: uint8 [..., 3] sRGB colours.
 
     Returns:
-        float32 [..., 3]: lightness from 0 to 1, then green to red and blue to yellow, each about
-        -0.4 to 0.4, 0 for greys.
+        The Oklab colours as float32 [..., 3]: lightness from 0 to 1, then the green-red and the
+        blue-yellow coordinate, each between about -0.4 and 0.4 and 0 for greys.
 
     Example:
         >>> srgb_to_oklab(np.array([255, 255, 255], np.uint8)).round(3).tolist()[0]

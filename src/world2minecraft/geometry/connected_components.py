@@ -1,18 +1,20 @@
-"""Connected components of masks: the only module that labels them."""
+"""Connected-component labelling of masks."""
 
 import numpy as np
 from scipy import ndimage
 
 
 def label_components(mask: np.ndarray, *, corners: bool = True) -> tuple[np.ndarray, int]:
-    """Label the connected components of a bool mask of any dimension.
+    """Label the connected components of a bool mask with any number of dimensions.
 
     Args:
-        mask: the cells.
-        corners: whether cells that share only an edge or a corner are connected too.
+        mask: Bool array; True cells belong to components.
+        corners: Whether cells that share only an edge or a corner are connected. By default they
+            are.
 
     Returns:
-        int32 array of the mask's shape, 0 outside and 1 to n inside, and n.
+        The labels as int32 array of the mask's shape, 0 outside the mask and 1 to n inside, and the
+        number of components n.
 
     Example:
         >>> label_components(np.array([True, True, False, True]))[0].tolist()
@@ -25,11 +27,11 @@ def label_components(mask: np.ndarray, *, corners: bool = True) -> tuple[np.ndar
 
 
 def label_face_components(mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Label the face-connected components of a bool mask, and count the cells of each.
+    """Label the face-connected components of a bool mask and count their cells.
 
     Returns:
-        int32 of the mask's shape, 0 where it is empty, else 1 to n; int64 [n + 1] cells of each
-        label, entry 0 is 0.
+        The labels as int32 array of the mask's shape, 0 outside the mask and 1 to n inside, and the
+        number of cells of each label as int64 [n + 1], whose entry 0 is 0.
     """
     labels, _ = label_components(mask, corners=False)
     sizes = np.bincount(labels.ravel(), minlength=1)

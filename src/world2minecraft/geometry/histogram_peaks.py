@@ -1,4 +1,4 @@
-"""Peaks of one-dimensional histograms: where planes lie along their normal."""
+"""Peaks of one-dimensional histograms, used to find the position of planes along their normal."""
 
 import numpy as np
 
@@ -6,14 +6,15 @@ BIN_M = 0.01
 
 
 def highest_peak(positions_m: np.ndarray, gate_m: float) -> tuple[float, int]:
-    """Return where most of the positions lie within ``gate_m`` of each other, and how many do.
+    """Find the window of width ``2 * gate_m`` that contains the most positions.
 
     Args:
-        positions_m: float [N], not empty.
-        gate_m: half the width of the window.
+        positions_m: Positions in metres, float [N]; must not be empty.
+        gate_m: Half the width of the window in metres.
 
     Returns:
-        The mean of the positions in the fullest window (the lowest of a tie), and their count.
+        The mean position in the fullest window in metres, and the number of positions in it. The
+        lowest window wins a tie.
     """
     low = np.floor(positions_m.min() / BIN_M)
     bins = (positions_m / BIN_M - low).astype(np.int64)

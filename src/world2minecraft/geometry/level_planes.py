@@ -1,7 +1,7 @@
-"""Flat level surfaces of a fused room, their heights finer than a cell.
+"""Horizontal surfaces of a fused room, with heights more precise than a cell.
 
-In: the cells that hold surface and the mean surface point of each. Out: planes with height and
-area. A table top is level to millimetres, so the mean of its many points is far finer than 0.08 m.
+The surfaces are found in the occupied cells and the mean surface point of each cell. A table top
+is level to millimetres, so the mean of its many points is far more precise than a cell of 0.08 m.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ BIN_M = 0.01
 
 @dataclass(frozen=True)
 class HorizontalPlane:
-    """A level surface seen from above: its height, its area and the class of most of its cells."""
+    """A horizontal, upward-facing surface with its height, its area and its majority class."""
 
     class_id: int
     height_m: float
@@ -28,16 +28,16 @@ class HorizontalPlane:
 def find_horizontal_planes(
     labels: np.ndarray, mean_height_m: np.ndarray, hits: np.ndarray, voxel_m: float
 ) -> tuple[HorizontalPlane, ...]:
-    """Find the level surfaces that face up.
+    """Find the horizontal surfaces that face up.
 
     Args:
-        labels: uint8 [X, Y, Z], 0 free, 1 to 11 occupied, 255 unknown.
-        mean_height_m: float [X, Y, Z], the height of the mean surface point of each cell.
-        hits: integer [X, Y, Z], the number of points of each cell.
-        voxel_m: the cell's size in metres.
+        labels: uint8 [X, Y, Z]; 0 is free, 1 to 11 are occupied classes, 255 is unknown.
+        mean_height_m: Mean height of the surface points of each cell in metres, float [X, Y, Z].
+        hits: Number of surface points of each cell, integer [X, Y, Z].
+        voxel_m: Cell size in metres.
 
     Returns:
-        Planes from low to high, large before small.
+        The planes, sorted by height, then from large to small.
     """
     columns, heights, classes = _tops(labels, mean_height_m, hits, voxel_m)
     found = []

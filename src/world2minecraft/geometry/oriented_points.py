@@ -1,4 +1,4 @@
-"""Oriented points of a scan: the planar patches of its views in one common frame."""
+"""Oriented points of a scan: the planar patches of all its views in a common frame."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -15,11 +15,15 @@ MAX_POINTS_PER_VIEW = 4096  # All of an image of any size.
 
 @dataclass(frozen=True, eq=False)
 class OrientedPoints:
-    """Oriented points of several frames.
+    """Oriented surface points of several frames.
 
-    ``points_m`` and ``normals`` (unit, towards the camera) float64 [N, 3] and ``cameras`` float64
-    [F, 4, 4] share one frame; ``sigma_m`` float64 [N] is the noise along the normal, ``owner``
-    int32 [N] the index of the camera that saw the point. ``names`` are the frames' names.
+    Attributes:
+        points_m: Points in the common frame in metres, float64 [N, 3].
+        normals: Unit normals towards the camera in the common frame, float64 [N, 3].
+        cameras: Camera-to-frame transforms, float64 [F, 4, 4].
+        sigma_m: Standard deviation along the normal in metres, float64 [N].
+        owner: Index of the camera that saw each point, int32 [N].
+        names: Names of the frames.
     """
 
     points_m: np.ndarray
@@ -30,7 +34,7 @@ class OrientedPoints:
     names: tuple[str, ...] = ()
 
     def transformed(self, transform: np.ndarray) -> "OrientedPoints":
-        """Return the points in another frame; ``transform`` is rigid."""
+        """Return the points transformed into another frame by a rigid 4x4 transform."""
         return replace(
             self,
             points_m=_moved(self.points_m, transform[:3, :3], transform[:3, 3]),
@@ -39,7 +43,7 @@ class OrientedPoints:
         )
 
     def subset(self, which: np.ndarray) -> "OrientedPoints":
-        """Return some of the points, by a mask or by indices."""
+        """Return the points selected by a mask or an index array."""
         return replace(
             self,
             points_m=self.points_m[which],
@@ -52,13 +56,13 @@ class OrientedPoints:
 def collect_oriented_points(
     views: Iterable[View], most_each: int = MAX_POINTS_PER_VIEW
 ) -> OrientedPoints:
-    """Gather the flat patches of views in the scan's frame; views without depth give none.
+    """Collect the planar patches of views in the scan's frame.
 
-    Depth that is trusted by less than half is left out.
+    Views without depth contribute no patches. Depth with a confidence below one half is ignored.
 
     Args:
-        views: read once, one at a time.
-        most_each: of a view with more patches, that many are taken, evenly spread.
+        views: The views; read once, one at a time.
+        most_each: Maximum number of patches per view, evenly subsampled.
     """
     points, normals, sigmas = [np.zeros((0, 3))], [np.zeros((0, 3))], [np.zeros(0)]
     cameras, names, counts = [], [], []

@@ -1,10 +1,10 @@
-"""Flat patches of a depth image: what registration and alignment look at instead of pixels.
+"""Planar patches of a depth image, the input of registration and alignment.
 
-In: one depth image. Out: a point, a normal and a sigma for each square of pixels that is flat.
-The inverse depth of a plane is linear in a pixel's ray, ``1 / z = a + b x + c y``, so a patch is a
-linear fit whatever its slope; and structured light has about the same noise of inverse depth near
-and far. Squares of four whose common fit is as good as their own become one, since a wider patch
-knows its normal better.
+Each square of pixels that is flat yields a point, a normal and a standard deviation. The inverse
+depth of a plane is linear in the pixel's ray, ``1 / z = a + b x + c y``, so a patch is a linear fit
+at any slope; and the noise of the inverse depth of structured light hardly depends on the distance.
+Four squares whose joint fit is as good as their own are merged, since a wider patch has a more
+precise normal.
 """
 
 from dataclasses import dataclass
@@ -26,10 +26,13 @@ MAX_DEPTH_M = 6.0
 
 @dataclass(frozen=True, eq=False)
 class Patches:
-    """Flat patches in the camera's frame.
+    """Planar patches in the frame of their camera.
 
-    ``points_m`` and ``normals`` are float64 [N, 3], normals look at the camera; ``sigma_m``
-    float64 [N] says how far off a point is along its normal by the pixels' noise alone.
+    Attributes:
+        points_m: Centre points in metres, float64 [N, 3].
+        normals: Unit normals towards the camera, float64 [N, 3].
+        sigma_m: Standard deviation of each point along its normal in metres, due to pixel noise
+            alone, float64 [N].
     """
 
     points_m: np.ndarray
@@ -37,7 +40,7 @@ class Patches:
     sigma_m: np.ndarray
 
     def subsample(self, most: int) -> "Patches":
-        """Return at most ``most`` of the patches, evenly spread over the image."""
+        """Return at most ``most`` patches, evenly spread over the image."""
         count = len(self.sigma_m)
         if count <= most:
             return self
@@ -46,11 +49,11 @@ class Patches:
 
 
 def extract_patches(depth_m: np.ndarray, camera: Camera) -> Patches:
-    """Return the flat patches of one image.
+    """Extract the planar patches of a depth image.
 
     Args:
-        depth_m: float32 [H, W] z-depth in metres, 0 = hole.
-        camera: the depth camera.
+        depth_m: Depth along the optical axis in metres, float32 [H, W]; 0 is missing.
+        camera: Intrinsics of the depth camera.
     """
     side = max(4, round(camera.width_px / SQUARES_ACROSS))
     rows = _patches(depth_m, pixel_rays(camera), side)

@@ -1,7 +1,7 @@
-"""Rotation matrices from rotation vectors, and from quaternions x, y, z, w.
+"""Rotation matrices from rotation vectors and from quaternions in x, y, z, w order.
 
-Rotation vectors are not converted by scipy: its last bits differ, and with them the poses of
-generated captures, which are the same bytes for the same seed from one version to the next.
+Rotation vectors are not converted with SciPy, whose last bits vary between versions: generated
+captures must have the same bytes for the same seed in every version.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ MIN_ANGLE_RAD = 1e-15  # Under it an axis has no direction.
 
 
 def rotation_from_vector(vector: np.ndarray) -> np.ndarray:
-    """Return the rotation, float64 [3, 3], about a vector by its length in radians (Rodrigues).
+    """Convert a rotation vector, whose length is the angle in radians, to a matrix float64 [3, 3].
 
     Example:
         >>> rotation_from_vector(np.array([0, 0, np.pi / 2])).round(9)[0].tolist()
@@ -26,7 +26,7 @@ def rotation_from_vector(vector: np.ndarray) -> np.ndarray:
 
 
 def rotation_from_quaternion(quaternion: np.ndarray) -> np.ndarray:
-    """Return the 3x3 rotation of a quaternion x, y, z, w of any length; NaN where it is 0."""
+    """Convert a quaternion x, y, z, w of any length to a 3x3 rotation; a zero one gives NaN."""
     length = np.linalg.norm(quaternion)
     if not 0 < length < np.inf:  # scipy raises; captures leave out a frame whose pose is NaN.
         return np.full((3, 3), np.nan)

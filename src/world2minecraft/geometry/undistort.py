@@ -1,4 +1,4 @@
-"""Pictures through a lens without distortion, at any size."""
+"""Removal of lens distortion from images, at any target size."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from world2minecraft.geometry.unprojection import pixel_rays, project
 
 
 def pinhole_camera(camera: Camera, width_px: int) -> Camera:
-    """Return a camera of the same look and proportions, another width and no distortion."""
+    """Return a camera without distortion, with the same field of view at another image width."""
     height_px = max(1, round(camera.height_px * width_px / camera.width_px))
     across, down = width_px / camera.width_px, height_px / camera.height_px
     return Camera(
@@ -22,16 +22,16 @@ def pinhole_camera(camera: Camera, width_px: int) -> Camera:
 
 
 def undistort_image(colour: np.ndarray, camera: Camera, target: Camera) -> np.ndarray:
-    """Return a picture as another camera in the same place would have taken it.
+    """Resample an image to another camera at the same position and orientation.
 
     Args:
-        colour: uint8 [H, W, 3] or [H, W], taken by ``camera``.
-        camera: of the picture's size, with its distortion.
-        target: the camera to see it through; where the picture does not reach, its edge goes on.
+        colour: Image taken by ``camera``, uint8 [H, W, 3] or [H, W].
+        camera: Intrinsics and distortion of the image.
+        target: Camera to resample to. Pixels outside the image repeat the nearest border pixel.
 
     Returns:
-        uint8 of the target's size; each pixel is the mean over its own footprint where the
-        picture is finer, else read between pixels.
+        The image at the target's size, uint8. Pixels are averaged over their footprint if the image
+        has a higher resolution, otherwise interpolated.
     """
     rays = pixel_rays(target).astype(np.float64)
     ahead = np.concatenate([rays, np.ones((*rays.shape[:2], 1))], axis=2)

@@ -1,6 +1,6 @@
-"""Depth images to points: the inverse of the pinhole projection.
+"""Conversion between depth images and 3D points with the pinhole model.
 
-A pixel (u, v), counted from 0, has its centre at (u + 0.5, v + 0.5). Its point in the camera's
+The pixel (u, v), counted from 0, has its centre at (u + 0.5, v + 0.5). Its point in the camera
 frame (OpenCV axes, metres) is ``z * ((u + 0.5 - cx) / fx, (v + 0.5 - cy) / fy, 1)``.
 """
 
@@ -16,7 +16,7 @@ UNDISTORT_ROUNDS = 8  # The fixed point of common lenses moves under 1e-4 px aft
 
 @lru_cache(maxsize=8)
 def pixel_rays(camera: Camera) -> np.ndarray:
-    """Return float32 [H, W, 2]: x/z and y/z of each pixel centre's ray, lens distortion undone."""
+    """Return x/z and y/z of the undistorted ray through each pixel centre, float32 [H, W, 2]."""
     across = (np.arange(camera.width_px) + 0.5 - camera.cx_px) / camera.fx_px
     down = (np.arange(camera.height_px) + 0.5 - camera.cy_px) / camera.fy_px
     bent_x, bent_y = np.meshgrid(across, down)
@@ -41,7 +41,7 @@ def _lens(x: np.ndarray, y: np.ndarray, distortion: tuple[float, ...]):
 
 
 def project(points_m: np.ndarray, camera: Camera) -> np.ndarray:
-    """Project points [..., 3] of the camera's frame, z > 0, to pixels float64 [..., 2]."""
+    """Project points [..., 3] of the camera frame, z > 0, to pixels float64 [..., 2]."""
     x, y = points_m[..., 0] / points_m[..., 2], points_m[..., 1] / points_m[..., 2]
     scale, shift_x, shift_y = _lens(x, y, camera.distortion)
     return np.stack(
@@ -56,16 +56,16 @@ def project(points_m: np.ndarray, camera: Camera) -> np.ndarray:
 def unproject_depth(
     depth_m: np.ndarray, camera: Camera, camera_to_frame: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Lift the pixels that have depth.
+    """Convert the pixels of a depth image to 3D points.
 
     Args:
-        depth_m: float32 [H, W] z-depth in metres, 0 = hole.
-        camera: the depth camera.
+        depth_m: Depth along the optical axis in metres, float32 [H, W]; 0 is missing.
+        camera: Intrinsics of the depth camera.
         camera_to_frame: 4x4 pose of the depth camera.
 
     Returns:
-        ``points_m`` float32 [N, 3] in the frame, and ``pixels`` int32 [N], the indices of their
-        pixels in the flattened image, rising.
+        The points in the target frame in metres, float32 [N, 3], and the increasing indices of
+        their pixels in the flattened image, int32 [N].
     """
     return _unproject(depth_m, pixel_rays(camera), camera_to_frame.astype(np.float64))
 

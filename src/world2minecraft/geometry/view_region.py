@@ -1,15 +1,15 @@
-"""Which box of cells an image is labelled with: the paper's region function, and any yaw.
+"""The box of cells that an image is labelled with, by the paper's rule or for any yaw.
 
-The paper has two cases, by the yaw. Where the view runs along an axis, the player stands in the
-middle of the box's back face. Where it runs along a diagonal, the player is the box's minimum
-corner: two sides of the box go off from it, 45 degrees to the left and to the right of the view.
-Yaws between go to the nearest of the eight. The fallback offset pushes the box back: against the
-view, or against both axes of a diagonal, so that what lies beside the player is held too.
+The paper has two cases, selected by the yaw. If the view is along an axis, the player is in the
+middle of the back face of the box. If it is along a diagonal, the player is at the minimum corner
+of the box, whose two sides run 45 degrees to the left and to the right of the viewing direction.
+Other yaws use the nearest of these eight directions. The fallback offset moves the box back, so
+that it also contains the space beside the player.
 
-The region's axes are x right, y forward, z up: of an axis view exactly so; of a diagonal view the
-view runs along +x +y. Its cells are those of the scene, turned by quarter turns, so that labels are
-copied and never resampled. Its bottom layer is the layer of the floor that the player stands on, as
-in NYUv2, whose boxes begin just below the floor.
+The axes of the region are x right, y forward and z up for an axis view; in a diagonal view, the
+viewing direction is +x +y. The cells are those of the scene, rotated by quarter turns, so labels
+are copied without resampling. The bottom layer is the layer of the floor on which the player
+stands, as in NYUv2, whose boxes begin just below the floor.
 """
 
 from dataclasses import dataclass
@@ -31,9 +31,9 @@ _STEP = 1e-6  # Cells: a place so near a border is on it.
 
 @dataclass(frozen=True, eq=False)
 class LabelRegion:
-    """The box of cells that an image is labelled with: x right, y forward, z up as it is seen.
+    """The box of cells that an image is labelled with, in axes x right, y forward, z up.
 
-    The centre of cell (i, j, k) lies at ``region_to_room`` times ``(i + 0.5) * voxel_m, ...``.
+    The centre of cell (i, j, k) is ``region_to_room`` times ``(i + 0.5) * voxel_m, ...`` in metres.
     """
 
     shape: tuple[int, int, int]
@@ -61,8 +61,9 @@ class LabelRegion:
 class RegionRule:
     """How the region of an image is chosen.
 
-    Offsets are cells by which the region is moved back, against the view, or along both sides of a
-    diagonal one; they are the paper's fallback offset, and hold for the paper's kind alone.
+    Offsets are the numbers of cells by which the region is moved back, against the viewing
+    direction or along both sides of a diagonal region. They are the fallback offset of the paper
+    and apply only to regions of the paper's kind.
     """
 
     kind: str = "paper"  # or free: turned with the view, whose cells are sampled from the scene's
@@ -87,14 +88,14 @@ def label_region(
     floor_m: float = 0.0,
     grid_origin_m: np.ndarray | None = None,
 ) -> LabelRegion:
-    """Return the region of a view.
+    """Return the region of cells that an image is labelled with.
 
     Args:
-        camera_to_room: 4x4, OpenCV axes, metres.
-        rule: the paper's of usual size where None.
-        floor_m: the height of the floor's top face; 0 is the room's.
-        grid_origin_m: any corner of the scene's cells, which the region's fall on; the room's
-            origin where None.
+        camera_to_room: 4x4 camera pose in the room (OpenCV axes, metres).
+        rule: How the region is chosen; the default is the paper's rule and size.
+        floor_m: Height of the floor's top face in metres; 0 is the floor of the room.
+        grid_origin_m: Any corner of the scene's cells, with which the region's cells are aligned.
+            The default is the origin of the room.
 
     Example:
         >>> from world2minecraft.core.coordinates import look_at
@@ -125,9 +126,9 @@ def label_region(
 
 
 def view_yaw_deg(camera_to_room: np.ndarray) -> float:
-    """Return where a camera looks, seen from above: 0 along room +x, counter-clockwise.
+    """Return the yaw of a camera in degrees: 0 along room +x, counter-clockwise from above.
 
-    A camera that looks straight down or up looks where the upper edge of its image does.
+    For a camera that looks straight up or down, the yaw is that of the upper edge of its image.
     """
     right, down, forward = camera_to_room[:3, :3].T
     ahead = forward[:2]

@@ -174,7 +174,7 @@ def test_a_plan_of_another_frame_is_laid_on_the_walls(plan, held, turns):
     move = rotation_about_z(90.0 * turns + 8.0)
     move[:3, 3] = [12.0, -7.0, 1.3]
     laid = align_plan(move_plan(plan, move), evidence)
-    assert "laid on the scan's walls" in laid.note
+    assert "aligned with the scanned walls" in laid.note
     true = plan.rooms[0].objects[0].center_m
     assert laid.plan.rooms[0].objects[0].center_m == pytest.approx(true, abs=0.13)
 
@@ -194,7 +194,7 @@ def test_a_square_room_fits_in_several_ways(tmp_path):
     path.write_text(json.dumps(captured_room(square, SESSION)))
     plan = read_roomplan(path)
     evidence = evidence_of(rasterize_plan(straighten_plan(plan)), np.eye(4))
-    with pytest.raises(PlanMismatchError, match="in several ways"):
+    with pytest.raises(PlanMismatchError, match="in several positions"):
         align_plan(plan, evidence)
 
 

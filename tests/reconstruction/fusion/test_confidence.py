@@ -194,7 +194,7 @@ def test_grid_and_evidence_of_two_rooms_are_refused():
         evidence.log_odds[:3], evidence.votes[:3], evidence.colour_sum[:3],
         evidence.offset_sum[:3], evidence.hits[:3], 0.08, np.zeros(3), np.eye(4),
     )  # fmt: skip
-    with pytest.raises(ValueError, match="differ"):
+    with pytest.raises(ValueError, match="does not match grid shape"):
         calibrate(grid, small, TABLE)
 
 

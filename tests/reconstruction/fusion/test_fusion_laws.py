@@ -95,7 +95,7 @@ def test_a_frame_far_off_is_told_before_memory_runs_out():
         points = np.array([[2.0, y / 50, 1.0] for y in range(20)], np.float32) + away_m
         weight = np.full(20, 1e-3, np.float32)
         map_.add(PointEvidence("v", np.full(3, away_m), points.astype(np.float32), weight))
-    with pytest.raises(CaptureError, match=r"spans 12\d x 12\d x 12\d m, .* wrong pose"):
+    with pytest.raises(CaptureError, match=r"spans 12\d x 12\d x 12\d m but .* wrong pose"):
         map_.fused()
 
 
@@ -109,7 +109,7 @@ def test_a_capture_that_spans_a_town_is_refused():
 
 
 def test_no_evidence_is_an_error_that_says_so():
-    with pytest.raises(CaptureError, match="no view gave any evidence"):
+    with pytest.raises(CaptureError, match="no view contains usable depth"):
         EvidenceMap(np.eye(4)).fused()
 
 

@@ -147,7 +147,7 @@ def test_oneformer_without_its_tokenizer_says_so(folders, tmp_path):
 def test_names_are_checked():
     with pytest.raises(UnknownNameError, match="no segmenter is named 'hg'; known: hf"):
         segmenter("hg:a/b")
-    with pytest.raises(UsageError, match="type hf:ORG/NAME"):
+    with pytest.raises(UsageError, match="such as hf:ORG/NAME"):
         segmenter("hf")
 
 

@@ -49,7 +49,10 @@ def test_a_network_may_do_without_the_camera(tmp_path):
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({"changes": {"w2m_contract": "other"}}, "is of the contract 'other', not 'occupancy-1'"),
+        (
+            {"changes": {"w2m_contract": "other"}},
+            "expected the contract 'occupancy-1' in the metadata, got 'other'",
+        ),
         ({"changes": {"w2m_classes": "a,b"}}, "must list the classes empty, ceiling"),
         ({"changes": {"w2m_grid_shape": "30,30"}}, "in all, got '30,30'"),
         (

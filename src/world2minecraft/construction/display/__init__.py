@@ -1,7 +1,6 @@
-"""Style ``display``: fine furniture in block_display entities over invisible colliders.
+"""Build style ``display``: detailed furniture of block_display entities over invisible colliders.
 
-``builder`` places the objects of a room. ``boxes`` makes few boxes of many parts in the frame of an
-object, ``block_alignment`` moves it out of walls and onto what carries it, ``part_materials``
-chooses the block of each part, and ``colliders`` places what
-a player meets.
+``builder`` places the objects of a room. ``boxes`` reduces the parts of an object to few boxes,
+``block_alignment`` moves the object out of walls and onto its support, ``part_materials`` chooses
+the block of each part, and ``colliders`` places the blocks that players collide with.
 """

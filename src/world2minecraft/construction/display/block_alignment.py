@@ -1,7 +1,7 @@
-"""Alignment of an object of fine geometry, by less than a block, to the blocks of its room.
+"""Alignment of a detailed object to the blocks of its room by less than a block.
 
-Walls and floors stand on the lattice, up to half a block off their true planes. What stood before
-a wall must neither sink into it nor leave a gap, and what lay on a table goes where the table goes.
+Walls and floors are on the lattice, up to half a block away from their true planes. An object at a
+wall must neither sink into the wall nor leave a gap, and an object on a table must move with it.
 """
 
 from typing import NamedTuple
@@ -25,14 +25,14 @@ _EDGE = 1e-6
 
 
 class Alignment(NamedTuple):
-    """An object in its place: where it was in the room, and where it went."""
+    """The frame of an object in the room before and after its alignment."""
 
     before: Frame
     after: Frame
 
 
 class BlockAligner:
-    """Finds the place of each object of a room whose shell stands."""
+    """Aligns the objects of a room with its finished shell."""
 
     def __init__(self, canvas: Canvas, grid: OccupancyGrid):
         self.lattice = canvas.lattice
@@ -42,12 +42,12 @@ class BlockAligner:
         self.placed: list[Alignment] = []
 
     def settle(self, frame: Frame, mount: str, carried: bool) -> Frame:
-        """Return a frame moved to its place, and remember it for what lies on it.
+        """Align the frame of an object and remember it for the objects that rest on it.
 
         Args:
-            frame: where the object was seen.
-            mount: ``floor``, ``wall``, ``ceiling`` or ``any``, as templates say.
-            carried: whether it may lie on another object.
+            frame: Frame in which the object was observed.
+            mount: ``floor``, ``wall``, ``ceiling`` or ``any``, as stated by the template.
+            carried: Whether the object may rest on another object.
         """
         moved = frame.moved(np.array([0.0, 0.0, self._rise(frame, mount)]))
         host = self._host_of(frame) if carried else None

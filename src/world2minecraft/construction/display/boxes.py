@@ -1,8 +1,8 @@
-"""A template's parts as few boxes, and the boxes as display entities in the object's frame.
+"""Reduction of a template's parts to few boxes, and their conversion to display entities.
 
-Parts may overlap; where they do the smaller one shows, as a shelf does in the books of a bay. The
-planes of all parts cut the shape into cells of any size, and the cells of one block are joined to
-boxes again, in coarser steps only where a limit requires it.
+If parts overlap, the smaller part is visible, as a shelf between books. The planes of all parts
+divide the shape into cells of variable size, and cells of the same block are merged into boxes. The
+shape is simplified further only if a limit requires it.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,12 @@ Planes = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class DisplayBox(NamedTuple):
-    """One box of an object: x0 y0 z0 x1 y1 z1 in metres of its own frame, and its block."""
+    """A box of an object and its block state.
+
+    Attributes:
+        box_m: Corners x0 y0 z0 x1 y1 z1 in metres in the object's frame, float64 [6].
+        state: Block state of the box.
+    """
 
     box_m: np.ndarray  # float64 [6]
     state: str
@@ -35,10 +40,13 @@ class DisplayBox(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """An object's own frame: its origin in the middle of its footprint, at its bottom.
+    """The coordinate frame of an object, with its origin at the bottom centre of its footprint.
 
-    ``base_m`` is that origin in the room, ``size_m`` the object's depth, width and height along
-    its own axes; ``yaw_deg`` turns its front from room +x, counter-clockwise from above.
+    Attributes:
+        base_m: Origin of the frame in the room in metres.
+        size_m: Depth, width and height of the object along its own axes in metres.
+        yaw_deg: Rotation of the object's front from room +x, counter-clockwise from above, in
+            degrees.
     """
 
     base_m: np.ndarray  # float64 [3]
@@ -47,14 +55,14 @@ class Frame:
 
     @property
     def object_to_room(self) -> np.ndarray:
-        """The 4x4 from the object's frame to the room's, both in metres."""
+        """The 4x4 transform from the object's frame to the room, both in metres."""
         transform = rotation_about_z(self.yaw_deg)
         transform[:3, 3] = self.base_m
         return transform
 
     @property
     def bounds_m(self) -> np.ndarray:
-        """float64 [2, 3]: the least and the greatest corner of its turned box in the room."""
+        """The minimum and maximum corner of the rotated object in the room, float64 [2, 3]."""
         x, y, z = self.size_m
         corners = np.array(
             [[a, b, c] for a in (-x / 2, x / 2) for b in (-y / 2, y / 2) for c in (0, z)]
@@ -63,14 +71,14 @@ class Frame:
         return np.stack([placed.min(axis=0), placed.max(axis=0)])
 
     def moved(self, shift_m: np.ndarray) -> "Frame":
-        """Return the frame moved in the room by a shift, float64 [3] in metres."""
+        """Return the frame translated in the room by a shift, float64 [3] in metres."""
         return replace(self, base_m=self.base_m + shift_m)
 
 
 def boxes_in_room(pieces: Sequence[DisplayBox], frame: Frame) -> tuple[np.ndarray, np.ndarray]:
-    """Return the middles and the half sides, float64 [N, 3] both, of pieces.
+    """Return the centres and the half sizes of boxes, float64 [N, 3] each in metres.
 
-    The middles are in the room; the half sides are along the object's own axes.
+    The centres are in the room frame, the half sizes along the axes of the object.
     """
     boxes = np.array([piece.box_m for piece in pieces]).reshape(-1, 2, 3)
     middles = apply(frame.object_to_room, boxes.mean(axis=1))
@@ -88,19 +96,19 @@ def display_entities(
     view_range: float = 1.0,
     lights: Sequence[int | None] | None = None,
 ) -> list[Entity]:
-    """Return a display entity for each piece, all at the middle of their object.
+    """Return one display entity per box, all positioned at the centre of their object.
 
-    One place for all of an object's entities lets commands move and turn it as a whole.
+    The common position lets commands move and rotate the object as a whole.
 
     Args:
-        pieces: the boxes of the object in its own frame.
-        frame: where it stands.
-        corner_m: the corner of the room that stands at block (0, 64, 0).
-        blocks_per_metre: the scale.
-        class_id: the object's class.
-        instance: its number.
-        view_range: how far it is drawn, in lengths of 64 blocks.
-        lights: for each piece the light that it is drawn by, None by that of its place.
+        pieces: Boxes of the object in its own frame.
+        frame: Frame of the object in the room.
+        corner_m: Corner of the room that corresponds to block (0, 64, 0), in metres.
+        blocks_per_metre: Scale of the build.
+        class_id: Class of the object.
+        instance: Instance number of the object.
+        view_range: View distance in units of 64 blocks.
+        lights: Light level of each box; None uses the light at the entity's position.
     """
     middle_m = np.array([0.0, 0.0, frame.size_m[2] / 2])
     to_block = room_to_block(corner_m, blocks_per_metre)
@@ -128,13 +136,14 @@ def display_entities(
 def template_boxes(
     parts: Sequence[Part], states: Sequence[str], most: int, blocks_per_metre: float
 ) -> list[DisplayBox]:
-    """Return few pieces that show parts, exactly where that takes at most ``most``.
+    """Return the boxes that show the parts of a template, simplified to at most ``most`` boxes.
 
     Args:
-        parts: the boxes of a template in its own frame.
-        states: the block of each part.
-        most: over so many pieces the shape is made coarser, to an IoU of ``MIN_IOU``.
-        blocks_per_metre: the scale, by which pieces that overlap are kept apart.
+        parts: Boxes of the template in its own frame.
+        states: Block state of each part.
+        most: Number of boxes above which the shape is simplified, to an IoU of at least
+            ``MIN_IOU``.
+        blocks_per_metre: Scale, used to separate coplanar faces of overlapping boxes.
     """
     names = sorted(set(states))
     numbers = [names.index(state) + 1 for state in states]
@@ -230,14 +239,14 @@ def voxel_boxes(
     low_m: np.ndarray,
     cell_m: float,
 ) -> list[DisplayBox]:
-    """Return the pieces of an object's own cells, made coarser to an IoU of ``MIN_IOU``.
+    """Return the boxes of an object's cells, simplified to an IoU of at least ``MIN_IOU``.
 
     Args:
-        labels: int [X, Y, Z], 0 where there is nothing, else 1 and more: which of ``names``.
-        open_cells: bool [X, Y, Z], unseen cells inside the object.
-        names: the blocks.
-        low_m: float64 [3], the corner of cell (0, 0, 0) in the object's frame.
-        cell_m: the side of a cell.
+        labels: Integer [X, Y, Z]; 0 is empty, n selects the n-th block of ``names``.
+        open_cells: Bool [X, Y, Z] mask of unseen cells inside the object.
+        names: Block states.
+        low_m: Corner of cell (0, 0, 0) in the object's frame in metres, float64 [3].
+        cell_m: Cell size in metres.
     """
     boxes = simplify_boxes(labels, MIN_IOU, open_cells)
     exact = partition_boxes(labels)

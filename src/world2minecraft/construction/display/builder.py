@@ -1,4 +1,4 @@
-"""The objects of a room as display entities: templates by parts, the rest by their own cells."""
+"""Build the objects of a room as display entities, from template parts or from their cells."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -58,7 +58,7 @@ APART_BLOCKS, APART_STEPS = 0.0006, 12  # What a screen tells apart across a roo
 
 
 def frame_of_cells(cells: np.ndarray, grid: OccupancyGrid) -> Frame:
-    """Return the frame of cells, int [N, 3], at least one: upright, along the room's axes."""
+    """Return the upright, axis-aligned frame of at least one cell, int [N, 3]."""
     low = grid.origin_m + cells.min(axis=0) * grid.voxel_m
     size = (np.ptp(cells, axis=0) + 1) * grid.voxel_m
     return Frame(low + size * [0.5, 0.5, 0.0], size, 0.0)
@@ -71,14 +71,14 @@ def boxes_of_cells(
     grid: OccupancyGrid,
     choice: BlockChoice,
 ) -> list[DisplayBox]:
-    """Return the pieces of an object's own cells in the frame of ``frame_of_cells``.
+    """Return the boxes of an object's cells in the frame of ``frame_of_cells``.
 
     Args:
-        cells: int [N, 3], indices into the grid, at least one.
-        colours: float32 [N, 3], their Oklab colours.
-        known: bool [N], which of them have one.
-        grid: where they lie; its unseen cells inside the object may be filled.
-        choice: which blocks may be used.
+        cells: Indices of at least one cell of the grid, int [N, 3].
+        colours: Oklab colours of the cells, float32 [N, 3].
+        known: Bool [N] mask of the cells with a valid colour.
+        grid: Grid of the cells; unseen cells inside the object may be filled.
+        choice: Blocks that may be used.
     """
     low, high = cells.min(axis=0), cells.max(axis=0) + 1
     at = tuple((cells - low).T)
@@ -110,7 +110,7 @@ def _between(mask: np.ndarray) -> np.ndarray:
 
 
 def remove_small_parts(cells: np.ndarray, least: int) -> np.ndarray:
-    """Return cells, int [N, 3], without those whose connected part has fewer than ``least``."""
+    """Remove connected parts with fewer than ``least`` cells from cells int [N, 3]."""
     if not len(cells):
         return cells
     low = cells.min(axis=0)
@@ -124,14 +124,14 @@ def remove_small_parts(cells: np.ndarray, least: int) -> np.ndarray:
 
 
 def max_boxes(found: Template) -> int:
-    """Return over how many pieces a template is made coarser."""
+    """Return the number of boxes above which a template is simplified."""
     if "round" in f"{found.name} {found.family}":
         return MAX_PIECES_ROUND
     return MAX_PIECES.get(found.class_id, MAX_PIECES_ELSE)
 
 
 class DisplayBuilder:
-    """Sets the objects of one room, whose shell stands on a canvas, as entities and colliders."""
+    """Places the objects of a room with a finished shell as display entities and colliders."""
 
     def __init__(
         self,
@@ -156,7 +156,7 @@ class DisplayBuilder:
         self.view_range = max(1.0, float(np.ceil(2 * reach / VIEW_BLOCKS) / 2))
 
     def put_all(self, placements: Sequence[Placement]) -> None:
-        """Set every placement, then the cells of objects that none of them shows."""
+        """Place all objects: first those with a template, then the remaining object cells."""
         counts = Counter(one.object_id for one in placements)
         placements = [deepened(as_counter(one, self.tops), self.grid) for one in placements]
         for placement in sorted(placements, key=placement_order):
@@ -200,7 +200,7 @@ class DisplayBuilder:
         cells: np.ndarray,
         placement: Placement,
     ) -> None:
-        """Set a template by its parts, each role of its material in the object's colours."""
+        """Place a template by its parts, with each role of its material in the object's colours."""
         self.shown[tuple(cells.T)] = True
         colours = self._role_colours(found, parts, frame, cells, placement.object_id)
         if found.name == COUNTER and placement.object_id in self.tops:
@@ -214,7 +214,7 @@ class DisplayBuilder:
         self._put(pieces, frame, placement.class_id, placement.object_id, found.mount)
 
     def put_cells(self, cells: np.ndarray, class_id: int, number: int) -> None:
-        """Set an object from its own cells, int [N, 3], its unseen top closed."""
+        """Place an object from its cells, int [N, 3], with its unseen top closed."""
         cells = cells[~self.shown[tuple(cells.T)]]
         if not len(cells):
             return

@@ -1,8 +1,8 @@
-"""Colliders of display furniture: barriers where it fills a block, light where it does not.
+"""Colliders of display furniture: barrier blocks, and light blocks at weakly filled positions.
 
-Display entities have no collision. A ``barrier`` is a whole block, so it stands only where the
-object covers a fair share of one; where it does not, an unlit ``light`` block marks the place,
-through which one walks. Both carry the object's class and number, and nobody sees them.
+Display entities have no collision. A ``barrier`` fills a whole block, so it is used only where the
+object covers a sufficient share of a block. Elsewhere an unlit, passable ``light`` block marks the
+position. Both are invisible and carry the object's class and instance.
 """
 
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ MARK = "minecraft:light[level=0,waterlogged=false]"
 
 
 class Cover(NamedTuple):
-    """How much of each block of a box of the lattice pieces cover."""
+    """The share of each block, in a box of the lattice, that display boxes cover."""
 
     low: np.ndarray  # int64 [3], the first block
     face: np.ndarray  # float64 [X, Y, Z], share of a face, seen along the best axis
@@ -33,7 +33,7 @@ class Cover(NamedTuple):
 
 
 def cover_of(pieces: Sequence[DisplayBox], frame: Frame, canvas: Canvas) -> Cover:
-    """Return how much of each block the pieces of an object cover."""
+    """Compute the share of each block that the boxes of an object cover."""
     lattice = canvas.lattice
     middles_m, half_m = boxes_in_room(pieces, frame)
     middles = lattice.coordinates_of(middles_m)
@@ -67,7 +67,7 @@ def cover_of(pieces: Sequence[DisplayBox], frame: Frame, canvas: Canvas) -> Cove
 def put_colliders(
     canvas: Canvas, pieces: Sequence[DisplayBox], frame: Frame, class_id: int, instance: int
 ) -> int:
-    """Set the colliders of an object where nothing stands; return how many are barriers."""
+    """Set the colliders of an object in free blocks and return the number of barriers."""
     cover = cover_of(pieces, frame, canvas)
     touched = cover.face > 0
     if not touched.any():

@@ -1,4 +1,4 @@
-"""The block of each part of a piece of furniture: its role's material in the real colour."""
+"""The block of each furniture part, chosen by the material of its role and its real colour."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -32,14 +32,14 @@ def states_of_parts(
     palette: Palette,
     parameters: BuildParameters,
 ) -> list[str]:
-    """Return the block of each part.
+    """Return the block state of each part of a template.
 
     Args:
-        found: whose parts they are; its materials say what each role is made of.
-        parts: its boxes.
-        colours: Oklab, float32 [3], by role, where it is known; that of the whole object by "".
-        palette: the blocks that a class may be of.
-        parameters: how colours are weighed.
+        found: The template, whose materials state what each role is made of.
+        parts: The parts of the template.
+        colours: Known Oklab colours by role, float32 [3]; the key "" is the whole object.
+        palette: Blocks allowed for each class.
+        parameters: Weights of the colour comparison.
     """
     roles = tuple(dict.fromkeys(part.role for part in parts))
     sizes = {role: sum(_size(one) for one in parts if one.role == role) for role in roles}
@@ -78,17 +78,18 @@ def role_colours(
     voxel_m: float,
     kinds: Mapping[str, str],
 ) -> dict[str, np.ndarray]:
-    """Return the colour of each role by the cells that lie in or by its parts, Oklab float32 [3].
+    """Compute the colour of each role from the cells in or next to its parts, Oklab float32 [3].
 
-    Roles of one kind of material whose colours are about the same get one; "" holds that of all.
+    Roles with the same kind of material and similar colours share one colour. The key "" contains
+    the colour of the whole object.
 
     Args:
-        parts: the object's boxes in its frame.
-        frame: where it stands.
-        centres_m: float64 [N, 3], the middles of its cells in the room.
-        colours: float32 [N, 3], theirs.
-        voxel_m: the side of a cell.
-        kinds: the kind of material of each role.
+        parts: Boxes of the object in its own frame.
+        frame: Frame of the object in the room.
+        centres_m: Centres of the object's cells in the room in metres, float64 [N, 3].
+        colours: Colours of these cells, float32 [N, 3].
+        voxel_m: Cell size in metres.
+        kinds: Kind of material of each role.
     """
     if not len(colours):
         return {}
@@ -121,7 +122,7 @@ def role_colours(
 def nearest_state(
     colour: np.ndarray, choices: Sequence[str], parameters: BuildParameters
 ) -> tuple[str, float]:
-    """Return the block nearest to an Oklab colour, and how far it is."""
+    """Return the block state closest to an Oklab colour, and its distance."""
     none = np.zeros(len(choices))
     costs = colour_costs(colour[None], choices, parameters.lightness_weight, none, FADED)[0]
     best = int(costs.argmin())

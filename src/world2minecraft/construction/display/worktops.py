@@ -1,8 +1,8 @@
-"""Worktops and wall units whose bodies gave no depth, as fine geometry.
+"""Worktops and wall units without measured depth, as detailed geometry.
 
-A glossy plate mirrors the light away, so a kitchen row is matched by its fronts alone, as a shelf
-or as a thin panel. Where a worktop was found the row is a counter with that plate; and a panel
-that hangs before a wall, with nothing seen between, is the front of a unit on that wall.
+Glossy worktops reflect the sensor's light, so a kitchen row is matched by its fronts alone, as a
+shelf or a thin panel. If a worktop was found, the row becomes a counter with this plate. A panel in
+front of a wall, with unseen space between them, becomes the front of a wall unit.
 """
 
 from collections.abc import Mapping
@@ -30,7 +30,7 @@ AROUND_CELLS = 4  # How far under and over the unit its wall is searched.
 
 
 def as_counter(placement: Placement, tops: Mapping[int, Worktop]) -> Placement:
-    """Return a row under a worktop as a counter that reaches up to it, any other as it is."""
+    """Convert a kitchen row under a worktop to a counter; return other placements unchanged."""
     top = tops.get(placement.object_id)
     if top is None or placement.class_id != SemanticClass.FURN:
         return placement
@@ -47,13 +47,13 @@ def as_counter(placement: Placement, tops: Mapping[int, Worktop]) -> Placement:
 def plate_pieces(
     top: Worktop, covered: np.ndarray, grid: OccupancyGrid, state: str
 ) -> tuple[list[DisplayBox], Frame] | None:
-    """Return the pieces of a worktop's plate and their frame; None where all of it is covered.
+    """Return the boxes of a worktop's plate and their frame, or None if it is completely covered.
 
     Args:
-        top: the worktop.
-        covered: bool [X, Y] of the grid, columns where a counter carries a plate of its own.
-        grid: the room.
-        state: the plate's block.
+        top: The worktop.
+        covered: Bool [X, Y] mask of columns in which a counter already has a plate.
+        grid: Grid of the room.
+        state: Block state of the plate.
     """
     if top.plan is None or not (top.plan & ~covered).any():
         return None
@@ -70,7 +70,7 @@ def plate_pieces(
 
 
 def deepened(placement: Placement, grid: OccupancyGrid) -> Placement:
-    """Return a panel that hangs before a wall as deep as to that wall, any other as it is."""
+    """Extend a panel in front of a wall to the wall; return other placements unchanged."""
     low = placement.center_m - _turned(placement.size_m, placement.quarter_turns) / 2
     high = 2 * placement.center_m - low
     size = high - low

@@ -1,7 +1,7 @@
-"""Shape fitting: fine occupancy to block states, object by object.
+"""Shape fitting: convert the fine occupancy of an object to block states.
 
-``fit_solid`` fits a target of sub-cells, ``fit_parts`` furniture that is given as boxes; both
-choose from a ``ShapeSet`` and give numbers of its shapes.
+``fit_solid`` fits a target of sub-cells, ``fit_parts`` furniture given as boxes. Both choose shapes
+from a ``ShapeSet`` and return their numbers.
 """
 
 from world2minecraft.construction.fitting.object_fitting import (

@@ -1,9 +1,9 @@
-"""Fitting of one object by the best stable shapes, over sub-block shifts and small stretches.
+"""Fitting of an object by stable shapes, searched over sub-block shifts and small stretches.
 
-A table on the room's grid vanishes at 2 blocks per metre; the same table moved by up to half a
-block is a table. So an object is fitted about its own middle and goes to the lattice afterwards. An
-object that is given as boxes may also be stretched: a seat at 1.8 blocks cannot be joined to legs
-that end at 1 or 2, so sizes may change by up to a quarter, at a cost.
+A table aligned with the room's grid can vanish at 2 blocks per metre, while the same table shifted
+by up to half a block is preserved. Objects are therefore fitted around their own centre and placed
+on the lattice afterwards. Objects given as boxes may also be stretched by up to a quarter, at a
+cost: a seat at a height of 1.8 blocks cannot be connected to legs that end at 1 or 2.
 """
 
 from collections.abc import Iterator
@@ -38,7 +38,7 @@ SAME = 1e-6
 
 
 class Fit(NamedTuple):
-    """Shapes in a box of blocks, and where in it the object's middle lies."""
+    """The block shapes of a fitted object, its centre in the box, and the fit's scores."""
 
     numbers: np.ndarray  # intp [X, Y, Z]
     middle: np.ndarray  # float64 [2], blocks from the box's low corner
@@ -48,12 +48,12 @@ class Fit(NamedTuple):
 
 
 def fit_solid(target: Target, shapes: ShapeSet, rules: Rules = DEFAULT_RULES) -> Fit:
-    """Return the best stable shapes for a target, at the best of its shifts.
+    """Fit the best stable shapes to a target, over all of its shifts.
 
     Args:
-        target: what is wanted.
-        shapes: what may be chosen.
-        rules: how.
+        target: The occupancy to fit.
+        shapes: Shapes that may be used.
+        rules: Rules of the fit.
     """
     tried = sorted(
         (-round(reached, 6), phase) for phase, reached in score_phases(target, shapes, rules)
@@ -65,7 +65,7 @@ def fit_solid(target: Target, shapes: ShapeSet, rules: Rules = DEFAULT_RULES) ->
 def score_phases(
     target: Target, shapes: ShapeSet, rules: Rules
 ) -> Iterator[tuple[tuple[int, int], float]]:
-    """Yield each phase, in sub-cells along x and y, and the IoU that free choice reaches there."""
+    """Yield each phase, in sub-cells along x and y, and the IoU of an unconstrained fit there."""
     for phase in _phases(rules):
         gains = problem_at(target, phase, shapes, rules.calm).gains
         yield phase, gains.iou(choose(gains, shapes, rules.lam)[0])
@@ -83,7 +83,7 @@ def _phases(rules: Rules) -> Iterator[tuple[int, int]]:
 def solve(
     target: Target, phase: tuple[int, int], shapes: ShapeSet, rules: Rules = DEFAULT_RULES
 ) -> Fit:
-    """Return the fit of a target whose middle lies at a phase: sub-cells along x and y."""
+    """Fit a target whose centre is at a given phase, in sub-cells along x and y."""
     problem = problem_at(_symmetrize(target, rules.even), phase, shapes, rules.calm)
     grid, lam = stabilize(problem, shapes, rules)
     if not grid.any():
@@ -100,7 +100,7 @@ def _put_best(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
 
 
 def find_symmetry(target: Target) -> tuple[bool, bool]:
-    """Return whether a target is nearly its own mirror image along x, and along y."""
+    """Return whether a target is nearly mirror-symmetric along x and along y."""
     result = []
     for axis in (0, 1):
         other = np.flip(target.wanted, axis)
@@ -120,7 +120,7 @@ def _symmetrize(target: Target, even: tuple[bool, bool]) -> Target:
 
 
 def evaluate_fit(grid: np.ndarray, problem: Problem, shapes: ShapeSet, lam: float) -> Fit:
-    """Return shapes [X, Y, Z] with their scores, trimmed to the blocks that they fill."""
+    """Score shapes [X, Y, Z] against a problem and trim them to the filled blocks."""
     masks = shapes.masks[grid[problem.at]]
     shared = float((masks * problem.wanted).sum(dtype=np.float64))
     filled = float(shapes.volumes[grid].sum(dtype=np.float64))
@@ -142,7 +142,7 @@ def _filled_box(grid: np.ndarray) -> tuple[tuple[slice, ...], np.ndarray]:
 
 
 class PartsFit(NamedTuple):
-    """A fit, and which box fills most of each block."""
+    """A fit, and the number of the part that fills most of each block."""
 
     fit: Fit
     part: np.ndarray  # int16 [X, Y, Z], index into the boxes + 1; 0 where there is nothing
@@ -157,18 +157,19 @@ def fit_parts(
     bottom: int = 0,
     flush: bool = False,
 ) -> PartsFit:
-    """Return the best stable shapes for furniture of boxes.
+    """Fit the best stable shapes to furniture given as boxes.
 
     Args:
-        boxes_m: float64 [N, 6], about the middle of the footprint, z = 0 at the bottom.
-        blocks_per_metre: the scale.
-        shapes: what may be chosen.
-        counts: whole blocks that it must fill along x and y; None leaves that to the fit.
-        bottom: the sub-cell, from 0 up to 7, at which it begins over a block's lower face.
-        flush: whether flat tops end with their block, so that things can lie on them.
+        boxes_m: Boxes in metres around the centre of the footprint, float64 [N, 6]; z = 0 is the
+            bottom.
+        blocks_per_metre: Scale of the build.
+        shapes: Shapes that may be used.
+        counts: Number of blocks to fill along x and y; by default, the fit chooses it.
+        bottom: Sub-cell, 0 to 7, above the lower face of a block at which the furniture begins.
+        flush: Whether flat tops must end at a block boundary, so that objects can rest on them.
 
     Raises:
-        ValueError: there are no boxes.
+        ValueError: If ``boxes_m`` is empty.
     """
     boxes = np.asarray(boxes_m, np.float64).reshape(-1, 6) * blocks_per_metre
     if not len(boxes):

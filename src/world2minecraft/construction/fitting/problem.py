@@ -1,4 +1,4 @@
-"""The fitting problem: the shares of sub-cells that are to be covered, and the rules of the fit."""
+"""The fitting problem: the sub-cell occupancy to be covered, and the rules of the fit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,16 +21,17 @@ UP, DOWN = 4, 5
 def cover_blocks(
     layers: Sequence[np.ndarray], edges: Sequence[np.ndarray], counts: Sequence[int]
 ) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Return the blocks that cells reach into, and how far each layer fills their sub-cells.
+    """Resample cell values to the sub-cells of the blocks that the cells reach into.
 
     Args:
-        layers: float or bool arrays, all [X, Y, Z]; the first says which blocks are met.
-        edges: for each axis the lattice coordinates, float64 [N + 1], of the cells' edges, evenly
-            spaced and rising.
-        counts: the number of blocks along each axis; what lies outside them is left out.
+        layers: Float or bool arrays [X, Y, Z]; the first array defines which blocks are returned.
+        edges: Lattice coordinates of the cell edges for each axis, float64 [N + 1], evenly spaced
+            and increasing.
+        counts: Number of blocks along each axis; cells outside are ignored.
 
     Returns:
-        int64 [N, 3], the blocks; for each layer float32 [N, 512], the mean of its sub-cells.
+        The block positions as int64 [N, 3], and for each layer the mean value of each sub-cell as
+        float32 [N, 512].
     """
     windows = [_windows(edges[axis], counts[axis]) for axis in range(3)]
     cells = np.argwhere(_met(layers[0] > 0, windows))
@@ -79,12 +80,15 @@ def _resample(values: np.ndarray, shares: Sequence[np.ndarray]) -> np.ndarray:
 def cover_cells(
     values: np.ndarray, edges: Sequence[np.ndarray], counts: Sequence[int]
 ) -> np.ndarray:
-    """Return the mean of cell values over every sub-cell of a box of blocks.
+    """Compute the mean of cell values over every sub-cell of a box of blocks.
 
-    Args: as of ``cover_blocks``, with one layer.
+    Args:
+        values: Float or bool array [X, Y, Z].
+        edges: Lattice coordinates of the cell edges for each axis, float64 [N + 1].
+        counts: Number of blocks along each axis; cells outside are ignored.
 
     Returns:
-        float32 [8 * X', 8 * Y', 8 * Z'].
+        The mean values as float32 [8 * X', 8 * Y', 8 * Z'].
     """
     cells, (shares,) = cover_blocks([values], edges, counts)
     result = np.zeros((*counts, SUB**3), np.float32)
@@ -93,12 +97,12 @@ def cover_cells(
 
 
 def cover_boxes(boxes: np.ndarray, counts: Sequence[int]) -> np.ndarray:
-    """Return the share of each sub-cell that boxes fill, float32 [8 * X, 8 * Y, 8 * Z].
+    """Compute the share of each sub-cell that boxes fill, float32 [8 * X, 8 * Y, 8 * Z].
 
     Args:
-        boxes: float64 [N, 6], low and high corners in blocks; where boxes meet in one sub-cell
-            the fuller one counts.
-        counts: the number of blocks along each axis.
+        boxes: Minimum and maximum corners in blocks, float64 [N, 6]. If several boxes meet in a
+            sub-cell, the largest share counts.
+        counts: Number of blocks along each axis.
     """
     result = np.zeros([count * SUB for count in counts], np.float32)
     for box in np.asarray(boxes, np.float64).reshape(-1, 6) * SUB:
@@ -119,9 +123,9 @@ def _span(low: float, high: float, count: int) -> tuple[int, np.ndarray]:
 
 
 def thin_cells(solid: np.ndarray, voxel_m: float, thin_m: float = THIN_M) -> np.ndarray:
-    """Return the cells, bool [X, Y, Z], of what is thinner than ``thin_m`` along some axis.
+    """Return the bool [X, Y, Z] mask of the cells in parts thinner than ``thin_m`` along some axis.
 
-    They are the cells that no cube of that side covers which itself lies in the solid.
+    These are the cells that no cube of this size inside the solid covers.
     """
     side = max(2, int(np.ceil(thin_m / voxel_m - 1e-9)))
     core = np.asarray(solid, bool)
@@ -151,14 +155,14 @@ def _sliding_reduce(values: np.ndarray, side: int, axis: int, reduce: np.ufunc) 
 
 
 def split_into_blocks(cells: np.ndarray) -> np.ndarray:
-    """Return sub-cells [8 X, 8 Y, 8 Z] as blocks of them, [X, Y, Z, 512]."""
+    """Reshape sub-cells [8 X, 8 Y, 8 Z] to blocks of sub-cells [X, Y, Z, 512]."""
     x, y, z = (side // SUB for side in cells.shape)
     split = cells.reshape(x, SUB, y, SUB, z, SUB).transpose(0, 2, 4, 1, 3, 5)
     return np.ascontiguousarray(split).reshape(x, y, z, SUB**3)
 
 
 def join_blocks(blocks: np.ndarray) -> np.ndarray:
-    """Undo ``split_into_blocks``."""
+    """Reshape blocks of sub-cells [X, Y, Z, 512] to sub-cells [8 X, 8 Y, 8 Z]."""
     x, y, z = blocks.shape[:3]
     split = blocks.reshape(x, y, z, SUB, SUB, SUB).transpose(0, 3, 1, 4, 2, 5)
     return np.ascontiguousarray(split).reshape(x * SUB, y * SUB, z * SUB)
@@ -166,16 +170,18 @@ def join_blocks(blocks: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Rules:
-    """By which rules shapes are chosen.
+    """The rules by which shapes are chosen.
 
-    lam: the IoU that all objects of a room reach together; None finds the object's own.
-    calm: the factor on the prices of shapes; noisy cells come out quieter above 1.
-    even: whether the fit must be its own mirror image along x, and along y.
-    stands: whether the lowest layer rests on something.
-    flush: whether flat tops end with their block, so that things can lie on them.
-    legs: whether every leg and pole becomes posts. It reads better and costs some IoU: a panel in
-        the right place meets more of a leg than a post in the middle of its block.
-    phase: where the middle must lie in its block, in sub-cells along x and y; None is free.
+    Attributes:
+        lam: IoU that all objects of a room reach together; None uses the IoU of the object.
+        calm: Factor on the prices of shapes; values above 1 reduce noise.
+        even: Whether the fit must be mirror-symmetric along x and along y.
+        stands: Whether the lowest layer rests on a support.
+        flush: Whether flat tops must end at a block boundary, so that objects can rest on them.
+        legs: Whether every leg and pole becomes posts. Posts are more recognizable but cost some
+            IoU, since a panel at the right position covers more of a leg than a post in the block's
+            centre.
+        phase: Position of the centre within its block, in sub-cells along x and y; None is free.
     """
 
     lam: float | None = None
@@ -188,9 +194,9 @@ class Rules:
 
 
 class Target(NamedTuple):
-    """What is wanted, in sub-cells about its own middle: x and y from -h to h, z from 0.
+    """The occupancy to fit, in sub-cells around its own centre: x and y from -h to h, z from 0.
 
-    ``bottom`` is the sub-cell, from 0 up to 7, at which it begins over a block's lower face.
+    ``bottom`` is the sub-cell, 0 to 7, above the lower face of a block at which the target begins.
     """
 
     wanted: np.ndarray  # float32 [2 h_x, 2 h_y, Z], the filled share of each sub-cell
@@ -200,10 +206,10 @@ class Target(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A target in the blocks that hold any of it.
+    """A target resampled to the blocks that contain any part of it.
 
-    ``middle`` is where its own middle lies, in blocks; ``floor`` is the sub-cell of the lowest
-    layer at which it begins.
+    ``middle`` is the centre of the target in blocks; ``floor`` is the sub-cell of the lowest layer
+    at which the target begins.
     """
 
     shape: tuple[int, ...]
@@ -216,19 +222,19 @@ class Problem:
 
     @property
     def at(self) -> tuple[np.ndarray, ...]:
-        """The blocks as an index into an array of ``shape``."""
+        """The block positions as an index into an array of ``shape``."""
         return tuple(self.cells.T)
 
     @cached_property
     def rows(self) -> np.ndarray:
-        """int64 [X + 2, Y + 2, Z + 2]: the row of each block, -1 where there is none; padded."""
+        """The row of each block or -1, int64 [X + 2, Y + 2, Z + 2] with a margin of one block."""
         rows = np.full([side + 2 for side in self.shape], -1)
         rows[tuple((self.cells + 1).T)] = np.arange(len(self.cells))
         return rows
 
     @cached_property
     def flows(self) -> np.ndarray:
-        """Bool [6, N]: through which faces the wanted runs on, in the order of ``WAYS``."""
+        """Bool [6, N]: whether the target continues through each face, in the order of ``WAYS``."""
         cells = self.wanted.reshape(-1, SUB, SUB, SUB)
         result = np.zeros((6, len(cells)), bool)
         for axis in range(3):
@@ -252,17 +258,17 @@ def problem_of(
     middle: tuple[float, float] = (0.0, 0.0),
     floor: int = 0,
 ) -> Problem:
-    """Return the problem of blocks of sub-cells.
+    """Create a problem from blocks of sub-cells.
 
     Args:
-        cells: int [N, 3], the blocks that hold any of the wanted.
-        wanted: float32 [N, 512], the filled share of their sub-cells.
-        thin: float32 [N, 512], the part of it that is thin.
-        shape: how many blocks there are along each axis.
-        shapes: what may be chosen.
-        calm: the factor on their prices.
-        middle: where the middle of the wanted lies, in blocks along x and y.
-        floor: the sub-cell of the lowest layer at which the wanted begins.
+        cells: Blocks that contain any part of the target, int [N, 3].
+        wanted: Filled share of their sub-cells, float32 [N, 512].
+        thin: Filled share that belongs to thin parts, float32 [N, 512].
+        shape: Number of blocks along each axis.
+        shapes: Shapes that may be used.
+        calm: Factor on the prices of the shapes.
+        middle: Centre of the target in blocks along x and y.
+        floor: Sub-cell of the lowest layer at which the target begins.
     """
     gains = compute_gains(wanted, wanted + np.float32(THIN_WEIGHT - 1) * thin, shapes, calm)
     return Problem(shape, cells, wanted, thin, gains, np.array(middle), floor)
@@ -271,7 +277,7 @@ def problem_of(
 def problem_at(
     target: Target, phase: tuple[int, int], shapes: ShapeSet, calm: float = 1.0
 ) -> Problem:
-    """Return the problem of a target whose middle lies at a phase: sub-cells along x and y."""
+    """Create the problem of a target whose centre is at a phase, in sub-cells along x and y."""
     half = [side // 2 for side in target.wanted.shape[:2]]
     start = [(phase[axis] - half[axis]) % SUB for axis in (0, 1)]
     before = [*start, target.bottom]

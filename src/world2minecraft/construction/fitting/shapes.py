@@ -1,9 +1,10 @@
-"""The shapes that a fit may choose from, and how much of each sub-cell of a block they fill.
+"""The block shapes that a fit may use, and the share of each sub-cell that they fill.
 
-A shape is a kind of block and the properties that turn it: ``stairs[facing=east,half=top]``. Which
-block of that kind it becomes is a matter of colour and palette, decided later. A block has ``SUB``
-sub-cells along each axis. The visual shape counts, not the collision shape. The boxes of a state
-are in block axes (y up); masks are ``[x, y, z]`` with z up, like every array of a room.
+A shape is a kind of block and the properties that orient it, such as
+``stairs[facing=east,half=top]``. The block of this kind is chosen later by colour and palette. A
+block has ``SUB`` sub-cells along each axis. Shapes are defined by visual geometry, not by
+collision. The boxes of a state are in block axes (y up); masks are ``[x, y, z]`` with z up, as all
+arrays of a room.
 """
 
 from collections.abc import Sequence
@@ -39,10 +40,12 @@ CALM = frozenset(("full", "slab", "stairs", "trapdoor"))
 
 @lru_cache(maxsize=1 << 14)
 def probe_state(state: str) -> np.ndarray:
-    """Return which of ``PROBES``^3 cells of its block a state fills, bool, room axes, read-only.
+    """Return which of the ``PROBES``^3 cells of its block a state fills, as a read-only bool mask.
+
+    The mask is in room axes.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
     """
     solid = np.zeros((PROBES,) * 3, bool)
     for box in np.clip(visual_boxes(state), 0, 1):
@@ -75,8 +78,8 @@ def subcell_mask(state: str) -> np.ndarray:
 def contact_faces(state: str) -> np.ndarray:
     """Return which parts of a block's faces a state touches, bool [3, 2, 8, 8], read-only.
 
-    The first axis is the face's own (x, y, z), the second its low or high side; the others are
-    the two remaining axes in order.
+    The first axis is the axis of the face normal (x, y, z), the second its low or high side. The
+    others are the two remaining axes in order.
     """
     solid, step = probe_state(state), PROBES // SUB
     faces = np.zeros((3, 2, SUB, SUB), bool)
@@ -90,7 +93,7 @@ def contact_faces(state: str) -> np.ndarray:
 
 @dataclass(frozen=True, order=True)
 class Shape:
-    """A kind of block, and its properties but for those that all of the kind share."""
+    """A kind of block with the properties that distinguish its shape from others of that kind."""
 
     kind: str
     properties: tuple[tuple[str, str], ...] = ()
@@ -114,7 +117,7 @@ class Shape:
 
     @property
     def sample(self) -> str:
-        """A state that has this shape."""
+        """An example block state that has this shape."""
         return self.of(SAMPLES[self.kind])
 
 
@@ -126,13 +129,13 @@ def _shape_in(state: str, kind: str, keys: Sequence[str]) -> Shape:
 
 
 def rotate_shape(shape: Shape, quarter_turns: int) -> Shape:
-    """Return a shape turned counter-clockwise from above."""
+    """Return a shape rotated by quarter turns, counter-clockwise from above."""
     keys = [key for key, _ in shape.properties]
     return _shape_in(turn_state(shape.sample, quarter_turns), shape.kind, keys)
 
 
 def mirror_shape(shape: Shape, axis: Literal["x", "y"]) -> Shape:
-    """Return a shape mirrored along a room axis: ``y`` swaps north and south."""
+    """Return a shape mirrored along a room axis; ``y`` swaps north and south."""
     keys = [key for key, _ in shape.properties]
     along: Literal["x", "z"] = "x" if axis == "x" else "z"
     return _shape_in(mirror_state(shape.sample, along), shape.kind, keys)
@@ -140,9 +143,9 @@ def mirror_shape(shape: Shape, axis: Literal["x", "y"]) -> Shape:
 
 @dataclass(frozen=True, eq=False)
 class ShapeSet:
-    """Shapes by number; 0 is the empty block, ``shapes[n - 1]`` is number n.
+    """A numbered set of shapes: 0 is the empty block, number n is ``shapes[n - 1]``.
 
-    Numbers from ``free`` on are stair corners: nothing chooses them, neighbours make them.
+    Numbers from ``free`` on are stair corners, which are never chosen but result from neighbours.
     """
 
     shapes: tuple[Shape, ...]
@@ -157,7 +160,7 @@ class ShapeSet:
 
     @cached_property
     def masks(self) -> np.ndarray:
-        """float32 [S, 512]: the filled share of each sub-cell."""
+        """The filled share of each sub-cell of each shape, float32 [S, 512]."""
         rows = [
             np.zeros(512, np.float32),
             *(subcell_mask(one.sample).ravel() for one in self.shapes),
@@ -166,28 +169,28 @@ class ShapeSet:
 
     @cached_property
     def volumes(self) -> np.ndarray:
-        """float32 [S]: filled sub-cells of 512."""
+        """The number of filled sub-cells of each shape, of 512, float32 [S]."""
         return self.masks.sum(1)
 
     @cached_property
     def faces(self) -> np.ndarray:
-        """Bool [S, 3, 2, 8, 8]: which parts of its block's faces a shape touches."""
+        """Bool [S, 3, 2, 8, 8]: the parts of the block faces that each shape touches."""
         none = np.zeros((3, 2, 8, 8), bool)
         return np.stack([none, *(contact_faces(one.sample) for one in self.shapes)])
 
     @cached_property
     def prices(self) -> np.ndarray:
-        """float32 [S]: what a shape costs, in sub-cells."""
+        """The cost of each shape in sub-cells, float32 [S]."""
         return np.array([0.0, *(PRICES[one.kind] for one in self.shapes)], np.float32)
 
     @cached_property
     def kinds(self) -> np.ndarray:
-        """Str [S]: the kind of each, ``empty`` for number 0."""
+        """The kind of each shape, str [S]; number 0 is ``empty``."""
         return np.array(["empty", *(one.kind for one in self.shapes)])
 
     @cached_property
     def turns(self) -> np.ndarray:
-        """Intp [4, S]: the number of each shape after so many quarter turns."""
+        """The number of each shape after 0 to 3 quarter turns, intp [4, S]."""
         rows = [
             [0, *(self.number_of(rotate_shape(one, k)) for one in self.shapes)] for k in range(4)
         ]
@@ -195,7 +198,7 @@ class ShapeSet:
 
     @cached_property
     def mirrors(self) -> np.ndarray:
-        """Intp [2, S]: the number of each shape mirrored along x, and along y."""
+        """The number of each shape mirrored along x and along y, intp [2, S]."""
         rows = [
             [0, *(self.number_of(mirror_shape(one, axis)) for one in self.shapes)]
             for axis in ("x", "y")
@@ -204,7 +207,7 @@ class ShapeSet:
 
     @cached_property
     def is_low(self) -> np.ndarray:
-        """Bool [S]: which shapes are flat and end below the top of their block."""
+        """Bool [S]: whether a shape is flat and ends below the top of its block."""
         low = [("type", "bottom"), ("half", "bottom")]
         rows = [
             one.kind == "carpet"
@@ -216,12 +219,12 @@ class ShapeSet:
 
     @cached_property
     def is_upright(self) -> np.ndarray:
-        """Bool [S]: which shapes are upright panels."""
+        """Bool [S]: whether a shape is an upright panel."""
         return np.array([False, *(("open", "true") in one.properties for one in self.shapes)])
 
     @cached_property
     def stairs(self) -> np.ndarray:
-        """int16 [S]: for stairs 2 * facing + (half is top), facing as SIDES; else -1."""
+        """The code ``2 * facing + (half is top)`` of each stairs shape, -1 for others, int16 [S]."""
         rows = np.full(len(self), -1, np.int16)
         for number, one in enumerate(self.shapes, 1):
             if one.kind == "stairs":
@@ -231,9 +234,9 @@ class ShapeSet:
 
     @cached_property
     def corners(self) -> np.ndarray:
-        """Intp [8, 5]: the number of stairs of each facing and half that are straight or corners.
+        """The numbers of the straight and corner stairs of each facing and half, intp [8, 5].
 
-        Columns: straight, inner_left, inner_right, outer_left, outer_right.
+        The columns are straight, inner_left, inner_right, outer_left and outer_right.
         """
         table = np.zeros((8, 5), np.intp)
         for number, one in enumerate(self.shapes, 1):
@@ -262,10 +265,10 @@ def _trapdoors() -> list[Shape]:
 
 @cache
 def shape_set(kinds: frozenset[str]) -> ShapeSet:
-    """Return the set of the shapes of some kinds, always with the full block.
+    """Return the set of all shapes of the given kinds; the full block is always included.
 
     Raises:
-        KeyError: a kind is none of ``SAMPLES``.
+        KeyError: If a kind is not in ``SAMPLES``.
     """
     chosen: list[Shape] = [Shape("full")]
     makers = {

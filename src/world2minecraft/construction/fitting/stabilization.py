@@ -1,10 +1,10 @@
-"""Passes that make chosen shapes stable: joined, on legs, evened out, and without loose pieces.
+"""Passes that make chosen shapes stable: connected, supported, symmetric and without loose pieces.
 
-Block by block the best shapes of a chair are a plate at the top of one block and a leg at the
-bottom of it: a hovering seat. So shapes that touch score higher where the object runs through the
-face between them. A part that stands on nothing gets posts, such as a table top whose legs were too
-thin. What the game would change at the next update is changed here: stairs beside stairs become
-corners, carpets lie on something, a single post stays single.
+Chosen block by block, the best shapes of a chair are a plate at the top of one block and a leg at
+the bottom of another: a floating seat. Shapes that touch therefore score higher if the object
+continues through the face between them. Unsupported parts get posts, such as a table top with legs
+too thin to be seen. Changes that the game would make at the next block update are made here: stairs
+next to stairs become corners, carpets lie on a support, single posts stay unconnected.
 """
 
 from functools import lru_cache
@@ -32,7 +32,7 @@ CRUMB_SHARE = 0.12  # A loose part of less than this share of an object is left 
 
 @lru_cache(maxsize=16)
 def contact_table(shapes: ShapeSet) -> np.ndarray:
-    """Return whether a shape touches another on one side of it, bool [6, S, S], ways as WAYS."""
+    """Return whether two shapes touch through each face, bool [6, S, S], faces as in WAYS."""
     flat = shapes.faces.reshape(len(shapes), 3, 2, -1).astype(np.float32)
     rows = []
     for axis in range(3):
@@ -44,16 +44,16 @@ def contact_table(shapes: ShapeSet) -> np.ndarray:
 def join_shapes(
     grid: np.ndarray, rows: np.ndarray, scores: np.ndarray, problem: Problem, shapes: ShapeSet
 ) -> np.ndarray:
-    """Return shapes, int [X, Y, Z], changed so that neighbours touch where the wanted runs on.
+    """Change shapes, int [X, Y, Z], so that neighbours touch where the target is continuous.
 
-    Blocks of even and of odd places take turns; none that is empty is filled.
+    Blocks of even and odd positions are updated alternately. Empty blocks are never filled.
 
     Args:
-        grid: int [X, Y, Z], the shapes to begin with.
-        rows: int [M], the blocks of the problem that may change.
-        scores: float32 [N, S], what each shape gains in each block; -inf where it may not stand.
-        problem: what is wanted.
-        shapes: the set.
+        grid: Initial shapes, int [X, Y, Z].
+        rows: Blocks of the problem that may change, int [M].
+        scores: Gain of each shape in each block, float32 [N, S]; -inf if not allowed.
+        problem: The fitting problem.
+        shapes: The shape set.
     """
     contact = contact_table(shapes)[:, : shapes.free]
     posts, stairs = shapes.kinds == "post", shapes.kinds == "stairs"
@@ -82,7 +82,7 @@ def join_shapes(
 
 
 def broken_share(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> float:
-    """Return the share of the joints of the wanted at which shapes [X, Y, Z] do not touch."""
+    """Return the share of the target's joints at which shapes [X, Y, Z] do not touch."""
     contact, padded = contact_table(shapes), np.pad(grid, 1)
     held = broken = 0
     for way in (0, 2, 4):
@@ -95,7 +95,7 @@ def broken_share(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> float:
 
 
 def label_parts(grid: np.ndarray, shapes: ShapeSet) -> np.ndarray:
-    """Return the part, int32 [X, Y, Z], of each block: blocks that touch by faces are one part."""
+    """Label the face-connected parts of shapes, int32 [X, Y, Z]."""
     contact = contact_table(shapes)
     # A board of blocks and, between them, the joints: labelled at twice the size.
     board = np.zeros([2 * side - 1 for side in grid.shape], bool)
@@ -118,15 +118,15 @@ def find_supported_parts(
     held: np.ndarray | None = None,
     floor: int = 0,
 ) -> np.ndarray:
-    """Return which parts touch the floor or something that holds them, bool [parts + 1].
+    """Return which parts touch the floor or a holding block, bool [parts + 1].
 
     Args:
-        grid: int [X, Y, Z], the shapes.
-        parts: int32 [X, Y, Z], as of ``label_parts``.
-        shapes: the set.
-        stands: whether a floor lies under the lowest layer.
-        held: bool [X, Y, Z], the blocks with a wall or a ceiling beside them.
-        floor: the sub-cell of the lowest layer at which that floor lies.
+        grid: Shapes, int [X, Y, Z].
+        parts: Part labels from ``label_parts``, int32 [X, Y, Z].
+        shapes: The shape set.
+        stands: Whether there is a floor under the lowest layer.
+        held: Bool [X, Y, Z] mask of blocks next to a wall or ceiling.
+        floor: Sub-cell of the lowest layer at which the floor is.
     """
     found = np.zeros(int(parts.max(initial=0)) + 1, bool)
     if held is not None:
@@ -146,18 +146,19 @@ def add_supports(
     shapes: ShapeSet,
     held: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Return shapes, int [X, Y, Z], with posts under the parts that nothing carries.
+    """Add posts under the unsupported parts of shapes, int [X, Y, Z].
 
-    A post stands where the wanted has a leg, else under the corners of the part; the block over
-    it takes the best shape that touches it. Where no way down is free, but the wanted runs up to
-    what holds it, as the cord of a lamp does, the posts go up. Else nothing is done.
+    A post is placed below a leg of the target, otherwise below the corners of the part, and the
+    block above takes the best shape that touches it. If no path down is free but the target
+    continues up to a holding block, like the cord of a lamp, the posts go up. Otherwise nothing is
+    changed.
 
     Args:
-        grid: the shapes.
-        problem: what is wanted.
-        scores: float32 [N, S], what each shape gains in each block of the problem.
-        shapes: the set; without posts nothing is done.
-        held: bool [X, Y, Z], the blocks with a wall or a ceiling beside them.
+        grid: Shapes, int [X, Y, Z].
+        problem: The fitting problem.
+        scores: Gain of each shape in each block of the problem, float32 [N, S].
+        shapes: The shape set; without posts nothing is changed.
+        held: Bool [X, Y, Z] mask of blocks next to a wall or ceiling.
     """
     posts = np.flatnonzero(shapes.kinds == "post")
     if not len(posts):
@@ -257,10 +258,10 @@ def _touching_shape(
 
 
 def make_stair_corners(numbers: np.ndarray, shapes: ShapeSet) -> np.ndarray:
-    """Return shapes, int [X, Y, Z], with the stair corners that the game makes of neighbours.
+    """Convert stairs to the corners that the game would make of neighbouring stairs, int [X, Y, Z].
 
-    Stairs whose front neighbour is turned by a quarter become outer corners, those whose back
-    neighbour is, inner ones; unless they carry on a row of their like on that side.
+    Stairs become outer corners if the stairs in front are rotated by a quarter turn, and inner
+    corners if those behind are, unless they continue a straight row on that side.
     """
     code = np.pad(shapes.stairs[numbers], 1, constant_values=-1)
     at = np.argwhere(code >= 0)
@@ -294,16 +295,16 @@ def choose_stable(
     barred: np.ndarray | None = None,
     ground: int | None = 0,
 ) -> tuple[np.ndarray, float]:
-    """Return the best stable shape of each block, intp [X, Y, Z], and the lam that chose it.
+    """Choose the best stable shape of each block, intp [X, Y, Z], and return the ``lam`` used.
 
     Args:
-        gains: of N blocks.
-        cells: int [N, 3], where they are; every other block stays empty.
-        shape: of the whole box.
-        shapes: what may be chosen.
-        lam: see ``choose``.
-        barred: bool [N, S], what may not stand where.
-        ground: the layer whose blocks stand on something already; None for no such layer.
+        gains: Gains of N blocks.
+        cells: Positions of these blocks, int [N, 3]; all other blocks stay empty.
+        shape: Shape of the whole box in blocks.
+        shapes: Shapes that may be used.
+        lam: IoU that the whole object reaches; see ``choose``.
+        barred: Bool [N, S] mask of shapes that are not allowed in a block.
+        ground: Layer whose blocks are already supported, or None.
     """
     shut = np.zeros((len(cells), len(shapes)), bool) if barred is None else barred.copy()
     guarded = np.isin(shapes.kinds, ("carpet", "post"))
@@ -366,13 +367,13 @@ def _add_carpets(grid, cells, scores, shapes, shut, ground) -> None:
 def stabilize(
     problem: Problem, shapes: ShapeSet, rules: Rules, held: np.ndarray | None = None
 ) -> tuple[np.ndarray, float]:
-    """Return the shape of each block, intp [X, Y, Z], and the lam that chose it.
+    """Solve a fitting problem and return the shapes, intp [X, Y, Z], with the ``lam`` used.
 
     Args:
-        problem: what is wanted.
-        shapes: what may be chosen.
-        rules: how.
-        held: bool [X, Y, Z], the blocks that have a wall or a ceiling beside them; None for none.
+        problem: The fitting problem.
+        shapes: Shapes that may be used.
+        rules: Rules of the fit.
+        held: Bool [X, Y, Z] mask of blocks next to a wall or ceiling; None means no blocks.
     """
     barred = _find_barred(problem, shapes, rules)
     ground = 0 if rules.stands else None
@@ -412,7 +413,7 @@ def _find_barred(problem: Problem, shapes: ShapeSet, rules: Rules) -> np.ndarray
 
 
 def mirror_shapes(grid: np.ndarray, shapes: ShapeSet, even: tuple[bool, bool]) -> np.ndarray:
-    """Return shapes, int [X, Y, Z], with the high half made the mirror image of the low one."""
+    """Replace the upper half of shapes, int [X, Y, Z], by the mirror image of the lower half."""
     result = grid.copy()
     for axis in (0, 1):
         if even[axis]:
@@ -463,10 +464,10 @@ def remove_crumbs(
     held: np.ndarray | None = None,
     floor: int = 0,
 ) -> np.ndarray:
-    """Return shapes, int [X, Y, Z], without the parts that touch neither floor, wall nor rest.
+    """Remove the parts of shapes, int [X, Y, Z], that touch neither floor, wall nor the main part.
 
-    Of what does not stand the larger parts stay, and something always does. ``floor`` is the
-    sub-cell of the lowest layer on which it stands.
+    If no part is supported, the larger parts are kept, so the result is never empty. ``floor`` is
+    the sub-cell of the lowest layer at which the floor is.
     """
     parts = label_parts(grid, shapes)
     volumes = np.bincount(parts.ravel(), shapes.volumes[grid].ravel())
@@ -491,7 +492,7 @@ def _without_bare_carpets(grid: np.ndarray, shapes: ShapeSet, ground: int | None
 
 
 def remove_loose_blocks(grid: np.ndarray, shapes: ShapeSet, held: np.ndarray) -> np.ndarray:
-    """Return shapes, int [X, Y, Z], without single blocks that touch nothing and are not held."""
+    """Remove single blocks of shapes, int [X, Y, Z], that touch no other block and are not held."""
     parts = label_parts(grid, shapes)
     sizes = np.bincount(parts.ravel())
     keep = (sizes > 1) | np.isin(np.arange(len(sizes)), parts[held])
