@@ -1,6 +1,6 @@
 """Build blocks from an occupancy grid or a finished run, without its capture.
 
-The stages are those of ``pipeline``: a grid alone begins at ``find``, a run at ``build``.
+The stages are those of ``pipeline``: a grid starts at ``find``, a finished run at ``build``.
 """
 
 import tempfile
@@ -26,14 +26,16 @@ MORE_FILES = ("scan.json", "layout.json")
 def rebuild(
     source: Path, out: Path, parameters: Parameters, progress: Progress = no_progress
 ) -> None:
-    """Build ``out / "build"`` from a run's folder or from any occupancy file.
+    """Build ``out / "build"`` from the folder of a run or from an occupancy file.
 
-    A run's folder is built from its objects and placements as they stand. From a grid alone
-    objects are found and matched first; their files are written to ``out`` too.
+    A run is built from its existing objects and placements. For a grid, objects are first found and
+    matched, and their files are also written to ``out``.
 
     Raises:
-        InputError: ``source`` cannot be read. OutputError: ``out`` cannot be written.
-        UsageError: ``out`` is ``source``, or ``source`` holds blocks and no room.
+        InputError: If ``source`` cannot be read.
+        OutputError: If ``out`` cannot be written.
+        UsageError: If ``out`` equals ``source``, or if ``source`` contains blocks instead of a
+            room.
     """
     if out.exists() and source.exists() and out.samefile(source):
         raise UsageError(f"--out {out} is the source folder; choose another output folder")
@@ -55,16 +57,16 @@ def rebuild(
 def blocks_of(
     source: Path, parameters: Parameters, progress: Progress = no_progress
 ) -> BlockVolume:
-    """Return the blocks that ``rebuild`` would write; ``source`` may hold blocks already.
+    """Return the blocks that ``rebuild`` would write, or the blocks that ``source`` contains.
 
     Args:
-        source: a run's folder, an occupancy file, or any file or world that holds blocks; the
-            last are returned as they are, whatever the parameters.
-        parameters: how to build.
-        progress: called at each step.
+        source: Folder of a run, an occupancy file, or any file or world of blocks. Blocks are
+            returned unchanged, whatever the parameters.
+        parameters: Parameters of the build.
+        progress: Callback for progress.
 
     Raises:
-        InputError: ``source`` cannot be read.
+        InputError: If ``source`` cannot be read.
     """
     if is_block_file(source):
         return read_blocks(source)
@@ -81,7 +83,7 @@ def blocks_of(
 
 
 def is_block_file(source: Path) -> bool:
-    """Whether a known format finds blocks at ``source``."""
+    """Return whether ``source`` is a file or world in one of the known block formats."""
     found = (FORMATS.load(name)() for name in FORMATS.names())
     return any(format_.can_read and format_.is_at(source) for format_ in found)
 

@@ -1,7 +1,8 @@
-"""The stages after fusion, from file to file, so that each can be run again by itself.
+"""The stages after fusion, each from files to files so that it can be repeated separately.
 
 ``evidence.npz`` -> label -> ``room.npz`` -> find -> ``objects.json`` -> furnish ->
-``placements.json`` -> build -> ``build/``. Each takes the run's folder and the parameters.
+``placements.json`` -> build -> ``build/``. Each stage gets the folder of the run and the
+parameters.
 """
 
 import shutil
@@ -54,7 +55,7 @@ from world2minecraft.reconstruction.semantics.labeller_choice import choose_labe
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:
-    """``evidence.npz`` -> ``room.npz``, what each cell is, cleaned; ``layout.json``, the rooms."""
+    """Run the label stage: ``evidence.npz`` -> ``room.npz`` (cleaned labels), ``layout.json``."""
     evidence = read_evidence(folder / "evidence.npz")
     grid = remove_floaters(extract_grid(evidence), chosen.clean)
     rooms = find_structure(grid, evidence)
@@ -71,9 +72,13 @@ def label_stage(folder: Path, chosen: Parameters) -> None:
 def label_grid(
     grid: OccupancyGrid, evidence: FusedEvidence, chosen: Parameters, *, from_photos: bool = False
 ) -> OccupancyGrid:
-    """Return the cleaned read-out with a class and a calibrated confidence for each cell.
+    """Return the cleaned grid with a class and a calibrated confidence for each cell.
 
-    ``from_photos``: depth was not measured but found by stereo.
+    Args:
+        grid: Grid extracted from the evidence.
+        evidence: Fused evidence of the same cells.
+        chosen: Parameters of the reconstruction.
+        from_photos: Whether the depth was computed by stereo instead of being measured.
     """
     name = chosen.labeller
     if name == "auto":
@@ -83,7 +88,7 @@ def label_grid(
 
 
 def find_stage(folder: Path, chosen: Parameters) -> None:
-    """``room.npz`` -> the same with instances, ``centers.npz`` and ``objects.json``."""
+    """Run the find stage: ``room.npz`` -> instances, ``centers.npz`` and ``objects.json``."""
     grid, scan_to_room = read_room(folder / "room.npz")
     found = find_objects(grid, chosen.find)
     write_room(folder / "room.npz", found.grid, scan_to_room)
@@ -95,7 +100,7 @@ def find_stage(folder: Path, chosen: Parameters) -> None:
 
 
 def furnish_stage(folder: Path, chosen: Parameters) -> None:
-    """``room.npz`` and ``objects.json`` -> ``placements.json``."""
+    """Run the furnish stage: ``room.npz`` and ``objects.json`` -> ``placements.json``."""
     grid, _ = read_room(folder / "room.npz")
     instances = read_objects(folder / "objects.json", grid)
     placed = place_templates(grid, instances, chosen.furnish, read_rooms(folder, grid))
@@ -103,7 +108,7 @@ def furnish_stage(folder: Path, chosen: Parameters) -> None:
 
 
 def build_stage(folder: Path, chosen: Parameters) -> None:
-    """``room.npz`` and ``placements.json`` -> the world and its other forms in ``build``."""
+    """Run the build stage: ``room.npz`` and ``placements.json`` -> the files in ``build``."""
     volume, edits = _build_and_repair(folder, chosen)
     name = scene_name(folder) or WORLD_NAME
     write_build(folder / "build", volume, mc_version=chosen.mc_version, name=name)
@@ -112,9 +117,9 @@ def build_stage(folder: Path, chosen: Parameters) -> None:
 
 
 def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -> None:
-    """Write the forms that were asked for, and ``forms.json``: what each could not carry.
+    """Write the requested additional formats, and their losses to ``forms.json``.
 
-    Those that an earlier build wrote show what was there before, and go.
+    Files of formats that an earlier build wrote are deleted, since they are outdated.
     """
     _remove_old_forms(folder / "build", chosen.format_names)
     if not chosen.format_names:
@@ -155,7 +160,7 @@ def _suffix_of(name: str) -> str:
 
 
 def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:
-    """``room.npz``, ``objects.json`` and ``placements.json`` -> the blocks; nothing is written."""
+    """Build the blocks from the files of a run without writing any file."""
     return _build_and_repair(folder, chosen)[0]
 
 
@@ -177,13 +182,16 @@ def _build_and_repair(
 
 
 def scene_name(folder: Path) -> str:
-    """Return what the scene of a run is called, or nothing where no scan says so."""
+    """Return the scene name of a run, or an empty string if it has no scan."""
     path = folder / "scan.json"
     return read_scene_name(path) if path.is_file() else ""
 
 
 def corner_m(folder: Path, grid: OccupancyGrid) -> np.ndarray:
-    """Return the corner (x_min, y_max) of the room's inner box: as aligned, else from the walls."""
+    """Return the corner (x_min, y_max) of the room's inner box in metres.
+
+    The corner comes from the alignment of the scan if available, otherwise from the walls.
+    """
     if not (folder / "scan.json").is_file():
         return inner_corner_m(grid)
     depth_m = read_room_size(folder / "scan.json")[1]

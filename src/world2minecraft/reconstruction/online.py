@@ -1,10 +1,9 @@
-"""Online mode: frames come one by one, the map is there at any time and ends as the batch's.
+"""Online mode: frames arrive one by one, and the map is available at any time.
 
-``LiveRoom`` is given views; ``follow`` watches a capture folder that still grows. Where the room
-lies in the frames is found anew whenever their number has doubled, by the very stages of the
-batch, and the map is made anew from all frames so far; in between each frame is fused as it comes.
-So the whole takes about twice the work of the batch, however many frames there are. The end is
-``reconstruct`` itself.
+``LiveRoom`` is given views; ``follow`` watches a growing capture folder. The room is located in the
+frames again whenever their number has doubled, by the stages of the batch mode, and the map is
+rebuilt from all frames. In between, each frame is fused as it arrives. The total work is about
+twice that of the batch mode for any number of frames. The final result is that of ``reconstruct``.
 """
 
 import io
@@ -45,7 +44,7 @@ PREVIEW_PX = (960, 720)
 
 
 class LiveMap:
-    """The map of the frames so far, in the frame of the last placing."""
+    """The map of the frames so far, in the frame of the latest room location."""
 
     def __init__(self, parameters: Parameters):
         self.parameters = parameters
@@ -57,20 +56,21 @@ class LiveMap:
 
     @property
     def due(self) -> bool:
-        """Whether the room should be found anew before more frames come."""
+        """Return whether the room should be located again before more frames are added."""
         return self.frames >= self._next
 
     def add(self, view: View) -> None:
-        """Fuse one view as it stands."""
+        """Fuse a view into the current map."""
         self.frames += 1
         placed = np.eye(4) if self.scan is None else self.scan.scan_to_room
         for item in self._predictor.predict(_scan_of(view, placed)):
             self._map.add(item)
 
     def place(self, capture: Path, labels: Path | None = None) -> bool:
-        """Find the room in a capture's frames so far, and fuse them all in its frame.
+        """Locate the room in the frames of a capture so far, and fuse all frames in its frame.
 
-        Returns whether there is a room yet; where not, the map stays as it is.
+        Returns:
+            Whether the room was found; otherwise the map is not changed.
         """
         self._next = 2 * max(self.frames, FIRST_PLACING // 2)
         try:
@@ -84,10 +84,10 @@ class LiveMap:
         return True
 
     def fused(self) -> FusedEvidence:
-        """Return the map of the moment; before the first placing it lies in the scan's frame.
+        """Return the current map; before the room is located, it is in the frame of the scan.
 
         Raises:
-            CaptureError: no frame gave evidence yet.
+            CaptureError: If no frame has evidence yet.
         """
         return self._map.fused()
 
@@ -95,8 +95,8 @@ class LiveMap:
 class LiveRoom:
     """A reconstruction that is given its views one by one.
 
-    The frames are kept in ``out/frames`` as a capture of our plain layout, with exact depth, so
-    that memory does not grow with their number and the end can be made from all of them.
+    The frames are stored in ``out/frames`` as a capture with lossless depth, so the memory does not
+    depend on their number and the final result can be computed from all frames.
     """
 
     def __init__(self, out: Path, parameters: Parameters | None = None):
@@ -122,10 +122,11 @@ class LiveRoom:
         self._names: set[str] = set()
 
     def add(self, view: View) -> None:
-        """Take one view: keep it and fuse it.
+        """Store a view and fuse it.
 
         Raises:
-            UsageError: a view of this name was added before. OutputError: it cannot be kept.
+            UsageError: If a view with this name was already added.
+            OutputError: If the view cannot be stored.
         """
         if view.name in self._names:
             raise UsageError(f"view names must be unique, but {view.name!r} was already added")
@@ -137,22 +138,23 @@ class LiveRoom:
             self._live.place(self.frames_folder)
 
     def fused(self) -> FusedEvidence:
-        """Return the map of the moment.
+        """Return the current map.
 
         Raises:
-            CaptureError: no view gave evidence yet.
+            CaptureError: If no view has evidence yet.
         """
         return self._live.fused()
 
     def show(self) -> None:
-        """Write ``room.npz`` and ``preview.png`` of the moment."""
+        """Write ``room.npz`` and ``preview.png`` of the current map."""
         show(self._live, self.out)
 
     def finish(self, progress: Progress = no_progress) -> Scan:
-        """Run the batch over all frames; its files replace those of the moment.
+        """Run the batch mode on all frames and replace the intermediate results.
 
         Raises:
-            CaptureError: the frames cannot be used. OutputError: the folder cannot be written.
+            CaptureError: If the frames cannot be used.
+            OutputError: If the folder cannot be written.
         """
         self._write_capture()
         return reconstruct(self.frames_folder, self.out, self.parameters, progress=progress)
@@ -174,10 +176,10 @@ class LiveRoom:
 def open_registered(
     capture: Path, chosen: Parameters, labels: Path | None = None, progress: Progress = no_progress
 ) -> Scan:
-    """Return a capture's scan, registered and placed, by the stages that the batch runs.
+    """Open a capture as a registered and aligned scan, by the stages of the batch mode.
 
     Raises:
-        CaptureError: it cannot be used.
+        CaptureError: If the capture cannot be used.
     """
     options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
     scan = open_scan(capture, progress=progress, **options)
@@ -186,12 +188,13 @@ def open_registered(
 
 
 def show(live: LiveMap, out: Path) -> None:
-    """Write ``room.npz`` and ``preview.png`` of a map, each whole or not at all.
+    """Write ``room.npz`` and ``preview.png`` of a map, each atomically.
 
-    Objects are not yet furniture: their cells are built as they are.
+    Objects are not replaced by furniture yet; their cells are built instead.
 
     Raises:
-        CaptureError: no frame gave evidence yet. OutputError: the folder cannot be written.
+        CaptureError: If no frame has evidence yet.
+        OutputError: If the folder cannot be written.
     """
     chosen, evidence = live.parameters, live.fused()
     grid = label_grid(remove_floaters(extract_grid(evidence), chosen.clean), evidence, chosen)
@@ -205,7 +208,7 @@ def show(live: LiveMap, out: Path) -> None:
 
 
 class Follower:
-    """Reads the new frames of a capture folder that grows."""
+    """Reads the new frames of a growing capture folder."""
 
     def __init__(self, capture: Path, chosen: Parameters, labels: Path | None = None):
         self.capture, self.labels = capture, labels
@@ -214,9 +217,10 @@ class Follower:
         self._read: set[str] = set()
 
     def poll(self) -> int:
-        """Fuse the frames that are new, and return how many.
+        """Fuse the new frames and return their number.
 
-        A frame that cannot be read yet, because it is being written, is tried again next time.
+        A frame that cannot be read yet, because it is still being written, is tried again at the
+        next call.
         """
         new = 0
         for frame in self._new_frames():
@@ -267,28 +271,28 @@ def follow(
     wait: Callable[[float], None] = time.sleep,
     clock: Callable[[], float] = time.monotonic,
 ) -> int:
-    """Watch a capture folder that still grows, and keep ``room.npz`` and ``preview.png`` fresh.
+    """Watch a growing capture folder and keep ``room.npz`` and ``preview.png`` up to date.
 
-    It ends on a file named ``done`` in the folder, on Ctrl-C, or when nothing new came for
-    ``idle_s``. The caller then runs the batch.
+    The function returns when a file named ``done`` appears in the folder, on Ctrl-C, or after
+    ``idle_s`` without new frames. The caller then runs the batch mode.
 
     Args:
-        capture: the folder; it may be empty or missing at first.
-        out: the folder of the results.
-        parameters: as of ``reconstruct``.
-        labels: a folder of 2D label images.
-        idle_s: seconds without a new frame after which it ends.
-        show_s: seconds between two pictures, at least.
-        poll_s: seconds between two looks at the folder.
-        progress: called with the stage ``follow``, of unknown length.
-        wait: sleeps for so many seconds.
-        clock: tells the time in seconds.
+        capture: Capture folder; may be empty or missing at first.
+        out: Output folder.
+        parameters: Parameters of ``reconstruct``.
+        labels: Folder of 2D label images.
+        idle_s: Seconds without a new frame after which watching ends.
+        show_s: Minimum number of seconds between two previews.
+        poll_s: Seconds between two checks of the folder.
+        progress: Callback for progress, called with the stage ``follow`` of unknown length.
+        wait: Function that sleeps for a number of seconds.
+        clock: Function that returns the time in seconds.
 
     Returns:
-        How many frames were read.
+        The number of frames read.
 
     Raises:
-        OutputError: ``out`` cannot be written.
+        OutputError: If ``out`` cannot be written.
     """
     check_writable(out)
     follower = Follower(capture, parameters or Parameters(), labels)

@@ -1,6 +1,6 @@
-"""Every parameter of a reconstruction, in one frozen value; ``--set key=value`` changes any.
+"""All parameters of a reconstruction in one frozen dataclass, changed by ``--set key=value``.
 
-Each stage owns its own parameters and their defaults; here they are only joined.
+The parameters and defaults of each stage are defined by that stage.
 """
 
 import json
@@ -25,21 +25,25 @@ from world2minecraft.reconstruction.semantics import LABELLERS
 
 @dataclass(frozen=True)
 class Parameters:
-    """What decides a result, beside the capture.
+    """All inputs, besides the capture, that determine the result of a reconstruction.
 
-    voxel_m: the cell of all stages.
-    blocks_per_metre: the scale of the world.
-    predictor: ``depth``, or ``mono:FILE.onnx``.
-    depth_model: a network whose depth fills what stereo leaves open, such as ``hf:ORG/NAME``.
-    plan: the path of a RoomPlan of the same room, as more evidence.
-    labeller: ``auto`` takes ``completion`` where depth was measured and cells are of the size that
-        its network learnt; else ``votes`` where anything voted, or ``geometric``.
-    mc_version: the version of Minecraft that the world is written for.
-    mend: clean up what is built as a person would; ``w2m clean OUT --list`` tells what that was.
-    formats: further forms of the build, such as ``litematic,nbt,glb``.
-    known: a length by its name, such as ``("table height", 0.72)``.
-    known_points: two places in photos, each ``PHOTO:x,y``, and the metres between
-        them; both give a capture its scale.
+    voxel_m: Cell size of all stages.
+    blocks_per_metre: Scale of the world.
+    predictor: Source of the occupancy evidence: ``depth``, or ``mono:FILE.onnx`` for a monocular
+        network.
+    depth_model: Network that estimates depth where stereo finds none, such as ``hf:ORG/NAME``.
+    plan: Path of a RoomPlan file of the same room, used as additional evidence.
+    labeller: Method that assigns classes to cells. ``auto`` uses ``completion`` for measured depth
+        and the cell size its network was trained with, otherwise ``votes`` if there are votes, and
+        ``geometric`` if not.
+    mc_version: Minecraft version of the world.
+    mend: Whether to correct typical flaws of the finished build; ``w2m clean OUT --list`` lists the
+        corrections.
+    formats: Additional formats of the build, separated by commas, such as ``litematic,nbt,glb``.
+    known: Name and length in metres of a known object, such as ``("table height", 0.72)``, which
+        sets the scale.
+    known_points: Two points in photos, each as ``PHOTO:x,y``, and their distance in metres, which
+        sets the scale.
     """
 
     voxel_m: float = parameter(0.08, unit="m", origin="the paper's cell", stage="scan")
@@ -91,16 +95,16 @@ class Parameters:
 
     @property
     def format_names(self) -> tuple[str, ...]:
-        """The forms that are written beside the world."""
+        """The additional formats that are written besides the world."""
         return tuple(name.strip() for name in self.formats.split(",") if name.strip())
 
     def as_json(self) -> dict[str, Any]:
-        """Return the parameters as JSON holds them: tuples are lists there."""
+        """Return the parameters as JSON values, with lists instead of tuples."""
         return json.loads(json.dumps(asdict(self)))
 
 
 def check_name(kind: str, name: str, known: tuple[str, ...]) -> None:
-    """Raise UnknownNameError where ``name`` is none of ``known``."""
+    """Raise UnknownNameError if ``name`` is not one of ``known``."""
     if name not in known:
         raise UnknownNameError(kind, name, known)
 
@@ -110,14 +114,15 @@ TYPES_IN_WORDS = {bool: "yes or no", int: "a whole number", float: "a number"}
 
 
 def with_method(parameters: Parameters, method: str) -> Parameters:
-    """Return the parameters with one of ``METHODS`` chosen: where the two differ, as docs say.
+    """Return the parameters with the settings of one of ``METHODS``.
 
-    ``best`` leaves them as they are. ``paper`` stops where the paper stops: no refinement of poses
-    and depth, each cluster of DBSCAN an object, templates by IoU over all cells and turns, nothing
-    mended. What the paper leaves open (k, tau, eta, fusion, labels) is the same in both.
+    ``best`` does not change the parameters. ``paper`` follows the paper exactly: no refinement of
+    poses and depth, each DBSCAN cluster is an object, templates are matched by IoU over all cells
+    and rotations, and the build is not corrected. Values that the paper does not state (k, tau,
+    eta, fusion, labels) are the same in both.
 
     Raises:
-        UnknownNameError: there is no such method.
+        UnknownNameError: If the method does not exist.
     """
     check_name("method", method, METHODS)
     if method == "best":
@@ -134,11 +139,11 @@ def with_method(parameters: Parameters, method: str) -> Parameters:
 def with_settings(parameters: Parameters, settings: list[str]) -> Parameters:
     """Return the parameters with ``key=value`` settings applied, such as ``find.cluster_radius=3``.
 
-    Keys that begin with ``capture.`` are handed to the capture's reader.
+    Keys that begin with ``capture.`` are passed to the reader of the capture.
 
     Raises:
-        UsageError: a setting is no ``key=value`` or its value has the wrong type.
-        UnknownNameError: no parameter has this key; the message suggests the nearest.
+        UsageError: If a setting is not ``key=value`` or its value has the wrong type.
+        UnknownNameError: If the key is unknown; the message suggests the closest match.
     """
     for setting in settings:
         key, equals, text = setting.partition("=")
@@ -151,7 +156,7 @@ def with_settings(parameters: Parameters, settings: list[str]) -> Parameters:
 
 
 def parameter_keys(value: Any = None, prefix: str = "") -> list[str]:
-    """Return all keys that ``--set`` knows."""
+    """Return all keys that ``--set`` accepts."""
     value = Parameters() if value is None else value
     keys = []
     for entry in fields(value):
@@ -164,9 +169,9 @@ def parameter_keys(value: Any = None, prefix: str = "") -> list[str]:
 
 
 def first_reader(key: str) -> str:
-    """Return the first stage that reads the parameter of a dotted key, or its group.
+    """Return the first stage that reads a parameter, given its dotted key or its group.
 
-    Nothing for one that does not exist, and for the copy of another.
+    The result is empty for unknown keys, and for parameters that only copy another.
     """
     group, _, name = key.partition(".")
     declared = {entry.name: entry for entry in fields(Parameters)}

@@ -1,7 +1,7 @@
-"""Algorithm 1 of the paper, line for line: a capture becomes a Minecraft world.
+"""Algorithm 1 of the paper: convert a capture to a Minecraft world.
 
 ===========  =================================================  ==================================
-paper line   what                                               here
+paper line   step                                               package
 ===========  =================================================  ==================================
 4 to 7       O_mono, the evidence of each view                  ``occupancy``
 8            O_scene, all views fused                           ``fusion``, ``semantics``
@@ -10,7 +10,7 @@ paper line   what                                               here
 12, 13       commands M, executed                               ``construction``
 ===========  =================================================  ==================================
 
-Each stage reads the files that the stage before it wrote, so that any of them can be run again.
+Each stage reads the files written by the previous stage, so every stage can be repeated separately.
 """
 
 from dataclasses import replace
@@ -57,20 +57,21 @@ def reconstruct(
     labels: Path | None = None,
     progress: Progress = no_progress,
 ) -> Scan:
-    """Turn the capture in a folder into a Minecraft world in ``out / "build"``.
+    """Reconstruct a capture as a Minecraft world in ``out / "build"``.
 
     Args:
-        capture: a folder that ``scan`` can read.
-        out: the folder of the results; DESIGN lists its files.
-        parameters: what decides the result, beside the capture.
-        start: the stage to begin at; None goes on where a run that was cut off stopped.
-        until: the last stage to run; all of them where it is None.
-        labels: a folder of 2D label images, one a view.
-        progress: called at each step.
+        capture: Capture folder that ``scan`` can read.
+        out: Output folder.
+        parameters: Parameters that determine the result, besides the capture.
+        start: Stage to start at; by default, an interrupted run continues where it stopped.
+        until: Last stage to run; the default is all stages.
+        labels: Folder of 2D label images, one per view.
+        progress: Callback for progress.
 
     Raises:
-        CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
-        UsageError: a setting is other than the one that stages before ``start`` were made with.
+        CaptureError: If the capture cannot be used.
+        OutputError: If ``out`` cannot be written.
+        UsageError: If a parameter differs from that of a finished stage before ``start``.
     """
     run = RunFolder(out, STAGES, start)
     resumed = resume_parameters(out, start, STAGES, parameters or Parameters())
@@ -131,17 +132,18 @@ def _fuse(
 
 
 def read_registered(scan: Scan, out: Path) -> Scan:
-    """Return a scan as an earlier run in ``out`` registered and placed it.
+    """Return a scan as registered and aligned by an earlier run in ``out``.
 
     Raises:
-        InputError: no run got so far there. DamagedFileError: its files cannot be read.
+        InputError: If no run in ``out`` completed these stages.
+        DamagedFileError: If the files of the run cannot be read.
     """
     placed = with_recorded_alignment(scan, out / "scan.json")
     return apply_corrections(placed, read_poses(out / "poses.npz"))
 
 
 def network_files(chosen: Parameters) -> list[Path]:
-    """Return the files beside the capture that networks are read from or told by."""
+    """Return the files of networks and label tables that the parameters refer to."""
     named = (chosen.predictor.partition(":")[2], chosen.occupy.network, chosen.occupy.label_names)
     return [Path(name) for name in named if name]
 
@@ -149,9 +151,9 @@ def network_files(chosen: Parameters) -> list[Path]:
 def manifest(
     capture: Path, labels: Path | None, chosen: Parameters, out: Path | None = None
 ) -> dict:
-    """Return what decides a result: the hashes of what is read, the parameters and the versions.
+    """Return all inputs that determine a result: file hashes, parameters and versions.
 
-    What lies in ``out``, the folder of the results, is not read of a capture that holds it.
+    Files in the output folder ``out`` are ignored if it is inside the capture.
     """
     palette = Path(chosen.build.palette)
     return {

@@ -1,7 +1,7 @@
-"""What ``--from STAGE`` keeps: the stages before it, and the settings that these were made with.
+"""The stages and settings that ``--from STAGE`` keeps from an earlier run.
 
-A setting that only kept stages read cannot change any more. Left out, it stays as it was, so that
-the manifest tells the truth; given with another value, it is refused before any work.
+A setting read only by kept stages cannot change. If it is omitted, its earlier value is used and
+written to the manifest; if a different value is given, the run is refused before any work.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,11 +19,12 @@ FILES_READ_FIRST_BY = {"capture": "scan", "labels": "fuse", "plan": "fuse", "net
 
 @dataclass(frozen=True)
 class Resumed:
-    """What goes on as it was.
+    """The parameters and facts of an earlier run with which a run continues.
 
-    parameters: those asked for, with the kept stages' own as they were. facts: of the manifest,
-    the hashes of files that only kept stages read. changed: ``key=value`` of each parameter that
-    is kept although it is not the default.
+    Attributes:
+        parameters: Requested parameters, with those of the kept stages unchanged.
+        facts: Manifest entries of the kept stages: hashes of the files they read.
+        changed: ``key=value`` of each kept parameter that is not the default.
     """
 
     parameters: Parameters
@@ -32,23 +33,23 @@ class Resumed:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """A line for the user, where something is other than a new run would have it."""
+        """A note to the user if kept parameters differ from those of a new run."""
         return (f"kept from the earlier run: {', '.join(self.changed)}",) if self.changed else ()
 
 
 def resume_parameters(
     out: Path, start: str | None, stages: Sequence[str], requested: Parameters
 ) -> Resumed:
-    """Return the parameters with which a run in ``out`` goes on from a stage.
+    """Return the parameters with which a run in ``out`` continues from a stage.
 
     Args:
-        out: the run's folder, with its manifest; where it has none, all is as asked.
-        start: the stage to begin at; None keeps nothing, a name that is none of ``stages`` all.
-        stages: all stages, in order.
-        requested: what the user asks for now.
+        out: Folder of the run with its manifest; without a manifest all requested values are used.
+        start: Stage to start at. None keeps no stage, a name outside ``stages`` keeps all.
+        stages: All stages in order.
+        requested: Parameters requested by the user.
 
     Raises:
-        UsageError: a setting that kept stages were made with is asked for with another value.
+        UsageError: If a requested setting differs from the one that kept stages were made with.
     """
     old = {} if start is None else _manifest(out)
     retained = stages[: stages.index(start)] if start in stages else stages
@@ -68,10 +69,11 @@ def resume_parameters(
 def resume_manifest(
     out: Path, start: str | None, now: Mapping[str, Any], retained: Resumed
 ) -> dict:
-    """Return a manifest whose hashes of files are those that kept stages read.
+    """Return a manifest with the file hashes of the kept stages.
 
     Raises:
-        InputError: the capture is another than then. UsageError: other labels are given now.
+        InputError: If the capture has changed.
+        UsageError: If other labels are given.
     """
     if retained.facts.get("capture", now["capture"]) != now["capture"]:
         raise InputError(

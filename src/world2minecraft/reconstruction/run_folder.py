@@ -1,8 +1,8 @@
-"""The folder of one reconstruction: what is finished there, and how long it took.
+"""The folder of a reconstruction, with its finished stages and their times.
 
-``manifest.json`` holds what decides the result (input hash, parameters, versions, seed) and the
-stages finished so far; a run with the same manifest goes on after the last of them. ``run.json``
-holds what differs by nature (times, memory, machine); nothing else reads it.
+``manifest.json`` contains all inputs that determine the result (input hashes, parameters, versions,
+seed) and the finished stages; a run with the same manifest continues after the last of them.
+``run.json`` contains values that differ between runs (times, memory, machine) and is never read.
 """
 
 import hashlib
@@ -30,7 +30,7 @@ BUILT_FROM = ("room.npz", "objects.json", "placements.json")  # What a world is 
 
 
 class RunFolder:
-    """The state of a run: its folder, its manifest and its clock."""
+    """The state of a run: its folder, its manifest and its times."""
 
     def __init__(self, folder: Path, stages: Sequence[str], start: str | None = None):
         """Look at the folder; nothing is written before ``begin``.
@@ -56,14 +56,14 @@ class RunFolder:
         self.finished: list[str] = []
 
     def begin(self, manifest: Mapping[str, Any]) -> None:
-        """Make the folder and decide where to begin.
+        """Create the folder and determine the first stage to run.
 
         Args:
-            manifest: what decides the result.
+            manifest: Inputs that determine the result.
 
         Raises:
-            OutputError: the folder is a file, is full or may not be written.
-            InputError: the stage to begin at needs files of one that was never finished here.
+            OutputError: If the folder is a file, is full or is not writable.
+            InputError: If the start stage requires files of a stage that has not been completed.
         """
         self._manifest = dict(manifest)
         check_writable(self.folder)
@@ -82,12 +82,12 @@ class RunFolder:
         self._save()
 
     def needs(self, stage: str) -> bool:
-        """Whether a stage must be run, rather than read from its files."""
+        """Return whether a stage must be run instead of being read from its files."""
         return stage not in self.finished
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Time a stage, and record it as finished when its block ends without an error."""
+        """Measure the time of a stage, and record the stage as finished if its block succeeds."""
         with self.timed(name):
             yield
         if name not in self.finished:
@@ -96,14 +96,14 @@ class RunFolder:
 
     @contextmanager
     def timed(self, name: str) -> Iterator[None]:
-        """Add what its block takes to the time of a stage; nothing is written."""
+        """Add the duration of a block to the time of a stage without writing a file."""
         begun = time.perf_counter()
         yield
         seconds = self._seconds.get(name, 0.0) + time.perf_counter() - begun
         self._seconds[name] = round(seconds, 3)
 
     def path(self, name: str) -> Path:
-        """The path of a file of the run."""
+        """Return the path of a file of the run."""
         return self.folder / name
 
     def _save(self) -> None:
@@ -140,7 +140,7 @@ class RunFolder:
 
 
 def finished_stages(folder: Path) -> list[str]:
-    """Return the stages that a run finished in a folder; none where nothing tells of them."""
+    """Return the finished stages of a run, or an empty list if its manifest cannot be read."""
     path = folder / "manifest.json"
     try:
         stated = read_json(path) if path.is_file() else None
@@ -151,11 +151,11 @@ def finished_stages(folder: Path) -> list[str]:
 
 
 def check_finished(folder: Path) -> None:
-    """Check that a folder holds a run from which a world can be built.
+    """Check that a folder contains a run from which a world can be built.
 
     Raises:
-        InputError: a file is missing, or they are of two runs: labels of one that was cut off, and
-            furniture of the one before it.
+        InputError: If a file is missing, or if the run was interrupted and its furniture is that of
+            an earlier run.
     """
     missing = [name for name in BUILT_FROM if not (folder / name).is_file()]
     if missing:
@@ -174,10 +174,10 @@ def check_finished(folder: Path) -> None:
 
 
 def check_writable(folder: Path) -> None:
-    """Make ``folder``, and check that a result fits.
+    """Create a folder and check that it is writable with enough free space.
 
     Raises:
-        OutputError: it is a file, may not be written or its disk is full.
+        OutputError: If it is a file, is not writable or its disk is full.
     """
     if folder.exists() and not folder.is_dir():
         raise OutputError(folder, "is a file; --out must be a folder")
@@ -194,11 +194,11 @@ def check_writable(folder: Path) -> None:
 
 
 def hash_capture(path: Path, without: Path | None = None) -> str:
-    """Return a SHA-256 over the names and bytes of all files of a capture, hidden ones left out.
+    """Return the SHA-256 of the names and contents of all non-hidden files of a capture.
 
     Args:
-        path: a folder or a file.
-        without: a folder in it whose files are left out: results may lie within a capture.
+        path: Folder or file of the capture.
+        without: Folder inside the capture, such as the results, whose files are ignored.
     """
     digest = hashlib.sha256()
     names = [path] if path.is_file() else sorted(path.rglob("*"))
@@ -217,7 +217,7 @@ def hash_capture(path: Path, without: Path | None = None) -> str:
 
 
 def peak_memory_mb() -> float | None:
-    """Return the most memory that this process held so far, or None where that is not known."""
+    """Return the peak memory of this process in megabytes, or None if it is unknown."""
     if resource is None:
         return None
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

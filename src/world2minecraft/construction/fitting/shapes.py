@@ -224,7 +224,7 @@ class ShapeSet:
 
     @cached_property
     def stairs(self) -> np.ndarray:
-        """The code ``2 * facing + (half is top)`` of each stairs shape, -1 for others, int16 [S]."""
+        """The code ``2 * facing + (half is top)`` of stairs shapes, -1 for others, int16 [S]."""
         rows = np.full(len(self), -1, np.int16)
         for number, one in enumerate(self.shapes, 1):
             if one.kind == "stairs":

@@ -1,8 +1,9 @@
-"""Plans of rooms that an app has measured: Apple's RoomPlan, as a world or beside a scan.
+"""Floor plans measured by an app (Apple's RoomPlan), used alone or together with a scan.
 
-``build_plan`` makes a world of a plan alone. ``align_plan`` finds where a plan lies in a scan;
-``plan_votes`` then lets it say what the scan's cells are, and ``merge_plan_openings`` adds doors
-and windows that were not seen. ``find_roomplan`` tells whether a path holds a plan.
+``build_plan`` builds a world from a plan alone. ``align_plan`` finds the position of a plan in a
+scan; ``plan_votes`` then adds its labels as votes for the scan's cells, and
+``merge_plan_openings`` adds doors and windows that were not seen. ``find_roomplan`` finds the plan
+file of a path.
 """
 
 from world2minecraft.formats.roomplan import find_roomplan, read_roomplan

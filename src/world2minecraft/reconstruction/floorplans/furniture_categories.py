@@ -1,4 +1,4 @@
-"""RoomPlan's categories in our words: the class of a thing, and which template stands for it."""
+"""Mapping of RoomPlan's furniture categories to classes and templates."""
 
 import numpy as np
 
@@ -36,12 +36,12 @@ TALL_M, DEEP_M = 1.4, 0.42  # Wardrobes are deeper than bookcases.
 
 
 def class_of(item: PlanObject) -> int:
-    """Return the class of a thing, ``objs`` for a category that is new."""
+    """Return the class of a plan object; unknown categories are ``objs``."""
     return int(CLASSES.get(item.category, OBJS))
 
 
 def template_of(item: PlanObject, floor_z_m: float) -> str:
-    """Return the name of the template for a thing, by category, attributes and size."""
+    """Return the name of the template for a plan object, by category, attributes and size."""
     if item.design:
         return item.design
     depth, width, height = item.size_m.tolist()
@@ -68,11 +68,13 @@ def template_of(item: PlanObject, floor_z_m: float) -> str:
 
 
 def front_of(item: PlanObject, walls: list[tuple[np.ndarray, np.ndarray]]) -> int:
-    """Return the quarter turns of a thing's front; away from the wall that it looks at closely.
+    """Return the quarter turns of a plan object's front.
+
+    If the front faces a nearby wall, the object is turned around to face away from it.
 
     Args:
-        item: its yaw says where its front looks, by the convention of RoomPlan's frames.
-        walls: the start and end, float64 [2] each, of the walls of its room.
+        item: Plan object, whose yaw gives the direction of its front in RoomPlan's convention.
+        walls: Start and end, float64 [2] each, of the walls of its room.
     """
     turns = int(np.floor(item.yaw_deg / 90 + 0.5)) % 4
     if item.design:

@@ -1,7 +1,8 @@
-"""Where a plan lies in a scan: in the same session's frame, or laid on the scan's walls.
+"""Alignment of a floor plan with a scan, by their common frame or by their walls.
 
-Apps that export a scan and a plan of one walk use one frame for both. Elsewhere the plan's walls
-are laid on the upright surfaces of the scan, by four quarter turns and any shift of whole cells.
+Apps that export a scan and a plan of the same recording use one frame for both. Otherwise, the
+walls of the plan are aligned with the upright surfaces of the scan, over four quarter turns and all
+shifts by whole cells.
 """
 
 from dataclasses import dataclass
@@ -31,12 +32,12 @@ MAX_TILT_DEG = 3.0
 
 
 class PlanMismatchError(ValueError):
-    """A plan is of no room that the scan shows; the text says how well it fits."""
+    """A plan does not match the scanned room. The message states how well it fits."""
 
 
 @dataclass(frozen=True, eq=False)
 class AlignedPlan:
-    """A plan in the room frame of a scan, how well its walls fit, and a sentence on that."""
+    """A plan in the room frame of a scan, the share of matching walls, and a note on the fit."""
 
     plan: CapturedPlan
     fit: float
@@ -44,10 +45,10 @@ class AlignedPlan:
 
 
 def align_plan(plan: CapturedPlan, evidence: FusedEvidence) -> AlignedPlan:
-    """Return a plan in the room frame of fused evidence.
+    """Align a plan with the room frame of fused evidence.
 
     Raises:
-        PlanMismatchError: it fits nowhere, or in several places about as well.
+        PlanMismatchError: If the plan fits nowhere, or about equally well in several positions.
     """
     upright = upright_columns(evidence)
     same = _same_session(plan, evidence)
@@ -60,7 +61,7 @@ def align_plan(plan: CapturedPlan, evidence: FusedEvidence) -> AlignedPlan:
 
 
 def upright_columns(evidence: FusedEvidence) -> np.ndarray:
-    """Return bool [X, Y]: the columns in which surface stands upright, grown by a cell."""
+    """Return the bool [X, Y] mask of columns with upright surface, dilated by one cell."""
     low, high = (
         int(np.clip(round((z - evidence.origin_m[2]) / evidence.voxel_m), 0, None)) for z in BAND_M
     )
@@ -69,9 +70,9 @@ def upright_columns(evidence: FusedEvidence) -> np.ndarray:
 
 
 def fit_of(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndarray) -> float:
-    """Return the share of a plan's walls, of those that lie where anything was seen, that fit.
+    """Return the share of a plan's walls in the observed region that match the scan.
 
-    0 where under a third of the walls lies there.
+    The result is 0 if less than a third of the walls is in the observed region.
     """
     cells = np.floor((_wall_points(plan) - evidence.origin_m[:2]) / evidence.voxel_m).astype(int)
     if not len(cells):
@@ -150,10 +151,10 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
 
 
 def furniture_fit(plan: CapturedPlan, evidence: FusedEvidence) -> float:
-    """Return how well the boxes of a plan's furniture cover what stands in the room, 0 to 1.
+    """Return how well the boxes of a plan's furniture cover the scanned objects, from 0 to 1.
 
-    It is the overlap, from above, of boxes and of columns that hold surface at their height,
-    over what either has within the rooms.
+    The score is the overlap, seen from above, of the boxes with the columns that have surface at
+    the height of the boxes, divided by their union within the rooms.
     """
     low, high = (
         int(np.clip(round((z - evidence.origin_m[2]) / evidence.voxel_m), 0, None))

@@ -1,8 +1,8 @@
-"""Turn a plan into a grid: walls, floor, ceiling, openings and furniture, with its placements.
+"""Convert a plan to a grid with walls, floor, ceiling, openings, furniture and placements.
 
-Cells whose middle lies in a room's outline are its air; what touches them outside is wall. All
-that a plan states counts as observed; what is outside stays unseen. A thing fills the cells of the
-template that stands for it. RoomPlan measures shapes alone, so colours are only plausible.
+Cells whose centre is inside the outline of a room are air; cells around them are walls. All cells
+that the plan describes count as observed, the outside as unseen. A plan object fills the cells of
+its template. RoomPlan measures shapes only, so the colours are plausible defaults.
 """
 
 from collections.abc import Sequence
@@ -78,12 +78,12 @@ WALL, OBJS, EMPTY = int(SemanticClass.WALL), int(SemanticClass.OBJS), int(Semant
 
 
 def colour_of(category: str) -> Colour:
-    """Return the colour of a thing by RoomPlan's category."""
+    """Return the default colour of an object by its RoomPlan category."""
     return THINGS.get(category, OTHER)
 
 
 class Canvas:
-    """Labels, instances and colours over all rooms, ``first`` the index of cell (0, 0, 0)."""
+    """The labels, instances and colours of all rooms; ``first`` is the index of cell (0, 0, 0)."""
 
     def __init__(self, rooms: Sequence[PlacedRoom], voxel_m: float):
         """Begin with nothing known.
@@ -109,7 +109,7 @@ class Canvas:
         self.placements: list[Placement] = []
 
     def middles_m(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return x [X, 1] and y [1, Y] of the cells' middles."""
+        """Return the x [X, 1] and y [1, Y] coordinates of the cell centres in metres."""
         x, y = (
             (self.first[axis] + np.arange(self.labels.shape[axis]) + 0.5) * self.voxel_m
             for axis in (0, 1)
@@ -117,7 +117,7 @@ class Canvas:
         return x[:, None], y[None, :]
 
     def layers(self, low_m: float, high_m: float) -> slice:
-        """Return the layers between two heights, one at least."""
+        """Return the layers between two heights, at least one."""
         low, high = (round(value / self.voxel_m) - int(self.first[2]) for value in (low_m, high_m))
         return slice(max(low, 0), max(high, low + 1))
 
@@ -136,16 +136,16 @@ class Canvas:
         box: tuple[np.ndarray, np.ndarray] | None = None,
         confidence: float = 1.0,
     ) -> None:
-        """Put a thing into cells.
+        """Add an object to the grid.
 
         Args:
-            cells: int [N, 3].
-            class_id: its object class.
-            template: what stands for it.
-            turns: quarter turns of its front.
-            colour: sRGB.
-            box: its first cell and its sides in cells; that of its cells where none is given.
-            confidence: 0 to 1.
+            cells: Cells of the object, int [N, 3].
+            class_id: Class of the object.
+            template: Name of its template.
+            turns: Quarter turns of its front.
+            colour: sRGB colour.
+            box: First cell and size in cells of the object; the default is the box of its cells.
+            confidence: Confidence from 0 to 1.
         """
         number = len(self.instances) + 1
         at = tuple(cells.T)
@@ -162,7 +162,7 @@ class Canvas:
         self.placements.append(Placement(number, class_id, template, middle, size, turns, iou))
 
     def grid(self) -> OccupancyGrid:
-        """Return what was painted; structure takes its usual colours."""
+        """Return the finished grid, with default colours for structure."""
         known = self.labels != UNKNOWN
         for class_id, colour in STRUCTURE.items():
             self.colour[self.labels == class_id] = colour
@@ -178,13 +178,13 @@ class Canvas:
 
 
 def place_thing(canvas: Canvas, item: PlanObject, room: PlacedRoom, inside: np.ndarray) -> None:
-    """Put a thing into its box: those cells of its template that are free air of its room.
+    """Add an object to its box: the cells of its template that are free air of its room.
 
     Args:
-        canvas: painted in place.
-        item: the thing.
-        room: where it stands.
-        inside: bool [X, Y], the columns of that room.
+        canvas: Canvas, modified in place.
+        item: The object.
+        room: Room of the object.
+        inside: Bool [X, Y] mask of the columns of that room.
     """
     name = template_of(item, room.floor_z_m)
     turns = front_of(item, [(wall.start_m, wall.end_m) for wall in room.room.walls])
@@ -224,7 +224,7 @@ def _pushed_in(corner: np.ndarray, sides: np.ndarray, inside: np.ndarray) -> np.
 
 @dataclass(frozen=True, eq=False)
 class PlanCells:
-    """A plan as a grid, its objects, and what stands for each."""
+    """A plan as a grid, with its objects and their placements."""
 
     grid: OccupancyGrid
     instances: tuple[ObjectInstance, ...]
@@ -232,14 +232,14 @@ class PlanCells:
 
 
 def rasterize_plan(plan: CapturedPlan, voxel_m: float = 0.08) -> PlanCells:
-    """Return a straightened plan as cells.
+    """Convert a straightened plan to cells.
 
     Args:
-        plan: in a frame whose z is up and whose walls lie along x and y.
-        voxel_m: the side of a cell.
+        plan: Plan in a frame with z up and walls along x and y.
+        voxel_m: Cell size in metres.
 
     Raises:
-        UsageError: the plan is too large for such cells.
+        UsageError: If the plan is too large for this cell size.
     """
     rooms = sorted(place_plan_rooms(plan), key=lambda room: room.floor_z_m)
     canvas = Canvas(rooms, voxel_m)

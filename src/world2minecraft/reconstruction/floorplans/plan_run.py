@@ -1,4 +1,4 @@
-"""From a plan to a finished run: the files that a reconstruction would leave, and the world."""
+"""Convert a floor plan to a finished run, with the files of a reconstruction, and its world."""
 
 import hashlib
 from collections.abc import Mapping
@@ -33,7 +33,7 @@ from world2minecraft.reconstruction.run_folder import check_writable
 
 @dataclass(frozen=True, eq=False)
 class PlanWorld:
-    """What became of a plan: its scan (without views), its rooms and how many objects stand."""
+    """The result of building a plan: its scan without views, its rooms and its object count."""
 
     scan: Scan
     layouts: tuple[Layout, ...]
@@ -47,17 +47,18 @@ def build_plan(
     progress: Progress = no_progress,
     name: str = "",
 ) -> PlanWorld:
-    """Turn a RoomPlan capture into a run's folder with its world; no photo is needed.
+    """Build a RoomPlan capture into the folder of a run with its world; no photo is required.
 
     Args:
-        place: the JSON, as ``find_roomplan`` finds it.
-        out: the folder of the results.
-        parameters: cells, scale, style and palette count.
-        progress: called at each step.
-        name: what the scene is called.
+        place: The JSON file, as returned by ``find_roomplan``.
+        out: Output folder.
+        parameters: Parameters; the cell size, scale, style and palette are used.
+        progress: Callback for progress.
+        name: Name of the scene.
 
     Raises:
-        InputError: the plan cannot be read. OutputError: ``out`` cannot be written.
+        InputError: If the plan cannot be read.
+        OutputError: If ``out`` cannot be written.
     """
     chosen = parameters or Parameters()
     progress("plan", 0, 1)
@@ -76,19 +77,21 @@ def build_captured(
     name: str = "",
     as_told: bool = False,
 ) -> PlanWorld:
-    """Turn a straightened plan of any source into a run's folder with its world.
+    """Build a straightened plan of any source into the folder of a run with its world.
 
     Args:
-        plan: its walls lie along x and y.
-        out: the folder of the results.
-        parameters: cells, scale, style and palette count.
-        source: what the manifest says of where the plan is from.
-        progress: called at each step.
-        name: what the scene is called.
-        as_told: leave furniture that meets other furniture where it is, cut by what is larger.
+        plan: Plan with walls along x and y.
+        out: Output folder.
+        parameters: Parameters; the cell size, scale, style and palette are used.
+        source: Information on the origin of the plan for the manifest.
+        progress: Callback for progress.
+        name: Name of the scene.
+        as_told: Whether overlapping furniture keeps its position and is cut by larger furniture,
+            instead of being moved apart.
 
     Raises:
-        UsageError: the plan is too large for such cells. OutputError: ``out`` cannot be written.
+        UsageError: If the plan is too large for the cell size.
+        OutputError: If ``out`` cannot be written.
     """
     progress("plan", 0, 1)
     held = rasterize_plan(plan, parameters.voxel_m)
@@ -106,7 +109,7 @@ def build_captured(
 
 
 def scan_of_plan(plan: CapturedPlan, name: str = "") -> Scan:
-    """Return what a scan would say of a plan: its frame, its size, and no views."""
+    """Return a scan of a plan with its frame and size but without views."""
     rooms = place_plan_rooms(plan)
     high = np.max([room.outline_m.max(axis=0) for room in rooms], axis=0)
     top = max(room.floor_z_m + room.height_m for room in rooms)

@@ -1,7 +1,7 @@
-"""Add a plan to a scan, from file to file: its votes after fusion, its openings after labelling.
+"""Add a plan to a scan: its votes after fusion, its openings after labelling.
 
-Evidence wins: only cells in which the scan met surface are voted on, none is added or taken away.
-Floor, ceiling and walls are left to the scan: it knows their planes better than a plan does.
+Only cells with observed surface get votes; no cell is added or removed. Floor, ceiling and walls
+are taken from the scan, whose planes are more precise.
 """
 
 from collections.abc import Sequence
@@ -38,11 +38,11 @@ CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
 
 
 def plan_votes(evidence: FusedEvidence, plan: CapturedPlan) -> FusedEvidence:
-    """Return the evidence with a plan's votes beside its own.
+    """Return the evidence with the votes of a plan added to its own.
 
     Args:
-        evidence: what was fused.
-        plan: in the room frame; see ``align_plan``.
+        evidence: Fused evidence of the scan.
+        plan: Plan in the room frame; see ``align_plan``.
     """
     cells = np.argwhere(evidence.log_odds > 0)
     hits = np.maximum(evidence.hits[tuple(cells.T)], 1)[:, None]
@@ -63,11 +63,11 @@ def plan_votes(evidence: FusedEvidence, plan: CapturedPlan) -> FusedEvidence:
 
 
 def merge_plan_openings(layouts: Sequence[Layout], planned: Sequence[Layout]) -> tuple[Layout, ...]:
-    """Return rooms with those openings of a plan that lie on their walls and were not found.
+    """Return rooms with the openings of a plan that are in their walls and were not found.
 
     Args:
-        layouts: of the scan.
-        planned: of the plan, in the same frame.
+        layouts: Rooms of the scan.
+        planned: Rooms of the plan in the same frame.
     """
     every = [opening for room in planned for opening in room.openings]
     result = []
@@ -157,17 +157,18 @@ def _meet(one: Opening, other: Opening) -> bool:
 
 
 def add_plan_votes(evidence: FusedEvidence, plan: Path) -> tuple[FusedEvidence, tuple[str, ...]]:
-    """Return evidence with a plan's votes, and sentences on where the plan was laid.
+    """Add the votes of a plan file to evidence, and return notes on its alignment.
 
     Raises:
-        InputError: the file is no plan. CaptureError: the plan is of another room.
+        InputError: If the file is not a valid plan.
+        CaptureError: If the plan does not match the scanned room.
     """
     laid = _laid(plan, evidence)
     return plan_votes(evidence, laid.plan), (laid.note,)
 
 
 def add_plan_openings(folder: Path, plan: Path) -> None:
-    """Add doors and windows that only the plan knows to ``layout.json`` of a run."""
+    """Add the doors and windows that only the plan contains to ``layout.json`` of a run."""
     laid = _laid(plan, read_evidence(folder / "evidence.npz"))
     layouts = merge_plan_openings(read_layouts(folder / "layout.json"), layouts_of(laid.plan))
     write_layouts(folder / "layout.json", layouts)

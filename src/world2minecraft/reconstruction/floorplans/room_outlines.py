@@ -1,4 +1,4 @@
-"""The outline of each room of a plan, and the frame in which its walls lie along x and y."""
+"""The outlines of a plan's rooms, and the frame in which its walls are along x and y."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ PARALLEL = 0.2  # Sine under which two walls are one line.
 
 @dataclass(frozen=True, eq=False)
 class PlacedRoom:
-    """A room of a plan with its outline: float64 [N, 2], counter-clockwise from above."""
+    """A room of a plan with its outline, float64 [N, 2], counter-clockwise from above."""
 
     room: PlanRoom
     outline_m: np.ndarray
@@ -27,7 +27,7 @@ class PlacedRoom:
 
 
 def move_plan(plan: CapturedPlan, move: np.ndarray) -> CapturedPlan:
-    """Return a plan in another frame with z up; ``move`` 4x4 turns about z and shifts."""
+    """Transform a plan to another frame with z up by a 4x4 rotation about z and translation."""
     rooms = tuple(
         replace(
             room,
@@ -43,9 +43,10 @@ def move_plan(plan: CapturedPlan, move: np.ndarray) -> CapturedPlan:
 
 
 def straighten_plan(plan: CapturedPlan) -> CapturedPlan:
-    """Return the plan with walls along x and y, its lowest floor at z = 0 and its corner at 0, 0.
+    """Rotate a plan so that its walls are along x and y, with its lowest floor at z = 0.
 
-    The turn is that of all walls, by their length; the first wall runs along x.
+    The rotation is averaged over all walls, weighted by length. The first wall is along x, and the
+    minimum corner of the plan is at x = y = 0.
     """
     walls = [wall for room in plan.rooms for wall in room.walls]
     if walls:
@@ -63,15 +64,16 @@ def straighten_plan(plan: CapturedPlan) -> CapturedPlan:
 
 
 def place_plan_rooms(plan: CapturedPlan) -> tuple[PlacedRoom, ...]:
-    """Return the rooms of a plan with their outlines, in the plan's frame.
+    """Return the rooms of a plan with their outlines, in the frame of the plan.
 
-    The floor's own outline counts first, then the loop of the walls, then the box around them.
+    The outline is that of the floor if available, otherwise the loop of the walls, otherwise their
+    bounding box.
     """
     return tuple(_placed(room) for room in plan.rooms)
 
 
 def layouts_of(plan: CapturedPlan) -> tuple[Layout, ...]:
-    """Return the rooms as layouts, with openings and objects, in the plan's frame."""
+    """Return the rooms of a plan as layouts with openings and objects, in the plan's frame."""
     return tuple(_layout(placed) for placed in place_plan_rooms(plan))
 
 

@@ -1,8 +1,8 @@
-"""Stage 3: the evidence of all views becomes one map of the room.
+"""Stage 3: fuse the evidence of all views into one map of the room.
 
-``fuse_views`` accumulates and settles what is solid, ``extract_grid`` says what each cell is, and
-``clean`` takes floaters away and closes holes. This stands in place of the paper's F_embodied (a
-memory of Gaussians). ``calibrate`` says of each labelled cell how surely it is right.
+``fuse_views`` accumulates evidence and decides which cells are solid, ``extract_grid`` determines
+the state of each cell, and ``clean`` removes floaters and closes holes. This replaces the paper's
+F_embodied, a memory of Gaussians. ``calibrate`` computes the confidence of each labelled cell.
 """
 
 from world2minecraft.reconstruction.fusion.accumulator import (

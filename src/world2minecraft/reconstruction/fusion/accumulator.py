@@ -1,10 +1,11 @@
-"""Accumulate the evidence of views, one after the other, in a map that can be read at any time.
+"""Accumulate the evidence of views in a map that can be read at any time.
 
-In: PointEvidence or GridEvidence in the scan's frame. Out: FusedEvidence in the room frame. The
-map grows with what is seen, so that a capture is read once and nothing must be known of its size.
-A cell holds log-odds of being occupied: a view that sees a surface in it adds ``hit_log_odds``, a
-ray that crosses it adds ``free_log_odds``; what no ray reached stays 0, unknown. Where surfaces
-were met, their planes are kept too, and ``decide_surface`` decides by them what is solid.
+The input is PointEvidence or GridEvidence in the scan's frame, the output FusedEvidence in the room
+frame. The map grows with the observed space, so a capture is read only once and its extent need not
+be known. Each cell has log-odds of being occupied: a view that sees a surface in the cell adds
+``hit_log_odds``, a ray that crosses it adds ``free_log_odds``, and cells without observations stay
+0 (unknown). The planes of observed surfaces are also stored; ``decide_surface`` uses them to decide
+which cells are solid.
 """
 
 import math
@@ -43,7 +44,7 @@ ALL_SUB_CELLS = 64
 
 
 class EvidenceMap:
-    """The growing map. ``add`` takes evidence, ``fused`` gives the value of the moment."""
+    """A growing map of evidence. ``add`` adds the evidence of a view, ``fused`` returns the map."""
 
     def __init__(self, scan_to_room: np.ndarray, parameters: FusionParameters | None = None):
         self.parameters = parameters or FusionParameters()
@@ -52,10 +53,10 @@ class EvidenceMap:
         self._base = 1  # The next view's number in the cells' marks.
 
     def add(self, evidence: PointEvidence | GridEvidence) -> None:
-        """Add what one view says.
+        """Add the evidence of one view.
 
         Raises:
-            CaptureError: the capture spans more than the map may hold.
+            CaptureError: If the capture is larger than the map may be.
         """
         if isinstance(evidence, PointEvidence):
             self._add_points(evidence)
@@ -63,10 +64,11 @@ class EvidenceMap:
             self._add_grid(evidence)
 
     def fused(self) -> FusedEvidence:
-        """Return the map, settled and cut to the cells that were seen.
+        """Return the map with decided surfaces, cropped to the observed cells.
 
         Raises:
-            CaptureError: nothing was seen yet, or what was seen lies too far apart for one grid.
+            CaptureError: If no cell was observed, or if the observed cells are too far apart for
+                one grid.
         """
         values, blocks = self.parameters, self.blocks
         log_odds, record, low = self._dense()
@@ -90,7 +92,7 @@ class EvidenceMap:
 
     @property
     def memory_mb(self) -> float:
-        """What the map's arrays take, in megabytes."""
+        """The memory of the map's arrays in megabytes."""
         arrays = (value for value in vars(self.blocks).values() if isinstance(value, np.ndarray))
         return sum(array.nbytes for array in arrays) / (1 << 20)
 
@@ -222,10 +224,10 @@ def fuse_views(
     parameters: FusionParameters | None = None,
     progress: Progress = no_progress,
 ) -> FusedEvidence:
-    """Fuse the evidence of all views, streamed: the paper's F_embodied, equation 2.
+    """Fuse the evidence of all views one by one (F_embodied of the paper, equation 2).
 
     Raises:
-        CaptureError: no view gave evidence, or the capture is larger than the map may be.
+        CaptureError: If no view has evidence, or if the capture is larger than the map may be.
     """
     map_ = EvidenceMap(scan.scan_to_room, parameters)
     total, done = len(scan.views), 0

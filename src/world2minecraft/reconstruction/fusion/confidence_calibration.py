@@ -1,9 +1,9 @@
-"""Confidence that means something: of the cells at 0.9, nine in ten bear the right label.
+"""Calibrated confidence: of the cells with confidence 0.9, nine in ten have the right label.
 
-In: a labelled grid and the evidence behind it. Out: the grid with the chance of each cell's label
-being right in ``confidence``. The chance is logistic in a few features of the cell; the weights
-were fitted on generated rooms (``python -m benchmarks.fit_confidence``), apart for each labeller,
-since the one that has no 2D labels errs more often. A completed cell has what was right of those.
+The confidence of a cell is the probability that its label is right, a logistic function of a few
+features of the cell. The weights were fitted on generated rooms (``python -m
+benchmarks.fit_confidence``) separately for each labeller, since labels without 2D images have more
+errors. Completed cells get the observed accuracy of completed cells of their class.
 """
 
 from dataclasses import dataclass, replace
@@ -29,11 +29,15 @@ DECIMALS = 3  # Confidence is told to a thousandth.
 
 @dataclass(frozen=True)
 class ConfidenceTable:
-    """The fitted weights of one labeller.
+    """The fitted calibration weights of one labeller.
 
-    ``classes`` is the intercept of each class, ``completed`` the share of completed cells of each
-    class that was right; both have 12 entries, the first (empty) of no use. ``uses_said`` is of
-    labellers whose own confidence means something: it is one of the features then.
+    Attributes:
+        occupied: Weights of ``OCCUPIED_FEATURES``.
+        classes: Intercept of each of the 12 classes; the first (empty) is not used.
+        free: Weights of ``FREE_FEATURES``.
+        completed: Accuracy of the completed cells of each of the 12 classes.
+        uses_votes: Whether the share of votes is a feature.
+        uses_said: Whether the confidence reported by the labeller is a feature.
     """
 
     occupied: tuple[float, ...]
@@ -57,10 +61,10 @@ class ConfidenceTable:
 
 
 def confidence_table(labeller: str) -> ConfidenceTable | None:
-    """Return the table of a labeller; None where none was fitted for it.
+    """Return the calibration table of a labeller, or None if it has none.
 
     Raises:
-        DamagedFileError: the package's own file is damaged.
+        DamagedFileError: If the table file of the package is damaged.
     """
     return _tables().get(labeller)
 
@@ -77,13 +81,13 @@ def _tables() -> dict[str, ConfidenceTable]:
 def calibrate(
     grid: OccupancyGrid, evidence: FusedEvidence, table: ConfidenceTable | None
 ) -> OccupancyGrid:
-    """Return the grid with calibrated confidence; without a table it stays as it is.
+    """Return the grid with calibrated confidence, or the same grid if there is no table.
 
-    Unseen cells have 0, completed ones the share that was right of their class, observed ones
-    the chance that their features give.
+    Unseen cells have confidence 0. Completed cells have the accuracy of completed cells of their
+    class, observed cells the probability computed from their features.
 
     Raises:
-        ValueError: grid and evidence are not of the same shape.
+        ValueError: If grid and evidence do not have the same shape.
     """
     if table is None:
         return grid
@@ -107,11 +111,11 @@ def occupied_features(
     uses_votes: bool,
     uses_said: bool = False,
 ) -> np.ndarray:
-    """Return float64 [N, 8], the ``OCCUPIED_FEATURES`` of chosen cells bool [X, Y, Z].
+    """Return the ``OCCUPIED_FEATURES``, float64 [N, 8], of the cells of a mask [X, Y, Z].
 
-    Log-odds are in units of 6, hits logarithmic in units of 8; ``share`` is the part of the votes
-    that the label has, ``same_class`` and ``occupied_around`` the parts of the 26 neighbours,
-    ``reported`` the log-odds of the labeller's own confidence.
+    Log-odds are divided by 6, logarithmic hits by 8. ``share`` is the share of votes for the label,
+    ``same_class`` and ``occupied_around`` are shares of the 26 neighbours, and ``reported`` is the
+    log-odds of the confidence reported by the labeller.
     """
     if evidence.log_odds.shape != grid.shape:
         raise ValueError(
@@ -139,7 +143,7 @@ def occupied_features(
 
 
 def free_features(grid: OccupancyGrid, evidence: FusedEvidence, cells: np.ndarray) -> np.ndarray:
-    """Return float64 [N, 6], the ``FREE_FEATURES`` of chosen cells bool [X, Y, Z]."""
+    """Return the ``FREE_FEATURES``, float64 [N, 6], of the cells of a mask [X, Y, Z]."""
     box = np.ones((3, 3, 3), bool)
     adjacent = np.asarray(ndimage.binary_dilation(grid.occupied, box), bool)
     two_off = np.asarray(ndimage.binary_dilation(adjacent, box), bool) & ~adjacent

@@ -1,4 +1,4 @@
-"""From evidence to a grid: what each cell is, how sure that is, and its colour."""
+"""Extract a grid from fused evidence: the state, the confidence and the colour of each cell."""
 
 import numpy as np
 
@@ -7,11 +7,11 @@ from world2minecraft.core.types import OBSERVED, UNSEEN, FusedEvidence, Occupanc
 
 
 def extract_grid(evidence: FusedEvidence) -> OccupancyGrid:
-    """Return the grid that the evidence stands for, not yet cleaned or labelled.
+    """Extract the grid of fused evidence, before cleaning and labelling.
 
-    A cell is occupied where its log-odds are above 0, free where below, unknown where 0. An
-    occupied cell takes the class with most votes, or ``objs`` where nothing voted; a labeller
-    decides better. Confidence is the probability of the decision.
+    A cell is occupied if its log-odds are positive, free if negative, and unknown if 0. An occupied
+    cell gets the class with the most votes, or ``objs`` without votes; a labeller improves this
+    later. The confidence is the probability of the decision.
     """
     log_odds = evidence.log_odds.astype(np.float32)
     occupied, free = log_odds > 0, log_odds < 0
@@ -33,6 +33,6 @@ def extract_grid(evidence: FusedEvidence) -> OccupancyGrid:
 
 
 def mean_colour(evidence: FusedEvidence) -> np.ndarray:
-    """Return uint8 [X, Y, Z, 3]: the mean colour of each cell's points, black where none."""
+    """Return the mean colour of each cell's points, uint8 [X, Y, Z, 3]; black without points."""
     hits = np.maximum(evidence.hits, 1)[..., None].astype(np.float32)
     return np.clip(np.round(evidence.colour_sum / hits), 0, 255).astype(np.uint8)

@@ -1,7 +1,7 @@
-"""Cleaning: floaters away, holes in floor, walls and ceiling closed, thin furniture spared.
+"""Grid cleaning: remove floaters and close holes in floor, walls and ceiling.
 
-``remove_floaters`` runs on the grid as it was read out. ``close_structure`` runs once the
-structure is labelled; each cell that it fills is marked as completed and stays so.
+``remove_floaters`` runs on the extracted grid. ``close_structure`` runs after the structure is
+labelled; the cells it fills are marked as completed. Thin furniture is preserved.
 """
 
 from dataclasses import dataclass, replace
@@ -20,10 +20,11 @@ MAX_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the sq
 
 @dataclass(frozen=True)
 class CleaningParameters:
-    """How the grid is cleaned.
+    """Parameters of the grid cleaning.
 
-    floater_cells: a part joined to nothing with fewer cells is noise.
-    hole_m: holes up to this width are closed; a wider one may be a door or an unseen corner.
+    floater_cells: Number of cells below which an isolated part is removed as noise.
+    hole_m: Maximum width of holes in floor, walls and ceiling that are closed. Wider holes may be
+        doors or unseen corners.
     """
 
     floater_cells: int = parameter(
@@ -44,7 +45,10 @@ class CleaningParameters:
 
 
 def remove_floaters(grid: OccupancyGrid, parameters: CleaningParameters) -> OccupancyGrid:
-    """Return the grid with small parts that touch nothing, not even by a corner, made free."""
+    """Return the grid with small isolated parts set to free.
+
+    A part is isolated if it touches no other cell by a face, edge or corner.
+    """
     parts, _ = label_components(grid.occupied)
     sizes = np.bincount(parts.reshape(-1))
     small = sizes < parameters.floater_cells
@@ -56,8 +60,8 @@ def remove_floaters(grid: OccupancyGrid, parameters: CleaningParameters) -> Occu
 def close_structure(grid: OccupancyGrid, parameters: CleaningParameters) -> OccupancyGrid:
     """Return the grid with the unseen holes of floor, ceiling and walls closed.
 
-    A hole is a set of unknown cells in a layer of the class that a square of ``hole_m`` closes.
-    Cells seen free stay free: a doorway is no hole.
+    A hole is a set of unknown cells in a layer of the class that a closing with a square of
+    ``hole_m`` fills. Cells seen as free are never filled, so doorways stay open.
     """
     labels, source = grid.labels.copy(), grid.source.copy()
     confidence, colour = grid.confidence.copy(), grid.colour.copy()
@@ -77,10 +81,10 @@ def close_structure(grid: OccupancyGrid, parameters: CleaningParameters) -> Occu
 
 
 def structure_layers(mask: np.ndarray, axis: int) -> list[int]:
-    """Return the layers across ``axis`` in which a large flat part of ``mask`` lies.
+    """Return the layers across ``axis`` that contain a large flat part of ``mask``.
 
-    Flat is a cell whose neighbours within the layer are of the mask too; a layer with a hundred
-    such cells (0.6 m2) holds a surface worth closing.
+    A cell is flat if its neighbours within the layer also belong to the mask; a layer needs a
+    hundred flat cells (0.6 m2).
     """
     within = np.ones([1 if a == axis else 3 for a in range(3)], bool)
     flat = ndimage.binary_opening(mask, within)

@@ -1,10 +1,9 @@
-"""Kernels that integrate one view: its points into cells, its rays into free space.
+"""Kernels that integrate one view: surface points into cells, and rays into free space.
 
-Everything is in cell units of the room: a point at 3.7 lies in cell 3, wherever the map begins, so
-that a map that has grown holds the same bits as one that was large from the start. ``mark`` of a
-cell is ``base`` where a ray of this view crossed it, ``base + 1 + n`` where it is the n-th cell in
-which this view met a surface, and less where neither. The plain reading of the kernels is in the
-tests, which hold them against it.
+Coordinates are in cells of the room: a point at 3.7 is in cell 3, wherever the map begins, so a map
+that has grown has the same bits as one that was large from the start. The ``mark`` of a cell is
+``base`` if a ray of the view crossed it, ``base + 1 + n`` if it is the n-th cell with surface in
+the view, and less otherwise. The tests contain a plain reference implementation of the kernels.
 """
 
 from typing import NamedTuple
@@ -25,7 +24,7 @@ from world2minecraft.reconstruction.fusion.voxel_blocks import (
 
 
 class ViewRules(NamedTuple):
-    """What decides how a view is integrated; see ``FusionParameters``."""
+    """The rules of integrating a view; see ``FusionParameters``."""
 
     hit_log_odds: float
     free_log_odds: float
@@ -42,7 +41,7 @@ class ViewRules(NamedTuple):
 
 
 class CellSums(NamedTuple):
-    """The sums over the points of one view in each of the M cells where it met a surface."""
+    """The sums over the points of one view in each of the M cells in which it saw surface."""
 
     hits: np.ndarray  # int64 [M], points
     area: np.ndarray  # float64 [M], square metres
@@ -55,7 +54,7 @@ class CellSums(NamedTuple):
 
 @njit
 def to_cells(points_m, scan_to_cells):
-    """Carry points float32 [N, 3] by a 3x4 transform; return them with their bounds."""
+    """Transform points float32 [N, 3] by a 3x4 matrix and return them with their bounds."""
     count = len(points_m)
     cells = np.empty((count, 3), np.float32)
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -72,7 +71,7 @@ def to_cells(points_m, scan_to_cells):
 
 @njit
 def place_of(i, j, k, blocks: BlockTable):
-    """Return where cell (i, j, k) of the room lies in the flat arrays; its block is made."""
+    """Return the index of cell (i, j, k) in the flat arrays, allocating its block if required."""
     low = blocks.low
     a, b, c = (i >> SHIFT) - low[0], (j >> SHIFT) - low[1], (k >> SHIFT) - low[2]
     block = blocks.numbers[a, b, c]
@@ -86,7 +85,7 @@ def place_of(i, j, k, blocks: BlockTable):
 
 @njit
 def places_of(cells, blocks: BlockTable):
-    """Return int64 [N]: where cells int64 [N, 3] lie in the flat arrays."""
+    """Return the indices, int64 [N], of cells int64 [N, 3] in the flat arrays."""
     places = np.empty(len(cells), np.int64)
     for n in range(len(cells)):
         places[n] = place_of(cells[n, 0], cells[n, 1], cells[n, 2], blocks)
@@ -95,7 +94,7 @@ def places_of(cells, blocks: BlockTable):
 
 @njit
 def face_normals(points, normals, camera, turn):
-    """Return float32 [N, 3]: unit normals in the room, against the ray where there is none."""
+    """Return unit normals in the room, float32 [N, 3]; missing normals point to the camera."""
     result = np.empty((len(points), 3), np.float32)
     given = len(normals) > 0
     for n in range(len(points)):
@@ -116,19 +115,19 @@ def face_normals(points, normals, camera, turn):
 
 @njit
 def number_cells(points, normals, nudge, blocks: BlockTable, mark, base):
-    """Number the cells in which a view met a surface.
+    """Number the cells in which a view saw surface.
 
     Args:
-        points: float32 [N, 3] in cells of the room.
-        normals: float32 [N, 3], towards the camera.
-        nudge: how far behind its point the matter lies, in cells.
-        blocks: where cells lie.
-        mark: int64 [C]; see the module's text.
-        base: the view's number in ``mark``.
+        points: Points in cells of the room, float32 [N, 3].
+        normals: Normals towards the camera, float32 [N, 3].
+        nudge: Distance in cells by which points are moved behind the surface into the matter.
+        blocks: Table of the cell blocks.
+        mark: State of each cell, int64 [C]; see the module docstring.
+        base: Base number of the view in ``mark``.
 
     Returns:
-        ``owner`` int32 [N], the number of each point's cell; ``cells`` int64 [M, 3]; ``places``
-        int64 [M], where they lie in the flat arrays.
+        ``owner``, the cell number of each point, int32 [N]; ``cells``, int64 [M, 3]; and
+        ``places``, the indices of the cells in the flat arrays, int64 [M].
     """
     owner = np.empty(len(points), np.int32)
     cells = np.empty((len(points), 3), np.int64)
@@ -153,17 +152,17 @@ def number_cells(points, normals, nudge, blocks: BlockTable, mark, base):
 
 @njit
 def sum_cells(points, normals, weight, trust, camera, owner, cells, voxel_m):
-    """Return the ``CellSums`` of a view.
+    """Compute the ``CellSums`` of a view.
 
     Args:
-        points: float32 [N, 3] in cells of the room.
-        normals: float32 [N, 3], towards the camera.
-        weight: float32 [N], the area that each point stands for.
-        trust: float32 [N], or empty.
-        camera: float64 [3] in cells of the room.
-        owner: int32 [N] of ``number_cells``, as are the cells.
-        cells: int64 [M, 3].
-        voxel_m: the cell.
+        points: Points in cells of the room, float32 [N, 3].
+        normals: Normals towards the camera, float32 [N, 3].
+        weight: Area that each point represents, float32 [N].
+        trust: Confidence of each point, float32 [N], or an empty array.
+        camera: Camera position in cells of the room, float64 [3].
+        owner: Cell number of each point from ``number_cells``, int32 [N].
+        cells: Cells from ``number_cells``, int64 [M, 3].
+        voxel_m: Cell size in metres.
     """
     count = np.zeros(len(cells), np.int64)
     sure = np.zeros(len(cells), np.float64)
@@ -197,18 +196,19 @@ def sum_cells(points, normals, weight, trust, camera, owner, cells, voxel_m):
 def add_hits(
     places, sums: CellSums, rules: ViewRules, used, cells: CellArrays, records: RecordArrays
 ):
-    """Raise the cells that a view saw enough of; return which, bool [M].
+    """Increase the log-odds of sufficiently seen cells and return their mask, bool [M].
 
-    Each face of such a cell adds one measurement of its plane, weighed by one over its variance:
-    that of the pose as seen at its distance, and of the mean of its points. Both count by trust.
+    Each face of such a cell adds one measurement of its plane, weighted by the inverse of its
+    variance, which combines the pose error at this distance and the error of the mean of the
+    points. Both the log-odds and the planes are weighted by the confidence of the points.
 
     Args:
-        places: int64 [M], where the cells lie.
-        sums: what the view saw in them.
-        rules: what is enough, and how sure it is.
-        used: int64 [2], blocks and records in use; new records are counted up.
-        cells: changed in place.
-        records: changed in place.
+        places: Indices of the cells in the flat arrays, int64 [M].
+        sums: Sums of the view in these cells.
+        rules: Thresholds and noise model.
+        used: Numbers of used blocks and records, int64 [2]; updated in place.
+        cells: Cell arrays, modified in place.
+        records: Record arrays, modified in place.
     """
     count, area, faces, trust = sums.hits, sums.area, sums.faces, sums.trust
     log_odds, record = cells.log_odds, cells.record
@@ -244,7 +244,7 @@ def add_hits(
 
 @njit
 def add_colours(colour, rows, colour_sum):
-    """Add the colours uint8 [N, 3] of points to their records, int32 [N], 0 for none."""
+    """Add the colours uint8 [N, 3] of points to their records, int32 [N]; record 0 is ignored."""
     for n in range(len(colour)):
         if rows[n] > 0:
             for channel in range(3):
@@ -253,7 +253,7 @@ def add_colours(colour, rows, colour_sum):
 
 @njit
 def add_labels(labels, rows, votes):
-    """Add one vote for each point's label, uint8 [N]; 0 and what is no class vote for nothing."""
+    """Add one vote per point for its label, uint8 [N]; 0 and invalid classes are ignored."""
     for n in range(len(labels)):
         if rows[n] > 0 and 0 < labels[n] < votes.shape[1]:
             votes[rows[n], labels[n]] += 1
@@ -261,7 +261,7 @@ def add_labels(labels, rows, votes):
 
 @njit
 def add_votes(shares, rows, votes):
-    """Add the votes float32 [N, 12] of points to their records, int32 [N], 0 for none."""
+    """Add the votes float32 [N, 12] of points to their records, int32 [N]; record 0 is ignored."""
     for n in range(len(shares)):
         if rows[n] > 0:
             for label in range(shares.shape[1]):
@@ -272,17 +272,18 @@ def add_votes(shares, rows, votes):
 def carve_free_space(
     camera, sums: CellSums, rules: ViewRules, blocks: BlockTable, cells: CellArrays, base
 ):
-    """Lower the log-odds of each cell that rays cross before they meet a surface, once a view.
+    """Lower the log-odds of each cell that rays cross in front of a surface, once per view.
 
-    One ray goes to the mean point of each cell with enough points that are trusted by half.
+    One ray is cast to the mean point of each cell with enough points and a confidence of at least
+    one half.
 
     Args:
-        camera: float64 [3] in cells of the room.
-        sums: what the view saw in cells.
-        rules: how much a ray lowers, and where it stops.
-        blocks: where cells lie.
-        cells: changed in place.
-        base: the view's number in ``mark``.
+        camera: Camera position in cells of the room, float64 [3].
+        sums: Sums of the view in its cells.
+        rules: Log-odds of a ray, and its stopping distance.
+        blocks: Table of the cell blocks.
+        cells: Cell arrays, modified in place.
+        base: Base number of the view in ``mark``.
     """
     for s in range(len(sums.hits)):
         if sums.hits[s] >= rules.min_points and sums.trust[s] >= 0.5:

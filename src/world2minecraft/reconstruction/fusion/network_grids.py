@@ -1,8 +1,8 @@
-"""Grid evidence of a network, carried into the cells of the room.
+"""Transfer of a network's grid evidence to the cells of the room.
 
-A network guesses what it does not see, and errs alike in views that look alike. So its word is
-soft: what one view is sure of carves as much as one ray, and no more. Words are summed without
-bounds and bounded at read-out, so that the order of the views plays no part.
+A network guesses unseen cells and makes similar errors in similar views, so its evidence has a low
+weight: one fully confident view counts as much as one ray. The evidence is summed without bounds
+and clipped when the map is read, so the result does not depend on the order of the views.
 """
 
 from dataclasses import dataclass
@@ -19,10 +19,14 @@ MIN_VOTE = 0.05  # Below, a cell is as good as free, and what it would be says n
 
 @dataclass(frozen=True, eq=False)
 class GridGains:
-    """What a grid adds to N cells of the room, sorted.
+    """The evidence that a network's grid adds to N sorted cells of the room.
 
-    ``cells`` int64 [N, 3], ``gains`` float32 [N] log-odds, ``votes`` float32 [N, 12], ``colour``
-    float32 [N, 3] and ``coloured`` bool [N].
+    Attributes:
+        cells: Cells of the room, int64 [N, 3].
+        gains: Log-odds, float32 [N].
+        votes: Votes per class, float32 [N, 12].
+        colour: Colours, float32 [N, 3].
+        coloured: Mask of valid colours, bool [N].
     """
 
     cells: np.ndarray
@@ -35,11 +39,10 @@ class GridGains:
 def grid_gains(
     evidence: GridEvidence, scan_to_room: np.ndarray, parameters: FusionParameters
 ) -> GridGains:
-    """Return what a network's grid adds to the map.
+    """Compute the evidence that a network's grid adds to the map.
 
-    Each seen cell speaks for the room cells that it covers: it is parted until its parts are no
-    larger than those, and each part falls into the room cell that holds its centre. Where several
-    fall into one, their mean counts.
+    Each seen cell is subdivided until its parts are no larger than the cells of the room. Each part
+    adds to the room cell that contains its centre, and the parts in one room cell are averaged.
     """
     centers_m, owner = _parts(evidence, parameters.voxel_m)
     in_room_m = apply(scan_to_room @ evidence.grid_to_scan, centers_m)

@@ -1,4 +1,4 @@
-"""How views are fused: every number that decides it, and where it comes from."""
+"""The parameters of the fusion and the reasons for their defaults."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,25 +11,27 @@ ABOVE_0, NOT_BELOW_0, SHARE = "above 0", "0 or more", "0 to 1"
 
 @dataclass(frozen=True)
 class FusionParameters:
-    """How views are fused. docs/fusion.md tells what each figure does to generated rooms.
+    """Parameters of the fusion; docs/fusion.md describes their effects on generated rooms.
 
-    voxel_m: the cell.
-    hit_log_odds, free_log_odds, limit_log_odds: what a view that sees a surface adds to a cell,
-        what a ray that crosses it adds, and how far both may go.
-    network_weight: what the log-odds of a network's grid count.
-    nudge_m: a surface point belongs to the cell of the matter behind it, this far along its
-        normal.
-    min_share: the part of a cell's face that a view must see of it.
-    min_points: the points of a view that a cell needs.
-    clear_m, clear_growth: rays stop ``clear_m + clear_growth * distance`` before their point, so
-        that noise does not eat the surface.
-    solid_share: a cell is occupied where its surface leaves this share of it solid.
-    sigma_m, sigma_growth: the standard deviation of depth at z metres is
+    voxel_m: Cell size.
+    hit_log_odds: Log-odds added to a cell by a view that sees a surface in it.
+    free_log_odds: Log-odds added to a cell by a ray that crosses it; must not be positive.
+    limit_log_odds: Maximum absolute value of the log-odds of a cell.
+    network_weight: Factor on the log-odds of a network's grid.
+    nudge_m: Distance behind a surface point, along its normal, at which the point is assigned to a
+        cell.
+    min_share: Minimum share of a cell's face that a view must see to count as a hit.
+    min_points: Minimum number of points in a cell for a view to count as a hit.
+    clear_m, clear_growth: Rays stop ``clear_m + clear_growth * distance`` in front of their point,
+        so that noise does not remove the surface.
+    solid_share: Minimum solid share of a cell, behind its surface, for the cell to be occupied.
+    sigma_m, sigma_growth: The standard deviation of depth at z metres is
         ``sigma_m + sigma_growth * (z - 0.4)^2``.
-    pose_m, pose_growth: that of a view's pose as seen at z metres: ``pose_m + pose_growth * z``.
-    merge_m, merge_sigmas: the points of two neighbouring cells along their normal are one surface
-        where their planes lie nearer than ``merge_m + merge_sigmas * sigma``.
-    sure_m: how far its surface must lie from the rule's edge for one log-odd of certainty.
+    pose_m, pose_growth: The standard deviation of a surface point at z metres due to the camera
+        pose is ``pose_m + pose_growth * z``.
+    merge_m, merge_sigmas: Points of two neighbouring cells belong to one surface if their planes
+        are closer than ``merge_m + merge_sigmas * sigma``.
+    sure_m: Distance of a surface from the decision threshold that corresponds to a log-odds of 1.
     """
 
     voxel_m: float = parameter(
@@ -107,10 +109,10 @@ class FusionParameters:
                 raise UsageError(f"fuse.{name} must be between 0 and 1, got {given:g}")
 
     def suited(self, depth_kind: str) -> "FusionParameters":
-        """Return the parameters for another kind of depth; what was chosen by hand stays.
+        """Return the parameters for another kind of depth; changed parameters are kept.
 
-        Depth from stereo errs more with distance than a sensor's, and by whole patches; so does
-        that of a network.
+        Depth from stereo or from a network has larger errors at a distance than measured depth, and
+        whole patches are affected.
         """
         default = FusionParameters(self.voxel_m)
         changes = BY_DEPTH_KIND.get(depth_kind, {})

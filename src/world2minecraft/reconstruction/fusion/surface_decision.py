@@ -1,10 +1,10 @@
-"""Decide which cells the surface leaves solid, by the rule that truth is made by.
+"""Decide which cells are solid, by the rule that is also used for ground truth.
 
-Noise spreads the points of one surface over two or three cells along its normal. So the planes of
-a cell and of its neighbours along the axis that they face are joined where they may be one
-surface; the joined plane then leaves so many of the cell's 64 sub-cells behind it. At least 4, and
-the cell is solid. Fewer, and the points in it were spill from the cell behind: it is free. All of
-them, with the plane in the cell before it, and the points were spill to the back: nothing is known.
+Noise spreads the points of a surface over two or three cells along its normal. The planes of a cell
+and its neighbours along the axis they face are merged if they may be one surface. The number of the
+cell's 64 sub-cells behind the merged plane decides: with at least 4, the cell is solid. With fewer,
+its points belong to the cell behind, and it is free. If all sub-cells are behind the plane and the
+plane is in the cell in front, the points belong to that cell, and the state is unknown.
 """
 
 import math
@@ -23,7 +23,7 @@ SOLID, SPILL_BEFORE, SPILL_BEHIND = 1, 2, 3
 
 
 class SurfaceRules(NamedTuple):
-    """What decides whether a cell is solid; see ``FusionParameters``."""
+    """The rules that decide whether a cell is solid; see ``FusionParameters``."""
 
     min_sub_cells: int  # Sub-cells behind its surface that make a cell solid.
     merge_m: float  # Planes are one nearer than this distance
@@ -33,18 +33,21 @@ class SurfaceRules(NamedTuple):
 
 @njit
 def decide_surface(log_odds, record, faces, voxel_m, rules: SurfaceRules):
-    """Decide every cell that holds a record, by its planes.
+    """Decide every cell with a record by its planes.
 
     Args:
-        log_odds: float32 [X, Y, Z], as hits and rays left them.
-        record: int32 [X, Y, Z], 0 where no surface was met.
-        faces: float32 [R, 6, 8].
-        voxel_m: the cell.
-        rules: what is solid, and how sure that is.
+        log_odds: Log-odds after hits and rays, float32 [X, Y, Z].
+        record: Record number of each cell, int32 [X, Y, Z]; 0 is no surface.
+        faces: Plane measurements, float32 [R, 6, 8].
+        voxel_m: Cell size in metres.
+        rules: Rules of the decision.
 
     Returns:
-        ``decided`` float32 [X, Y, Z], log-odds of the decision; ``heir`` int32 [X, Y, Z], the
-        record that takes over what was summed in each cell's own: of its neighbour for spill.
+        ``decided``, the log-odds of the decision, float32 [X, Y, Z]; and ``heir``, int32 [X, Y, Z],
+        the
+        record that takes over the sums of each cell: that of a neighbour if the cell's points
+            belong to
+        this neighbour, otherwise its own.
     """
     decided = log_odds.copy()
     heir = record.copy()
@@ -223,16 +226,16 @@ def _heir(i, j, k, face, record, verdict):
 
 @njit
 def move_sums(record, heir, voxel_m, votes, colour_sum, offset_sum, hits):
-    """Hand what was summed in cells of spill to their heirs, in place.
+    """Move the sums of cells whose points belong to a neighbour to that neighbour, in place.
 
     Args:
-        record: int32 [X, Y, Z].
-        heir: int32 [X, Y, Z] from ``decide_surface``.
-        voxel_m: the cell; offsets are carried to the heir's centre.
-        votes: float32 [R, 12].
-        colour_sum: float32 [R, 3].
-        offset_sum: float32 [R, 3].
-        hits: int64 [R].
+        record: Record number of each cell, int32 [X, Y, Z].
+        heir: Target record of each cell from ``decide_surface``, int32 [X, Y, Z].
+        voxel_m: Cell size in metres, used to shift offsets to the centre of the target cell.
+        votes: Votes, float32 [R, 12].
+        colour_sum: Sums of colours, float32 [R, 3].
+        offset_sum: Sums of offsets from the cell centre, float32 [R, 3].
+        hits: Numbers of points, int64 [R].
     """
     size = record.shape
     place = np.zeros((len(hits), 3), np.int32)

@@ -1,9 +1,9 @@
-"""The storage of the map: blocks of cells where rays passed, records where surfaces were met.
+"""Storage of the map: blocks of cells along rays, and records of cells with surface.
 
-A cell (i, j, k) of the room lies in block (i >> 3, j >> 3, k >> 3). ``table`` gives the number of
-each block, 0 for none; block n holds the cells from ``n * 512`` of the flat cell arrays. A cell in
-which a surface was met has a record: its number stands in ``record``, 0 for none. So memory grows
-with the space that was seen, and the many sums with the surface in it.
+Cell (i, j, k) of the room belongs to block (i >> 3, j >> 3, k >> 3). ``table`` contains the number
+of each block, 0 for none; block n has the cells from ``n * 512`` of the flat cell arrays. The
+number of the record of a cell with surface is in ``record``, 0 for none. The memory thus grows with
+the observed space, and that of the records with the observed surface.
 """
 
 from typing import NamedTuple
@@ -27,7 +27,7 @@ MAX_DENSE = MAX_ARRAY_BYTES // (2 * CLASS_COUNT)
 
 
 class BlockTable(NamedTuple):
-    """Where each cell of the room lies in the flat arrays."""
+    """The index of each cell of the room in the flat arrays."""
 
     low: np.ndarray  # int64 [3], the block at table[0, 0, 0]
     numbers: np.ndarray  # int32 [X, Y, Z], the number of each block, 0 for none
@@ -43,7 +43,7 @@ class CellArrays(NamedTuple):
 
 
 class RecordArrays(NamedTuple):
-    """What was summed in cells where a surface was met; row 0 is unused."""
+    """The sums of the cells with surface; row 0 is not used."""
 
     votes: np.ndarray  # float32 [R, 12]
     colour_sum: np.ndarray  # float32 [R, 3]
@@ -53,7 +53,7 @@ class RecordArrays(NamedTuple):
 
 
 class Blocks:
-    """Cells and records that grow. Numbers begin at 1, so that fresh memory means nothing yet."""
+    """Growing storage of cells and records; numbers start at 1, so zeroed memory means none."""
 
     def __init__(self):
         self.low = np.zeros(3, np.int64)  # The block that stands at table[0, 0, 0].
@@ -70,24 +70,24 @@ class Blocks:
 
     @property
     def by_cell(self) -> BlockTable:
-        """Where cells lie, for kernels; stale once the map has grown."""
+        """The table of blocks for kernels; invalid after the map has grown."""
         return BlockTable(self.low, self.table, self.used)
 
     @property
     def cells(self) -> CellArrays:
-        """The arrays of cells, for kernels; stale once the map has grown."""
+        """The arrays of cells for kernels; invalid after the map has grown."""
         return CellArrays(self.log_odds, self.record, self.mark)
 
     @property
     def records(self) -> RecordArrays:
-        """The arrays of records, for kernels; stale once the map has grown."""
+        """The arrays of records for kernels; invalid after the map has grown."""
         return RecordArrays(self.votes, self.colour_sum, self.offset_sum, self.hits, self.faces)
 
     def reserve_box(self, low: np.ndarray, high: np.ndarray, voxel_m: float) -> None:
-        """Make room for all blocks of the cells from ``low`` to ``high`` (past the end).
+        """Allocate the blocks of the cells from ``low`` to ``high`` (exclusive).
 
         Raises:
-            CaptureError: the capture spans more than the map may hold.
+            CaptureError: If the capture is larger than the map may be.
         """
         first, last = low // SIDE, -(-high // SIDE)
         self._widen(first, last, voxel_m)
@@ -102,13 +102,13 @@ class Blocks:
             setattr(self, name, _grown(getattr(self, name), cells))
 
     def reserve_records(self, count: int) -> None:
-        """Make room for so many more records."""
+        """Allocate memory for ``count`` more records."""
         needed = int(self.used[1]) + count + 1
         for name in ("votes", "colour_sum", "offset_sum", "hits", "faces"):
             setattr(self, name, _grown(getattr(self, name), needed))
 
     def cells_of_blocks(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the numbers of the blocks in use, int64 [B], and their first cells [B, 3]."""
+        """Return the numbers of the used blocks, int64 [B], and their first cells, [B, 3]."""
         at = np.argwhere(self.table)
         return self.table[tuple(at.T)].astype(np.int64), (at + self.low) * SIDE
 

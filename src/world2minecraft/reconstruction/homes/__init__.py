@@ -1,7 +1,7 @@
-"""Several finished runs become one home: rooms set beside each other by their doors.
+"""Join several finished runs into one home by placing rooms next to each other at their doors.
 
-``join`` reads, places, merges, writes and builds; ``place_runs`` and ``merge_runs`` are its pure
-parts.
+``join`` reads, places, merges, writes and builds runs; ``place_runs`` and ``merge_runs`` are its
+parts without file access.
 """
 
 from world2minecraft.reconstruction.homes.join_runs import join, read_runs

@@ -1,7 +1,7 @@
-"""The doors of a run: where one can walk out of a room, and in which direction.
+"""The doors of a run: where a person can leave a room, and in which direction.
 
-They are the doors and doorways of its rooms' outlines, and gaps in its walls through which a body
-goes. Of such a gap nobody knows which side is the run's own room: both ways may lead out.
+Doors are the doors and doorways of the room outlines, and gaps in the walls that a person fits
+through. For such a gap, both directions may lead out of the room.
 """
 
 from dataclasses import dataclass, replace
@@ -26,9 +26,9 @@ STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))
 
 @dataclass(frozen=True)
 class Doorway:
-    """An opening one can walk through, and the quarter turns of the direction out of its room.
+    """A passable opening, with the quarter turns of the direction out of its room.
 
-    ``sure`` is false where it was read off free cells alone: then its width is a little off.
+    ``sure`` is False if the opening was found in free cells only, with an imprecise width.
     """
 
     middle_m: tuple[float, float]
@@ -40,7 +40,7 @@ class Doorway:
 
 
 def doorways_of(run: Run) -> tuple[Doorway, ...]:
-    """Return the doors of a run, those of its outlines first."""
+    """Return the doors of a run; those of the room outlines come first."""
     found: list[Doorway] = []
     for layout in run.layouts:
         found += [door for one in layout.openings if (door := _of_opening(one, layout))]
@@ -152,13 +152,13 @@ def _gaps(run: Run, layout: Layout) -> list[Doorway]:
 
 
 def head_of(one: Doorway, other: Doorway) -> float:
-    """Return how high two doors that meet are open, over their floor."""
+    """Return the height above the floor, in metres, of the opening that two doors share."""
     known = [door.head_m for door in (one, other) if door.sure]
     return float(np.clip(min(known), *HEADS_M)) if known else USUAL_HEAD_M
 
 
 def shift_door(door: Doorway, shift_m: np.ndarray, turns: int) -> Doorway:
-    """Return a door in another frame: turned by quarter turns, then shifted, float64 [3]."""
+    """Rotate a door by quarter turns and shift it by float64 [3] in metres."""
     x, y = door.middle_m
     for _ in range(turns):
         x, y = -y, x

@@ -1,4 +1,4 @@
-"""Finished runs from disk, joined, and written as one run with its world."""
+"""Read finished runs, join them, and write the result as one run with its world."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -36,10 +36,11 @@ MAX_RUNS = 50
 
 
 def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
-    """Read finished runs; each is called as its folder, a second of that name with a number.
+    """Read finished runs, named after their folders with a number appended to repeated names.
 
     Raises:
-        InputError: a folder holds no finished run. UsageError: cells of different sizes.
+        InputError: If a folder does not contain a finished run.
+        UsageError: If the runs have different cell sizes.
     """
     if not 2 <= len(folders) <= MAX_RUNS:
         raise UsageError(f"expected 2 to {MAX_RUNS} finished runs to join, got {len(folders)}")
@@ -80,21 +81,22 @@ def join(
     places: Sequence[str] = (),
     progress: Progress = no_progress,
 ) -> Scan:
-    """Join finished runs into one run's folder with its world.
+    """Join finished runs into the folder of one run with its world.
 
     Args:
-        folders: the runs; the first keeps its place.
-        out: the folder of the results.
-        parameters: how the world is built.
-        places: where runs stand, each ``NAME=X,Y,TURNS``; the others find their doors.
-        progress: called at each step.
+        folders: Folders of the runs; the first keeps its position.
+        out: Output folder.
+        parameters: Parameters of the build.
+        places: Positions of runs as ``NAME=X,Y,TURNS``; other runs are placed by their doors.
+        progress: Callback for progress.
 
     Returns:
-        what a scan would say of the whole; it has no views.
+        A scan of the joined rooms without views.
 
     Raises:
-        InputError: a run cannot be read. UsageError: a run fits nowhere, or in several ways.
-        OutputError: ``out`` cannot be written.
+        InputError: If a run cannot be read.
+        UsageError: If a run fits nowhere, or in several positions.
+        OutputError: If ``out`` cannot be written.
     """
     chosen = parameters or Parameters()
     if any(out.exists() and folder.exists() and out.samefile(folder) for folder in folders):

@@ -1,7 +1,7 @@
-"""Several runs in one frame become one: one grid, one list of objects, open doors between them.
+"""Merge runs in a common frame: one grid, one list of objects, and open doors between rooms.
 
-A place belongs to the run in whose room it lies; what another scan saw of it through a door gives
-way. In walls, what any scan met stays.
+Space belongs to the run whose room contains it; observations by other runs through doors are
+discarded. In walls, the observations of all runs are kept.
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ ROOM_CLASSES = (WALL, int(SemanticClass.WINDOW), int(SemanticClass.OBJS))
 
 @dataclass(frozen=True, eq=False)
 class Home:
-    """What was joined: one run, the size of its box in metres, and sentences for its report."""
+    """A joined run, the size of its bounding box in metres, and notes for the report."""
 
     run: Run
     size_m: np.ndarray
@@ -36,14 +36,14 @@ class Home:
 
 
 def merge_runs(placed: Placed, name: str = "") -> Home:
-    """Return runs that stand in one frame as one, its corner at the origin.
+    """Merge runs in a common frame into one run, with its corner at the origin.
 
     Args:
-        placed: as ``place_runs`` gives them.
-        name: of the whole.
+        placed: Runs from ``place_runs``.
+        name: Name of the merged run.
 
     Raises:
-        UsageError: together they are too large.
+        UsageError: If the merged run is too large.
     """
     runs: Sequence[Run] = placed.runs
     low = np.min([layout.floor_polygon_m.min(axis=0) for r in runs for layout in r.layouts], axis=0)

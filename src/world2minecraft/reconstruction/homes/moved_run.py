@@ -1,4 +1,4 @@
-"""A finished run moved by quarter turns and whole cells: exactly, so that nothing is resampled."""
+"""Move a finished run by quarter turns and whole cells, exactly and without resampling."""
 
 from dataclasses import dataclass, replace
 
@@ -12,7 +12,7 @@ DECIMALS = 4  # As in the files of a run.
 
 @dataclass(frozen=True)
 class Move:
-    """A turn about the frame's origin by quarter turns, then a shift by whole cells."""
+    """A rotation about the origin of the frame by quarter turns, then a shift by whole cells."""
 
     quarter_turns: int = 0
     cells: tuple[int, int, int] = (0, 0, 0)
@@ -22,13 +22,13 @@ class Move:
             raise ValueError(f"quarter_turns must be 0 to 3, got {self.quarter_turns}")
 
     def transform(self, voxel_m: float) -> np.ndarray:
-        """Return the 4x4 that carries the old frame to the new one."""
+        """Return the 4x4 transform from the old to the new frame."""
         result = rotation_about_z(90.0 * self.quarter_turns)
         result[:3, 3] = np.array(self.cells) * voxel_m
         return result
 
     def after(self, first: "Move") -> "Move":
-        """Return the one move that does ``first`` and then this."""
+        """Return the move that applies ``first`` and then this move."""
         turn = rotation_about_z(90.0 * self.quarter_turns)[:3, :3]
         cells = np.rint(turn @ np.array(first.cells)).astype(int) + np.array(self.cells)
         return Move((self.quarter_turns + first.quarter_turns) % 4, tuple(cells.tolist()))
@@ -36,7 +36,7 @@ class Move:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What a finished run found: its grid, its objects, what stands for them, and its rooms."""
+    """The result of a finished run: its grid, objects, placements and rooms."""
 
     name: str
     grid: OccupancyGrid
@@ -46,7 +46,7 @@ class Run:
 
 
 def move_run(run: Run, move: Move) -> Run:
-    """Return a run in the frame that a move leads to."""
+    """Transform a run by a move."""
     voxel_m = run.grid.voxel_m
     to_new = move.transform(voxel_m)
     return replace(
@@ -78,7 +78,7 @@ def move_run(run: Run, move: Move) -> Run:
 
 
 def move_grid(grid: OccupancyGrid, move: Move) -> OccupancyGrid:
-    """Return a grid whose cells are those of another one, turned and shifted."""
+    """Rotate and shift the cells of a grid."""
     first = np.rint(grid.origin_m / grid.voxel_m).astype(int)
     for _ in range(move.quarter_turns):
         # (x, y) goes to (-y, x): the new minimum corner is that of the old maximum of y.
@@ -90,7 +90,7 @@ def move_grid(grid: OccupancyGrid, move: Move) -> OccupancyGrid:
 
 
 def move_layout(layout: Layout, to_new: np.ndarray) -> Layout:
-    """Return a room in another frame; ``to_new`` is a quarter turn and a shift, 4x4."""
+    """Transform a room by a 4x4 quarter turn and shift."""
     openings = tuple(
         replace(one, start_m=_flat(to_new, one.start_m), end_m=_flat(to_new, one.end_m))
         for one in layout.openings

@@ -1,8 +1,8 @@
-"""Place the runs of a home: by hand where that was given, else by their doors.
+"""Place the rooms of a home at given positions, or by their doors.
 
-Two runs have a door in common where openings of about one width and height meet from both sides of
-a wall. Turns are quarter turns and shifts whole cells. Scans look through open doors: what one saw
-there must agree with what the other saw of the same place, and shows the place to the cell.
+Two runs share a door if openings of about the same width and height meet from both sides of a wall.
+Rotations are quarter turns, shifts are whole cells. Scans look through open doors, so the
+observations of both runs must agree there, which determines the position to the cell.
 """
 
 from collections.abc import Mapping, Sequence
@@ -42,9 +42,10 @@ HAND_OVERLAP = 0.5  # Of the smaller room: given by hand, yet one room in the ot
 
 @dataclass(frozen=True)
 class Fit:
-    """A place for a run: how it is moved there, how well it fits, and by which door of which run.
+    """A possible position of a run: its move, its score, and the doors by which it is connected.
 
-    ``doors`` are that of the other run and its own, in the common frame.
+    ``beside`` is the name of the connected run; ``doors`` are the door of that run and the run's
+    own door, in the common frame.
     """
 
     move: Move
@@ -55,10 +56,7 @@ class Fit:
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """What a run knows of its cells: bool [X, Y, Z] each, and the index of the first cell.
-
-    ``thick`` are the solid cells and their neighbours.
-    """
+    """The solid, dilated solid and known cells of a run, bool [X, Y, Z], and its first cell."""
 
     solid: np.ndarray
     thick: np.ndarray
@@ -67,7 +65,7 @@ class Known:
 
 
 def known_of(run: Run) -> Known:
-    """Return the solid and known cells of a run; floor and ceiling fit everywhere, and are none."""
+    """Return the solid and known cells of a run, without floor and ceiling (they fit anywhere)."""
     level = np.isin(run.grid.labels, (SemanticClass.FLOOR, SemanticClass.CEILING))
     solid = run.grid.occupied & ~level
     first = np.rint(run.grid.origin_m / run.grid.voxel_m).astype(int)
@@ -75,9 +73,9 @@ def known_of(run: Run) -> Known:
 
 
 def fits(run: Run, placed: Sequence[Run]) -> list[Fit]:
-    """Return the places where a run may stand beside those that stand already, best first.
+    """Return the possible positions of a run next to the placed runs, best first.
 
-    Places that are one and the same, found by several doors, are one.
+    Equal positions found by several doors are returned once.
     """
     voxel_m = run.grid.voxel_m
     own_doors = doorways_of(run)
@@ -191,15 +189,14 @@ def _meet(door: Doorway, other: Doorway) -> bool:
 
 
 def agreement(one: Known, other: Known, wall: tuple[int, int] | None = None) -> tuple[int, float]:
-    """Return how many solid cells of either run the other knows, and the share that agrees.
+    """Return the number of solid cells that both runs know, and the share of them that agrees.
 
-    They agree where the other run has a solid cell there or beside it.
+    A solid cell agrees if the other run has a solid cell at or next to it.
 
     Args:
-        one: cells of one frame.
-        other: those of another run in that frame.
-        wall: the axis and the cell of a wall between the rooms, which is left out: that one wall
-            lies on another says nothing.
+        one: Cells of one run.
+        other: Cells of another run in the same frame.
+        wall: Axis and cell of a wall between the rooms, whose cells are ignored.
     """
     low = np.maximum(one.first, other.first)
     high = np.minimum(one.first + one.solid.shape, other.first + other.solid.shape)
@@ -225,7 +222,7 @@ def agreement(one: Known, other: Known, wall: tuple[int, int] | None = None) -> 
 def overlap_m2(
     layouts: tuple[Layout, ...], others: tuple[Layout, ...], step_m: float = 0.1
 ) -> float:
-    """Return how much floor two sets of rooms would share, storey by storey."""
+    """Return the floor area in square metres that two sets of rooms share, storey by storey."""
     shared = 0.0
     for one, other in product(layouts, others):
         top = min(one.floor_z_m + one.wall_height_m, other.floor_z_m + other.wall_height_m)
@@ -245,9 +242,9 @@ def overlap_m2(
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """The runs in one frame, the move of each, sentences on how they were placed, and doors.
+    """The runs in a common frame, with their moves, notes on the placement, and connected doors.
 
-    ``doors`` are pairs that meet, one of each run.
+    ``doors`` contains pairs of doors that meet, one of each run.
     """
 
     runs: tuple[Run, ...]
@@ -257,14 +254,14 @@ class Placed:
 
 
 def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -> Placed:
-    """Return all runs in one frame, that of the first.
+    """Return all runs in the frame of the first run.
 
     Args:
-        runs: two or more, of different names.
-        by_hand: moves for some of them, by name; the first may have one too.
+        runs: Two or more runs with different names.
+        by_hand: Given moves of runs by name; the first run may have one too.
 
     Raises:
-        UsageError: a run fits nowhere, or in several places about as well; or two overlap.
+        UsageError: If a run fits nowhere or in several positions, or if two runs overlap.
     """
     hand = dict(by_hand or {})
     first = runs[0].name
@@ -324,7 +321,7 @@ def _undecided(left: list[Run], options: Mapping[str, list[Fit]], voxel_m: float
 
 
 def stated(name: str, move: Move, voxel_m: float) -> str:
-    """Return a move as ``--at`` takes it."""
+    """Format a move as a value of ``--at``."""
     x, y, z = (round(cells * voxel_m, 3) for cells in move.cells)
     place = f"{name}={x:g},{y:g},{move.quarter_turns}"
     return place + (f",{z:g}" if z else "")
@@ -350,10 +347,10 @@ def _floor_m2(run: Run) -> float:
 
 
 def parse_place(text: str, names: Sequence[str], voxel_m: float) -> tuple[str, Move]:
-    """Return the run and the move that ``NAME=X,Y,TURNS`` says; Z in metres may follow.
+    """Parse ``NAME=X,Y,TURNS``, optionally followed by Z in metres, into a run name and a move.
 
     Raises:
-        UsageError: it is written in another way, or names no run.
+        UsageError: If the text is malformed or names an unknown run.
     """
     name, _, rest = text.partition("=")
     parts = rest.split(",")
@@ -381,7 +378,7 @@ def parse_place(text: str, names: Sequence[str], voxel_m: float) -> tuple[str, M
 
 
 def doors_between(placed: Sequence[Run]) -> list[tuple[Doorway, Doorway]]:
-    """Return the doors of the rooms' outlines that meet: of an earlier run and of a later one."""
+    """Return the pairs of outline doors that meet, each of an earlier and a later run."""
     doors = [[door for door in doorways_of(run) if door.sure] for run in placed]
     pairs = []
     for number, own in enumerate(doors):

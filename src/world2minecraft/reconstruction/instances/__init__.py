@@ -1,7 +1,7 @@
-"""Stage 5, OccupancyGrid -> objects: density map, threshold, clusters per class, centres, cells.
+"""Stage 5: find objects in the labelled grid by density, threshold and clustering per class.
 
-This is the paper's Algorithm 1 from ``density`` (D) to the centres (C'), and then the cells of
-each object (O_k).
+This is the paper's Algorithm 1 from the density D to the centres C', followed by the cells of each
+object O_k.
 """
 
 from world2minecraft.reconstruction.instances.objects import (

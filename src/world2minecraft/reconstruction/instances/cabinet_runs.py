@@ -1,10 +1,8 @@
-"""Split runs of cabinets: furniture that stands in a row.
+"""Split runs of cabinets, furniture that stands in a row, into single cupboards.
 
-What hangs is parted from what stands, what is taller from what is lower, each arm of an L from the
-other, and along an arm what looks different from its neighbour.
-
-In: owners from the clusters. Out: owners in which each cupboard has a number of its own. The paper
-has no such step: its clusters take a whole kitchen for one object.
+Hanging cupboards are separated from standing ones, taller from lower ones, the arms of an L from
+each other, and along an arm cupboards that look different. The paper has no such step: its clusters
+make a whole kitchen one object.
 """
 
 from itertools import pairwise
@@ -58,9 +56,9 @@ MIN_FRONT_LAYERS = 3  # A slice that shows fewer layers of its front says nothin
 
 
 def merge_slivers(pieces: np.ndarray, voxels: ObjectVoxels) -> np.ndarray:
-    """Return pieces, int32 [X, Y, Z], renumbered from 1, without slivers.
+    """Merge slivers into neighbouring pieces, int32 [X, Y, Z], and renumber the pieces from 1.
 
-    The smallest goes first; one that touches no other piece stays.
+    The smallest sliver is merged first; slivers that touch no other piece are kept.
     """
     result = pieces.copy()
     retained: set[int] = set()
@@ -98,10 +96,10 @@ def _most_adjacent(pieces: np.ndarray, number: int) -> int:
 
 
 def split_into_arms(plan: np.ndarray, voxels: ObjectVoxels) -> list[np.ndarray]:
-    """Return the plans, bool [X, Y], of the rectangles that a plan is made of.
+    """Split a plan into rectangles, bool [X, Y] each.
 
-    A plan is cut straight through where that frees its boxes of most air that was seen. Of the
-    two ways to cut an L that in which its longer arm keeps the corner is taken.
+    Straight cuts are chosen that exclude the most observed air from the bounding boxes. Of the two
+    ways to cut an L, the longer arm keeps the corner.
     """
     layers = (voxels.own & plan[:, :, None]).any(axis=(0, 1))
     air = voxels.free[:, :, layers].mean(axis=2) >= OPEN_SHARE
@@ -164,10 +162,9 @@ def _longest_side(plan: np.ndarray) -> int:
 
 
 def hanging_cells(voxels: ObjectVoxels) -> np.ndarray:
-    """Return the own cells, bool [X, Y, Z], that hang clear of what stands below them.
+    """Return the mask of an object's cells, bool [X, Y, Z], that hang above standing parts.
 
-    Nothing hangs where the air below is but the inside of a bookcase: its sides and back fill
-    the layers of the gap.
+    Cells above the inside of a bookcase do not hang: its sides and back fill the layers of the gap.
     """
     hung = np.zeros(voxels.own.shape, np.bool_)
     bottoms = _hanging_bottoms(voxels)
@@ -205,7 +202,7 @@ def _is_clear(voxels: ObjectVoxels, plan: np.ndarray, bottom: int) -> bool:
 
 
 def split_by_height(voxels: ObjectVoxels) -> list[np.ndarray]:
-    """Return plans, bool [X, Y], of the pieces, the widest first."""
+    """Return the plans, bool [X, Y], of the parts of different height, the widest first."""
     own = voxels.own
     top = (own * np.arange(1, own.shape[2] + 1)).max(axis=2)
     number = _height_regions(top, HEIGHT_STEP_M / voxels.voxel_m)
@@ -258,7 +255,7 @@ def _height_regions(top: np.ndarray, step: float) -> np.ndarray:
 
 
 def split_at_seams(voxels: ObjectVoxels) -> list[np.ndarray]:
-    """Return the pieces, bool [X, Y, Z], into which the fronts part one arm of a row."""
+    """Split one arm of a row at the seams of its fronts into pieces, bool [X, Y, Z]."""
     plan: np.ndarray = np.asarray(voxels.own.any(axis=2))
     spans = [np.flatnonzero(plan.any(axis=1)), np.flatnonzero(plan.any(axis=0))]
     if not len(spans[0]):
@@ -344,7 +341,7 @@ def _colour_step(colours: np.ndarray) -> float:
 def split_cabinet_runs(
     owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
-    """Return owners, int32 [X, Y, Z], in which cupboards of a row have own numbers."""
+    """Return owners, int32 [X, Y, Z], with a separate number for each cupboard of a row."""
     result = owners.copy()
     next_id = int(owners.max(initial=0))
     for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.FURN):
@@ -359,7 +356,7 @@ def split_cabinet_runs(
 
 
 def split_run(voxels: ObjectVoxels) -> np.ndarray:
-    """Return the piece, int32 [X, Y, Z] from 1, of each own cell; 0 elsewhere."""
+    """Return the piece number, int32 [X, Y, Z] from 1, of each cell of an object; 0 elsewhere."""
     seeds = np.zeros(voxels.own.shape, np.int32)
     hung = hanging_cells(voxels)
     for storey in (voxels.own & ~hung, hung):

@@ -1,4 +1,4 @@
-"""Relabel specks: a few cells of another class within one object's surface are that object's."""
+"""Relabel specks: a few cells of another class within the surface of one object."""
 
 import numpy as np
 from scipy import ndimage
@@ -13,12 +13,12 @@ NEIGHBOURHOOD = np.ones((3, 3, 3), np.bool_)
 
 
 def relabel_specks(labels: np.ndarray) -> np.ndarray:
-    """Return labels, uint8 [X, Y, Z], in which specks have the class of what they lie in.
+    """Return labels, uint8 [X, Y, Z], in which specks take the class of the surrounding object.
 
-    A speck is a connected part of an object class of at most ``MAX_SPECK_CELLS``. It lies in
-    another object class where nearly all that touches it is of that class, and this lies on both
-    sides of each of its cells along the same two axes. What stands on a table or before a cupboard
-    sticks out of it.
+    A speck is a connected part of an object class with at most ``MAX_SPECK_CELLS`` cells. It is
+    relabelled if nearly all touching cells belong to another object class that is on both sides of
+    each of its cells along the same two axes. Objects that protrude, such as items on a table, are
+    kept.
     """
     result = labels.copy()
     for class_id in OBJECT_CLASSES:

@@ -1,8 +1,8 @@
 """Density, candidates and clusters: D, C and C' of the paper's Algorithm 1.
 
-``density_map`` gives D, how full the neighbourhood of each cell is; ``candidate_cells`` gives C,
-the cells that reach the threshold; ``cluster_candidates`` parts C by DBSCAN within each class, and
-``centroids`` gives C'. ``assign_voxels`` then gives each object cell to a cluster (O_k).
+``density_map`` computes D, the filled share around each cell; ``candidate_cells`` returns C, the
+cells above the threshold; ``cluster_candidates`` clusters C by DBSCAN within each class, and
+``centroids`` returns C'. ``assign_voxels`` then assigns each object cell to a cluster (O_k).
 """
 
 import numpy as np
@@ -18,15 +18,15 @@ NO_CLUSTER = -1
 
 
 def object_cells(labels: np.ndarray) -> np.ndarray:
-    """Return the paper's binary grid, bool [X, Y, Z]: cells of an object class, 5 to 11."""
+    """Return the paper's binary grid, bool [X, Y, Z]: the cells of object classes 5 to 11."""
     return (labels >= OBJECT_CLASSES[0]) & (labels <= OBJECT_CLASSES[-1])
 
 
 def density_map(binary: np.ndarray, density_kernel: int) -> np.ndarray:
-    """Return D = K * binary, float32 [X, Y, Z], as the share (0 to 1) of the kernel that is full.
+    """Compute the density D = K * binary, float32 [X, Y, Z], as the filled share of the kernel.
 
-    The uniform kernel is normalised to sum 1; beyond the grid all is empty. Counts are whole
-    numbers until the last step, so that the map is the same on every machine.
+    The uniform kernel is normalized to sum 1; cells outside the grid are empty. Counts are integers
+    until the last step, so the result is the same on every machine.
     """
     counts = binary.astype(np.int32)
     ones = np.ones(density_kernel, np.int32)
@@ -38,9 +38,9 @@ def density_map(binary: np.ndarray, density_kernel: int) -> np.ndarray:
 def candidate_cells(
     binary: np.ndarray, density: np.ndarray, density_threshold: float
 ) -> np.ndarray:
-    """Return C, int32 [M, 3] in the order x, y, z: object cells whose density reaches tau.
+    """Return the candidates C, int32 [M, 3] in x, y, z order: object cells of density tau or more.
 
-    Densities are multiples of 1 / k^3; half of one millionth keeps tau = 6/27 from missing 6/27.
+    Densities are multiples of 1 / k^3. A tolerance of 5e-7 ensures that tau = 6/27 includes 6/27.
     """
     return np.argwhere(binary & (density >= density_threshold - 5e-7)).astype(np.int32)
 
@@ -48,16 +48,17 @@ def candidate_cells(
 def cluster_candidates(
     candidates: np.ndarray, classes: np.ndarray, cluster_radius: float, min_samples: int
 ) -> np.ndarray:
-    """Return the cluster, int32 [M], of each candidate; -1 for those in none.
+    """Return the cluster of each candidate, int32 [M]; -1 is no cluster.
 
-    Classes never share a cluster. Clusters are numbered by class, then by their centroid's
-    x, y, z.
+    Each cluster contains one class. Clusters are numbered by class, then by the x, y, z of their
+    centroid.
 
     Args:
-        candidates: int32 [M, 3], cells.
-        classes: uint8 [M], the class of each.
-        cluster_radius: eta, the L2 distance in cells within which two candidates are neighbours.
-        min_samples: neighbours, itself included, that make a candidate a core of its cluster.
+        candidates: Cells, int32 [M, 3].
+        classes: Class of each candidate, uint8 [M].
+        cluster_radius: The paper's eta: the L2 distance in cells up to which candidates are
+            neighbours.
+        min_samples: Number of neighbours, including itself, that make a candidate a core point.
     """
     clusters = np.full(len(candidates), NO_CLUSTER, np.int32)
     count = 0
@@ -72,7 +73,7 @@ def cluster_candidates(
 
 
 def centroids(candidates: np.ndarray, clusters: np.ndarray) -> np.ndarray:
-    """Return C', float64 [K, 3]: the mean cell of each cluster."""
+    """Return the centroids C', float64 [K, 3]: the mean cell of each cluster."""
     members = clusters >= 0
     counts = np.bincount(clusters[members])
     sums = [np.bincount(clusters[members], candidates[members, axis]) for axis in range(3)]
@@ -110,11 +111,11 @@ def _order_by_centroid(clusters: np.ndarray, points: np.ndarray) -> np.ndarray:
 def assign_voxels(
     labels: np.ndarray, binary: np.ndarray, candidates: np.ndarray, clusters: np.ndarray
 ) -> np.ndarray:
-    """Return owners, int32 [X, Y, Z]: the cluster of each object cell plus 1, 0 for none.
+    """Return owners, int32 [X, Y, Z]: the cluster of each object cell plus 1; 0 is none.
 
-    A cell goes to the nearest cluster of its own class, by steps through the 26 neighbours along
-    cells of that class; of equally near ones to the lower number. The cells of a cluster are
-    its sources: the centroid of a shell lies in the air, and the shell's own cells do not.
+    A cell is assigned to the nearest cluster of its class, measured in steps through the 26
+    neighbours along cells of that class; the lower number wins a tie. Distances start at the cells
+    of a cluster, since its centroid can be in the air.
     """
     owners = np.zeros(labels.shape, np.int32)
     members = clusters >= 0

@@ -1,7 +1,7 @@
-"""Passes that merge what belongs together.
+"""Passes that merge parts of the same object.
 
-Parts of one class that stand on one another, small and loose pieces beside an object of their
-class, and the post, cord and foot of a lamp with its shade.
+These are stacked parts of one class, small loose pieces next to an object of their class, and the
+post, cord and foot of a lamp with its shade.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ def merge_lamp_parts(
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which posts, cords and feet belong to their lamps.
 
-    What lies wholly within the floor and belongs to nothing is no object.
+    Parts that are completely inside the floor and belong to no object are removed.
     """
     result = owners.copy()
     pieces = dict(cells_by_owner(owners, grid.labels, SemanticClass.OBJS))
@@ -80,11 +80,11 @@ def _vertical_gap(fragment: np.ndarray, whole: np.ndarray, grid: OccupancyGrid) 
 def merge_stacked(
     owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
-    """Return owners, int32 [X, Y, Z], with stacked parts of one class under one number.
+    """Return owners, int32 [X, Y, Z], with stacked parts of one class merged.
 
-    A thin post is too sparse to hold candidates, so density parts a top from its foot. Two parts
-    of the same class that touch are one object where at least half of the smaller one's plan
-    lies over or under the other.
+    A thin post is too sparse for candidates, so clustering separates a top from its foot. Two
+    touching parts of the same class are merged if at least half of the smaller part's plan overlaps
+    the other.
     """
     pairs = _touching_pairs(owners, grid.labels)
     parent = list(range(int(owners.max(initial=0)) + 1))
@@ -132,14 +132,12 @@ def _root(parent: list[int], number: int) -> int:
 def merge_small_pieces(
     owners: np.ndarray, grid: OccupancyGrid, parameters: InstanceParameters
 ) -> np.ndarray:
-    """Return owners in which no object is smaller than ``min_cells``.
+    """Return owners in which no object has fewer than ``min_cells`` cells.
 
-    What stands on the floor is large: of chairs, beds, sofas and tables, fragments of some more
-    cells join a neighbour too, where there is one.
-
-    Loose pieces and too small objects join the nearest object of their own class within
-    ``join_radius`` cells. A loose piece that finds none becomes an object where it is large
-    enough; the rest belongs to none (owner 0).
+    Loose pieces and small objects are merged into the nearest object of their class within
+    ``join_radius`` cells. For chairs, beds, sofas and tables, somewhat larger fragments are merged
+    as well. A loose piece without such a neighbour becomes an object if it is large enough; other
+    cells belong to no object (owner 0).
     """
     result, labels = owners.copy(), grid.labels
     for class_id in np.unique(labels[object_cells(labels)]):

@@ -1,7 +1,7 @@
-"""The extent of an object: its layers, and the rectangle of a chair that stands askew.
+"""The extent of an object: its layers, and the rotated rectangle of an oblique chair.
 
-A scan misses what is thin: the post of a lamp, the cord of a pendant, a chair's legs. So objects
-reach beyond the cells that were seen: to the floor, to what they stand on, or to the ceiling.
+A scan misses thin parts, such as the post or cord of a lamp or a chair's legs. The extent of an
+object therefore reaches beyond the observed cells: to the floor, its support or the ceiling.
 """
 
 from typing import NamedTuple
@@ -27,7 +27,7 @@ MIN_FREE_SHARE = 0.6  # under so many of its columns has nothing that holds it t
 
 
 class Rectangle(NamedTuple):
-    """A rectangle in plan: degrees counter-clockwise, middle and sides in cells, float64 [2]."""
+    """A rectangle in plan: counter-clockwise angle in degrees, centre and sides in cells."""
 
     angle_deg: float
     middle: np.ndarray
@@ -35,10 +35,10 @@ class Rectangle(NamedTuple):
 
 
 def min_area_rectangle(cells: np.ndarray, class_id: int, voxel_m: float) -> Rectangle | None:
-    """Return the rectangle of a chair of cells, int [N, 3], turned by 8 to 37 degrees.
+    """Return the rectangle of an oblique chair of cells int [N, 3], rotated by 8 to 37 degrees.
 
-    None for other classes, where the upright rectangle is about as small, and where the sides
-    are not those of one chair. ``middle`` counts from the grid's corner.
+    The result is None for other classes, if the axis-aligned rectangle is about as small, or if the
+    sides are not those of a single chair. ``middle`` is relative to the corner of the grid.
     """
     if class_id != SemanticClass.CHAIR:
         return None
@@ -69,7 +69,7 @@ def _rectangle_at(plan: np.ndarray, angle_deg: float) -> Rectangle:
 
 
 def vertical_extent(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> tuple[int, int]:
-    """Return the first layer of an object of ``cells``, int [N, 3], and the one past its last."""
+    """Return the first layer of an object of cells int [N, 3], and the exclusive last layer."""
     low, high = int(cells[:, 2].min()), int(cells[:, 2].max()) + 1
     floor = floor_layer_below(cells, grid)
     if class_id in STANDING and 0 < (low - floor) * grid.voxel_m <= MAX_STANDING_BASE_M:

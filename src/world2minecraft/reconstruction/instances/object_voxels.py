@@ -1,7 +1,4 @@
-"""The voxels of one object: ``cells_by_owner`` gathers them, ``ObjectVoxels`` is their small box.
-
-A box keeps the work small: passes over one object need not look at the whole grid.
-"""
+"""The voxels of single objects, each in a small box to avoid passes over the whole grid."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -18,12 +15,12 @@ MIN_FLOOR_CELLS = 4
 def cells_by_owner(
     owners: np.ndarray, labels: np.ndarray, class_id: int
 ) -> Iterator[tuple[int, np.ndarray]]:
-    """Yield each owner of a class and its cells, int64 [N, 3], in the order of the owners.
+    """Yield each owner of a class and its cells, int64 [N, 3], ordered by owner.
 
     Args:
-        owners: int32 [X, Y, Z], 0 for none.
-        labels: uint8 [X, Y, Z].
-        class_id: the class.
+        owners: Owner of each cell, int32 [X, Y, Z]; 0 is none.
+        labels: Class of each cell, uint8 [X, Y, Z].
+        class_id: Class of the objects.
     """
     cells = np.argwhere((labels == class_id) & (owners > 0))
     numbers = owners[tuple(cells.T)]
@@ -33,10 +30,15 @@ def cells_by_owner(
 
 
 class ObjectVoxels(NamedTuple):
-    """The cells of one object in their box.
+    """The cells of an object in their bounding box.
 
-    ``own`` and ``free`` (seen to be empty) are bool [X, Y, Z], ``colour`` uint8 [X, Y, Z, 3].
-    ``floor`` is the layer in the box that stands on the floor; it may lie outside of the box.
+    Attributes:
+        own: Mask of the object's cells, bool [X, Y, Z].
+        free: Mask of the cells seen as empty, bool [X, Y, Z].
+        colour: sRGB colours, uint8 [X, Y, Z, 3].
+        low: Index of the first cell of the box in the grid.
+        floor: Layer of the box directly above the floor; may be outside the box.
+        voxel_m: Cell size in metres.
     """
 
     own: np.ndarray
@@ -47,24 +49,24 @@ class ObjectVoxels(NamedTuple):
     voxel_m: float
 
     def only(self, own: np.ndarray) -> "ObjectVoxels":
-        """Return the voxels with only some of its cells, bool [X, Y, Z], in the same box."""
+        """Return the voxels with some of the object's cells, bool [X, Y, Z], in the same box."""
         return self._replace(own=own)
 
     def cells_of(self, length_m: float) -> int:
-        """Return how many cells a length spans, 1 at least."""
+        """Return the number of cells that a length spans, at least 1."""
         return max(1, int(length_m / self.voxel_m + 0.5))
 
 
 def main_floor_layer(grid: OccupancyGrid) -> int:
-    """Return the layer on the room's main floor, whose top is z = 0."""
+    """Return the layer directly above the room's main floor, whose top is z = 0."""
     return max(int(np.floor(-grid.origin_m[2] / grid.voxel_m + 0.5)), 0)
 
 
 def floor_layer_below(cells: np.ndarray, grid: OccupancyGrid) -> int:
-    """Return the layer on the floor under an object of ``cells``, int [N, 3].
+    """Return the layer directly above the floor under an object of cells int [N, 3].
 
-    A house has a floor on each storey: the highest one counts that lies under or beside the
-    object; where none was seen, the main one.
+    In a house with several storeys this is the highest floor under or next to the object, or the
+    main floor if none was seen.
     """
     low = np.maximum(cells[:, :2].min(axis=0) - FLOOR_SEARCH_CELLS, 0)
     high = cells[:, :2].max(axis=0) + 1 + FLOOR_SEARCH_CELLS
@@ -76,7 +78,7 @@ def floor_layer_below(cells: np.ndarray, grid: OccupancyGrid) -> int:
 
 
 def object_voxels(grid: OccupancyGrid, cells: np.ndarray) -> ObjectVoxels:
-    """Return the box of voxels around some cells, int [N, 3]."""
+    """Return the box of voxels around cells int [N, 3]."""
     low, high = cells.min(axis=0).astype(np.int64), cells.max(axis=0) + 1
     box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     own = np.zeros(high - low, np.bool_)

@@ -1,8 +1,8 @@
-"""Stage 5, the heart of Algorithm 1: the objects of a room, from its semantic occupancy.
+"""Stage 5, the core of Algorithm 1: find the objects of a room in its semantic occupancy.
 
-``find_objects`` reads like the paper: density D, candidates C, clusters C', the cells O_k of each
-object. Its clusters take a whole kitchen for one object and a table's top and foot for two, so
-``PASSES`` then merge and split the objects, one pass after the other.
+``find_objects`` follows the paper: density D, candidates C, clusters C' and the cells O_k of each
+object. The clusters make a whole kitchen one object, but two of a table's top and foot, so
+``PASSES`` merge and split the objects afterwards.
 """
 
 from collections.abc import Callable
@@ -63,7 +63,7 @@ PASSES: tuple[Pass, ...] = (
 
 @dataclass(frozen=True, eq=False)
 class CenterMap:
-    """The paper's D, C and the cluster of each candidate: what ``centers.npz`` holds."""
+    """The paper's D and C, and the cluster of each candidate, as stored in ``centers.npz``."""
 
     density: np.ndarray  # float32 [X, Y, Z], 0 to 1
     candidates: np.ndarray  # int32 [M, 3]
@@ -72,9 +72,13 @@ class CenterMap:
 
 @dataclass(frozen=True, eq=False)
 class FoundObjects:
-    """The grid with its instance ids, the objects, the map of centres, and what is left.
+    """The objects found in a room.
 
-    ``leftover`` counts the object cells that belong to no object; their instance is 0.
+    Attributes:
+        grid: Grid with the instance id of each cell.
+        instances: The objects.
+        centers: Density, candidates and clusters.
+        leftover: Number of object cells that belong to no object; their instance is 0.
     """
 
     grid: OccupancyGrid
@@ -86,11 +90,11 @@ class FoundObjects:
 def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = None) -> FoundObjects:
     """Find the objects of a room.
 
-    Objects are ordered by class, then by the middle of their cells (x, y, z), and numbered from 1.
-    Labels stay as they are, also those of specks that are taken for a part of another object.
+    Objects are sorted by class, then by the centre of their cells (x, y, z), and numbered from 1.
+    Labels are not changed, even those of specks that are assigned to another object.
 
     Raises:
-        UsageError: there are more objects than ids; ``min_cells`` must be raised.
+        UsageError: If there are more objects than ids, so that ``min_cells`` must be increased.
     """
     chosen = parameters or InstanceParameters()
     given = grid
@@ -136,13 +140,13 @@ def _instances(
 def measure_object(
     grid: OccupancyGrid, number: int, class_id: int, cells: np.ndarray
 ) -> ObjectInstance:
-    """Return the object that cells, int32 [N, 3], of a grid are: its box and its front.
+    """Measure the box and the front of the object that consists of cells int32 [N, 3].
 
     Args:
-        grid: what is around it; the labels of its own cells may be of other classes.
-        number: its id.
-        class_id: its class, 5 to 11.
-        cells: one at least.
+        grid: Grid around the object; the labels of the object's own cells may differ.
+        number: Id of the object.
+        class_id: Class of the object, 5 to 11.
+        cells: At least one cell.
     """
     labels = grid.labels.copy()
     labels[tuple(cells.T)] = class_id

@@ -1,4 +1,4 @@
-"""How objects are found: every number that decides it, and where it comes from."""
+"""The parameters of finding objects and the reasons for their defaults."""
 
 from dataclasses import dataclass
 
@@ -10,20 +10,20 @@ ABOVE_0 = "above 0"
 
 @dataclass(frozen=True)
 class InstanceParameters:
-    """How objects are found. Lengths are in cells; docs/sweeps.md has the curves.
+    """Parameters of finding objects, with lengths in cells; docs/sweeps.md shows their effects.
 
-    The paper gives no number. Within wide bounds none matters: the passes after the clusters split
-    what they join and merge what they part.
+    The paper states no values. Results are stable over wide ranges, since the passes after
+    clustering split and merge objects.
 
-    density_kernel: k, the side of the uniform kernel.
-    density_threshold: tau, as a share of the kernel's cells. A scan shows one-cell shells: a
-        flat one has 9/27, its straight edge 6/27, a lone pole 3/27.
-    cluster_radius: eta, the L2 distance that joins candidates.
-    min_samples: DBSCAN's core size, the candidate itself included.
-    min_cells: an object of fewer cells is a speck.
-    join_radius: cells without an object join one of their class this near.
-    paper_compat: stop where Algorithm 1 stops: each cluster is an object whatever its size,
-        and what is not connected with a cluster belongs to none.
+    density_kernel: Side of the uniform density kernel (the paper's k); must be odd.
+    density_threshold: Minimum filled share of the kernel for a candidate cell (the paper's tau). In
+        one-cell shells, a flat part has 9/27, a straight edge 6/27 and a pole 3/27.
+    cluster_radius: Maximum L2 distance of neighbouring candidates in a cluster (the paper's eta).
+    min_samples: Minimum number of neighbours of a DBSCAN core point, including itself.
+    min_cells: Minimum number of cells of an object.
+    join_radius: Maximum distance of a loose cell from the object of its class that it is added to.
+    paper_compat: Whether to stop after the paper's Algorithm 1. Each cluster is then an object of
+        any size, and cells not connected to a cluster belong to no object.
     """
 
     density_kernel: int = parameter(

@@ -1,7 +1,7 @@
-"""Split small things side by side on one support by their colours: a ball beside bricks.
+"""Split small objects next to each other on one support by colour, such as a ball and bricks.
 
-What lies over or under another colour is part of the same thing: a lamp's foot and shade, a pot
-and its leaves, the books of a pile.
+Parts of different colour above each other stay together: the foot and shade of a lamp, a pot and
+its leaves, a pile of books.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ STEPS = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1)])
 def split_by_colour(
     owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
-    """Return owners, int32 [X, Y, Z], in which small things of other colours have own numbers."""
+    """Return owners, int32 [X, Y, Z], with separate numbers for small objects of other colours."""
     result = owners.copy()
     next_id = int(owners.max(initial=0))
     for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.OBJS):

@@ -1,7 +1,7 @@
-"""Split small things that touch by what supports them: the floor, a table, a cupboard, a wall.
+"""Split small touching objects by their support: the floor, a table, a cupboard or a wall.
 
-A lamp on a sideboard and the plant on the floor beside it are one cluster of ``objs``; what they
-stand on is not one.
+A lamp on a sideboard and a plant on the floor next to it are one cluster of ``objs``, but have
+different supports.
 """
 
 from typing import NamedTuple
@@ -34,7 +34,7 @@ UNDER_CELLS = 2  # A thing stands on what lies this near below it.
 
 
 class LocalScene(NamedTuple):
-    """What is known of a box of cells beside their labels."""
+    """The colours and the floor layer of a box of cells."""
 
     colour: np.ndarray  # float [X, Y, Z, 3], in Oklab
     floor: int  # the layer on the floor
@@ -44,13 +44,13 @@ class LocalScene(NamedTuple):
 def hanging_plans(
     own: np.ndarray, labels: np.ndarray, stood: np.ndarray, scene: LocalScene
 ) -> list[np.ndarray]:
-    """Return the plans, bool [X, Y], of what hangs on a wall.
+    """Return the plans, bool [X, Y], of the objects that hang on a wall.
 
     Args:
-        own: bool [X, Y, Z], the cells of one cluster of small things.
-        labels: uint8 [X, Y, Z].
-        stood: bool [X, Y], the columns that stand on something.
-        scene: what else is known.
+        own: Mask of the cells of one cluster of small objects, bool [X, Y, Z].
+        labels: Class of each cell, uint8 [X, Y, Z].
+        stood: Mask of the columns with a support, bool [X, Y].
+        scene: Colours and floor layer of the box.
     """
     near = _columns_at_wall(own, labels, scene.floor, scene.voxel_m)
     sheets, count = label_components(near)
@@ -61,7 +61,7 @@ def hanging_plans(
 def join_plans_in_air(
     plans: list[np.ndarray], own: np.ndarray, stood: np.ndarray
 ) -> list[np.ndarray]:
-    """Return the plans, joined where what lies between them stands on nothing: a hood is one."""
+    """Join plans if the cells between them have no support, as in a cooker hood."""
     pieces, count = label_components(own & ~stood[:, :, None])
     joined: dict[int, np.ndarray] = {}
     for plan in plans:
@@ -111,7 +111,7 @@ def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: Local
 def split_by_support(
     owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
-    """Return owners, int32 [X, Y, Z], in which small things of other supports have own numbers."""
+    """Return owners, int32 [X, Y, Z], with separate numbers for objects with different supports."""
     result = owners.copy()
     next_id = int(owners.max(initial=0))
     for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.OBJS):

@@ -1,4 +1,4 @@
-"""Split chairs that touch: whole chairs are laid over cells that are too wide for one."""
+"""Split chairs that touch by fitting whole chairs to cells that are too wide for one chair."""
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -35,7 +35,7 @@ MARGIN_CELLS = 10  # Cells around the voxels: a chair's depth and some more.
 def split_touching_chairs(
     owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
-    """Return owners, int32 [X, Y, Z], in which chairs that touch have numbers of their own."""
+    """Return owners, int32 [X, Y, Z], with separate numbers for chairs that touch."""
     owners = _separate_far_pieces(owners, grid)
     tables = (grid.labels == SemanticClass.TABLE).any(axis=2)
     result = owners.copy()
@@ -55,10 +55,10 @@ def split_touching_chairs(
 def merge_chair_backs(
     owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
-    """Return owners in which a back without a seat joins a seat without a back beside it.
+    """Return owners in which a chair back is merged with the seat next to it.
 
-    A scan sees the back of a chair at a table over the table's edge and its seat under it. Both
-    together must not be wider than one chair.
+    A scan sees the back of a chair above the edge of a table and its seat below it. A back without
+    seat and a seat without back are merged unless they are wider than one chair.
     """
     result = owners.copy()
     pieces = {}

@@ -1,9 +1,9 @@
-"""Windows, doors and doorways: what is cut into a wall.
+"""Windows, doors and doorways in the walls.
 
-Glass gives depth seldom, and then lies some centimetres behind the wall; a door leaf lies as deep.
-What stands back so and begins above the floor is a window; what reaches down to the floor is a
-door leaf, class objs. Where rays went through the wall there is an opening too: a window without
-glass, or a doorway down to the floor.
+Glass seldom has depth, and then appears some centimetres behind the wall, as does a door leaf. Such
+a recess that begins above the floor is a window; one that reaches the floor is a door leaf, class
+objs. Openings are also found where rays passed through the wall: a window without glass, or a
+doorway down to the floor.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
 
 @dataclass(frozen=True)
 class Gap:
-    """An opening of a wall, in metres along the wall and up from the floor."""
+    """An opening of a wall, in metres along the wall and above the floor."""
 
     kind: Kind
     along_m: tuple[float, float]
@@ -39,7 +39,7 @@ class Gap:
 
 @dataclass(frozen=True, eq=False)
 class WallFace:
-    """What each place of a wall is, seen face on."""
+    """The class and depth of each position of a wall face, and the openings in it."""
 
     classes: np.ndarray  # uint8 [A, B]: wall, window, or objs for the leaf of a door
     depth_m: np.ndarray  # float [A, B]: how deep it lies, along the relief's axis 0
@@ -50,7 +50,7 @@ class WallFace:
 def read_wall(
     surface: Surface, relief: PlaneResiduals, parameters: StructureParameters
 ) -> WallFace:
-    """Return what the places of a wall are, and the openings in it."""
+    """Classify the positions of a wall face and find the openings in it."""
     face = _Face(surface, relief, parameters)
     low, high = parameters.opening_depth_m
     face.cut(relief.seen & _between(relief.gap_m, low, high))

@@ -1,6 +1,6 @@
-"""The numbers of the geometric labeller, each with where it comes from.
+"""The parameters of the geometric labeller and the reasons for their defaults.
 
-Lengths are in metres of the room frame; heights are above the floor.
+Lengths are in metres in the room frame; heights are above the floor.
 """
 
 from dataclasses import dataclass
@@ -16,39 +16,41 @@ ROOMS = "chosen on generated rooms; docs/labels.md"
 
 @dataclass(frozen=True)
 class StructureParameters:
-    """How floor, ceiling, walls and openings are found.
+    """Parameters of finding floor, ceiling, walls and openings.
 
-    spill_m: the mean point of noise of the floor lies no higher.
-    ceiling_min_m, ceiling_area_m2: the least height and area of a ceiling.
-    roof_bottom_m, roof_area_m2, roof_length_m, roof_rise_m: a sloped ceiling begins no lower, and
-        has at least this area, length along the ridge and rise.
-    storey_m: floors of two storeys are this far apart at least.
-    standing_m: over a floor is so much free space.
-    floor_area_m2: the least seen part of another storey's floor.
-    plane_gate_m: a cell's mean surface point lies this near its plane.
-    wall_area_m2: the least seen part of a wall.
-    wall_top_m: a wall reaches at least this high.
-    wall_gap_m: one run of a wall goes on behind a thing this wide.
-    behind_m, before_m: a cell this far behind or before a wall's plane is still of it.
-    bend_m: over this length the sensor bends a wall; its plane is followed within it.
-    hidden_m: nothing free lies this far behind a wall, unless it reaches the ceiling.
-    passed_cells: so many free cells in a column mean that rays passed there.
-    shadow_m: planes this near a larger one are its noise, its windows and its curtains.
-    recess_m: a plane this far before a wider one, not up to the ceiling, is furniture.
-    recess_width_m: the widest of such furniture, where no ceiling was seen.
-    ceiling_gap_m: a wall ends no lower under the ceiling than this.
-    full_gap_m: a wall between two rooms is seen so near to the ceiling.
-    full_share: a wall with free space behind it, between two rooms, is seen over this share.
-    opening_depth_m: how far windows and door leaves lie behind the face of their wall.
-    opening_area_m2: the least area of an opening.
-    leaf_depth_m, leaf_width_m, leaf_height_m: of a closed door whose leaf lies hardly behind the
-        wall: the least depth, the width and the height.
-    noise_m: cells of a plane have their mean point this near it.
-    hung_m, hung_area_m2: how far before a wall, as negative depth, flat things hang, and the
-        least of them.
-    window_sill_m, window_size_m, door_width_m, door_height_m: a window begins above its sill, a
-        door below.
-    frame_share: of the ring around an opening this share is wall.
+    spill_m: Maximum height of the mean point of a cell that is noise of the floor.
+    ceiling_min_m, ceiling_area_m2: Minimum height and area of a ceiling.
+    roof_bottom_m, roof_area_m2, roof_length_m, roof_rise_m: Minimum height of the lower edge, area,
+        length along the ridge and rise of a sloped ceiling.
+    storey_m: Minimum distance of the floors of two storeys.
+    standing_m: Minimum height of free space above a floor.
+    floor_area_m2: Minimum observed area of the floor of another storey.
+    plane_gate_m: Maximum distance of a cell's mean surface point from its plane.
+    wall_area_m2: Minimum observed area of a wall.
+    wall_top_m: Minimum height of the upper edge of a wall.
+    wall_gap_m: Maximum width of an object behind which a wall is assumed to continue.
+    behind_m, before_m: Maximum distance behind and in front of a wall plane at which a cell belongs
+        to the wall.
+    bend_m: Length over which the sensor may bend a wall, whose plane is followed accordingly.
+    hidden_m: Distance behind a wall without free cells, unless the wall reaches the ceiling.
+    passed_cells: Number of free cells in a column that show that rays passed there.
+    shadow_m: Distance from a larger plane within which a plane is its noise, window or curtain.
+    recess_m: Distance in front of a wider plane beyond which a plane below the ceiling is
+        furniture.
+    recess_width_m: Maximum width of such furniture if no ceiling was seen.
+    ceiling_gap_m: Maximum distance of the upper edge of a wall from the ceiling.
+    full_gap_m: Maximum distance from the ceiling of the seen part of a wall between two rooms.
+    full_share: Minimum observed share of a wall between two rooms with free space behind it.
+    opening_depth_m: Range of distances of windows and door leaves behind the face of their wall.
+    opening_area_m2: Minimum area of an opening.
+    leaf_depth_m, leaf_width_m, leaf_height_m: Minimum depth, width and height of a closed door
+        whose leaf is almost flush with the wall.
+    noise_m: Maximum distance of a cell's mean point from a plane it belongs to.
+    hung_m, hung_area_m2: Distance of flat hung objects from the wall, as negative depth, and their
+        minimum area.
+    window_sill_m, window_size_m, door_width_m, door_height_m: Minimum height of the sill and size
+        of a window, and minimum width and height of a door.
+    frame_share: Minimum share of wall in the ring around an opening.
     """
 
     spill_m: float = parameter(0.03, unit="m", origin=f"{TRIAL}; what lies on a floor is thicker")
@@ -121,28 +123,31 @@ class StructureParameters:
 
 @dataclass(frozen=True)
 class PlateParameters:
-    """How plates are found, and what they are the top, the seat or the mattress of.
+    """Parameters of finding horizontal plates and of deciding which furniture they belong to.
 
-    height_m, area_m2: how high plates lie, and the least of them.
-    gate_m: two plates this near in height are one.
-    box_share: of the seen cells under the rim of a closed box this share is surface; a table's
-        rim has legs alone.
-    desk_height_m, desk_share: at a desk's height more is asked of a box.
-    seat_height_m, chair_length_m, chair_width_m, sofa_length_m, sofa_width_m: of the seat that is
-        seen.
-    back_rise_m: where over a seat its back is looked for.
-    back_share: a back takes this share of one side of its seat.
-    closed_seat_m: the highest seat of upholstery.
-    same_cloth: Oklab difference of seat and back of one upholstered thing.
-    shelf_m, shelf_share: what stands this high over this share of a plate makes it a shelf's board.
-    bed_height_m, bed_size_m, bed_area_m2: of a bed: the height, and the least length and width,
-        and area.
-    table_height_m, table_width_m, table_area_m2: of a table's top: the height, and the least width
-        and area; low_table_height_m, low_table_area_m2: the same of a low one.
-    box_height_m, box_width_m, box_area_m2: the least of the top of a closed box;
-        open_box_height_m: what is this high need not be closed.
-    worktop_height_m, worktop_size_m: of a worktop: the height, and the least width and length of
-        the pieces of one between what stands on it.
+    height_m, area_m2: Height range and minimum area of plates.
+    gate_m: Maximum difference in height within a plate.
+    box_share: Minimum share of surface among the seen cells under the rim of a closed box; under
+        the rim of a table are only legs.
+    desk_height_m, desk_share: Height range of desks, and the higher share required of a box there.
+    seat_height_m, chair_length_m, chair_width_m, sofa_length_m, sofa_width_m: Height and size of
+        the visible seat of a chair or sofa.
+    back_rise_m: Height range above a seat in which its back is searched.
+    back_share: Minimum share of one side of the seat that a back covers.
+    closed_seat_m: Maximum height of an upholstered seat.
+    same_cloth: Maximum Oklab difference of the seat and back of one upholstered object.
+    shelf_m, shelf_share: Height above a plate, and share of the plate, from which objects above it
+        make it the board of a shelf.
+    bed_height_m, bed_size_m, bed_area_m2: Height range, minimum length and width, and minimum area
+        of a bed.
+    table_height_m, table_width_m, table_area_m2: Height range, minimum width and minimum area of a
+        table top.
+    low_table_height_m, low_table_area_m2: Height range and minimum area of the top of a low table.
+    box_height_m, box_width_m, box_area_m2: Minimum height, width and area of the top of a closed
+        box.
+    open_box_height_m: Height from which a box need not be closed.
+    worktop_height_m, worktop_size_m: Height range of a worktop, and minimum width and length of its
+        visible pieces.
     """
 
     height_m: Range = parameter(
@@ -192,28 +197,29 @@ class PlateParameters:
 
 @dataclass(frozen=True)
 class PieceParameters:
-    """How pieces that no plate has claimed are told apart.
+    """Parameters of classifying pieces that belong to no plate.
 
-    near_wall_m: a piece this near a wall stands or hangs at it.
-    flat_share: a closed piece shows this share of its cells on one upright plane.
-    box_length_m, box_height_m, box_cells: the least of a cupboard.
-    chair_bottom_m, chair_top_m, chair_length_m: for a chair whose seat is hidden.
-    back_height_m, back_length_m, back_thick_m, back_over_m, back_gap_m: a chair back at a table:
-        its size, how far it rises over the table, how far from its rim it stands.
-    under_table_m: a leg or an apron ends this far under a table's top at most.
-    foot_bottom_m, foot_off_m, foot_reach_m: the star of an office chair begins this low, under
-        the middle of what is seen of its seat, and reaches so far beyond the edge.
-    hanging_m: what reaches no further off its wall is a curtain or a picture, no cupboard.
-    leaf: Oklab a at most, b at least, of leaves.
-    joining_bottom_m, joining_share: a low piece that touches a thing over this share is its side.
-    screen_lightness: Oklab lightness of a dark screen.
-    screen_before_m: how far before its wall a screen hangs.
-    screen_bottom_m: a screen begins no lower.
-    screen_width_m, screen_height_m, screen_shape: its width and height, and width over height.
-    monitor_m, monitor_flat: a lit screen on a table is at most so wide, and nearly all of it is
-        its face.
-    screen_filled: this share of a screen's outline is seen.
-    screen_thick_m: the thickest screen.
+    near_wall_m: Maximum distance of a piece that stands or hangs at a wall.
+    flat_share: Minimum share of a closed piece's cells on one upright plane.
+    box_length_m, box_height_m, box_cells: Minimum length, height and number of cells of a cupboard.
+    chair_bottom_m, chair_top_m, chair_length_m: Height and size of a chair with a hidden seat.
+    back_height_m, back_length_m, back_thick_m, back_over_m, back_gap_m: Size of a chair back at a
+        table, its height above the table and its distance from the table's rim.
+    under_table_m: Maximum distance of a leg or apron below the top of its table.
+    foot_bottom_m, foot_off_m, foot_reach_m: Height of the star base of an office chair, its offset
+        from the centre of the visible seat, and its reach beyond the seat's edge.
+    hanging_m: Maximum depth of a curtain or picture; deeper pieces are cupboards.
+    leaf: Maximum Oklab a and minimum Oklab b of leaves.
+    joining_bottom_m, joining_share: Height and contact share at which a low piece is the side of an
+        object.
+    screen_lightness: Maximum Oklab lightness of a dark screen.
+    screen_before_m: Range of distances of a screen from its wall.
+    screen_bottom_m: Minimum height of the lower edge of a screen.
+    screen_width_m, screen_height_m, screen_shape: Width, height and aspect ratio of a screen.
+    monitor_m, monitor_flat: Maximum width of a lit screen on a table, and minimum share of its
+        cells in its face.
+    screen_filled: Minimum observed share of a screen's outline.
+    screen_thick_m: Maximum thickness of a screen.
     """
 
     near_wall_m: float = parameter(
@@ -267,7 +273,7 @@ class PieceParameters:
 
 @dataclass(frozen=True)
 class GeometricParameters:
-    """All numbers of the geometric labeller, by what they decide."""
+    """All parameters of the geometric labeller."""
 
     structure: StructureParameters = parameter(StructureParameters)
     plates: PlateParameters = parameter(PlateParameters)
@@ -275,5 +281,5 @@ class GeometricParameters:
 
 
 def within(value: float, bounds: Range) -> bool:
-    """Return whether a number lies within bounds, both included."""
+    """Return whether a number is within bounds, inclusive."""
     return bounds[0] <= value <= bounds[1]

@@ -1,9 +1,9 @@
-"""Walls that nothing could be matched on: what depth from photos makes of them is put right.
+"""Correction of bare walls in depth computed from photos.
 
-On a bare wall stereo guesses: layers of its colour hang before it, and scraps lie behind it. The
-wall itself is known all the same, by its edges, posters, windows and the rims of what stands
-before it. So where a wall was seen, nothing occupied lies behind it, what hangs close before it
-in its own colour is the wall, and the parts of it that nobody saw are as flat as the rest.
+Stereo cannot match bare walls: it places surfaces of the wall's colour in front of it and scraps
+behind it. The wall's position is known from its edges, posters, windows and the rims of objects in
+front of it. If a wall was seen, no occupied cell is kept behind it, surfaces of its own colour
+close in front of it are assigned to the wall, and its unseen parts are completed as flat.
 """
 
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ CONFIDENCE = 0.3  # Of what is completed.
 
 
 class WallEdge(NamedTuple):
-    """One side of a room's outline, square to an axis; lengths in metres."""
+    """One axis-aligned side of a room's outline; lengths in metres."""
 
     axis: int  # It is square to: 0 for x, 1 for y.
     at_m: float
@@ -41,22 +41,22 @@ class WallEdge(NamedTuple):
     top_m: float
 
     def depth_m(self, points_m: np.ndarray) -> np.ndarray:
-        """Return how far before the wall's face points [N, 3] lie; less than 0 behind it."""
+        """Return the distance of points [N, 3] in front of the wall's face; negative behind it."""
         return (points_m[:, self.axis] - self.at_m) * self.inward
 
     def spans(self, points_m: np.ndarray) -> np.ndarray:
-        """Whether points [N, 3] lie before or behind the wall, rather than beside it."""
+        """Return whether points [N, 3] are in front of or behind the wall, not beside it."""
         along, height = points_m[:, 1 - self.axis], points_m[:, 2]
         beside = (along < self.from_m) | (along > self.to_m)
         return ~beside & (height > self.bottom_m) & (height < self.top_m)
 
 
 def remove_wall_guesses(grid: OccupancyGrid, rooms: Sequence[Layout]) -> OccupancyGrid:
-    """Return a grid without what stereo guessed before and behind the walls of its rooms.
+    """Return a grid without stereo errors in front of and behind the walls of its rooms.
 
     Args:
-        grid: the cleaned read-out.
-        rooms: of the place, in the room frame.
+        grid: Cleaned grid.
+        rooms: Rooms in the room frame.
     """
     cells = np.argwhere(grid.source != UNSEEN)
     points_m = cell_centers_m(cells, grid.origin_m, grid.voxel_m)
@@ -77,14 +77,14 @@ def remove_wall_guesses(grid: OccupancyGrid, rooms: Sequence[Layout]) -> Occupan
 
 
 def complete_walls(grid: OccupancyGrid, rooms: Sequence[Layout]) -> OccupancyGrid:
-    """Return a labelled grid whose unseen parts of seen walls, floors and ceilings are completed.
+    """Return a labelled grid with the unseen parts of seen walls, floors and ceilings completed.
 
-    Free cells of a wall are completed too where the wall goes on all around them: a guess behind
-    the wall had carved them.
+    Free cells of a wall are also completed if the wall continues all around them, since they were
+    carved by wrong depth behind the wall.
 
     Args:
-        grid: the labels.
-        rooms: of the place, in the room frame.
+        grid: Labelled grid.
+        rooms: Rooms in the room frame.
     """
     classes = np.zeros(grid.shape, np.uint8)
     for room in rooms:
@@ -151,7 +151,7 @@ def _mark_wall(classes: np.ndarray, grid: OccupancyGrid, room: Layout, edge: Wal
 
 
 def wall_edges(room: Layout) -> list[WallEdge]:
-    """Return the sides of a room that are square to an axis."""
+    """Return the axis-aligned sides of a room's outline."""
     corners = room.floor_polygon_m
     edges = []
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):

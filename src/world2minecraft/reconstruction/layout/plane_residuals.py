@@ -1,7 +1,7 @@
-"""The relief of a plane: how far before or behind it each place of its face lies.
+"""The relief of a plane: the distance of each position of its face from the plane.
 
-Noise scatters the points of a plane over two layers of cells. Seen face on, the mean of all points
-of a place tells its depth to millimetres, and so the one layer that holds the plane's matter.
+Noise spreads the points of a plane over two layers of cells. The mean of all points at a position
+gives its depth to millimetres, and thus the layer of cells that contains the plane's matter.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ FIT_PLACES = 60  # Fewer places, half a square metre, tell no slope.
 
 @dataclass(frozen=True, eq=False)
 class PlaneResiduals:
-    """A part of one plane, turned so that axis 0 leads into its matter, [N, A, B]."""
+    """A part of a plane, rotated so that axis 0 points into its matter, [N, A, B]."""
 
     axis: int
     sign: int
@@ -32,36 +32,36 @@ class PlaneResiduals:
 
     @property
     def seen(self) -> np.ndarray:
-        """Where the plane was seen, bool [A, B]."""
+        """Mask of the observed positions, bool [A, B]."""
         return self.weight > 0
 
     @property
     def gap_m(self) -> np.ndarray:
-        """How far behind the fitted plane each place lies, float [A, B]."""
+        """Distance of each position behind the fitted plane in metres, float [A, B]."""
         return self.depth_m - self.plane_m
 
     def edge_m(self, surface: Surface) -> float:
-        """Return where along axis 0 the first layer of the box begins."""
+        """Return the position in metres along axis 0 at which the first layer of the box begins."""
         cells = np.array([0, surface.occupied.shape[self.axis]])
         ends = surface.origin_m[self.axis] + cells * surface.voxel_m
         return float(min(self.sign * ends)) + self.box[0].start * surface.voxel_m
 
     def of(self, values: np.ndarray) -> np.ndarray:
-        """Return the view [N, A, B] of an array [X, Y, Z] that this relief is about."""
+        """Return the view [N, A, B] of an array [X, Y, Z] that this relief covers."""
         return turn_surface(values, self.axis, self.sign)[self.box]
 
 
 def measure_plane_residuals(
     surface: Surface, cells: np.ndarray, axis: int, sign: int, box: tuple[slice, slice, slice]
 ) -> PlaneResiduals:
-    """Return the relief of a plane.
+    """Measure the relief of a plane.
 
     Args:
-        surface: the room.
-        cells: bool [N, A, B], the cells of the plane within ``box``.
-        axis: the axis that the plane is square to.
-        sign: 1 where matter lies towards larger coordinates, else -1.
-        box: the part of the turned grid.
+        surface: Surface of the room.
+        cells: Mask of the cells of the plane within ``box``, bool [N, A, B].
+        axis: Axis perpendicular to the plane.
+        sign: 1 if the matter is towards larger coordinates, otherwise -1.
+        box: Part of the rotated grid.
     """
     weight = np.where(cells, turn_surface(surface.hits, axis, sign)[box], 0).astype(np.float64)
     outward = sign * turn_surface(surface.points_m[..., axis], axis, sign)[box]

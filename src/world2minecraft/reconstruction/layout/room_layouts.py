@@ -1,8 +1,8 @@
-"""Find the rooms of a place as layouts: outline of the floor, height of the walls, openings.
+"""Find the rooms of a scan as layouts: floor outline, wall height and openings.
 
-Seen from above, walls part the free space of a storey into rooms; they go on over doorways, whose
-lintels were seen, and behind what stands before them. An outline has few straight corners, on the
-planes of its walls.
+Seen from above, walls divide the free space of a storey into rooms. Walls are continued across
+doorways, whose lintels were seen, and behind objects. Outlines have few corners, all on the planes
+of the walls.
 """
 
 from itertools import pairwise
@@ -35,15 +35,16 @@ def outline_of(
     voxel_m: float,
     lines_m: tuple[list[float], list[float]],
 ) -> np.ndarray | None:
-    """Return the polygon of a region, float64 [N, 2], counter-clockwise; None where it is nothing.
+    """Return the polygon of a region, float64 [N, 2], counter-clockwise, or None if it is empty.
 
-    The walls' lines cut the plan into rectangles; those that the region fills by half are the room.
+    The lines of the walls divide the plan into rectangles; rectangles at least half filled by the
+    region belong to the room.
 
     Args:
-        region: bool [X, Y], the columns of the room, not empty.
-        corner_m: float [2], the minimum corner of the plan.
-        voxel_m: the side of a column.
-        lines_m: where walls stand, square to x and square to y.
+        region: Mask of the columns of the room, bool [X, Y]; must not be empty.
+        corner_m: Minimum corner of the plan in metres, float [2].
+        voxel_m: Column size in metres.
+        lines_m: Positions of the walls perpendicular to x and to y, in metres.
     """
     edges = [
         _lines(np.flatnonzero(plan.any(axis=1)), corner_m[axis], voxel_m, lines_m[axis])
@@ -124,18 +125,18 @@ def _bends(a: tuple[int, int], b: tuple[int, int], c: tuple[int, int]) -> bool:
 def find_structure(
     grid: OccupancyGrid, evidence: FusedEvidence, parameters: GeometricParameters | None = None
 ) -> tuple[Layout, ...]:
-    """Return the rooms of a place, storey by storey, the largest of each first.
+    """Return the rooms of a scan, storey by storey, the largest of each storey first.
 
     Args:
-        grid: the cleaned read-out, or the labelled grid: only what is occupied counts.
-        evidence: what the grid was read from, of the same cells.
-        parameters: those of the geometric labeller.
+        grid: Cleaned or labelled grid; only its occupied cells are used.
+        evidence: Evidence from which the grid was extracted.
+        parameters: Parameters of the geometric labeller.
 
     Returns:
-        a layout for each room, in the room frame, without objects; none where no floor was seen.
+        A layout for each room in the room frame, without objects; empty if no floor was seen.
 
     Raises:
-        ValueError: grid and evidence do not lie on the same cells.
+        ValueError: If grid and evidence do not have the same cells.
     """
     chosen = (parameters or GeometricParameters()).structure
     surface = surface_of(grid, evidence)

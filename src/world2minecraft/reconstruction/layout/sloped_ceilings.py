@@ -1,8 +1,7 @@
-"""Sloped ceilings: the underside of a roof, a plane that rises from a wall towards the room.
+"""Sloped ceilings: undersides of a roof, planes that rise from a wall towards the room.
 
-A slope is seen from below, and above it no ray ever passed. Along one axis its height grows in
-proportion to the way; the steepness that gathers most points in one plane is taken, roof after
-roof.
+A slope is seen from below, and no ray passes above it. Its height increases linearly along one
+axis. For each roof, the slope with the most points in one plane is used.
 """
 
 from dataclasses import dataclass
@@ -20,19 +19,19 @@ MAX_ROOFS = 4
 
 @dataclass(frozen=True, eq=False)
 class Roof:
-    """The points p of a plane: ``p @ normal == offset_m``."""
+    """The plane of the points p with ``p @ normal == offset_m``."""
 
     normal: np.ndarray  # float64 [3]
     offset_m: float
 
 
 def find_slopes(surface: Surface, level: np.ndarray, parameters: StructureParameters) -> np.ndarray:
-    """Return the cells of sloped ceilings, bool [X, Y, Z].
+    """Return the mask of the cells of sloped ceilings, bool [X, Y, Z].
 
     Args:
-        surface: the storey.
-        level: bool [X, Y, Z], the cells of floor and flat ceiling.
-        parameters: the thresholds.
+        surface: Surface of the storey.
+        level: Mask of the cells of floor and flat ceiling, bool [X, Y, Z].
+        parameters: Thresholds.
     """
     cells = np.zeros(surface.occupied.shape, bool)
     at = np.argwhere(_under_roof(surface, parameters) & ~level)

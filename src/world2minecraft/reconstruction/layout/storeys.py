@@ -1,8 +1,8 @@
-"""Storeys: the floors of a house one over another, each labelled as if it were alone.
+"""The storeys of a house, each labelled separately.
 
-A floor is a large level plane that one can stand on; the storey goes up to the middle of the slab
-over it. Within its storey every height counts from its own floor, so that one set of rules serves
-the cellar and the attic.
+A floor is a large horizontal plane that a person can stand on; its storey reaches up to the middle
+of the slab above. Heights are measured from the floor of the storey, so the same rules apply to all
+storeys.
 """
 
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ from world2minecraft.reconstruction.layout.surface_cells import Surface
 
 @dataclass(frozen=True)
 class Storey:
-    """The layers ``low`` to ``high`` (past the end) of a grid, whose floor is at ``floor_z_m``."""
+    """The layers ``low`` to ``high`` (exclusive) of a grid whose floor is at ``floor_z_m``."""
 
     floor_z_m: float
     low: int
@@ -29,7 +29,7 @@ class Storey:
         return values[:, :, self.low : self.high]
 
     def surface(self, surface: Surface) -> Surface:
-        """Return the surface of the storey, its floor's top at z = 0 of its own frame."""
+        """Return the surface of the storey in its own frame, with the top of its floor at z = 0."""
         rise = np.array([0.0, 0.0, self.floor_z_m])
         corner = surface.origin_m + np.array([0.0, 0.0, self.low * surface.voxel_m])
         points = self.part(surface.points_m)
@@ -45,7 +45,7 @@ class Storey:
 
 
 def find_storeys(surface: Surface, parameters: StructureParameters) -> tuple[Storey, ...]:
-    """Return the storeys of a place from the lowest up; the ground floor is always one."""
+    """Return the storeys from the lowest up; the ground floor is always included."""
     floors = sorted([0.0, *_other_floors(surface, parameters)])
     height = surface.occupied.shape[2]
     if len(floors) == 1:

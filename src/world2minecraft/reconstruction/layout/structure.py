@@ -1,8 +1,9 @@
-"""Find the structure of one storey: floor, ceiling and walls, and what is cut into the walls.
+"""Find the structure of a storey: floor, ceiling, walls, and the openings in the walls.
 
-Floor and ceiling are the two large level planes of a room. The floor's top is z = 0 by the room
-frame, so its cells are the layer under it. Noise lifts some floor points into the layer above: that
-**spill** is carried down, the one case in which a labeller empties an observed cell.
+Floor and ceiling are the two large horizontal planes of a room. The top of the floor is z = 0 in
+the room frame, so the floor's cells are the layer below. Noise lifts some floor points into the
+layer above. This **spill** is moved down; it is the only case in which a labeller clears an
+observed cell.
 """
 
 from dataclasses import dataclass
@@ -20,17 +21,17 @@ from world2minecraft.reconstruction.layout.walls import WallRun, find_walls
 
 @dataclass(frozen=True, eq=False)
 class Floor:
-    """Cells that are floor, and spill: cells just above the floor that are noise of it."""
+    """The cells of the floor, and the cells directly above it that are noise (spill)."""
 
     cells: np.ndarray  # bool [X, Y, Z]
     spill: np.ndarray  # bool [X, Y, Z]
 
 
 def find_floor(surface: Surface, parameters: StructureParameters) -> Floor:
-    """Return the floor's cells, those that spill is carried down to included.
+    """Return the cells of the floor, including those that spill is moved to.
 
-    Spill is a cell of the first layer over the floor whose surface point lies within ``spill_m``
-    of z = 0, with nothing occupied on it: the foot of a wall or leg goes on upward.
+    Spill is a cell of the first layer above the floor whose surface point is within ``spill_m`` of
+    z = 0, with no occupied cell above it, as there would be at the foot of a wall or leg.
     """
     cells, spill = np.zeros((2, *surface.occupied.shape), bool)
     layer = surface.floor_layer
@@ -48,10 +49,10 @@ def find_floor(surface: Surface, parameters: StructureParameters) -> Floor:
 def find_ceiling(
     surface: Surface, parameters: StructureParameters
 ) -> tuple[np.ndarray, float | None]:
-    """Return the ceiling's cells, bool [X, Y, Z], and its height in metres, None if not seen.
+    """Return the ceiling's cells, bool [X, Y, Z], and its height in metres, or None if unseen.
 
-    It is the highest level plane, seen from below, of at least ``ceiling_area_m2``; what lies
-    above it belongs to it.
+    The ceiling is the highest horizontal plane, seen from below, with at least ``ceiling_area_m2``.
+    All occupied cells above it belong to it.
     """
     cells = np.zeros(surface.occupied.shape, bool)
     below_free = np.zeros_like(cells)
@@ -77,7 +78,7 @@ def find_ceiling(
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """A straight piece of wall, its relief and what its places are."""
+    """A straight piece of wall, its relief and its face."""
 
     run: WallRun
     relief: PlaneResiduals
@@ -86,7 +87,7 @@ class Wall:
 
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """Floor, ceiling and walls of a storey, in its own frame: its floor's top is z = 0."""
+    """The floor, ceiling and walls of a storey in its own frame, with the floor's top at z = 0."""
 
     surface: Surface
     floor: Floor
@@ -98,13 +99,13 @@ class Structure:
 
     @property
     def rest(self) -> np.ndarray:
-        """The occupied cells that are no structure, bool [X, Y, Z]."""
+        """Mask of the occupied cells that are not structure, bool [X, Y, Z]."""
         level = self.floor.cells | self.floor.spill | self.ceiling | self.slopes
         return self.surface.occupied & ~(level | self.wall)
 
 
 def structure_of(surface: Surface, parameters: StructureParameters) -> Structure:
-    """Return the structure of a storey."""
+    """Find the structure of a storey."""
     floor = find_floor(surface, parameters)
     ceiling, ceiling_m = find_ceiling(surface, parameters)
     level = floor.cells | floor.spill | ceiling

@@ -1,4 +1,4 @@
-"""What the geometric labeller looks at: occupied and free cells, and where in them surface lies."""
+"""The input of the geometric labeller: occupied and free cells, and their mean surface points."""
 
 from dataclasses import dataclass, replace
 
@@ -11,10 +11,10 @@ from world2minecraft.geometry.colour import srgb_to_oklab
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """The observed surface of a room, in its cells.
+    """The observed surface of a room in its cells.
 
-    ``points_m`` is the mean surface point of each occupied cell, in the room frame: it tells a
-    plane to a centimetre or two where the cell itself only tells eight.
+    ``points_m`` is the mean surface point of each occupied cell in the room frame, which locates a
+    plane to one or two centimetres, compared to eight for the cell itself.
     """
 
     occupied: np.ndarray  # bool [X, Y, Z]
@@ -27,11 +27,11 @@ class Surface:
 
     @property
     def floor_layer(self) -> int:
-        """The index of the layer whose top is z = 0; it may lie outside the grid."""
+        """The index of the layer whose top is z = 0; may be outside the grid."""
         return round(-self.origin_m[2] / self.voxel_m) - 1
 
     def columns(self, x: slice, y: slice) -> "Surface":
-        """Return the part of the surface that stands in a box of columns."""
+        """Return the part of the surface in a box of columns."""
         arrays = ("occupied", "free", "points_m", "hits", "oklab")
         corner = self.origin_m + np.array([x.start, y.start, 0.0]) * self.voxel_m
         cut = {name: getattr(self, name)[x, y] for name in arrays}
@@ -42,16 +42,16 @@ class Surface:
         return max(round(length_m / self.voxel_m), 1)
 
     def layers_below(self, height_m: float) -> int:
-        """Return how many layers of the grid have their centre under a height."""
+        """Return the number of layers of the grid whose centre is below a height."""
         cells = np.ceil((height_m - self.origin_m[2]) / self.voxel_m - 0.5 - 1e-9)
         return int(np.clip(cells, 0, self.occupied.shape[2]))
 
 
 def surface_of(grid: OccupancyGrid, evidence: FusedEvidence) -> Surface:
-    """Return the surface of a grid and of the evidence behind it.
+    """Return the surface of a grid and its evidence.
 
     Raises:
-        ValueError: grid and evidence do not lie on the same cells.
+        ValueError: If grid and evidence do not have the same cells.
     """
     same = grid.shape == evidence.log_odds.shape and grid.voxel_m == evidence.voxel_m
     if not (same and np.allclose(grid.origin_m, evidence.origin_m, atol=1e-9)):
@@ -73,8 +73,8 @@ def surface_of(grid: OccupancyGrid, evidence: FusedEvidence) -> Surface:
 
 
 def turn_surface(values: np.ndarray, axis: int, sign: int) -> np.ndarray:
-    """Return a view of [X, Y, Z] turned so that its axis 0 leads along an axis, or against it.
+    """Return a view of an array [X, Y, Z] whose axis 0 points along an axis, or against it.
 
-    The two others keep their order: along a wall, then up; x, then y, of floors and ceilings.
+    The other two axes keep their order: along a wall, then up; for floors and ceilings x, then y.
     """
     return np.moveaxis(values, axis, 0)[::sign]

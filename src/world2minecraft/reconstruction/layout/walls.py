@@ -1,9 +1,9 @@
-"""Walls: large upright planes with nothing behind them, or up to the ceiling.
+"""Walls: large upright planes with no observed space behind them, or up to the ceiling.
 
-A wall and the front of a cupboard are both upright planes. What tells them apart is what was seen
-behind: over a counter, and under a hung cupboard, rays pass the front on their way to the wall;
-behind a wall no ray ever passes. Each of the four directions is looked at in arrays turned so that
-axis 0 leads outward.
+Walls and the fronts of cupboards are both upright planes, distinguished by the observations behind
+them: above a counter and below a hung cupboard, rays pass the front and reach the wall, while no
+ray passes a wall. Each of the four directions is processed in arrays rotated so that axis 0 points
+outwards.
 """
 
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ MAX_PLANES = 24  # For each direction: a bound on the search, well above any roo
 
 @dataclass(frozen=True, eq=False)
 class WallRun:
-    """One straight piece of wall. ``outward_m`` grows along its direction out of the room."""
+    """A straight piece of wall. ``outward_m`` increases along its direction out of the room."""
 
     axis: int
     sign: int
@@ -45,14 +45,14 @@ def find_walls(
     ceiling_m: float | None,
     parameters: StructureParameters,
 ) -> list[tuple[WallRun, PlaneResiduals]]:
-    """Return the runs of wall, each with its relief.
+    """Return the pieces of wall, each with its relief.
 
     Args:
-        surface: the room.
-        level: bool [X, Y, Z], the cells of floor and ceiling, slopes among them.
-        slopes: bool [X, Y, Z], the cells of sloped ceilings.
-        ceiling_m: the ceiling's height, None where it was not seen.
-        parameters: the thresholds.
+        surface: Surface of the room.
+        level: Mask of the cells of floor and ceiling, including slopes, bool [X, Y, Z].
+        slopes: Mask of the cells of sloped ceilings, bool [X, Y, Z].
+        ceiling_m: Height of the ceiling, or None if it was not seen.
+        parameters: Thresholds.
     """
     found: list[tuple[WallRun, PlaneResiduals]] = []
     for axis, sign in DIRECTIONS:

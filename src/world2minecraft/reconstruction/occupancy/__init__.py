@@ -1,8 +1,8 @@
-"""Stage 2: a scan becomes evidence, one item a view.
+"""Stage 2: predict evidence from a scan, one item per view.
 
-A predictor is any callable object with ``predict(scan)``; the built-in ones are in
-``PREDICTORS``, others join through the entry point group ``world2minecraft.predictor``. ``depth``
-may be helped by networks that vote for classes (``OccupancyParameters``).
+A predictor is any object with a method ``predict(scan)``. The built-in predictors are in
+``PREDICTORS``; others are registered through the entry point group ``world2minecraft.predictor``.
+``depth`` can be supported by networks that vote for classes (``OccupancyParameters``).
 """
 
 from collections.abc import Iterator
@@ -25,25 +25,25 @@ PREDICTORS = Registry(
 
 
 class Predictor(Protocol):
-    """Turns a scan into evidence, streamed: no two views need lie in memory together."""
+    """Converts a scan to evidence as a stream, so that views need not be in memory together."""
 
     def predict(self, scan: Scan) -> Iterator[PointEvidence | GridEvidence]:
-        """Yield one item a view, in the scan's frame and order."""
+        """Yield one item of evidence per view, in the frame and the order of the scan."""
         ...
 
 
 def predictor(name: str, parameters: OccupancyParameters | None = None) -> Predictor:
-    """Return a new predictor by name.
+    """Create a predictor by name.
 
     Args:
-        name: such as ``depth``, or with a file of its own, ``mono:FILE.onnx``.
-        parameters: networks that vote on what ``depth`` sees.
+        name: Name such as ``depth``, optionally with a file: ``mono:FILE.onnx``.
+        parameters: Networks that vote on the surface points of ``depth``.
 
     Raises:
-        UnknownNameError: none has this name; the message suggests the nearest.
-        UsageError: networks are to vote on what another predictor than ``depth`` gives, or
-            ``depth`` is given a file.
-        InputError: a network's file cannot be used.
+        UnknownNameError: If no predictor has this name; the message suggests the closest match.
+        UsageError: If networks should vote on another predictor than ``depth``, or if ``depth``
+            gets a file.
+        InputError: If the file of a network cannot be used.
     """
     family, _, file = name.partition(":")
     make = PREDICTORS.load(family)
@@ -68,5 +68,5 @@ def predictor(name: str, parameters: OccupancyParameters | None = None) -> Predi
 
 
 def notes_of(used: Predictor) -> tuple[str, ...]:
-    """Return what a predictor has to tell once its evidence was read: sentences for the report."""
+    """Return the notes of a predictor for the report, after its evidence was read."""
     return tuple(getattr(used, "notes", ()))

@@ -1,9 +1,9 @@
-"""Turn depth into evidence: each pixel with depth is a point of the surface, with colour and label.
+"""Convert depth to evidence: surface points with normal, colour and label.
 
-Where colour and depth are two cameras, a depth point takes the colour and the label of the pixel
-that it projects to; a point that the colour camera does not see has the nearest edge pixel's. For
-normals depth is averaged in squares of pixels; a square's normal is that of the plane through the
-means of its neighbours, as far as the surface goes on without a jump. Squares at jumps have none.
+If colour and depth come from two cameras, a depth point takes the colour and the label of the pixel
+it projects to, or of the nearest border pixel if it is outside the colour image. For normals, depth
+is averaged in squares of pixels; the normal of a square is that of the plane through the means of
+its neighbours, as far as the surface has no jump. Squares at jumps have no normal.
 """
 
 from collections.abc import Iterator, Sequence
@@ -28,13 +28,13 @@ MAX_DEPTH_M = 6.0  # Consumer depth cameras err by over 6 cm beyond; a room rare
 def facing_of_depth(
     depth_m: np.ndarray, camera: Camera, camera_to_frame: np.ndarray, pixels: np.ndarray
 ) -> np.ndarray:
-    """Return float32 [N, 3]: unit normals towards the camera, (0, 0, 0) where there is none.
+    """Return unit normals towards the camera, float32 [N, 3]; (0, 0, 0) without a normal.
 
     Args:
-        depth_m: float32 [H, W] z-depth in metres, 0 = hole.
-        camera: the depth camera.
-        camera_to_frame: 4x4 pose of the depth camera; the normals are those of its frame.
-        pixels: int32 [N], flat indices of the pixels that are asked for.
+        depth_m: Depth along the optical axis in metres, float32 [H, W]; 0 is missing.
+        camera: Intrinsics of the depth camera.
+        camera_to_frame: 4x4 pose of the depth camera; the normals are in its target frame.
+        pixels: Flat indices of the requested pixels, int32 [N].
     """
     side = max(1, round(camera.width_px / SQUARES_WIDE))
     means = _square_means(depth_m, pixel_rays(camera), side)
@@ -124,26 +124,26 @@ def _spread(normals, turn, pixels, width_px, side):
 
 
 class Voter(Protocol):
-    """Something that votes for the classes of what a view's depth sees, such as a network."""
+    """An object that votes for the classes of a view's surface points, such as a network."""
 
     notes: tuple[str, ...]
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
     ) -> np.ndarray:
-        """Return float32 [N, 12], at most one vote in sum for each point.
+        """Return the votes of N points, float32 [N, 12], with a sum of at most 1 per point.
 
         Args:
-            view: with colour.
-            scan_to_room: 4x4.
-            points_m: [N, 3], in the scan's frame.
-            colour_px: int [N], the flat pixel of the colour picture that shows each point.
+            view: View with a colour image.
+            scan_to_room: 4x4 transform from the scan to the room.
+            points_m: Points in the scan's frame in metres, [N, 3].
+            colour_px: Flat index of the colour pixel that shows each point, int [N].
         """
         ...
 
 
 class DepthPredictor:
-    """Gives one PointEvidence for each view that has depth; ``voters`` vote on its points."""
+    """Yields a PointEvidence for each view with depth; ``voters`` vote on its points."""
 
     def __init__(self, max_depth_m: float = MAX_DEPTH_M, *, voters: Sequence[Voter] = ()):
         self.max_depth_m = max_depth_m
@@ -151,17 +151,17 @@ class DepthPredictor:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the voters have to tell."""
+        """The notes of the voters."""
         return tuple(note for voter in self.voters for note in voter.notes)
 
     def predict(self, scan: Scan) -> Iterator[PointEvidence]:
-        """Yield the surface points of each view, in the scan's frame and order."""
+        """Yield the surface points of each view, in the frame and the order of the scan."""
         for view in scan.views:
             if view.depth_m is not None:
                 yield self.lift(view, scan.scan_to_room)
 
     def lift(self, view: View, scan_to_room: np.ndarray | None = None) -> PointEvidence:
-        """Return the points of one view, those beyond ``max_depth_m`` left out."""
+        """Return the points of a view, without those beyond ``max_depth_m``."""
         camera, depth_m = view.depth_camera, view.depth_m
         if camera is None or depth_m is None:
             raise ValueError(f"view {view.name} has no depth map")

@@ -1,9 +1,9 @@
-"""Any universal or semantic segmenter of the transformers library, by its name or from a folder.
+"""Universal and semantic segmentation models of the transformers library, by name or folder.
 
-A universal one (Mask2Former, OneFormer, MaskFormer, EoMT) gives masks and what each shows; their
-product summed over masks is the score of a label at a pixel. A semantic one (SegFormer, UPerNet,
-BEiT, DPT) scores labels at pixels. Scores of the labels of one class are summed and divided by
-those of all labels.
+A universal model (Mask2Former, OneFormer, MaskFormer, EoMT) predicts masks and their labels; the
+score of a label at a pixel is the sum of their products over all masks. A semantic model
+(SegFormer, UPerNet, BEiT, DPT) predicts scores of labels at pixels. The scores of all labels of a
+class are added and normalized over all labels.
 """
 
 from functools import cached_property
@@ -20,13 +20,14 @@ TOKENIZER_FILES = ("tokenizer.json", "vocab.json")
 
 
 class HuggingFaceSemantics:
-    """A segmenter of a model hub or a folder, on one thread of the processor.
+    """A segmentation model from a model hub or a folder, run on one CPU thread.
 
-    Only its config is read before the first picture, so that what was kept costs nothing.
+    Only its configuration is read before the first prediction, so cached predictions do not load
+    it.
 
     Raises:
-        MissingExtraError: torch or transformers is not installed.
-        InputError: the model cannot be had, or is no segmenter.
+        MissingExtraError: If torch or transformers is not installed.
+        InputError: If the model cannot be loaded or is not a supported segmentation model.
     """
 
     def __init__(self, model: str):
@@ -41,10 +42,10 @@ class HuggingFaceSemantics:
         self._config = config
 
     def predict(self, colour: np.ndarray, classes: np.ndarray) -> np.ndarray:
-        """Return float32 [h, w, 12]; see ``Segmenter``.
+        """Predict class probabilities, float32 [h, w, 12]; see ``Segmenter``.
 
         Raises:
-            InputError: the network cannot be loaded, or cannot work on this picture.
+            InputError: If the network cannot be loaded or fails on this image.
         """
         network, ready = self._network, self._ready
         with single_thread() as torch:

@@ -1,4 +1,4 @@
-"""What the label names of segmenters mean: an editable table from names to the 12 classes."""
+"""The editable table that maps label names of segmentation models to the 12 classes."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -20,10 +20,12 @@ _ENDINGS = re.compile(r" (merged|stuff|other)$")
 
 @dataclass(frozen=True, eq=False)
 class LabelClasses:
-    """The labels of one model as classes.
+    """The mapping of a model's labels to classes.
 
-    ``matrix`` float32 [C, 12] carries probabilities of C labels to classes; a label that votes for
-    nothing has a row of zeros. ``unknown`` are the names that the table does not hold.
+    Attributes:
+        matrix: Matrix that converts probabilities of C labels to classes, float32 [C, 12]; rows of
+            labels without class are 0.
+        unknown: Label names that the table does not contain.
     """
 
     matrix: np.ndarray
@@ -31,7 +33,7 @@ class LabelClasses:
 
 
 def label_classes(names: Sequence[str], table: Mapping[str, int | None]) -> LabelClasses:
-    """Return what a model's labels mean, told by their names alone.
+    """Map the labels of a model to classes by their names.
 
     Example:
         >>> found = label_classes(["windowpane, window", "sky-other-merged", "gizmo"], read_table())
@@ -50,13 +52,14 @@ def label_classes(names: Sequence[str], table: Mapping[str, int | None]) -> Labe
 
 
 def read_table(own: str | Path = "") -> dict[str, int | None]:
-    """Return the class of each name, None for what votes for nothing.
+    """Return the class of each label name, or None for names that do not vote.
 
     Args:
-        own: a file of the user's, whose names come before those that are shipped.
+        own: Path of a user's table, whose names take precedence over the built-in table.
 
     Raises:
-        InputError: there is no such file. DamagedFileError: it is no such table.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a valid table.
     """
     return {**_shipped(), **(_read(Path(own)) if own else {})}
 

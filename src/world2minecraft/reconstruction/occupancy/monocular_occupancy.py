@@ -1,9 +1,9 @@
-"""The paper's F_mono: what a network says of the cells before the camera, from one picture.
+"""F_mono of the paper: predict the cells in front of the camera from a single image.
 
-Each view's box of cells is the one by whose rule the labels of training pictures were cut
-(``geometry/view_region.py``), on the cells of the room and from its floor on. The network speaks
-for the cells that fall into the picture, up to the first wall; what it says of hidden ones is a
-guess as all of it, and fusion takes it softly.
+The box of cells of each view follows the rule by which the labels of training images are cut
+(``geometry/view_region.py``), aligned with the cells and the floor of the room. The network's
+prediction is used for the cells in the image up to the first wall. Hidden cells are guesses, so
+fusion gives the prediction a low weight.
 """
 
 from collections.abc import Iterator
@@ -35,23 +35,23 @@ HIDDEN_CELLS = 1.5  # A cell farther behind the first surface of its pixels is h
 
 
 class MonoPredictor:
-    """Gives one GridEvidence for each view that has colour.
+    """Yields a GridEvidence for each view with a colour image.
 
     Args:
-        network: the path of an ONNX file; that which is shipped with the program where empty.
+        network: Path of an ONNX file; the default is the built-in network.
 
     Raises:
-        InputError: the file cannot be used.
+        InputError: If the file cannot be used.
     """
 
     def __init__(self, network: str | Path = ""):
         self.network = OccupancyNetwork(network or SHIPPED)
 
     def predict(self, scan: Scan) -> Iterator[GridEvidence]:
-        """Yield what the network says of each view, in the scan's order.
+        """Yield the network's prediction for each view, in the order of the scan.
 
         Raises:
-            CaptureError: no view has colour.
+            CaptureError: If no view has a colour image.
         """
         none = True
         for view in scan.views:
@@ -64,7 +64,7 @@ class MonoPredictor:
             )
 
     def look(self, view: View, scan_to_room: np.ndarray) -> GridEvidence:
-        """Return what the network says of one view with colour."""
+        """Return the network's prediction for a view with a colour image."""
         facts = self.network.facts
         picture, camera = fitted(view, facts.image_size_px)
         camera_to_room = scan_to_room @ view.camera_to_scan
@@ -87,9 +87,10 @@ class MonoPredictor:
 
 
 def region_before(camera_to_room: np.ndarray, facts: NetworkFacts) -> LabelRegion:
-    """Return the network's box of cells before a camera: where its training labels' box lay.
+    """Return the network's box of cells in front of a camera, as in its training data.
 
-    The rule counts in cells of the usual size; a network of coarser cells has the same box.
+    The rule is defined in cells of the default size; a network with larger cells covers the same
+    box.
     """
     usual = tuple(max(1, round(n * facts.voxel_m / DEFAULT_VOXEL_M)) for n in facts.grid_shape)
     rule = RegionRule(facts.region, (usual[0], usual[1], usual[2]))
@@ -98,13 +99,13 @@ def region_before(camera_to_room: np.ndarray, facts: NetworkFacts) -> LabelRegio
 
 
 def fitted(view: View, size_px: tuple[int, int]) -> tuple[np.ndarray, Camera]:
-    """Return a view's picture as a network wants it, and the camera of that.
+    """Return a view's image as the network expects it, and the camera of that image.
 
-    Distortion is undone, what is beyond the network's proportions is cut off evenly on both
-    sides, and the rest is resized.
+    The image is undistorted, cropped evenly on both sides to the network's aspect ratio, and
+    resized.
 
     Returns:
-        uint8 [H, W, 3] and its camera.
+        The image as uint8 [H, W, 3], and its camera.
     """
     colour, camera = view.colour, view.colour_camera
     if colour is None or camera is None:
@@ -123,9 +124,10 @@ def fitted(view: View, size_px: tuple[int, int]) -> tuple[np.ndarray, Camera]:
 
 
 def depth_of(view: View, camera: Camera) -> np.ndarray | None:
-    """Return float32 [H, W], a view's depth as ``camera`` in the place of its colour sees it.
+    """Return a view's depth resampled into its colour camera, float32 [H, W], or None.
 
-    Each depth pixel falls on one pixel, the nearest wins; None where the view has no depth.
+    Each depth pixel is projected to one pixel, where the nearest depth wins. The result is None if
+    the view has no depth.
     """
     if view.depth_m is None or view.depth_camera is None:
         return None
@@ -141,9 +143,9 @@ def depth_of(view: View, camera: Camera) -> np.ndarray | None:
 def before_walls(
     labels: np.ndarray, region: LabelRegion, camera_to_grid: np.ndarray, camera: Camera
 ) -> np.ndarray:
-    """Return bool [X, Y, Z]: cells of the picture that no wall or window hides.
+    """Return the mask of cells in the image that no wall or window hides, bool [X, Y, Z].
 
-    What lies beyond a room had no label in training: whatever is said of it there is noise.
+    Cells beyond the room have no labels in training, so predictions for them are meaningless.
     """
     pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
     walls = inside & np.isin(labels, WALLS)
@@ -162,9 +164,9 @@ def cell_colours(
     camera: Camera,
     picture: np.ndarray,
 ) -> np.ndarray:
-    """Return uint8 [X, Y, Z, 3]: of occupied cells the colour that the picture shows.
+    """Return the image colour of occupied cells, uint8 [X, Y, Z, 3].
 
-    A cell that another hides takes the colour of the nearest one in sight.
+    A hidden cell takes the colour of the nearest visible cell.
     """
     pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
     requested = occupied & inside

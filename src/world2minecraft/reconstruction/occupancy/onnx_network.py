@@ -1,8 +1,9 @@
-"""The ONNX file of a monocular occupancy network: what it must hold, checked before it is run.
+"""The ONNX file of a monocular occupancy network, validated before it is run.
 
-In: one picture with its camera, and where the grid lies before that camera. Out: probabilities of
-the 12 classes. docs/networks-onnx.md is the contract in words; ``METADATA`` below is what writers
-put into the file, so that a reader never has to guess a shape, a frame or an order of classes.
+The network gets an image with its camera and the pose of the grid relative to that camera, and
+returns the probabilities of the 12 classes. The format is described in docs/networks-onnx.md.
+``METADATA`` lists the entries that a file must contain, so that shapes, frames and class order are
+explicit.
 """
 
 import hashlib
@@ -30,10 +31,16 @@ MAX_CELLS = 4_000_000
 
 @dataclass(frozen=True)
 class NetworkFacts:
-    """What a file states of its network.
+    """The metadata of a network file.
 
-    ``image_size_px`` is width and height. ``region`` is the kind of box that it was trained on.
-    Logits are divided by ``temperature``, which calibrates them.
+    Attributes:
+        name: Name of the network.
+        grid_shape: Number of cells along each axis.
+        voxel_m: Cell size in metres.
+        image_size_px: Width and height of the input image.
+        wants_depth: Whether the network has a depth input.
+        region: Kind of the box it was trained on.
+        temperature: Divisor of the logits that calibrates them.
     """
 
     name: str
@@ -45,7 +52,10 @@ class NetworkFacts:
     temperature: float = 1.0
 
     def metadata(self) -> dict[str, str]:
-        """Return what a writer puts into the file's metadata; sizes stand in its inputs."""
+        """Return the metadata to write to the file, without the image size.
+
+        The image size is given by the shapes of the network inputs.
+        """
         values = {
             "contract": CONTRACT,
             "name": self.name,
@@ -59,12 +69,13 @@ class NetworkFacts:
 
 
 class OccupancyNetwork:
-    """A network that is ready to run, on one thread of the processor: always the same bits.
+    """An occupancy network that runs on one CPU thread, with identical bits on every run.
 
-    ``digest`` is of the file's content.
+    ``digest`` is the SHA-256 of the file.
 
     Raises:
-        InputError: there is no such file. DamagedFileError: it breaks the contract.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file violates the format.
     """
 
     def __init__(self, path: str | Path):
@@ -98,16 +109,18 @@ class OccupancyNetwork:
         camera_to_grid: np.ndarray,
         depth_m: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Return float32 [X, Y, Z, 12], the probabilities of a cell's classes.
+        """Predict the class probabilities of each cell, float32 [X, Y, Z, 12].
 
         Args:
-            image: float32 [3, H, W], RGB, 0 to 1, of the network's size.
-            intrinsics: [3, 3] of that picture; pixel centres lie at +0.5.
-            camera_to_grid: [4, 4], OpenCV camera to metres from the corner of cell (0, 0, 0).
-            depth_m: float32 [H, W], 0 where there is none; left out for a network without depth.
+            image: RGB image in [0, 1] at the network's size, float32 [3, H, W].
+            intrinsics: Intrinsics [3, 3] of this image; pixel centres are at +0.5.
+            camera_to_grid: Transform [4, 4] from the OpenCV camera to metres from the corner of
+                cell (0, 0, 0).
+            depth_m: Depth in metres, float32 [H, W], 0 is missing; not used by a network without
+                depth input.
 
         Raises:
-            DamagedFileError: the network fails, or gives what is no number.
+            DamagedFileError: If the network fails, or returns NaN or infinite values.
         """
         given = {"image": image, "intrinsics": intrinsics, "camera_to_grid": camera_to_grid}
         given["depth_m"] = np.zeros(image.shape[1:]) if depth_m is None else depth_m

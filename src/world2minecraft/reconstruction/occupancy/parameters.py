@@ -1,4 +1,4 @@
-"""What joins the evidence of views beside their depth: networks that are asked for by name."""
+"""The parameters of networks that vote on the surface points of depth."""
 
 from dataclasses import dataclass
 
@@ -7,12 +7,12 @@ from world2minecraft.core.parameters import parameter
 
 @dataclass(frozen=True)
 class OccupancyParameters:
-    """Networks that vote on what depth sees; none by default, and nothing is downloaded.
+    """Networks that vote on the surface points of depth; none is used or downloaded by default.
 
-    semantics: a network that says what each pixel shows, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.
-    label_names: a YAML file of one's own that says which class a network's label names mean.
-    mono_votes: the monocular network votes for the classes of what depth sees.
-    network: its ONNX file; that which is shipped where empty.
+    semantics: Segmentation network for the colour images, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.
+    label_names: Path of a YAML file that maps label names of the network to classes.
+    mono_votes: Whether the monocular network votes for the classes of surface points.
+    network: Path of the ONNX file of the monocular network; empty for the built-in network.
     """
 
     semantics: str = parameter("")

@@ -1,14 +1,14 @@
-"""Fuse semantics into depth evidence: networks vote for the class of each point of a view.
+"""Fuse semantics into depth evidence: networks vote for the class of each surface point.
 
-A segmenter votes by the pixel that shows the point, a monocular occupancy network by the cell of
-its grid that holds it. A vote is shared among classes by their probabilities; classes that the
-program does not know get no vote. Segmenters are found by name in ``SEGMENTERS``: ``hf:MODEL`` is
-any of the transformers library (``hf_segmenter.py``), and packages add families under the entry
-point group ``world2minecraft.segmenter``.
+A segmentation network votes by the pixel that shows the point, a monocular occupancy network by the
+grid cell that contains it. A vote is divided among classes by their probabilities; labels unknown
+to the program do not vote. Segmentation networks are registered in ``SEGMENTERS``: ``hf:MODEL`` is
+any supported model of the transformers library (``hf_segmenter.py``), and packages add families
+under the entry point group ``world2minecraft.segmenter``.
 
-Predictions are cached in the user's folder by the content of the picture, the state of the network
-and the meaning of its labels, so that whatever changes one of them is predicted again. The oldest
-go when the cache is full.
+Predictions are cached in the user's cache folder by the image content, the network and the classes
+of its labels, so a change of any of them causes a new prediction. The oldest entries are deleted
+when the cache is full.
 """
 
 import hashlib
@@ -45,7 +45,7 @@ FULL = 255  # A whole vote, as it is kept.
 
 
 def key_of(colour: np.ndarray, *states: bytes) -> str:
-    """Return the name of what is kept: a digest of a picture and of all that decides the answer."""
+    """Return the cache key of an image and all other inputs of a prediction."""
     digest = hashlib.sha256(VERSION)
     for part in (*states, str(colour.shape).encode(), np.ascontiguousarray(colour).tobytes()):
         digest.update(hashlib.sha256(part).digest())
@@ -55,9 +55,9 @@ def key_of(colour: np.ndarray, *states: bytes) -> str:
 def cached_prediction(
     key: str, ask: Callable[[], np.ndarray], folder: Path | None = None
 ) -> np.ndarray:
-    """Return uint8 [h, w, 12] that was kept under a key, or ask for it and keep it.
+    """Return the prediction uint8 [h, w, 12] cached under a key, or compute and cache it.
 
-    A cache that cannot be read or written is done without.
+    An unreadable or unwritable cache is ignored.
     """
     place = user_cache_dir() / FOLDER if folder is None else folder
     path = place / key[:2] / f"{key}.npz"
@@ -84,9 +84,12 @@ def _forget_oldest(place: Path) -> None:
 
 
 class Segmenter(Protocol):
-    """A network that is loaded when it is first asked.
+    """A segmentation network that is loaded on first use.
 
-    ``identity`` tells this state of it from any other, as ``labels`` does what its labels are.
+    Attributes:
+        name: Name of the network.
+        identity: Identifier of this version of the network.
+        labels: Names of its labels.
     """
 
     name: str
@@ -94,22 +97,24 @@ class Segmenter(Protocol):
     labels: tuple[str, ...]
 
     def predict(self, colour: np.ndarray, classes: np.ndarray) -> np.ndarray:
-        """Return float32 [h, w, 12]: probabilities of classes, at a size of the network's own.
+        """Predict class probabilities, float32 [h, w, 12], at the output size of the network.
 
         Args:
-            colour: uint8 [H, W, 3]; rows and columns of the answer spread over all of it.
-            classes: float32 [C, 12], what each of its labels means.
+            colour: Image, uint8 [H, W, 3]; the rows and columns of the result cover the whole
+                image.
+            classes: Matrix that converts its C labels to classes, float32 [C, 12].
         """
         ...
 
 
 def segmenter(name: str) -> Segmenter:
-    """Return the network that ``FAMILY:MODEL`` names, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.
+    """Return the segmentation network ``FAMILY:MODEL``, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.
 
     Raises:
-        UnknownNameError: no registry holds the family. UsageError: no model is named.
-        MissingExtraError: what the family needs is not installed.
-        InputError: the model cannot be had or read.
+        UnknownNameError: If the family is not registered.
+        UsageError: If the model is missing in the name.
+        MissingExtraError: If a dependency of the family is not installed.
+        InputError: If the model cannot be downloaded or read.
     """
     family, _, model = name.partition(":")
     make: Callable[[str], Segmenter] = SEGMENTERS.load(family)
@@ -121,9 +126,9 @@ def segmenter(name: str) -> Segmenter:
 
 
 def voters_of(chosen: OccupancyParameters) -> tuple[Voter, ...]:
-    """Return the voters that were asked for.
+    """Create the requested voters.
 
-    Raises what ``segmenter``, ``read_table`` and ``MonoPredictor`` raise.
+    Raises the exceptions of ``segmenter``, ``read_table`` and ``MonoPredictor``.
     """
     voters: list[Voter] = []
     if chosen.semantics:
@@ -134,7 +139,7 @@ def voters_of(chosen: OccupancyParameters) -> tuple[Voter, ...]:
 
 
 class PixelVoter:
-    """Votes by what a segmenter says of the pixel that shows a point."""
+    """Votes by the prediction of a segmentation network at the pixel that shows a point."""
 
     def __init__(self, network: Segmenter, label_names: str = ""):
         self.network = network
@@ -144,14 +149,14 @@ class PixelVoter:
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
     ) -> np.ndarray:
-        """Return float32 [N, 12]; see ``Voter``."""
+        """Return the votes of N points, float32 [N, 12]; see ``Voter``."""
         if view.colour is None:
             return np.zeros((len(points_m), CLASS_COUNT), np.float32)
         shares = self.shares(view.colour).reshape(-1, CLASS_COUNT)[colour_px]
         return shares.astype(np.float32) / np.float32(FULL)
 
     def shares(self, colour: np.ndarray) -> np.ndarray:
-        """Return uint8 [H, W, 12]: the share of each class, of 255, of a picture's pixels."""
+        """Return the share of each class at the pixels of an image, as uint8 [H, W, 12] of 255."""
         network, matrix = self.network, self.classes.matrix
 
         def ask() -> np.ndarray:
@@ -165,7 +170,7 @@ class PixelVoter:
 
 
 def spread(shares: np.ndarray, width_px: int, height_px: int) -> np.ndarray:
-    """Return shares uint8 [h, w, 12] at another size, read between pixels."""
+    """Resize class shares uint8 [h, w, 12] by interpolation."""
     if shares.shape[:2] == (height_px, width_px):
         return shares
     planes = [
@@ -176,7 +181,7 @@ def spread(shares: np.ndarray, width_px: int, height_px: int) -> np.ndarray:
 
 
 class CellVoter:
-    """Votes by what a monocular occupancy network says of the cell that holds a point."""
+    """Votes by a monocular occupancy network's prediction for the cell of each point."""
 
     notes: tuple[str, ...] = ()
 
@@ -186,7 +191,10 @@ class CellVoter:
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
     ) -> np.ndarray:
-        """Return float32 [N, 12]; a point in a cell that was taken for empty votes weakly."""
+        """Return the votes of N points, float32 [N, 12]; see ``Voter``.
+
+        Points in cells that are predicted to be empty vote with a low weight.
+        """
         result = np.zeros((len(points_m), CLASS_COUNT), np.float32)
         if view.colour is None:
             return result

@@ -1,9 +1,8 @@
-"""Captures that lack depth or poses: both are computed from the pictures.
+"""Captures without depth or poses, which are computed from the images.
 
-``prepare_capture`` gives the place of a capture that ``open_scan`` can read. What has poses and
-depth is returned as it is. All else is written anew to ``OUT/capture`` in our plain layout:
-pictures without distortion, poses, depth, how far each pixel is to be trusted, and where the scale
-is from.
+``prepare_capture`` returns a capture folder that ``open_scan`` can read. A capture with poses and
+depth is returned unchanged. Otherwise a capture with undistorted images, poses, depth, the
+confidence of each pixel and the origin of the scale is written to ``OUT/capture``.
 """
 
 from world2minecraft.reconstruction.opening.open_capture import (

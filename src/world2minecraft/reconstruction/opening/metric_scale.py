@@ -1,4 +1,4 @@
-"""How long a metre is: from a sensor's depth, a length the user knows, or what rooms are like."""
+"""The metric scale of a capture: from measured depth, a known length, or typical rooms."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -31,10 +31,10 @@ FRAME_SIGMA = 0.02  # What a sensor's depth is off as a whole.
 
 
 def scale_by_depth(judged: ValidatedCapture, scene: SparseScene) -> tuple[SparseScene, float]:
-    """Return the scene in the metres of a sensor's depth, and how sure that is, as a share.
+    """Scale a scene to the metres of measured depth, and return the relative standard deviation.
 
     Raises:
-        CaptureError: hardly any point lies where there is depth.
+        CaptureError: If too few points have measured depth.
     """
     frames = {frame.name: frame for frame in judged.frames}
     indices = [i for i, name in enumerate(scene.names) if frames[name].depth_path is not None]
@@ -62,7 +62,7 @@ def scale_by_depth(judged: ValidatedCapture, scene: SparseScene) -> tuple[Sparse
 
 
 def depth_ratios(view: View, points_m: np.ndarray) -> np.ndarray:
-    """Return measured depth over expected depth [n] where points of the scan's frame meet depth."""
+    """Return the ratios of measured to expected depth, [n], at the points with valid depth."""
     if view.depth_m is None or view.depth_camera is None:
         return np.zeros(0)
     at = apply(invert_rigid(view.depth_camera_to_scan), points_m.astype(np.float64))
@@ -75,7 +75,7 @@ def depth_ratios(view: View, points_m: np.ndarray) -> np.ndarray:
 
 
 def scaled(scene: SparseScene, scale: float) -> SparseScene:
-    """Return the scene with all its lengths multiplied."""
+    """Multiply all lengths of a scene by a factor."""
     poses = scene.camera_to_scan.copy()
     poses[:, :3, 3] *= scale
     points = (scene.points_m.astype(np.float64) * scale).astype(np.float32)
@@ -85,18 +85,19 @@ def scaled(scene: SparseScene, scale: float) -> SparseScene:
 def scale_capture(
     folder: Path, chosen: Parameters, size_of: Callable[[str], tuple[int, int]]
 ) -> None:
-    """Give a capture whose scale is not known, or is known better, its scale.
+    """Update the scale of a capture whose scale is unknown or now better known.
 
-    Only ``capture.json`` changes: the places of the cameras, the metres a step of depth, and what
-    is said of the scale.
+    Only ``capture.json`` is changed: the camera positions, the metres per depth unit, and the
+    information on the scale.
 
     Args:
-        folder: where the capture lies.
-        chosen: what is known of its lengths.
-        size_of: gives the size of a photo as the user has it, in which points were clicked.
+        folder: Folder of the capture.
+        chosen: Parameters with the known lengths.
+        size_of: Function that returns the size of an original photo, in whose pixels points are
+            given.
 
     Raises:
-        UsageError: a known length cannot be measured in this capture.
+        UsageError: If a known length cannot be measured in this capture.
     """
     judged = validate_capture(folder, ScanOptions())
     knowns = [] if chosen.known is None else [parse_known_length(*chosen.known)]
@@ -136,10 +137,10 @@ def clicked(
     judged: ValidatedCapture,
     size_of: Callable[[str], tuple[int, int]],
 ) -> KnownDistance:
-    """Return two clicked points, each ``PHOTO:x,y``, and what lies between them.
+    """Return the known distance between two points, each given as ``PHOTO:x,y``.
 
     Raises:
-        UsageError: a point is written otherwise, or no photo has its name.
+        UsageError: If a point is malformed or its photo is unknown.
     """
     cameras = {frame.name: frame.colour_camera for frame in judged.frames}
 
@@ -168,7 +169,7 @@ def _clicked(text: str) -> tuple[str, tuple[float, float]]:
 
 
 def normalise_scale(scene: SparseScene) -> SparseScene:
-    """Return a scene without a unit of its own at a handy size: its median depth is 2.5."""
+    """Scale a scene without metric unit so that its median depth is 2.5."""
     poses = scene.camera_to_scan[scene.track_frame]
     points = scene.points_m[scene.track_point].astype(np.float64)
     depth = np.einsum("ta,ta->t", points - poses[:, :3, 3], poses[:, :3, 2])

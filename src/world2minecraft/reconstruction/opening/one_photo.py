@@ -1,8 +1,8 @@
-"""One photo as a capture: with a network's depth, or with none and a place that is taken for it.
+"""A single photo as a capture, with depth from a network or with an assumed camera position.
 
-With depth the photo stands where its floor and its walls say. Without, a person held the camera:
-level unless told otherwise, at the height of a chest, in the middle of the back of the box that
-monocular networks look at.
+With depth, the camera position follows from the floor and the walls. Without depth, the camera is
+assumed to be level, at chest height, in the middle of the back of the box that monocular networks
+predict, unless the parameters state otherwise.
 """
 
 from collections.abc import Iterator
@@ -31,16 +31,18 @@ MONO = "mono"
 
 
 def is_one_photo(source: str) -> bool:
-    """Return whether a capture's source is that of one photo."""
+    """Return whether the source of a capture is a single photo."""
     return source == SOURCE
 
 
 def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, unit: str) -> None:
-    """Write one photo as a capture that can be opened.
+    """Write a single photo as a capture that can be opened.
 
     Raises:
-        CaptureError: neither a depth network nor a monocular one was asked for, or the depth
-            network gives no metres. UsageError, InputError: what ``load_depth_model`` raises.
+        CaptureError: If neither a depth network nor a monocular network is requested, or if the
+            depth network does not predict metres.
+        UsageError: As raised by ``load_depth_model``.
+        InputError: As raised by ``load_depth_model``.
     """
     by_network = chosen.predictor.partition(":")[0] == MONO
     if not chosen.depth_model and not by_network:
@@ -83,7 +85,7 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
 
 
 def place_photo(eye_height_m: float, pitch_deg: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return ``camera_to_room`` of a photo without depth, and the size of the room before it."""
+    """Return ``camera_to_room`` of a photo without depth, and the size of the assumed room."""
     size_m = np.array(DEFAULT_SHAPE) * DEFAULT_VOXEL_M
     eye = np.array([size_m[0] / 2, 0.0, eye_height_m])
     pitch = np.radians(pitch_deg)

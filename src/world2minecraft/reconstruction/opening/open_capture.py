@@ -1,6 +1,6 @@
-"""Open any capture as an aligned scan; poses, depth and scale that it lacks are computed first.
+"""Open any capture as an aligned scan, computing missing poses, depth and scale first.
 
-What is computed lies in ``OUT/capture`` and is taken from there the next time.
+Computed data is stored in ``OUT/capture`` and reused the next time.
 """
 
 from collections.abc import Iterator
@@ -53,19 +53,21 @@ GENERIC_NAMES = ("capture", "frames", "scan", "data", "input")
 def prepare_capture(
     capture: Path, out: Path, chosen: Parameters, progress: Progress = no_progress
 ) -> Path:
-    """Return the place of a capture with poses and depth.
+    """Return the folder of a capture with poses and depth.
 
     Args:
-        capture: what the user named.
-        out: the folder of the run; what must be computed is written to ``out / FOLDER``, and
-            taken from there when it was made from the same pictures with the same parameters.
-        chosen: how.
-        progress: called with the stages ``photos``, ``poses`` and ``stereo``.
+        capture: Capture given by the user.
+        out: Folder of the run. Computed data is written to ``out / FOLDER`` and reused if it was
+            made from the same images with the same parameters.
+        chosen: Parameters of the reconstruction.
+        progress: Callback for progress, called with the stages ``photos``, ``poses`` and
+            ``stereo``.
 
     Raises:
-        CaptureError: nothing can be made of the pictures; the message says what would help.
-        MissingExtraError: pycolmap is not installed. OutputError: ``out`` cannot be written.
-        UsageError: ``out`` would be written into the capture's own images.
+        CaptureError: If the images cannot be used; the message states a remedy.
+        MissingExtraError: If pycolmap is not installed.
+        OutputError: If ``out`` cannot be written.
+        UsageError: If ``out`` would be written into the images of the capture.
     """
     options = parse_options(chosen.capture)
     found = find_capture(capture, options)
@@ -102,14 +104,14 @@ def prepare_capture(
 
 
 def has_poses_and_depth(found: Capture) -> bool:
-    """Return whether a capture has frames with poses, and frames with depth."""
+    """Return whether a capture has frames with poses and frames with depth."""
     return any(frame.depth_path is not None for frame in found.frames) and any(
         frame.camera_to_world is not None for frame in found.frames
     )
 
 
 def stamp_of(capture: Path, chosen: Parameters, out: Path) -> dict[str, Any]:
-    """Return what decides the computed capture in ``out``."""
+    """Return all inputs that determine the computed capture in ``out``."""
     parameters = chosen.as_json()
     keys = ("capture", "posing", "stereo", "known", "known_points", "depth_model")
     return {
@@ -212,9 +214,9 @@ def prepare_and_open(
     labels: Path | None = None,
     progress: Progress = no_progress,
 ) -> Scan:
-    """Open a capture; poses and depth that it lacks are computed and kept in ``out`` first.
+    """Open a capture, computing missing poses and depth in ``out`` first.
 
-    Raises what ``prepare_capture`` and ``open_scan`` raise.
+    Raises the exceptions of ``prepare_capture`` and ``open_scan``.
     """
     complete = prepare_capture(capture, out, chosen, progress)
     options = chosen.capture if complete == capture else {}  # Else they were heeded already.
@@ -225,7 +227,7 @@ def prepare_and_open(
 
 
 def scene_name(capture: Path) -> str:
-    """Return what a capture's scene is called: its folder's name, where that says anything."""
+    """Return the scene name of a capture: its folder name, or an empty string if it is generic."""
     capture = capture.resolve()
     name = (capture.name if capture.is_dir() else capture.stem).replace("_", " ")
     return name if name.isprintable() and name not in GENERIC_NAMES else ""

@@ -1,4 +1,4 @@
-"""Photos, their places and their depth, put together as views."""
+"""Combine photos, camera poses and depth into views."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -18,7 +18,7 @@ from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 def stereo_views(
     photos: PhotoStream, scene: SparseScene, maps: Iterable[DepthMap]
 ) -> Iterator[View]:
-    """Yield a view for each depth map, with its photo without distortion; all in one order."""
+    """Yield a view for each depth map with its undistorted photo, in the order of the photos."""
     found = _photos_of(photos, scene)
     for made in maps:
         photo, index = next((pair for pair in found if pair[0].name == made.name), (None, 0))
@@ -35,7 +35,7 @@ def stereo_views(
 def depth_views(
     judged: ValidatedCapture, photos: CapturePhotos, scene: SparseScene
 ) -> Iterator[View]:
-    """Yield a view for each placed photo that has a sensor's depth."""
+    """Yield a view for each posed photo with measured depth."""
     frames = {frame.name: frame for frame in judged.frames}
     for photo, index in _photos_of(photos, scene):
         frame = frames[photo.name]
@@ -58,12 +58,13 @@ def depth_views(
 
 
 def posed_frame(frame: FrameFiles, scene: SparseScene, index: int) -> FrameFiles:
-    """Return a frame with the pose that was found, to read its depth; colour is left out.
+    """Return a frame with a computed pose, without colour, to read its depth.
 
-    A depth camera that is not stated is the colour camera at the depth image's size.
+    If the intrinsics of the depth camera are not stated, those of the colour camera are scaled to
+    the size of the depth image.
 
     Raises:
-        CaptureError: the depth image has other proportions than the colour image.
+        CaptureError: If depth image and colour image have different aspect ratios.
     """
     camera = frame.depth_camera
     if camera is None and frame.depth_path is not None:

@@ -1,7 +1,7 @@
-"""Between scan and occupy: poses and depth scales are put right against the map of all frames.
+"""Registration: correct the poses and depth scales of all frames against their common map.
 
-``register`` gives the corrections and the corrected surface, ``refine`` the corrections alone, and
-``apply_corrections`` a scan whose views come with them applied.
+``register`` returns the corrections and the corrected surface, ``refine`` only the corrections, and
+``apply_corrections`` a scan whose views are corrected when read.
 """
 
 from world2minecraft.reconstruction.registration.corrected_scan import (

@@ -1,4 +1,4 @@
-"""A scan with its corrections applied, view by view as it is read."""
+"""A scan whose views are corrected when they are read."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from world2minecraft.core.types import Corrections, Scan, View, ViewStream
 
 @dataclass(eq=False, repr=False)
 class CorrectedViews:
-    """Views whose poses and depths are put right as they are read."""
+    """A stream of views whose poses and depths are corrected when read."""
 
     views: ViewStream
     changes: dict[str, tuple[np.ndarray, float]]
@@ -27,12 +27,12 @@ class CorrectedViews:
 
     @property
     def damaged(self) -> dict[str, str]:
-        """The frames that could not be decoded so far, with reasons."""
+        """The frames that could not be decoded so far, with the reasons."""
         return getattr(self.views, "damaged", {})
 
 
 def apply_corrections(scan: Scan, corrections: Corrections) -> Scan:
-    """Return the scan whose views come with corrected poses and depths."""
+    """Return the scan with corrected poses and depths."""
     changes = {
         name: (change, float(scale))
         for name, change, scale in zip(
@@ -43,7 +43,7 @@ def apply_corrections(scan: Scan, corrections: Corrections) -> Scan:
 
 
 def with_registration_note(scan: Scan, facts: Mapping[str, Any]) -> Scan:
-    """Return the scan with a sentence on what registration did among its notes."""
+    """Return the scan with a note on the results of the registration."""
     if not facts.get("kept"):
         return scan
     text = (
@@ -60,7 +60,7 @@ def with_registration_note(scan: Scan, facts: Mapping[str, Any]) -> Scan:
 
 
 def correct_view(view: View, changes: dict[str, tuple[np.ndarray, float]]) -> View:
-    """Return one view put right; a view that is not among the changes stays as it is."""
+    """Return a view with its corrections applied; views without corrections are not changed."""
     if view.name not in changes:
         return view
     change, scale = changes[view.name]

@@ -1,13 +1,14 @@
-"""One Gauss-Newton step of all frames: point to plane, robust, with priors that hold the gauge.
+"""One robust point-to-plane Gauss-Newton step of all frames, with priors that fix the gauge.
 
-Unknown are seven numbers a frame (turn, shift, log of the depth's scale) and one offset a surfel.
-The offsets are eliminated; conjugate gradients solve the rest without a matrix, so that time and
-memory grow with the patches alone.
+The unknowns are seven numbers per frame (rotation, translation, log of the depth scale) and one
+offset per surfel. The offsets are eliminated, and the remaining system is solved by conjugate
+gradients without a matrix, so time and memory grow linearly with the number of patches.
 
 Observation i is a patch of frame ``frame[i]`` on surfel ``surfel[i]``. Its residual is
-``r = n . (p - c)`` and its row ``J = ((p - eye) x n, n, n . (p - eye))``: what a small turn of the
-frame about its eye, a shift and a stretch of its depth do to r. A surfel's own offset takes up the
-weighted mean of its observations, so every sum is that of differences from the mean.
+``r = n . (p - c)`` and its row ``J = ((p - eye) x n, n, n . (p - eye))``, the derivative of r with
+respect to a small rotation of the frame about its eye, a translation, and a scaling of its depth.
+The offset of a surfel absorbs the weighted mean of its observations, so all sums are over
+differences from this mean.
 """
 
 from dataclasses import dataclass
@@ -25,7 +26,7 @@ CG_TOLERANCE = 1e-3
 
 @njit
 def surfel_means(values, weight, surfel, count):
-    """Return the weighted mean of values [N] on each surfel, 0 where nothing weighs."""
+    """Return the weighted mean of values [N] on each surfel, or 0 without weight."""
     total, mass = np.zeros(count), np.zeros(count)
     for i in range(len(values)):
         total[surfel[i]] += weight[i] * values[i]
@@ -38,7 +39,7 @@ def surfel_means(values, weight, surfel, count):
 
 @njit
 def apply_rows(rows, frame, change):
-    """Return J x for every observation: float64 [N]."""
+    """Compute J x for every observation, float64 [N]."""
     result = np.empty(len(rows))
     for i in range(len(rows)):
         total = 0.0
@@ -50,7 +51,7 @@ def apply_rows(rows, frame, change):
 
 @njit
 def gather_rows(rows, frame, weight, values, means, surfel, frames):
-    """Return the sum of w J (value - mean of its surfel) of each frame: float64 [F, 7]."""
+    """Compute the sum of w J (value - mean of its surfel) for each frame, float64 [F, 7]."""
     result = np.zeros((frames, UNKNOWNS))
     for i in range(len(rows)):
         scaled = weight[i] * (values[i] - means[surfel[i]])
@@ -61,7 +62,7 @@ def gather_rows(rows, frame, weight, values, means, surfel, frames):
 
 @njit
 def frame_blocks(rows, frame, weight, surfel, mass, frames):
-    """Return the sum of w (1 - w / mass) J J' of each frame: float64 [F, 7, 7]."""
+    """Compute the sum of w (1 - w / mass) J J' for each frame, float64 [F, 7, 7]."""
     blocks = np.zeros((frames, UNKNOWNS, UNKNOWNS))
     for i in range(len(rows)):
         total = mass[surfel[i]]
@@ -76,7 +77,7 @@ def frame_blocks(rows, frame, weight, surfel, mass, frames):
 
 @njit
 def move_patches(points, normals, frame, eyes, turns, shifts, stretches):
-    """Return points and normals after each frame's turn and stretch about its eye, and shift."""
+    """Rotate and scale points and normals about the eye of their frame, then translate them."""
     new_points, new_normals = np.empty_like(points), np.empty_like(normals)
     for i in range(len(points)):
         f = frame[i]
@@ -92,7 +93,17 @@ def move_patches(points, normals, frame, eyes, turns, shifts, stretches):
 
 @dataclass(frozen=True, eq=False)
 class Observations:
-    """``rows`` float64 [N, 7], ``residual`` and ``weight`` float64 [N], ``frame``, ``surfel``."""
+    """The observations of one Gauss-Newton step.
+
+    Attributes:
+        rows: Jacobian row of each observation, float64 [N, 7].
+        residual: Residual in metres, float64 [N].
+        weight: Weight, float64 [N].
+        frame: Frame index, int [N].
+        surfel: Surfel index, int [N].
+        frames: Number of frames.
+        surfels: Number of surfels.
+    """
 
     rows: np.ndarray
     residual: np.ndarray
@@ -105,9 +116,12 @@ class Observations:
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """``change`` float64 [F, 7], and ``variance`` [F, 7]: how unsure each number is, at least.
+    """The result of one Gauss-Newton step.
 
-    ``spread_m`` is how far patches are from their surfels after it: 1.48 times the median.
+    Attributes:
+        change: Change of the seven numbers of each frame, float64 [F, 7].
+        variance: Lower bound of their variance, float64 [F, 7].
+        spread_m: Distance of patches from their surfels after the step: 1.48 times the median.
     """
 
     change: np.ndarray
@@ -116,13 +130,14 @@ class Step:
 
 
 def solve(seen: Observations, so_far: np.ndarray, prior: np.ndarray, width_m: float) -> Step:
-    """Return the step that makes patches meet their surfels.
+    """Solve for the step that aligns the patches with their surfels.
 
     Args:
-        seen: the observations at the present poses.
-        so_far: float64 [F, 7], what earlier steps changed; the priors pull the sum to 0.
-        prior: float64 [7], the sigma of each number; 0 keeps it as it is.
-        width_m: residuals beyond lose their weight (Geman and McClure).
+        seen: Observations at the current poses.
+        so_far: Changes by earlier steps, float64 [F, 7]; the priors pull the total to 0.
+        prior: Standard deviation of each of the seven numbers, float64 [7]; 0 keeps the number
+            fixed.
+        width_m: Residual in metres above which the weight decreases (Geman and McClure).
     """
     change = np.zeros((seen.frames, UNKNOWNS))
     free = prior > 0

@@ -1,4 +1,4 @@
-"""How frames are registered: every number that decides it, and where it comes from."""
+"""The parameters of the registration and the reasons for their defaults."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,15 +10,17 @@ ABOVE_0, BELOW_HALF = "above 0", "0 to 0.5"
 
 @dataclass(frozen=True)
 class RegistrationParameters:
-    """How poses and depth scales are refined against the map.
+    """Parameters of refining poses and depth scales against the map.
 
-    passes: rounds of "who sees the same surface" and "move all frames"; 0 leaves the scan as it
-        is.
-    cell_m: width of a surfel; a bit of surface that may be taken for flat.
-    jitter_m, jitter_deg: how far poses are off, one sigma an axis, until the scan tells better.
-    scale_sigma: how far depth scales are off, likewise; 0 never touches the depth.
-    least_scale_sigma: a spread below this is no fault of the depth but of what is taken for flat.
-    held_share: the part of the surface that only judges.
+    passes: Number of rounds of matching surfaces and moving all frames; 0 disables the
+        registration.
+    cell_m: Width of a surfel, a piece of surface that is assumed to be flat.
+    jitter_m: Initial standard deviation of camera positions per axis; refined from the scan.
+    jitter_deg: Initial standard deviation of camera rotations per axis; refined from the scan.
+    scale_sigma: Initial standard deviation of the depth scale of a frame; 0 keeps the depth
+        unchanged.
+    least_scale_sigma: Spread of the depth scales below which the depth is not changed.
+    held_share: Share of the surface that is held out to judge the result.
     """
 
     passes: int = parameter(5, origin="after five a generated room's poses moved by under 0.1 mm")
@@ -53,9 +55,9 @@ class RegistrationParameters:
     def suited(self, depth_kind: str) -> "RegistrationParameters":
         """Return the parameters for another kind of depth.
 
-        Poses that stereo was computed from meet to fractions of a pixel already, and what looks at
-        a mesh stands where it says: only a sensor's frames are moved. A network's depth is off by
-        some per cent, each frame its own way, and is evened out where poses stand.
+        Poses that stereo is based on are precise to fractions of a pixel, and views of a mesh are
+        exact, so only the frames of a sensor are moved. Depth from a network differs by some per
+        cent in each frame and is scaled while the poses are kept.
         """
         if depth_kind == "network":
             default = RegistrationParameters()

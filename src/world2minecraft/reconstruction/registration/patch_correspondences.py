@@ -1,8 +1,8 @@
-"""Which patches of which frames are looks at one and the same bit of surface.
+"""Correspondences: which patches of different frames show the same piece of surface.
 
-Patches are sorted into columns: by the axis that they face, and by cells across that axis. Along
-the axis a column's patches are parted where a gap is wider than what poses may be off by. So no
-cell edge ever lies along a wall, where it would part the looks from either side of it.
+Patches are sorted into columns by the axis they face and by cells across that axis. Along the axis,
+the patches of a column are separated at gaps wider than the possible pose error. This way no cell
+border coincides with a wall, which would separate views from both sides of the border.
 """
 
 from dataclasses import dataclass
@@ -12,9 +12,13 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Surfels:
-    """``owner`` int64 [N], the surfel of each patch; float64 ``centers_m`` and ``normals`` [K, 3].
+    """Groups of patches that show the same piece of surface.
 
-    ``frames`` int64 [K] counts the frames that see each.
+    Attributes:
+        owner: Surfel of each patch, int64 [N].
+        centers_m: Centres in metres, float64 [K, 3].
+        normals: Normals, float64 [K, 3].
+        frames: Number of frames that see each surfel, int64 [K].
     """
 
     owner: np.ndarray
@@ -35,12 +39,12 @@ def find_surfels(
     """Group patches into surfels.
 
     Args:
-        points_m: float64 [N, 3], in a frame whose axes most walls follow.
-        normals: float64 [N, 3], unit.
-        weight: float64 [N], above 0.
-        frame: int [N], who saw the patch.
-        cell_m: width of a column.
-        gap_m: what parts two surfaces of a column.
+        points_m: Points in metres, float64 [N, 3], in a frame aligned with most walls.
+        normals: Unit normals, float64 [N, 3].
+        weight: Positive weights, float64 [N].
+        frame: Frame that saw each patch, int [N].
+        cell_m: Width of a column in metres.
+        gap_m: Gap in metres that separates two surfaces of a column.
     """
     axis = np.abs(normals).argmax(axis=1)
     index = np.arange(len(points_m))

@@ -1,11 +1,11 @@
-"""Refine poses and depth scales of all frames at once, from what they see in common.
+"""Joint refinement of the poses and depth scales of all frames from the surfaces they share.
 
-In: a scan whose poses are off by some millimetres and tenths of a degree, and whose depth may be
-stretched by some per cent, each frame its own way. Out: a change for each frame. Patches of all
-frames are grouped into surfels, and all frames are moved until the patches of a surfel meet (one
-joint Gauss-Newton step); then they are grouped again, more finely. How far poses and scales are
-off is learned on the way. A part of the surface takes no part and judges: where it does not fit
-better afterwards, nothing is moved.
+The input is a scan with pose errors of some millimetres and tenths of a degree, and depth scales
+that differ by some per cent per frame; the result is a correction for each frame. The patches of
+all frames are grouped into surfels, all frames are moved until the patches of each surfel coincide
+(one joint Gauss-Newton step), and the patches are grouped again with smaller tolerances. The noise
+of poses and scales is estimated on the way. A held-out part of the surface judges the result: if it
+does not fit better afterwards, the corrections are discarded.
 """
 
 from collections.abc import Iterable
@@ -56,11 +56,14 @@ DECIMALS = 9
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """The patches and cameras as they stand, and what was changed to get here.
+    """The current patches and cameras, and all changes made so far.
 
-    ``total`` float64 [F, 7] is the sum of all steps: turn in radians, shift in metres, log of the
-    depth's scale. ``sigmas`` float64 [3] is how far off the three were, as learned so far, and
-    ``bend_m`` how far patches still are from their surfels.
+    Attributes:
+        surface: Patches and cameras.
+        total: Sum of all steps, float64 [F, 7]: rotation in radians, translation in metres, log of
+            the depth scale.
+        sigmas: Estimated standard deviations of the three kinds of change, float64 [3].
+        bend_m: Remaining distance of patches from their surfels in metres.
     """
 
     surface: OrientedPoints
@@ -70,7 +73,7 @@ class State:
 
 
 def begin(surface: OrientedPoints, chosen: RegistrationParameters) -> State:
-    """Return the state before the first pass; ``surface`` lies in a frame that walls follow."""
+    """Return the state before the first pass; ``surface`` must be in a frame aligned with walls."""
     sigmas = np.array([np.radians(chosen.jitter_deg), chosen.jitter_m, chosen.scale_sigma])
     return State(surface, np.zeros((len(surface.cameras), UNKNOWNS)), sigmas, FIRST_BEND_M)
 
@@ -78,13 +81,13 @@ def begin(surface: OrientedPoints, chosen: RegistrationParameters) -> State:
 def run_passes(
     state: State, speaks: np.ndarray, chosen: RegistrationParameters, first: int = 0
 ) -> State:
-    """Move all frames until their patches meet.
+    """Move all frames until their patches coincide.
 
     Args:
-        state: where to begin.
-        speaks: bool [N], the patches that take part; all are moved.
-        chosen: the parameters.
-        first: the pass to begin with; later ones look more closely.
+        state: Initial state.
+        speaks: Mask of the patches used, bool [N]; all patches are moved.
+        chosen: Parameters of the registration.
+        first: Number of the first pass; later passes use smaller tolerances.
     """
     frames = len(state.surface.cameras)
     together = np.sqrt(max(1.0, np.count_nonzero(speaks) / frames / INDEPENDENT))
@@ -100,7 +103,7 @@ def run_passes(
 
 
 def without_scale(before: State, after: State) -> State:
-    """Return the state ``after`` some passes with the depth as it was ``before`` them."""
+    """Return the state ``after`` some passes with the depth scales of the state ``before``."""
     change = after.total - before.total
     change[:, 6] = 0.0
     accepted = Step(change, np.zeros_like(change), after.bend_m)
@@ -109,7 +112,7 @@ def without_scale(before: State, after: State) -> State:
 
 
 def surfels_of(surface: OrientedPoints, cell_m: float, gap_m: float) -> Surfels:
-    """Group the patches of a surface."""
+    """Group the patches of a surface into surfels."""
     weight = 1 / (surface.sigma_m**2 + 0.002**2)
     return find_surfels(
         surface.points_m, surface.normals, weight, surface.owner, cell_m=cell_m, gap_m=gap_m
@@ -117,7 +120,7 @@ def surfels_of(surface: OrientedPoints, cell_m: float, gap_m: float) -> Surfels:
 
 
 def shared(surface: OrientedPoints, surfels: Surfels, chosen: np.ndarray) -> np.ndarray:
-    """Return the indices of the chosen patches whose surfel faces as they do and is shared."""
+    """Return the indices of the chosen patches on shared surfels with a similar normal."""
     facing = np.einsum("ia,ia->i", surface.normals, surfels.normals[surfels.owner])
     return np.flatnonzero(chosen & (surfels.frames[surfels.owner] > 1) & (facing > SAME_WAY))
 
@@ -125,7 +128,7 @@ def shared(surface: OrientedPoints, surfels: Surfels, chosen: np.ndarray) -> np.
 def observe(
     surface: OrientedPoints, speaks: np.ndarray, cell_m: float, gap_m: float, noise_m: float
 ) -> Observations:
-    """Return what the patches that speak say of their frames' poses."""
+    """Return the observations of the frame poses by the selected patches."""
     surfels = surfels_of(surface, cell_m, gap_m)
     index = shared(surface, surfels, speaks)
     surfel, frame = surfels.owner[index], surface.owner[index]
@@ -178,7 +181,7 @@ def _rotation(vector: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether corrections are kept, and the held-out misfit without and with them."""
+    """Whether corrections are accepted, and the held-out misfit before and after in metres."""
 
     accepted: bool
     before_m: float | None
@@ -187,7 +190,7 @@ class Verdict:
 
 @dataclass(frozen=True, eq=False)
 class Registered:
-    """Corrections, and the surface that they give, in the scan's frame."""
+    """The corrections, and the corrected surface in the scan's frame."""
 
     corrections: Corrections
     surface: OrientedPoints
@@ -196,19 +199,19 @@ class Registered:
 def refine(
     scan: Scan, parameters: RegistrationParameters | None = None, progress: Progress = no_progress
 ) -> Corrections:
-    """Return what puts a scan's poses and depth scales right; arguments as ``register``."""
+    """Compute the corrections of a scan's poses and depth scales; see ``register``."""
     return register(scan, parameters, progress).corrections
 
 
 def register(
     scan: Scan, parameters: RegistrationParameters | None = None, progress: Progress = no_progress
 ) -> Registered:
-    """Return the corrections of a scan together with the corrected surface.
+    """Compute the corrections of a scan together with the corrected surface.
 
     Args:
-        scan: an aligned scan; its views are read once, depth alone where they can be.
-        parameters: see ``RegistrationParameters``.
-        progress: called with the stage ``register``.
+        scan: Aligned scan; its views are read once, without colour if possible.
+        parameters: Parameters of the registration.
+        progress: Callback for progress, called with the stage ``register``.
     """
     total = len(scan.views) + 1
     most_each = max(MIN_PATCHES_PER_FRAME, MAX_PATCHES // max(1, len(scan.views)))
@@ -219,7 +222,7 @@ def register(
 
 
 def depth_views(scan: Scan) -> Iterable[View]:
-    """Return the views of a scan, their colours undecoded where the stream can leave them so."""
+    """Return the views of a scan without decoding their colour images, if the stream allows it."""
     read = getattr(scan.views, "depth_views", None)
     return scan.views if read is None else read()
 
@@ -227,10 +230,10 @@ def depth_views(scan: Scan) -> Iterable[View]:
 def register_surface(
     surface: OrientedPoints, scan_to_room: np.ndarray, chosen: RegistrationParameters
 ) -> Registered:
-    """Register the frames of a surface of the scan's frame; ``scan_to_room`` turns walls to axes.
+    """Register the frames of a surface in the scan's frame; ``scan_to_room`` aligns the walls.
 
-    The depth is touched only where scales are found to vary, and nothing where the surface that
-    took no part does not fit better.
+    The depth is changed only if scales are found to vary, and all corrections are discarded unless
+    the held-out surface fits better.
     """
     room = surface.transformed(scan_to_room)
     still = begin(room, chosen)

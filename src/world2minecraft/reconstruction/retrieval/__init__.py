@@ -1,6 +1,6 @@
-"""Stage 6, objects -> placements: the best template, turn, size and shift by IoU.
+"""Stage 6: find the best template, rotation, size and shift for each object by IoU.
 
-It is the paper's argmax of |O_k intersected with Rot(T_j, delta)| over their union.
+This is the paper's argmax of the intersection of O_k and Rot(T_j, delta) over their union.
 """
 
 from world2minecraft.reconstruction.retrieval.furniture_placement import place_templates

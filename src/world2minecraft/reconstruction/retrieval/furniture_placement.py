@@ -1,7 +1,7 @@
-"""Stage 6: each object becomes furniture of the library, in its place, or stays its own cells.
+"""Stage 6: replace each object by library furniture in its place, or keep its own cells.
 
-Of an object that was cut into runs, crumbs are left over: those that a template's surface hides are
-dropped, and those that belong together become one.
+Cutting an object into runs leaves small remains. Those hidden by a template's surface are dropped,
+and those that belong together are merged.
 """
 
 from collections.abc import Sequence
@@ -53,16 +53,16 @@ SURELY_MET = 0.9  # A chair of usual size that meets these is taken before a str
 def merge_crumbs(
     crumbs: list[np.ndarray], matched: list[np.ndarray], boxes: list[Box]
 ) -> list[np.ndarray]:
-    """Return the crumbs, int [N, 3] each, that are worth a placement of their own.
+    """Return the remains of an object, int [N, 3] each, that get a placement of their own.
 
-    A crumb within one cell of a placed template's box is left out where it is small: build/ sets
-    what no block shows. Crumbs that touch become one, unless their common box would take in cells
-    of a run that is placed.
+    Small remains within one cell of a placed template's box are dropped, since the construction
+    stage sets cells that no block shows. Touching remains are merged unless their common box would
+    include cells of a placed run.
 
     Args:
-        crumbs: the cells of each, in the grid.
-        matched: the cells of each run that has a template.
-        boxes: the first cell and the one past the last of each of these templates.
+        crumbs: Cells of each remaining part in the grid.
+        matched: Cells of each run that has a template.
+        boxes: First and exclusive last cell of each of these templates.
     """
     retained = [one for one in crumbs if len(one) >= FEWEST and not _is_hidden(one, boxes)]
     placed = np.concatenate(matched) if matched else np.zeros((0, 3), np.int32)
@@ -102,7 +102,7 @@ def _box(cells: np.ndarray) -> Box:
 
 
 class Matched(NamedTuple):
-    """Some cells of an object, the way they look, and what matches them, best first."""
+    """Some cells of an object, their orientation, and their matches, best first."""
 
     evidence: Evidence
     quarter_turns: int
@@ -111,11 +111,11 @@ class Matched(NamedTuple):
 
     @property
     def iou(self) -> float:
-        """The IoU of the best match, 0 without one."""
+        """The IoU of the best match, or 0 if there is none."""
         return self.matches[0].iou if self.matches else 0.0
 
     def unmatched(self) -> "Matched":
-        """The same cells, to be built as they are."""
+        """The same cells without matches, to be built from cells."""
         return self._replace(matches=())
 
 
@@ -125,12 +125,11 @@ def place_templates(
     parameters: RetrievalParameters | None = None,
     rooms: Sequence[Layout] = (),
 ) -> tuple[Placement, ...]:
-    """Return the furniture that stands for each object, in the objects' order.
+    """Return the placements of the furniture for each object, in the order of the objects.
 
-    An object that was cut has several placements with its id. Where no template reaches
-    ``min_iou`` the template is ``cells`` and ``iou`` is that of the best one refused. Placements
-    stay within ``rooms``, where any are given, stand on the floors of these, and no two are solid
-    in the same place.
+    An object that was cut has several placements with its id. If no template reaches ``min_iou``,
+    the template is ``cells`` and ``iou`` is that of the best rejected template. Placements are
+    within ``rooms``, if given, stand on their floors, and their solid parts do not overlap.
     """
     chosen = parameters or RetrievalParameters()
     around = read_surroundings(grid.labels)

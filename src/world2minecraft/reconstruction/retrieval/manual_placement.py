@@ -1,4 +1,4 @@
-"""Furniture that a person chose for an object: put in its place as well as it goes there."""
+"""Placement of a furniture template that a person chose for an object."""
 
 from collections.abc import Sequence
 
@@ -27,21 +27,20 @@ def fit_template(
     quarter_turns: int | None = None,
     rooms: Sequence[Layout] = (),
 ) -> Placement:
-    """Return one template in an object's place, sized and shifted to its cells.
+    """Place a template at an object, with its size and position fitted to the object's cells.
 
-    Where it is nowhere near the object's cells, or there are none, it takes the object's box as
-    far as its own sizes allow. It is always put: whoever chose it knows better than the cells.
+    If the template does not match the cells, or there are none, it fills the object's box as far as
+    its size limits allow. The template is always placed, since the user's choice has priority.
 
     Args:
-        grid: where the cells lie.
-        instance: the object.
-        name: of the template, or ``cells`` for what is built from the object's own cells.
-        quarter_turns: the way it looks, 0 to 3; None for the best.
-        rooms: their outlines; within them it stays and on their floors it stands, where any are
-            given.
+        grid: Grid with the object's cells.
+        instance: The object.
+        name: Name of the template, or ``cells`` to build the object from its cells.
+        quarter_turns: Orientation, 0 to 3; None uses the best orientation.
+        rooms: Rooms of the scan. If given, the placement is within one and stands on its floor.
 
     Raises:
-        UnknownNameError: there is no such template.
+        UnknownNameError: If the template does not exist.
     """
     seen = _turns_of(instance)
     if name == OWN_CELLS:
@@ -56,9 +55,10 @@ def fit_template(
 def ranked_matches(
     grid: OccupancyGrid, instance: ObjectInstance, count: int = 5, rooms: Sequence[Layout] = ()
 ) -> tuple[tuple[str, int, float], ...]:
-    """Return the best templates of an object's class: name, quarter turns and IoU, best first.
+    """Return the best templates of an object's class as (name, quarter turns, IoU), best first.
 
-    Each template is named once, in its best turn. ``rooms`` tell on which floor the object stands.
+    Each template is listed once with its best rotation. ``rooms`` determine the floor of the
+    object.
     """
     if not len(instance.cells):
         return ()

@@ -1,4 +1,4 @@
-"""What a template is compared with: the cells of one object and what was seen around them."""
+"""The evidence that templates are compared with: an object's cells and their surroundings."""
 
 from dataclasses import dataclass
 
@@ -15,11 +15,15 @@ MARGIN = 3  # Shift, slack and one more cell around the largest box that is trie
 class Evidence:
     """A window of the grid around one object.
 
-    ``code`` says for each cell what a template that covers it gains: OWN is a cell of the object,
-    AGAINST one that was seen to be free or structure, IGNORED one that was never seen or belongs
-    to another object, and so counts neither way; BEYOND is such a cell outside the object's own
-    box. ``low`` and ``high`` bound the object's own
-    cells, ``floor`` is the first layer above the floor of its storey, all in cells of the window.
+    Attributes:
+        code: Effect of covering each cell. OWN is a cell of the object; AGAINST was seen as free or
+            as structure; IGNORED was never seen or belongs to another object and does not count;
+            BEYOND is an ignored cell outside the object's box.
+        corner: Position of the window in the grid.
+        low: First cell of the object in the window.
+        high: Exclusive last cell of the object in the window.
+        floor: First layer of the window above the floor of the storey.
+        own: Number of cells of the object.
     """
 
     code: np.ndarray  # uint8 [X, Y, Z]
@@ -37,10 +41,10 @@ def evidence_of(
     paper_compat: bool,
     floor_m: float = 0.0,
 ) -> Evidence:
-    """Return the window around ``cells``, int32 [N, 3], wide enough for boxes of ``reach`` cells.
+    """Return the window around cells int32 [N, 3], large enough for boxes of ``reach`` cells.
 
-    With ``paper_compat`` every cell but the object's own is AGAINST, seen or not. ``floor_m`` is
-    how high the floor of the object's storey lies.
+    With ``paper_compat``, every cell except the object's own is AGAINST, seen or not. ``floor_m``
+    is the height of the floor of the object's storey.
     """
     low, high = cells.min(axis=0).astype(np.int64), cells.max(axis=0).astype(np.int64) + 1
     floor = int(np.floor((floor_m - grid.origin_m[2]) / grid.voxel_m + 0.5))

@@ -1,4 +1,4 @@
-"""How templates are matched: every number that decides it, and where it comes from."""
+"""The parameters of matching templates and the reasons for their defaults."""
 
 from dataclasses import dataclass
 
@@ -10,34 +10,34 @@ ABOVE_0, SHARE, UP_TO_8 = "above 0", "0 to 1", "0 to 8"
 
 @dataclass(frozen=True)
 class RetrievalParameters:
-    """How templates are matched.
+    """Parameters of matching templates.
 
-    min_iou: below it an object is built from its own cells.
-    shift_cells: how far a template moves from where the object's box says, along each axis.
-    size_slack: how many cells a template's side may differ from the object's box.
-    finalists: how many of the first, coarse trials are refined.
-    alternatives: how many other templates and turns a placement lists.
-    cut_below: an object matched worse than this is cut into runs, in case they match better.
-    cut_gain: by how much the runs together must match better than the whole, for each cut.
-    cut_from_m: an object shorter than this is not cut.
-    max_runs: into how many runs an object is cut at most.
-    min_run_share: a run with less of the object's cells than this stays its own cells and counts
-        as unmatched when a cut is weighed: crumbs always match something.
-    min_run_cells: a run of fewer cells of the floor plan is left to its neighbours.
-    size_weight: how much IoU an unusual size or parameter may cost.
-    front_weight: how much IoU the front that was found with the object may bring.
-    beyond_weight: the score that a template loses where it lies wholly in the unseen outside the
-        object's box.
-    seat_below: a chair matched worse than this may be one of usual size that lies across the
-        grid or is hidden for the most part.
-    seat_met, seat_opposed: where no template of a chair reaches ``min_iou``, a whole chair is put
-        all the same that meets this share of the object's cells, in or beside it, and of which at
-        most so much stands in space that was seen free.
-    seat_look_m: a chair whose turn its cells leave open looks to a table this near.
-    variants: another design of a match's family may stand for it, by size, parameters and colour.
-    paper_compat: the paper's equation to the letter: every cell of the template and of the
-        object counts, seen or not, nothing breaks ties but the library's order, and nothing is
-        cut into runs.
+    min_iou: Minimum IoU of a template; below it, the object is built from its own cells.
+    shift_cells: Maximum shift of a template from the object's box along each axis.
+    size_slack: Maximum difference between the sides of a template and the object's box.
+    finalists: Number of coarse candidates that are refined.
+    alternatives: Number of other templates and rotations listed with each placement.
+    cut_below: IoU below which cutting an object into runs is tried.
+    cut_gain: Minimum increase in IoU per cut.
+    cut_from_m: Minimum length of an object that may be cut.
+    max_runs: Maximum number of runs into which an object is cut.
+    min_run_share: Minimum share of the object's cells for a run to be matched. Smaller runs are
+        built from their cells and count as unmatched.
+    min_run_cells: Minimum number of floor plan cells of a run; smaller runs are merged with their
+        neighbours.
+    size_weight: Maximum IoU penalty for an unusual size or parameter.
+    front_weight: Maximum IoU bonus for agreement with the detected front of the object.
+    beyond_weight: Maximum score penalty for a template in unseen space outside the object's box.
+    seat_below: IoU below which a chair may be replaced by a chair of typical size that is rotated
+        against the grid or mostly hidden.
+    seat_met, seat_opposed: If no template of a chair reaches ``min_iou``, a whole chair is placed
+        if it covers at least the share ``seat_met`` of the object's cells and at most the share
+        ``seat_opposed`` of it is in space seen as free.
+    seat_look_m: Maximum distance of a table that a chair of unknown orientation is turned to.
+    variants: Whether a match may be replaced by another design of its family, by size, parameters
+        and colour.
+    paper_compat: Whether to use the paper's equation exactly. All cells of template and object
+        count, seen or not, ties are decided by library order, and objects are never cut.
     """
 
     min_iou: float = parameter(

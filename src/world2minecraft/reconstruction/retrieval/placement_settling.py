@@ -1,10 +1,10 @@
-"""Settle placements: each within its room, no two of them solid in the same place.
+"""Settle placements so that each is within its room and no two overlap.
 
-A scan's surface is thick and its walls are found to a centimetre or two, so boxes reach into walls
-by a cell: they are trimmed at the walls, or moved off them. Boxes that overlap by a cell or two
-give way: what stands on a thing begins at its top. Where the solid parts of two still meet, the
-least change parts them: one is moved by up to a quarter of a metre, or trimmed, or built from its
-own cells, which never meet those of another.
+The surface of a scan is thick and its walls are precise to one or two centimetres, so boxes can
+reach into walls by a cell; they are trimmed or moved. Overlaps of one or two cells are resolved by
+trimming, and an object on another begins at its top. If the solid parts of two objects still
+overlap, the smallest change separates them: one is moved by up to 0.25 m, trimmed, or built from
+its own cells, which never overlap those of another object.
 """
 
 from collections.abc import Iterator, Sequence
@@ -39,15 +39,15 @@ MOVED_ONES = (SemanticClass.CHAIR,)  # What people move; the rest stands where i
 
 
 def within_rooms(placement: Placement, rooms: Sequence[Layout], voxel_m: float) -> Placement | None:
-    """Return a placement wholly within one of the rooms, or None where it lies outside them all.
+    """Return a placement completely within one room, or None if it is outside all rooms.
 
-    It goes to the room that holds most of it. What reaches out is cut off, as far as its
-    template may be that small; what then still reaches out is moved in as a whole.
+    The room is that which contains most of the placement. Parts outside are cut off as far as the
+    template's minimum size allows; after that, the whole placement is moved.
 
     Args:
-        placement: what was matched.
-        rooms: their outlines; without any nothing is changed.
-        voxel_m: the cell; nothing becomes thinner.
+        placement: Matched placement.
+        rooms: Rooms of the scan; without rooms the placement is not changed.
+        voxel_m: Cell size in metres, the minimum size of a side.
     """
     if not rooms:
         return placement
@@ -69,10 +69,10 @@ def within_rooms(placement: Placement, rooms: Sequence[Layout], voxel_m: float) 
 
 
 def floor_under_m(middle_m: np.ndarray, rooms: Sequence[Layout], voxel_m: float) -> float:
-    """Return how high the floor lies on which something with a middle, float64 [3], stands.
+    """Return the height of the floor under a centre float64 [3], in metres.
 
-    It is the highest under its middle of the rooms around it, of all rooms where none is; 0, the
-    ground storey's, where no room tells.
+    It is the highest floor below the centre among the rooms around it, or among all rooms if none
+    contains the centre; 0, the ground floor, without rooms.
     """
     under = [one for one in rooms if one.floor_z_m <= middle_m[2] + voxel_m]
     plan = np.asarray(middle_m, np.float64)[None, :2]
@@ -81,7 +81,7 @@ def floor_under_m(middle_m: np.ndarray, rooms: Sequence[Layout], voxel_m: float)
 
 
 def least_sides_m(placement: Placement, voxel_m: float) -> np.ndarray:
-    """Return how small a placement's turned box may become, float64 [3]."""
+    """Return the minimum size of a placement's rotated box in metres, float64 [3]."""
     if placement.template == OWN_CELLS:
         own = np.full(3, voxel_m)
     else:
@@ -92,7 +92,7 @@ def least_sides_m(placement: Placement, voxel_m: float) -> np.ndarray:
 
 
 def with_box(placement: Placement, box: np.ndarray) -> Placement:
-    """Return a placement whose turned box is ``box`` float64 [2, 3]."""
+    """Return a placement with the rotated box ``box`` float64 [2, 3]."""
     size = box[1] - box[0]
     own = size[[1, 0, 2]] if placement.quarter_turns % 2 else size
     return replace(placement, center_m=np.round(box.mean(axis=0), 4), size_m=np.round(own, 4))
@@ -193,12 +193,11 @@ def _rim(box: np.ndarray, polygon: np.ndarray) -> np.ndarray:
 
 
 def clear_overlaps(placements: list[Placement], voxel_m: float) -> tuple[Placement, ...]:
-    """Return the placements, in their order, without overlaps of up to two cells.
+    """Return the placements, in their order, with overlaps of up to two cells removed.
 
-    Of two objects that overlap, the upper one gives way in height. In plan, loose cells and small
-    things give way to furniture, else the longer one to the shorter, where its template may be
-    that small; else the other. None loses more than two cells of a side to all its neighbours
-    together. ``iou`` stays that of the match.
+    In height, the upper object is trimmed. In plan, loose cells and small objects are trimmed
+    before furniture, and otherwise the longer object if its template allows, else the other. No
+    object loses more than two cells of a side in total. ``iou`` remains that of the match.
     """
     boxes = [_box(one) for one in placements]
     for m, n in combinations(range(len(placements)), 2):
@@ -277,7 +276,7 @@ def _with_box(placement: Placement, box: Box) -> Placement:
 
 
 class Change(NamedTuple):
-    """Another way to put a placement, or None to leave it out, and what it costs, in metres."""
+    """An alternative placement, or None to remove it, with its cost in metres."""
 
     cost_m: float
     which: int
@@ -290,9 +289,9 @@ def settle_placements(
     """Return the placements, in their order, within their rooms and without collisions.
 
     Args:
-        placements: as matched.
-        grid: holds the objects' cells.
-        rooms: outlines of the rooms; without any, nothing is known to be outside.
+        placements: Matched placements.
+        grid: Grid with the objects' cells.
+        rooms: Rooms of the scan; without rooms no space counts as outside.
     """
     held = [within_rooms(one, rooms, grid.voxel_m) for one in placements]
     cleared = clear_overlaps([one for one in held if one is not None], grid.voxel_m)

@@ -1,4 +1,4 @@
-"""An object that is no box, such as an L of counters, cut into axis-aligned runs."""
+"""Decomposition of an object that is not a box, such as an L of counters, into runs."""
 
 import numpy as np
 
@@ -12,13 +12,13 @@ COMMON_TOPS = 3  # How many of the commonest tops are tried for the next run.
 
 
 def cut_into_runs(evidence: Evidence, max_runs: int, min_run_cells: int) -> list[np.ndarray]:
-    """Return the cells, int64 [N, 3] in the window, of each run; all own cells are in one.
+    """Return the cells of each run, int64 [N, 3] in the window; each own cell is in one run.
 
-    The object is first parted by height where its plan nearly vanishes (cupboards over a
-    counter). Then the largest rectangle of columns with about the same top is taken from the
-    plan, again and again. Columns in which nothing was seen free under that top may lie inside:
-    of a tall cupboard only the front is seen, and a kettle hides the counter under it. What
-    remains joins the run it touches, or is a run by itself.
+    The object is first cut by height where its plan nearly vanishes (cupboards above a counter).
+    Then the largest rectangle of columns of similar height is repeatedly removed from the plan.
+    Columns without free cells below that height may be included, since only the front of a tall
+    cupboard is seen and a kettle hides the counter below it. The remaining cells join a touching
+    run or form their own.
     """
     runs: list[np.ndarray] = []
     rest: list[np.ndarray] = []
@@ -110,10 +110,10 @@ def _largest(mask: np.ndarray, hidden: np.ndarray) -> tuple[int, int, int, int, 
 
 @njit
 def largest_rectangle(mask, hidden):  # pragma: no cover - compiled
-    """Return (seen, x0, y0, x1, y1) of the rectangle of mask or hidden that has most mask cells.
+    """Return (seen, x0, y0, x1, y1) of the rectangle within mask or hidden with most mask cells.
 
-    For each first row the rows below are joined one by one: a column stays usable while all its
-    cells are mask or hidden. Of equals the first.
+    For each first row, the rows below are added one by one; a column is usable while all its cells
+    are in mask or hidden. The first rectangle wins a tie.
     """
     nx, ny = mask.shape
     best = (0, 0, 0, 0, 0)

@@ -1,7 +1,8 @@
-"""Match templates: the paper's argmax over templates and turns, with sizes, parameters and shifts.
+"""Template matching: the paper's argmax over templates, rotations, sizes, parameters and shifts.
 
-A ``Trial`` is one way to put one template, and its score: the paper's IoU and what breaks ties. The
-first, coarse trials are every template of a class, turned and sized by the object's box.
+A ``Trial`` is a template with a size, rotation and position; its score is the paper's IoU plus
+tie-breaking terms. The first, coarse trials are all templates of a class in all rotations, sized by
+the object's box.
 """
 
 from collections.abc import Iterator
@@ -30,9 +31,9 @@ PARAMETER_STEPS = 5  # About one cell of 0.08 m for the widest parameter.
 
 
 class Trial(NamedTuple):
-    """A template with its size in cells along its own axes, its parameters, turn and place.
+    """A template with its size in cells along its own axes, its parameters, rotation and position.
 
-    ``corner`` is the first cell of the turned box, in the window of the evidence.
+    ``corner`` is the first cell of the rotated box in the window of the evidence.
     """
 
     template: Template
@@ -43,13 +44,13 @@ class Trial(NamedTuple):
 
     @property
     def turned_counts(self) -> Cells:
-        """The size of the box in the room's axes."""
+        """The size of the box in cells along the axes of the room."""
         depth, width, height = self.counts
         return (width, depth, height) if self.quarter_turns % 2 else (depth, width, height)
 
 
 class Scored(NamedTuple):
-    """A trial with its IoU, and the score that the search compares."""
+    """A trial with its IoU and the score used by the search."""
 
     score: float
     iou: float
@@ -57,7 +58,7 @@ class Scored(NamedTuple):
 
 
 class Bias(NamedTuple):
-    """What decides beside IoU: the front seen by find/, the cell size, and how much each weighs."""
+    """The tie-breaking terms of the score: the detected front, the cell size and the weights."""
 
     quarter_turns: int
     voxel_m: float
@@ -67,11 +68,11 @@ class Bias(NamedTuple):
 
 
 def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bias) -> Scored:
-    """Return the best of a trial at several shifts, int64 [S, 3]; of equals the first.
+    """Return the best of a trial's shifts, int64 [S, 3]; the first wins a tie.
 
-    IoU = covered own cells / (own cells + cells covered against): the paper's equation, in which
-    cells that say nothing are left out of the template. Growing into what was never seen costs
-    score, not IoU, so that a template goes beyond the object only as far as it must.
+    The IoU is covered own cells / (own cells + covered cells against), the paper's equation without
+    the template's cells of unknown state. Unseen space outside the object reduces the score but not
+    the IoU, so templates extend into it only as far as necessary.
     """
     solid = _turned(trial.template, trial.counts, trial.values, bias.voxel_m, trial.quarter_turns)
     counts = count_overlaps(solid, evidence.code, shifts + np.array(trial.corner))
@@ -85,7 +86,7 @@ def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bia
 
 
 def tie_break(trial: Trial, bias: Bias) -> float:
-    """Return what the usual size, the usual parameters and the seen front add to the score."""
+    """Return the contribution of typical size, typical parameters and the front to the score."""
     spans, own = trial.template.size_m, trial.template.parameters
     size = sum(
         _strangeness(count * bias.voxel_m, *span)
@@ -111,14 +112,17 @@ def _turned(
 
 
 def reach_of(templates: tuple[Template, ...], voxel_m: float) -> Cells:
-    """Return the largest of the smallest sizes: how far a trial can leave an object's box."""
+    """Return the largest minimum size of the templates, in cells along each axis.
+
+    It limits how far a trial can extend beyond an object's box.
+    """
     side = max((limits(one, voxel_m, axis)[0] for one in templates for axis in (0, 1)), default=1)
     height = max((limits(one, voxel_m, 2)[0] for one in templates), default=1)
     return side, side, height
 
 
 def limits(template: Template, voxel_m: float, axis: int) -> tuple[int, int]:
-    """Return the fewest and the most cells that a template may have along one of its axes."""
+    """Return the minimum and maximum number of cells of a template along one of its axes."""
     span = template.size_m[axis]
     least = max(1, int(span.minimum / voxel_m + 1e-6))
     return least, max(least, int(-(-span.maximum // voxel_m)))
@@ -127,13 +131,13 @@ def limits(template: Template, voxel_m: float, axis: int) -> tuple[int, int]:
 def seeds(
     templates: tuple[Template, ...], evidence: Evidence, voxel_m: float, *, anywhere: bool = False
 ) -> Iterator[Trial]:
-    """Give the trials of every template, turn and anchoring, with usual parameters.
+    """Yield the trials of every template, rotation and anchoring with typical parameters.
 
-    A template that stands on the floor is tried down to it, for a scan seldom sees under a
-    table; one that hangs on a wall only clear of the floor (with ``anywhere``, all of them at the
-    object's bottom). Where the object's box is smaller or larger than such furniture can be, the
-    template is tried flush with either end of it and in its middle; a template that lacks both
-    depth and width there is not tried, for an object seen from one side still shows its width.
+    A template that stands on the floor is extended down to it, since scans rarely see below a
+    table; one that hangs on a wall is tried only above the floor. With ``anywhere``, all templates
+    are placed at the bottom of the object. If the object's box is outside the size limits of the
+    template, the template is tried at both ends and in the middle of the box; it is skipped if both
+    depth and width are out of range, because an object seen from one side still shows its width.
     """
     for template in templates:
         values = tuple(sorted(template.complete().items()))
@@ -151,7 +155,7 @@ def seeds(
 
 
 def bottom_of(template: Template, evidence: Evidence, voxel_m: float) -> int | None:
-    """Return the layer where a template begins, or None where it cannot be."""
+    """Return the layer at which a template begins, or None if it does not fit."""
     low = max(evidence.low[2], min(evidence.floor, evidence.high[2] - 1))
     if template.mount == "floor":
         return min(low, evidence.floor) if evidence.floor < evidence.high[2] else low
@@ -187,7 +191,7 @@ def _anchors(trial: Trial, evidence: Evidence, bottom: int, anywhere: bool) -> l
 def best_matches(
     templates: tuple[Template, ...], evidence: Evidence, bias: Bias, chosen: RetrievalParameters
 ) -> list[Scored]:
-    """Return the best trial of each template and turn, refined, best first."""
+    """Return the best refined trial of each template and rotation, best first."""
     first: dict[tuple[str, int], Scored] = {}
     for trial in seeds(templates, evidence, bias.voxel_m, anywhere=chosen.paper_compat):
         scored = score_shifts(evidence, trial, NO_SHIFT, bias)
@@ -242,7 +246,7 @@ def _better(
 
 
 def shifts_within(shift_cells: int) -> np.ndarray:
-    """Return all shifts, int64 [S, 3], of up to ``shift_cells`` along each axis, nearest first."""
+    """Return all shifts, int64 [S, 3], of up to ``shift_cells`` along each axis, smallest first."""
     steps = range(-shift_cells, shift_cells + 1)
     every = sorted(product(steps, steps, steps), key=lambda s: (sum(map(abs, s)), s))
     return np.array(every, np.int64)

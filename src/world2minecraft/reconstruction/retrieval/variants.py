@@ -1,8 +1,8 @@
-"""Which design of its family stands for a match: by size, parameters and colour, after the match.
+"""Choice of the design within a family after matching, by size, parameters and colour.
 
-A match finds the shape; many designs share it. Those whose parts explain the object's cells about
-as well as the match did are on offer, and of them the one is taken that is nearest in size and
-colour. Equal objects of one colour are asked together, so that a set of chairs stays a set.
+Many designs share a shape. Of the designs that explain the object's cells about as well as the
+match, the closest in size and colour is used. Objects of the same size and colour are decided
+together, so that a set of chairs stays a set.
 """
 
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ NO_SHIFT = np.zeros((1, 3), np.int64)
 
 
 class Offer(NamedTuple):
-    """A design that may stand for a match, with the values that it takes over."""
+    """A design that may replace a match, with its IoU and parameter values."""
 
     template: str
     iou: float
@@ -37,7 +37,7 @@ class Offer(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """A placement, what may stand in its place, and the Oklab colour of its cells or None."""
+    """A placement, the designs that may replace it, and the Oklab colour of its cells or None."""
 
     placement: Placement
     offers: tuple[Offer, ...]
@@ -45,7 +45,7 @@ class Choice(NamedTuple):
 
 
 def offers_of(evidence: Evidence, match: Scored, bias: Bias) -> tuple[Offer, ...]:
-    """Return the designs of a match's family that explain its cells as well, itself the first."""
+    """Return the designs of a match's family with a similar fit, the match itself first."""
     trial = match.trial
     size = np.array(trial.counts) * bias.voxel_m
     found = [Offer(trial.template.name, match.iou, dict(trial.values))]
@@ -80,7 +80,7 @@ def _taken_over(other: Template, values: dict[str, float]) -> dict[str, float] |
 
 
 def colour_of_cells(grid: OccupancyGrid, evidence: Evidence) -> np.ndarray | None:
-    """Return the median Oklab colour, float32 [3], of an object's own cells; None without any."""
+    """Return the median Oklab colour of an object's cells, float32 [3], or None without colour."""
     cells = np.argwhere(evidence.code == OWN) + evidence.corner
     colours = grid.colour[tuple(cells.T)]
     colours = colours[colours.any(axis=1)]
@@ -88,7 +88,7 @@ def colour_of_cells(grid: OccupancyGrid, evidence: Evidence) -> np.ndarray | Non
 
 
 def choose(choices: Sequence[Choice]) -> tuple[Placement, ...]:
-    """Return the placements, in their order, each by the design that its whole set takes."""
+    """Return the placements, in their order, with the design chosen for their set."""
     result: dict[int, Placement] = {}
     for members in _sets(choices):
         best = _best([choices[index] for index in members])

@@ -1,10 +1,10 @@
-"""Stage 4: what each occupied cell is.
+"""Stage 4: assign a class to each occupied cell.
 
-A labeller takes the grid and the evidence behind it and gives the grid back with a class and a
-confidence for each occupied cell. Evidence wins: observed cells stay occupied, but for those of
-floors, ceilings and walls, which are pulled into the one layer that holds their plane's matter.
-``find_structure`` gives the rooms that these planes form. ``LABELLERS`` holds the built-in ones;
-others join through the entry point group ``world2minecraft.labeller``.
+A labeller gets the grid and its evidence and returns the grid with a class and a confidence for
+each occupied cell. Observed cells stay occupied, except cells of floors, ceilings and walls, which
+are moved to the layer that contains the matter of their plane. ``find_structure`` returns the rooms
+formed by these planes. ``LABELLERS`` contains the built-in labellers; others are registered through
+the entry point group ``world2minecraft.labeller``.
 """
 
 from typing import Protocol
@@ -35,25 +35,25 @@ LABELLERS = Registry(
 
 
 class Labeller(Protocol):
-    """Stage 4. An implementation is made without arguments, or with its parameters."""
+    """A labeller of stage 4, constructed without arguments or with its parameters."""
 
     def label(self, grid: OccupancyGrid, evidence: FusedEvidence) -> OccupancyGrid:
         """Return the grid with a class and a confidence for each occupied cell.
 
         Args:
-            grid: the cleaned read-out; its occupied cells are labelled anew.
-            evidence: what the grid was read from, of the same shape, origin and cell.
+            grid: Cleaned grid; existing labels of its occupied cells are replaced.
+            evidence: Evidence of the grid with the same shape, origin and cell size.
 
         Raises:
-            ValueError: grid and evidence do not lie on the same cells.
+            ValueError: If grid and evidence do not have the same cells.
         """
         ...
 
 
 def labeller(name: str) -> Labeller:
-    """Return a new labeller by name.
+    """Create a labeller by name.
 
     Raises:
-        UnknownNameError: none has this name; the message suggests the nearest.
+        UnknownNameError: If no labeller has this name; the message suggests the closest match.
     """
     return LABELLERS.load(name)()

@@ -1,7 +1,7 @@
-"""Backs and sides of cases that stand against a wall.
+"""Backs and sides of cases at a wall.
 
-The back of an open shelf lies as flat before its wall as a picture does; but the shelf stands
-around it, and is of the same wood.
+The back of an open shelf is as flat on its wall as a picture, but it is surrounded by the shelf and
+has the same colour.
 """
 
 from collections.abc import Iterator
@@ -20,12 +20,12 @@ ALIKE = 0.12  # Oklab difference of one wood in the light and in its own shadow.
 
 
 def classes_with_backs(surface: Surface, wall: Wall, labels: np.ndarray) -> np.ndarray:
-    """Return what the places of a wall are, uint8 [A, B], backs of cases given to these.
+    """Return the classes of a wall's positions, uint8 [A, B], with the backs of cases assigned.
 
     Args:
-        surface: the room.
-        wall: the wall; what hangs flat before it is objs so far.
-        labels: uint8 [X, Y, Z], where furniture is known.
+        surface: Surface of the room.
+        wall: The wall; flat objects on it have the class objs before this step.
+        labels: Known classes of furniture, uint8 [X, Y, Z].
     """
     relief, face = wall.relief, wall.face
     hung = (face.classes == SemanticClass.OBJS) & (face.depth_m < relief.plane_m)

@@ -1,8 +1,8 @@
-"""The input channels of the completion network: one truth for its training and its use.
+"""The input channels of the completion network, shared by training and inference.
 
-A ``Sight`` is the compact form: log-odds of every cell, and what is known of the occupied ones.
-``network_input`` spreads it to the channels of the network. What is missing is left out of a
-sight (None), and its channels are 0, as the network was trained to bear.
+A ``Sight`` is the compact form: the log-odds of every cell and the features of the occupied cells.
+``network_input`` expands it to the channels of the network. Missing features are None; their
+channels are 0, as in training.
 """
 
 from dataclasses import dataclass
@@ -26,10 +26,10 @@ CHANNELS = HINT + KINDS + 1
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """What is known of a grid of cells [X, Y, Z]; N cells of it are occupied.
+    """The known features of a grid [X, Y, Z] with N occupied cells.
 
-    ``hint`` is what the geometric labeller calls a cell, 0 where it leaves it out. ``bottom_m`` is
-    the height of the grid's lowest face over the floor.
+    ``hint`` is the class given by the geometric labeller, 0 if it has none. ``bottom_m`` is the
+    height of the lowest face of the grid above the floor.
     """
 
     log_odds: np.ndarray  # int8 [X, Y, Z] in ODDS_STEP; above 0 occupied, below free, 0 unknown
@@ -49,13 +49,13 @@ def sight_of(
     hint: np.ndarray | None = None,
     floor_m: float | None = 0.0,
 ) -> Sight:
-    """Return the network's input for a cleaned read-out.
+    """Return the compact network input of a cleaned grid.
 
     Args:
-        grid: the read-out; its occupied, free and unseen cells count.
-        evidence: what it was read from, on the same cells.
-        hint: uint8 [X, Y, Z] of the geometric labeller, or None.
-        floor_m: the floor's height in the room frame; None where it is not known.
+        grid: Cleaned grid; its occupied, free and unseen cells are used.
+        evidence: Evidence of the grid on the same cells.
+        hint: Labels of the geometric labeller, uint8 [X, Y, Z], or None.
+        floor_m: Height of the floor in the room frame, or None if unknown.
     """
     odds = np.clip(evidence.log_odds.astype(np.float32) / ODDS_STEP, -127, 127)
     occupied = grid.occupied
@@ -83,7 +83,7 @@ def sight_of(
 
 
 def network_input(sight: Sight) -> np.ndarray:
-    """Return float32 [CHANNELS, X, Y, Z], every value of the order of 1."""
+    """Return the network input, float32 [CHANNELS, X, Y, Z], with values in the order of 1."""
     shape = sight.log_odds.shape
     result = np.zeros((CHANNELS, *shape), np.float32)
     result[0], result[1], result[2] = (

@@ -1,11 +1,11 @@
-"""Label by a learned network: a small 3D network names what was seen and completes what is near.
+"""A labeller with a small 3D network, which also completes unseen cells close to surfaces.
 
-The network (``weights/completion.onnx``) was trained on virtual scans of generated rooms. Evidence
-wins: an observed cell stays occupied and is named among the eleven classes, an observed free cell
-stays free. Unseen cells are filled only where the network is sure and a surface of the same class
-was seen near by; they are marked as completed. Planes of floors and walls are pulled straight as
-by the other labellers, whose geometric labels are one of the network's inputs. Large grids are run
-in tiles.
+The network (``weights/completion.onnx``) was trained on virtual scans of generated rooms. Observed
+occupied cells stay occupied and get one of the eleven classes; observed free cells stay free.
+Unseen cells are filled only if the network is confident and surface of the same class was seen
+nearby; they are marked as completed. Planes of floors and walls are straightened as by the other
+labellers, and the labels of the geometric labeller are an input of the network. Large grids are
+processed in tiles.
 """
 
 from dataclasses import dataclass, replace
@@ -49,7 +49,7 @@ FIRST_THING = int(SemanticClass.CHAIR)
 
 
 class CompletionModel:
-    """The network of a file. The file is read when the first chances are asked for."""
+    """The completion network of a file, which is read on first use."""
 
     def __init__(self, weights: Path | None = None):
         self.weights = weights or WEIGHTS
@@ -80,10 +80,11 @@ class CompletionModel:
         return session
 
     def chances(self, sight: Sight) -> np.ndarray:
-        """Return float32 [12, X, Y, Z], the chance of each class of each cell.
+        """Predict the probability of each class for each cell, float32 [12, X, Y, Z].
 
         Raises:
-            InputError: the weights are not there. DamagedFileError: they are none.
+            InputError: If the weights file does not exist.
+            DamagedFileError: If the weights file is not a valid network.
         """
         cells = network_input(sight)
         shape = cells.shape[1:]
@@ -106,14 +107,15 @@ class CompletionModel:
 
 
 def likeliest(chance: np.ndarray, log_odds: np.ndarray) -> np.ndarray:
-    """Return uint8 [X, Y, Z]: what each cell most likely is, observed surface kept.
+    """Return the most probable class of each cell, uint8 [X, Y, Z], keeping observed surface.
 
-    Surface takes the likeliest of the eleven classes. Any other cell is solid where its classes
-    together are likelier than empty; so are more rooms whole than by the single best class.
+    Surface cells take the most probable of the eleven classes. Any other cell is solid if the sum
+    of its class probabilities exceeds that of empty, which preserves more complete rooms than the
+    best single class.
 
     Args:
-        chance: float32 [12, X, Y, Z].
-        log_odds: [X, Y, Z]; above 0 where surface was observed.
+        chance: Class probabilities, float32 [12, X, Y, Z].
+        log_odds: Log-odds [X, Y, Z]; positive for observed surface.
     """
     best = chance[1:].argmax(axis=0).astype(np.uint8) + 1
     solid = (log_odds > 0) | (chance[0] < HALF)
@@ -121,7 +123,7 @@ def likeliest(chance: np.ndarray, log_odds: np.ndarray) -> np.ndarray:
 
 
 def spans(length: int) -> list[tuple[int, int, int, int]]:
-    """Return how a side is cut: first and last cell looked at, and those kept, of each tile.
+    """Return the tiles of a side: first and last cell of the input, and of the part kept, of each.
 
     Example:
         >>> spans(100)
@@ -135,25 +137,25 @@ def spans(length: int) -> list[tuple[int, int, int, int]]:
 
 
 def softmax(logits: np.ndarray) -> np.ndarray:
-    """Return chances of logits along the first axis."""
+    """Convert logits to probabilities along the first axis."""
     shares = np.exp(logits - logits.max(axis=0))
     return shares / shares.sum(axis=0)
 
 
 @dataclass(frozen=True)
 class CompletionParameters:
-    """How the network's answer is used.
+    """Parameters of applying the network's prediction.
 
-    small_cells: parts of a class with fewer cells take the class around them.
-    agreed_share: a piece that the geometric labeller cut takes one class where this share of its
-        cells, by their chances, agrees.
-    hint_share: what the geometric label adds to the chance of its class.
-    beside_votes: what the network's chances count beside the shares of 2D votes, where a cell has
-        some; then the geometric label counts as it does for the votes labeller.
-    sure: the chance of being solid from which an unseen cell is completed.
-    reach_cells: how far off the observed surface that may be: 3 cells are 24 cm.
-    clear_cells: no cell is completed so near an observed thing.
-    filled: the classes that are filled: ceiling, floor and wall.
+    small_cells: Number of cells below which a part takes the class around it.
+    agreed_share: Minimum share of a geometric piece, weighted by probability, that agrees on a
+        class for the whole piece to take it.
+    hint_share: Amount added to the probability of the class of the geometric labeller.
+    beside_votes: Weight of the network's probabilities compared to the shares of 2D votes in cells
+        that have votes; the geometric label then counts as in the votes labeller.
+    sure: Minimum probability of being solid for an unseen cell to be completed.
+    reach_cells: Maximum distance of a completed cell from observed surface; 3 cells are 24 cm.
+    clear_cells: Minimum distance of a completed cell from an observed object.
+    filled: Classes that are completed: ceiling, floor and wall.
     """
 
     small_cells: int = parameter(4, unit="cells", origin="not recorded")
@@ -185,7 +187,7 @@ class CompletionParameters:
 
 
 class CompletionLabeller:
-    """A network's classes on observed surface, and completion near it."""
+    """A labeller that classifies observed surface with a network and completes cells near it."""
 
     def __init__(
         self,
@@ -199,13 +201,13 @@ class CompletionLabeller:
         self.model = CompletionModel(weights)
 
     def label(self, grid: OccupancyGrid, evidence: FusedEvidence) -> OccupancyGrid:
-        """Return the grid with a class for each occupied cell, and unseen cells completed.
+        """Return the grid with a class for each occupied cell and with unseen cells completed.
 
-        Confidence is the network's chance of the class.
+        The confidence is the probability of the class given by the network.
 
         Raises:
-            ValueError: grid and evidence do not lie on the same cells.
-            DamagedFileError: the weights are not there or are none.
+            ValueError: If grid and evidence do not have the same cells.
+            DamagedFileError: If the weights file is not a valid network.
         """
         base, origin = self.geometric.traced(grid, evidence)
         hint = hint_of(base, origin)
@@ -284,11 +286,12 @@ class CompletionLabeller:
 
 
 def hint_of(base: OccupancyGrid, origin: np.ndarray) -> np.ndarray:
-    """Return uint8 [X, Y, Z]: what the geometric labeller calls each cell whose surface it kept.
+    """Return the class of each cell whose surface the geometric labeller kept, uint8 [X, Y, Z].
 
     Args:
-        base: what ``GeometricLabeller.traced`` returned.
-        origin: int64 [X, Y, Z], where each cell's surface was seen, from there too.
+        base: Grid from ``GeometricLabeller.traced``.
+        origin: Cell in which the surface of each cell was seen, int64 [X, Y, Z], from the same
+            call.
     """
     hint = np.zeros(base.shape, np.uint8)
     retained = base.occupied
@@ -297,15 +300,15 @@ def hint_of(base: OccupancyGrid, origin: np.ndarray) -> np.ndarray:
 
 
 def piece_votes(hint: np.ndarray, chance: np.ndarray, agreed_share: float) -> np.ndarray:
-    """Return chances in which the pieces of things speak with one voice where they mostly agree.
+    """Return probabilities in which the cells of a piece agree if most of them do.
 
-    A piece is a connected part of one geometric class of things (5 to 11): geometry cuts things
-    apart better than it names them.
+    A piece is a connected part of one object class (5 to 11) of the geometric labeller, which
+    separates objects better than it classifies them.
 
     Args:
-        hint: uint8 [X, Y, Z].
-        chance: float32 [12, X, Y, Z].
-        agreed_share: what the mean chance of a class must be.
+        hint: Geometric labels, uint8 [X, Y, Z].
+        chance: Class probabilities, float32 [12, X, Y, Z].
+        agreed_share: Minimum mean probability of the common class.
     """
     voted = chance.copy()
     for kind in range(SemanticClass.CHAIR, CLASS_COUNT):
@@ -328,14 +331,14 @@ def piece_votes(hint: np.ndarray, chance: np.ndarray, agreed_share: float) -> np
 
 
 def columns(grid: OccupancyGrid, layers: slice) -> OccupancyGrid:
-    """Return the layers of a grid."""
+    """Return some layers of a grid."""
     arrays = ("labels", "confidence", "colour", "source", "instance")
     cut = {name: getattr(grid, name)[:, :, layers] for name in arrays}
     return replace(grid, origin_m=_raised(grid, layers), **cut)
 
 
 def columns_of_evidence(evidence: FusedEvidence, layers: slice) -> FusedEvidence:
-    """Return the layers of evidence."""
+    """Return some layers of evidence."""
     arrays = ("log_odds", "votes", "colour_sum", "offset_sum", "hits")
     cut = {name: getattr(evidence, name)[:, :, layers] for name in arrays}
     return replace(evidence, origin_m=_raised(evidence, layers), **cut)

@@ -1,7 +1,7 @@
-"""Label furniture by rules: objects are cut at horizontal surfaces and classified piece by piece.
+"""Label furniture by rules: objects are cut at horizontal surfaces and classified by piece.
 
-The rules ask for size, height, shape and colour of a surface and of what stands around it; the
-first that fits decides.
+The rules test the size, height, shape and colour of a surface and its surroundings; the first rule
+that matches decides.
 """
 
 from dataclasses import dataclass
@@ -64,15 +64,15 @@ def class_of_seat(
     closed: bool,
     parameters: PlateParameters,
 ) -> SemanticClass | None:
-    """Return whose seat a plate is, a chair's or a sofa's; None where it is no seat.
+    """Return whether a plate is the seat of a chair or a sofa, or None if it is not a seat.
 
     Args:
-        surface: the room.
-        plate: the plate.
-        left: bool [X, Y, Z], the cells that nothing has claimed yet.
-        closed: whether the plate is the top of a closed box, as upholstery is: then its back must
-            be of the same cloth, or a screen on a board would make a sofa of it.
-        parameters: the thresholds.
+        surface: Surface of the room.
+        plate: The plate.
+        left: Mask of the cells not assigned yet, bool [X, Y, Z].
+        closed: Whether the plate is the top of a closed box, such as upholstery. Its back must then
+            have the same colour, so that a screen on a sideboard is not taken for a sofa.
+        parameters: Thresholds.
     """
     if not within(plate.height_m, parameters.seat_height_m) or _is_board(
         surface, plate, parameters
@@ -91,9 +91,10 @@ def class_of_seat(
 def back_of(
     surface: Surface, plate: HorizontalSurface, left: np.ndarray, parameters: PlateParameters
 ) -> tuple[float, float]:
-    """Return how much of one side of a plate a back takes, and how its colour differs.
+    """Return the share of one side of a plate that a back covers, and its difference in colour.
 
-    Only long sides count; the difference is that of the median colours in Oklab, 1 for no back.
+    Only long sides are tested. The difference is that of the median Oklab colours, 1 without a
+    back.
     """
     first, last = (surface.layers_below(plate.height_m + rise) for rise in parameters.back_rise_m)
     rows, columns = np.nonzero(plate.footprint)
@@ -123,7 +124,7 @@ def _is_board(surface: Surface, plate: HorizontalSurface, parameters: PlateParam
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A table that was found: its height, and bool [X, Y] outlines under, on and around its top."""
+    """A table, with its height and bool [X, Y] masks of the area under, on and around its top."""
 
     height_m: float
     under: np.ndarray
@@ -140,7 +141,7 @@ class Table:
 
 @dataclass(frozen=True, eq=False)
 class Seat:
-    """A chair's seat that was found: its height, its middle, and bool [X, Y] what is under it."""
+    """The seat of a chair, with its height, its centre and a bool [X, Y] mask of the area below."""
 
     height_m: float
     middle_m: np.ndarray  # float64 [2]
@@ -158,13 +159,13 @@ class Seat:
 def classify_surface(
     surface: Surface, plate: HorizontalSurface, left: np.ndarray, parameters: PlateParameters
 ) -> SemanticClass | None:
-    """Return what a plate is the top, the seat or the mattress of; None where it does not say.
+    """Return the class of the object whose top, seat or mattress a plate is, or None.
 
     Args:
-        surface: the room.
-        plate: the plate.
-        left: bool [X, Y, Z], the cells that nothing has claimed yet.
-        parameters: the thresholds.
+        surface: Surface of the room.
+        plate: The plate.
+        left: Mask of the cells not assigned yet, bool [X, Y, Z].
+        parameters: Thresholds.
     """
     height, area, width = plate.height_m, plate.area_m2, plate.width_m
     desk_high = within(height, parameters.desk_height_m)
@@ -198,7 +199,7 @@ def _is_table_top(plate: HorizontalSurface, parameters: PlateParameters) -> bool
 def classify_piece(
     piece: Piece, tables: list[Table], seats: list[Seat], parameters: PieceParameters
 ) -> SemanticClass:
-    """Return what a piece is that no plate has claimed."""
+    """Return the class of a piece that belongs to no plate."""
     if any(_is_leg(piece, table, parameters) for table in tables):
         return SemanticClass.TABLE
     if any(_is_foot(piece, seat, parameters) for seat in seats):
@@ -276,7 +277,8 @@ def label_furniture(
 ) -> None:
     """Write the classes of the cells ``rest`` to ``labels``, both [X, Y, Z].
 
-    Things that stand apart are looked at apart, so that a house takes as long as its rooms.
+    Separate objects are processed separately, so the time for a house is the sum of that of its
+    rooms.
     """
     plan, inside = project_to_plan(rest), wall.sum(axis=2) < WALL_CELLS
     groups, count = label_components(plan | (dilate(plan, surface.cells_of(APART_M / 2)) & inside))

@@ -1,7 +1,7 @@
-"""The labeller that learns nothing: structure from planes, objects by size, height and shape.
+"""A labeller without learning: structure from planes, objects by size, height and shape.
 
-Floor and ceiling first, then walls; the rest is cut at its level plates, and the pieces are told
-apart by rules. Evidence wins: every observed cell keeps a class, but for the floor's spill.
+Floor and ceiling are found first, then walls. The remaining cells are cut at horizontal plates, and
+the pieces are classified by rules. Every observed cell keeps a class, except the floor's spill.
 """
 
 from dataclasses import replace
@@ -25,7 +25,7 @@ RELIABILITY = np.array([1, 0.95, 0.98, 0.9, 0.7, 0.8, 0.8, 0.8, 0.8, 0.6, 0.8, 0
 
 
 class GeometricLabeller:
-    """Structure from planes and heights; objects by size, height and shape."""
+    """A labeller that finds structure from planes, and classifies objects by size and shape."""
 
     def __init__(self, parameters: GeometricParameters | None = None):
         self.parameters = parameters or GeometricParameters()
@@ -34,20 +34,20 @@ class GeometricLabeller:
         """Return the grid with a class for each occupied cell.
 
         Raises:
-            ValueError: grid and evidence do not lie on the same cells.
+            ValueError: If grid and evidence do not have the same cells.
         """
         return self.traced(grid, evidence)[0]
 
     def traced(
         self, grid: OccupancyGrid, evidence: FusedEvidence
     ) -> tuple[OccupancyGrid, np.ndarray]:
-        """Return what ``label`` returns, and where each cell's surface was seen.
+        """Return the result of ``label`` and the cell in which each cell's surface was seen.
 
-        The second is int64 [X, Y, Z]: the flat index of the cell that a cell of a straightened
-        plane came from, its own elsewhere.
+        The second array is int64 [X, Y, Z]: the flat index of the cell from which a cell of a
+        straightened plane was moved, or the cell's own index.
 
         Raises:
-            ValueError: grid and evidence do not lie on the same cells.
+            ValueError: If grid and evidence do not have the same cells.
         """
         surface = surface_of(grid, evidence)
         labels = np.array(grid.labels)

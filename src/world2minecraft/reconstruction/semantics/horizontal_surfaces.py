@@ -1,6 +1,6 @@
-"""Plates: level surfaces seen from above, such as table tops, seats, beds and counters.
+"""Plates: horizontal surfaces seen from above, such as table tops, seats, beds and counters.
 
-In voxels a table with its chairs is one piece; plates are what it is cut by.
+A table with its chairs is a single connected piece of voxels, which plates divide.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ MAX_HEIGHTS = 40
 
 @dataclass(frozen=True, eq=False)
 class HorizontalSurface:
-    """One level surface. ``footprint`` is its outline seen from above, holes filled."""
+    """A horizontal surface. ``footprint`` is its outline from above with holes filled."""
 
     mask: np.ndarray  # bool [X, Y, Z]: its cells
     footprint: np.ndarray  # bool [X, Y]
@@ -33,7 +33,7 @@ class HorizontalSurface:
 def find_horizontal_surfaces(
     surface: Surface, rest: np.ndarray, parameters: PlateParameters
 ) -> list[HorizontalSurface]:
-    """Return the plates among the cells ``rest``, bool [X, Y, Z], largest at each height first."""
+    """Find the plates among the cells ``rest``, bool [X, Y, Z], sorted by height and size."""
     facing_up = rest.copy()
     facing_up[:, :, :-1] &= ~surface.occupied[:, :, 1:] | _next_is_level(surface)
     low, high = parameters.height_m

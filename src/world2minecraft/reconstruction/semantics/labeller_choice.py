@@ -1,4 +1,4 @@
-"""The labeller that ``auto`` stands for, by what the evidence is made of."""
+"""The choice of the labeller for ``auto``, by the kind of evidence."""
 
 from world2minecraft.core.types import FusedEvidence
 from world2minecraft.reconstruction.semantics.completion_labeller import (
@@ -8,10 +8,10 @@ from world2minecraft.reconstruction.semantics.completion_labeller import (
 
 
 def choose_labeller(evidence: FusedEvidence, from_photos: bool) -> str:
-    """Return the name of the labeller that ``auto`` takes.
+    """Return the name of the labeller that ``auto`` selects.
 
-    It is the network where depth was measured and cells are of the size that it learnt. The errors
-    of stereo it has not seen: in a real kitchen's photos it took a table's end for a bed.
+    The completion network is used for measured depth and the cell size it was trained with. It was
+    not trained on stereo errors: in photos of a real kitchen it took the end of a table for a bed.
     """
     if not from_photos and abs(evidence.voxel_m / LEARNT_VOXEL_M - 1) <= VOXEL_TOLERANCE:
         return "completion"

@@ -1,7 +1,7 @@
-"""Planes pulled straight: each place of a plane keeps one cell, in the layer that holds its matter.
+"""Straightening of planes: each position keeps one cell, in the layer of the plane's matter.
 
-Noise scatters a wall over two layers. Only cells of the plane itself move, and only along it; what
-stands before it stays. A cell that was moved takes its colour and confidence with it.
+Noise spreads a wall over two layers. Only cells of the plane are moved, and only along its normal;
+objects in front of it are kept. A moved cell keeps its colour and confidence.
 """
 
 from copy import copy
@@ -23,7 +23,7 @@ MOVE_M = 0.02  # A place this far off its plane does not move into a layer where
 
 
 class Straightening:
-    """What becomes of the cells of planes; filled plane by plane, then applied at once."""
+    """The planned changes of the cells of planes, collected by plane and then applied at once."""
 
     def __init__(self, surface: Surface):
         self.surface = surface
@@ -33,7 +33,7 @@ class Straightening:
         self.before, self.behind = np.zeros((2, *shape), bool)  # Cells that a plane has left.
 
     def storey(self, storey: Storey) -> "Straightening":
-        """Return the part that is about one storey; what is added to it counts in the whole."""
+        """Return a view for one storey; planes added to it are added to the whole."""
         part = copy(self)
         part.surface = storey.surface(self.surface)
         for name in ("labels", "origin", "before", "behind"):
@@ -43,13 +43,13 @@ class Straightening:
     def add(
         self, relief: PlaneResiduals, cells: np.ndarray, classes: np.ndarray, depth_m: np.ndarray
     ) -> None:
-        """Pull a plane straight.
+        """Straighten a plane.
 
         Args:
-            relief: the plane.
-            cells: bool [N, A, B], the cells that are of it; no other moves.
-            classes: uint8 [A, B], what each place is.
-            depth_m: float [A, B], where along axis 0 its surface lies.
+            relief: Relief of the plane.
+            cells: Mask of the cells of the plane, bool [N, A, B]; no other cell is moved.
+            classes: Class of each position, uint8 [A, B].
+            depth_m: Position of the surface along axis 0 in metres, float [A, B].
         """
         chosen = cells.any(axis=0)
         layer = self._layer(relief, depth_m)
@@ -77,9 +77,10 @@ class Straightening:
     def add_level(
         self, cells: np.ndarray, sign: int, kind: int, height_m: float | None = None
     ) -> None:
-        """Pull a level plane straight: cells bool [X, Y, Z], matter above (1) or below (-1).
+        """Straighten a horizontal plane of cells bool [X, Y, Z].
 
-        Where ``height_m`` is given the plane lies there, else where it was seen.
+        The plane's matter is above (``sign`` 1) or below (-1). The plane is at ``height_m`` if
+        given, otherwise at its observed height.
         """
         view = turn_surface(cells, 2, sign)
         box = (slice(0, view.shape[0]), slice(0, view.shape[1]), slice(0, view.shape[2]))
@@ -89,7 +90,7 @@ class Straightening:
         self.add(relief, view, classes, flat)
 
     def applied(self, grid: OccupancyGrid, labels: np.ndarray) -> OccupancyGrid:
-        """Return the grid with ``labels`` [X, Y, Z] for what is of no plane."""
+        """Return the straightened grid, with ``labels`` [X, Y, Z] for all other cells."""
         labels, source = labels.copy(), np.array(grid.source)
         confidence, colour = np.array(grid.confidence), np.array(grid.colour)
         labels[self.before] = SemanticClass.EMPTY

@@ -1,7 +1,7 @@
-"""Screens on walls: dark or bluish plates that hang or stand a hand's breadth before a wall.
+"""Screens at walls: dark or bluish plates a few centimetres in front of a wall.
 
-A picture lies closer to its wall, a cupboard reaches further into the room. Of a lit or glossy
-screen depth cameras often see the frame alone, so a part of its box is enough.
+Pictures are closer to the wall, and cupboards extend further into the room. Depth cameras often see
+only the frame of a lit or glossy screen, so a part of its box is sufficient.
 """
 
 from typing import cast
@@ -27,14 +27,14 @@ def label_screens(
     labels: np.ndarray,
     parameters: PieceParameters,
 ) -> np.ndarray:
-    """Write tvs to ``labels`` where a screen is; return its cells, all [X, Y, Z].
+    """Write the class tvs to the cells of screens in ``labels`` and return their mask [X, Y, Z].
 
     Args:
-        surface: the room.
-        rest: bool [X, Y, Z], the cells that are no structure.
-        runs: the walls.
-        labels: uint8 [X, Y, Z], written to.
-        parameters: the thresholds.
+        surface: Surface of the room.
+        rest: Mask of the cells that are not structure, bool [X, Y, Z].
+        runs: Walls.
+        labels: Labels, uint8 [X, Y, Z], modified in place.
+        parameters: Thresholds.
     """
     found = np.zeros(rest.shape, bool)
     for run in runs:
@@ -121,7 +121,7 @@ def _is_screen(
 
 
 def screen_share(oklab: np.ndarray, parameters: PieceParameters) -> float:
-    """Return the share of Oklab colours [N, 3] that are dark or blue to cyan."""
+    """Return the share of Oklab colours [N, 3] that are dark, blue or cyan."""
     dark = oklab[:, 0] <= parameters.screen_lightness
     blue = (oklab[:, 1] < 0.02) & (oklab[:, 2] < -0.01) & (np.hypot(*oklab[:, 1:].T) >= 0.04)
     return float((dark | blue).mean())

@@ -1,4 +1,4 @@
-"""Majority smoothing: a part of a class too small to be a thing takes the class around it."""
+"""Majority smoothing: parts of a class that are too small take the class around them."""
 
 import numpy as np
 
@@ -9,12 +9,12 @@ NEIGHBOURHOOD = np.argwhere(np.ones((3, 3, 3), bool))
 
 
 def smooth_labels(labels: np.ndarray, small_cells: int) -> np.ndarray:
-    """Return labels in which small parts take the class that most of their neighbours have.
+    """Return labels in which small parts take the class of most of their neighbours.
 
     Args:
-        labels: uint8 [X, Y, Z], ids 0 to 11 or 255. Only occupied cells change, and only to
-            classes 1 to 11; a part without occupied neighbours keeps its class.
-        small_cells: parts with fewer cells are small.
+        labels: Labels, uint8 [X, Y, Z], 0 to 11 or 255. Only occupied cells change, and only to
+            classes 1 to 11; parts without occupied neighbours keep their class.
+        small_cells: Number of cells below which a part is small.
     """
     result = labels.copy()
     padded = np.pad(labels, 1)

@@ -1,4 +1,4 @@
-"""Connected pieces of surface, and the few numbers by which they are told apart."""
+"""Connected pieces of surface, and the measurements by which they are classified."""
 
 from dataclasses import dataclass
 from typing import cast
@@ -16,7 +16,7 @@ PLANE_GATE_M = 0.03
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """One connected piece: its cells, and the box that holds nearly all of its surface."""
+    """A connected piece, with its cells and the box that contains nearly all of its surface."""
 
     at: tuple[np.ndarray, np.ndarray, np.ndarray]  # Cell indices, each int [N].
     low_m: np.ndarray  # float64 [3], of the surface points.
@@ -28,31 +28,31 @@ class Piece:
 
     @property
     def size_m(self) -> np.ndarray:
-        """The box, float64 [3], along x, y and z."""
+        """The size of the box along x, y and z in metres, float64 [3]."""
         return self.high_m - self.low_m
 
     @property
     def tall_m(self) -> float:
-        """The height of the box."""
+        """The height of the box in metres."""
         return float(self.size_m[2])
 
     @property
     def long_m(self) -> float:
-        """The longer side in plan."""
+        """The longer side of the box in plan, in metres."""
         return float(self.size_m[:2].max())
 
     @property
     def thin_m(self) -> float:
-        """The shorter side in plan."""
+        """The shorter side of the box in plan, in metres."""
         return float(self.size_m[:2].min())
 
 
 def find_pieces(
     surface: Surface, rest: np.ndarray, wall: np.ndarray, parameters: PieceParameters
 ) -> list[Piece]:
-    """Return the pieces of ``rest``, bool [X, Y, Z], joined by faces, edges and corners.
+    """Return the pieces of ``rest``, bool [X, Y, Z], connected by faces, edges or corners.
 
-    A piece is near a wall where one of its cells is within ``near_wall_m`` of a wall's column.
+    A piece is near a wall if one of its cells is within ``near_wall_m`` of a column of the wall.
     """
     parts, count = label_components(rest)
     columns = wall.sum(axis=2) >= 2

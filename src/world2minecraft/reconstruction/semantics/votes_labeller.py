@@ -1,7 +1,8 @@
-"""Labels from 2D label images: each cell takes the class that most of its pixels voted for.
+"""A labeller for 2D label images: each cell takes the class with the most votes of its pixels.
 
-Where nothing voted, the geometric label stands; where votes are divided it decides. Label images
-err in patches, at edges and far away; planes know floor, ceiling and walls better than they.
+Cells without votes take the geometric label, which also decides between divided votes. Label images
+have errors in patches, at edges and at a distance; planes are more reliable for floor, ceiling and
+walls.
 """
 
 from dataclasses import replace
@@ -20,7 +21,7 @@ STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15
 
 
 class VotesLabeller:
-    """Argmax of the votes over classes 1 to 11, and the geometric label where there are none."""
+    """A labeller that takes the class with the most votes, or the geometric label without votes."""
 
     def __init__(self, parameters: GeometricParameters | None = None, *, small_cells: int = 3):
         self.geometric = GeometricLabeller(parameters)
@@ -29,10 +30,11 @@ class VotesLabeller:
     def label(self, grid: OccupancyGrid, evidence: FusedEvidence) -> OccupancyGrid:
         """Return the grid with a class for each occupied cell.
 
-        Confidence is the winner's share of the votes times the cell's probability.
+        The confidence is the winner's share of the votes times the occupancy probability of the
+        cell.
 
         Raises:
-            ValueError: grid and evidence do not lie on the same cells.
+            ValueError: If grid and evidence do not have the same cells.
         """
         base, origin = self.geometric.traced(grid, evidence)
         occupied = np.argwhere(base.occupied)
@@ -52,7 +54,7 @@ class VotesLabeller:
 
 
 def geometric_prior(labels: np.ndarray) -> np.ndarray:
-    """Return what geometric labels [N] of classes 1 to 11 add to each class, float32 [N, 11]."""
+    """Return the amounts added to classes 1 to 11 by geometric labels [N], float32 [N, 11]."""
     weight = np.where(labels <= SemanticClass.WINDOW, STRUCTURE_PRIOR, OBJECT_PRIOR)
     prior = np.zeros((len(labels), CLASS_COUNT - 1), np.float32)
     prior[np.arange(len(labels)), labels.astype(int) - 1] = weight
