@@ -69,91 +69,91 @@ class BuildParameters:
     structure_colours: int = parameter(
         3,
         unit="kinds of block",
-        origin="a wall, its skirting and one thing on it; more looked like noise",
+        origin="a wall, its skirting board and one object on it; more blocks look like noise",
         bounds=AT_LEAST_1,
     )
     object_colours: int = parameter(
         6,
         unit="kinds of block",
-        origin="a shelf with things on it; with two, a chair's seat and back at 4 blocks a metre "
-        "read as two things",
+        origin="a shelf with objects on it; a chair with two blocks looks like two objects at 4 "
+        "blocks per metre",
         bounds=AT_LEAST_1,
     )
     saturation: float = parameter(
         1.2,
         unit="times",
-        origin="haze, glare and the mixing of neighbouring things in a cell wash colours out; the "
-        "kitchen's reds came out purple",
+        origin="haze, glare and mixed cells reduce the saturation; without the factor, the reds of "
+        "the sample kitchen become purple",
         bounds=NOT_BELOW_0,
     )
     preference: float = parameter(
         0.02,
         unit="Oklab",
-        origin="one barely visible step, so that a table is of wood",
+        origin="one barely visible step, so that tables are made of wood",
         bounds=NOT_BELOW_0,
     )
     structure_lightness_weight: float = parameter(
         0.05,
         unit="times",
-        origin="light falls unevenly on walls and floors; the kitchen's one carpet came out grey "
-        "and black at 0.15, while black and white tiles stay two",
+        origin="walls and floors are lit unevenly; at 0.15, the carpet of the sample kitchen "
+        "becomes grey and black, while black and white tiles stay different at the default",
         bounds=NOT_BELOW_0,
     )
     structure_noticed: float = parameter(
         0.12,
         unit="Oklab",
-        origin="keeps the shade under the kitchen's table off its carpet",
+        origin="ignores the shadow under the table of the sample kitchen",
         bounds=NOT_BELOW_0,
     )
     object_noticed: float = parameter(
         0.11,
         unit="Oklab",
-        origin="keeps a dark counter from its red front and two boards of one table alike",
+        origin="separates a dark counter from its red front, but not two boards of one table",
         bounds=NOT_BELOW_0,
     )
     lightness_weight: float = parameter(
         0.4,
         unit="times",
-        origin="a red cupboard in the shade stays red; at 1 it came out brown",
+        origin="a red cupboard in shadow stays red; at 1 it becomes brown",
         bounds=NOT_BELOW_0,
     )
     calm: float = parameter(
         0.04,
         unit="Oklab",
-        origin="about the noise of fused colours on one plain surface",
+        origin="about the noise of fused colours on a uniform surface",
         bounds=NOT_BELOW_0,
     )
-    face_share: float = parameter(0.3, unit="share", origin="a wall seen in part", bounds=SHARE)
+    face_share: float = parameter(0.3, unit="share", origin="a partly seen wall", bounds=SHARE)
     object_share: float = parameter(
         0.25,
         unit="share",
-        origin="a chair leg, one cell wide, fills a third of a face at 4 blocks a metre, and less "
-        "of its uppermost one",
+        origin="a chair leg of one cell covers a third of a block's face at 4 blocks per metre, "
+        "and less of the uppermost block",
         bounds=SHARE,
     )
     most_contradicted: float = parameter(
         0.2,
         unit="share",
-        origin="a guess, over what snapping alone does",
+        origin="a guess, above the share caused by snapping to blocks",
         bounds=SHARE,
     )
     chair_contradicted: float = parameter(
         0.35,
         unit="share",
-        origin="a chair that stands at 45 degrees is built at a quarter turn, and reads as a "
-        "chair; the heap of its own cells does not",
+        origin="a chair rotated by 45 degrees is built at a quarter turn and is recognizable, "
+        "unlike a chair built from its cells",
         bounds=SHARE,
     )
     close_tops: bool = parameter(True)
     plane_reach_blocks: float = parameter(
         0.75,
         unit="blocks",
-        origin="noise of two cells at 4 blocks a metre, under the depth of a chimney breast",
+        origin="noise of two cells at 4 blocks per metre, less than the depth of a chimney breast",
         bounds=SHARE,
     )
     plane_area_m2: float = parameter(0.3, unit="m2", origin="a guess", bounds=NOT_BELOW_0)
     gap_m: float = parameter(
-        0.6, unit="m", origin="a guess: less than a doorway", bounds=NOT_BELOW_0
+        0.6, unit="m", origin="a guess: narrower than a doorway", bounds=NOT_BELOW_0
     )
 
     def __post_init__(self):

@@ -46,18 +46,18 @@ class Parameters:
         sets the scale.
     """
 
-    voxel_m: float = parameter(0.08, unit="m", origin="the paper's cell", stage="scan")
+    voxel_m: float = parameter(0.08, unit="m", origin="the paper's cell size", stage="scan")
     blocks_per_metre: float = parameter(
         4.0,
         unit="blocks per metre",
-        origin="a room is recognised at once; at 2 it is not",
+        origin="rooms are recognizable at first sight, unlike at 2",
         stage="build",
     )
     predictor: str = parameter("depth", stage="fuse")
     depth_model: str = parameter("", stage="scan")
     plan: str = parameter("", stage="fuse")
     labeller: str = parameter("auto", stage="label")
-    mc_version: str = parameter("1.20.1", origin="newer games upgrade its worlds", stage="build")
+    mc_version: str = parameter("1.20.1", origin="newer versions upgrade its worlds", stage="build")
     mend: bool = parameter(True, stage="build")
     formats: str = parameter("", stage="build")
     known: tuple[str, float] | None = parameter(

@@ -28,13 +28,13 @@ class CleaningParameters:
     """
 
     floater_cells: int = parameter(
-        6, unit="cells", origin="24 x 16 x 8 cm, less than a cup with its saucer gives"
+        6, unit="cells", origin="24 x 16 x 8 cm, smaller than a cup with its saucer"
     )
     hole_m: float = parameter(
         0.32,
         unit="m",
-        origin="at 0.64, 0.4 and 0.32 m the precision of the shared kitchen's cells, completed "
-        "ones counted, is 0.988, 0.990 and 0.997",
+        origin="the precision of the cells of the sample kitchen, including completed cells, is "
+        "0.988, 0.990 and 0.997 at 0.64, 0.4 and 0.32 m",
     )
 
     def __post_init__(self):

@@ -38,57 +38,59 @@ class FusionParameters:
         0.08, unit="m", origin="the paper's cell", typed="--voxel 0.08", copy_of="voxel_m"
     )
     hit_log_odds: float = parameter(
-        0.9, unit="log-odds", origin="a trial on a synthetic room", bounds=ABOVE_0
+        0.9, unit="log-odds", origin="tuned on a synthetic room", bounds=ABOVE_0
     )
-    free_log_odds: float = parameter(-0.2, unit="log-odds", origin="a trial on a synthetic room")
+    free_log_odds: float = parameter(-0.2, unit="log-odds", origin="tuned on a synthetic room")
     limit_log_odds: float = parameter(
-        6.0, unit="log-odds", origin="a trial on a synthetic room", bounds=ABOVE_0
+        6.0, unit="log-odds", origin="tuned on a synthetic room", bounds=ABOVE_0
     )
     network_weight: float = parameter(
         0.05,
         unit="share",
-        origin="a view that is sure adds or takes 0.2: it carves as one ray does, and a look of "
-        "depth at a surface outweighs four",
+        origin="a fully confident view changes the log-odds by 0.2, as much as one ray; one "
+        "measured surface outweighs four such views",
         bounds=NOT_BELOW_0,
     )
     nudge_m: float = parameter(
         0.01,
         unit="m",
-        origin="half of the 2 cm sub-cell by which truth is counted",
+        origin="half of a 2 cm sub-cell of the ground truth",
         bounds=NOT_BELOW_0,
     )
     min_share: float = parameter(
         0.1,
         unit="share",
-        origin="at 0.05 edges grow, at 0.15 chair legs go",
+        origin="at 0.05 edges grow, at 0.15 chair legs vanish",
         bounds=SHARE,
     )
     min_points: int = parameter(2, unit="points", origin="a single point is noise")
     clear_m: float = parameter(
-        0.075, unit="m", origin="the noise of a sensor before a surface", bounds=NOT_BELOW_0
+        0.075, unit="m", origin="sensor noise in front of a surface", bounds=NOT_BELOW_0
     )
     clear_growth: float = parameter(
-        0.0, unit="m per m", origin="a sensor's noise is within clear_m", bounds=NOT_BELOW_0
+        0.0, unit="m per m", origin="sensor noise is covered by clear_m", bounds=NOT_BELOW_0
     )
     solid_share: float = parameter(
         0.0625,
         unit="share",
-        origin="4 of 64 sub-cells, the rule by which SSCNet made its labels",
+        origin="4 of 64 sub-cells, as in the labels of SSCNet",
         bounds=SHARE,
     )
     sigma_m: float = parameter(
-        0.0012, unit="m", origin="known for structured-light cameras", bounds=NOT_BELOW_0
+        0.0012, unit="m", origin="published for structured-light cameras", bounds=NOT_BELOW_0
     )
     sigma_growth: float = parameter(
-        0.0019, unit="1/m", origin="known for structured-light cameras", bounds=NOT_BELOW_0
+        0.0019, unit="1/m", origin="published for structured-light cameras", bounds=NOT_BELOW_0
     )
-    pose_m: float = parameter(0.003, unit="m", origin="poses after registration", bounds=ABOVE_0)
+    pose_m: float = parameter(
+        0.003, unit="m", origin="pose error after registration", bounds=ABOVE_0
+    )
     pose_growth: float = parameter(
-        0.0015, unit="m per m", origin="0.09 degrees", bounds=NOT_BELOW_0
+        0.0015, unit="m per m", origin="a rotation error of 0.09 degrees", bounds=NOT_BELOW_0
     )
     merge_m: float = parameter(0.016, unit="m", origin="docs/fusion.md", bounds=NOT_BELOW_0)
     merge_sigmas: float = parameter(
-        3.0, unit="sigmas", origin="nearly all of a surface's noise", bounds=NOT_BELOW_0
+        3.0, unit="sigmas", origin="covers nearly all noise of a surface", bounds=NOT_BELOW_0
     )
     sure_m: float = parameter(0.003, unit="m", origin="docs/fusion.md", bounds=ABOVE_0)
 

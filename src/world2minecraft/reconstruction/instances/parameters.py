@@ -29,40 +29,40 @@ class InstanceParameters:
     density_kernel: int = parameter(
         3,
         unit="cells",
-        origin="the smallest that sees a neighbourhood; object F1 at 1, 3 and 5: 0.957, 0.959, "
-        "0.956 with 2D labels",
+        origin="smallest kernel that covers a neighbourhood; the object F1 with 2D labels is "
+        "0.957, 0.959 and 0.956 at 1, 3 and 5",
     )
     density_threshold: float = parameter(
         0.2,
         unit="share",
-        origin="takes shells with their edges and leaves specks and poles to the growing step; "
-        "from 0.4 on objects fall apart",
+        origin="includes shells and their edges, but not specks and poles, which are added later; "
+        "at 0.4 and above, objects fall apart",
     )
     cluster_radius: float = parameter(
         2.0,
         unit="cells",
-        origin="bridges a one-cell hole; at 1 holes part objects, at 4 neighbours merge where "
-        "labels are poor",
+        origin="bridges holes of one cell; at 1, holes divide objects, and at 4, neighbours with "
+        "poor labels are merged",
         bounds=ABOVE_0,
     )
     min_samples: int = parameter(
         4,
         unit="cells",
-        origin="less than any shell has within two cells and more than a bridge of noise between "
-        "two objects; from 8 on thin things have no core",
+        origin="fewer cells than any shell has within two cells, and more than a bridge of noise "
+        "between two objects has; at 8 and above, thin objects have no core points",
         bounds=ABOVE_0,
     )
     min_cells: int = parameter(
         8,
         unit="cells",
-        origin="at 0.08 m the face of a book; 5 finds a few cups more with 2D labels (0.962) and "
-        "takes crumbs for objects with geometric ones (0.761, at 8 0.780)",
+        origin="size of a book's cover at 0.08 m; with 5, a few more cups are found with 2D labels "
+        "(F1 0.962), but noise becomes objects with geometric labels (F1 0.761, 0.780 at 8)",
         bounds=ABOVE_0,
     )
     join_radius: float = parameter(
         5.0,
         unit="cells",
-        origin="the height of a chair's seat, for legs that a scan has torn off; measured on "
+        origin="height of a chair's seat, for legs that the scan separates; measured on "
         "generated chairs",
     )
     paper_compat: bool = parameter(False)

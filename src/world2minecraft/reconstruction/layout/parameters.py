@@ -136,8 +136,8 @@ class PlateParameters:
     back_share: Minimum share of one side of the seat that a back covers.
     closed_seat_m: Maximum height of an upholstered seat.
     same_cloth: Maximum Oklab difference of the seat and back of one upholstered object.
-    shelf_m, shelf_share: Height above a plate, and share of the plate, from which objects above it
-        make it the board of a shelf.
+    shelf_m, shelf_share: Height range above a plate, and minimum share of the plate, in which
+        objects make it the board of a shelf.
     bed_height_m, bed_size_m, bed_area_m2: Height range, minimum length and width, and minimum area
         of a bed.
     table_height_m, table_width_m, table_area_m2: Height range, minimum width and minimum area of a

@@ -23,8 +23,12 @@ class RegistrationParameters:
     held_share: Share of the surface that is held out to judge the result.
     """
 
-    passes: int = parameter(5, origin="after five a generated room's poses moved by under 0.1 mm")
-    cell_m: float = parameter(0.10, unit="m", origin="flat within a sensor's noise", bounds=ABOVE_0)
+    passes: int = parameter(
+        5, origin="later passes move the poses of a generated room by less than 0.1 mm"
+    )
+    cell_m: float = parameter(
+        0.10, unit="m", origin="surfaces of this width are flat within sensor noise", bounds=ABOVE_0
+    )
     jitter_m: float = parameter(
         0.008, unit="m", origin="a first guess; docs/alignment.md", bounds=ABOVE_0
     )
@@ -37,7 +41,7 @@ class RegistrationParameters:
     least_scale_sigma: float = parameter(
         0.003,
         unit="share",
-        origin="of generated scans without any, 0.1 % was found",
+        origin="0.1 % is estimated for generated scans without scale errors",
         bounds=BELOW_HALF,
     )
     held_share: float = parameter(0.15, unit="share", origin="docs/alignment.md", bounds=BELOW_HALF)

@@ -115,7 +115,7 @@ class Matched(NamedTuple):
         return self.matches[0].iou if self.matches else 0.0
 
     def unmatched(self) -> "Matched":
-        """The same cells without matches, to be built from cells."""
+        """The same cells without any match, so that the cells themselves are built."""
         return self._replace(matches=())
 
 

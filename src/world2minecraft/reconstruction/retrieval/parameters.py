@@ -43,23 +43,23 @@ class RetrievalParameters:
     min_iou: float = parameter(
         0.5,
         unit="IoU",
-        origin="a poor box is worse than the object's own crumbs",
+        origin="a poorly matching template looks worse than the object's own cells",
         bounds=SHARE,
     )
     shift_cells: int = parameter(
         1,
         unit="cells",
-        origin="a box is a cell off where noise adds or loses a layer",
+        origin="a box is off by one cell if noise adds or removes a layer",
         bounds=UP_TO_8,
     )
     size_slack: int = parameter(
         1,
         unit="cells",
-        origin="a box is a cell off where noise adds or loses a layer",
+        origin="a box is off by one cell if noise adds or removes a layer",
         bounds=UP_TO_8,
     )
     finalists: int = parameter(6, origin="docs/furniture.md", bounds=ABOVE_0)
-    alternatives: int = parameter(5, origin="what an editor can show", bounds=UP_TO_8)
+    alternatives: int = parameter(5, origin="number that the editor shows", bounds=UP_TO_8)
     cut_below: float = parameter(
         0.75,
         unit="IoU",
@@ -69,34 +69,34 @@ class RetrievalParameters:
     cut_gain: float = parameter(
         0.1,
         unit="IoU",
-        origin="less lets noise cut a table into several, seen on a real kitchen",
+        origin="with lower values, noise cuts a table of a real kitchen into several",
         bounds=SHARE,
     )
     cut_from_m: float = parameter(
         1.2,
         unit="m",
-        origin="two chairs side by side are not shorter, and the wings of an L are not either",
+        origin="minimum length of two chairs side by side and of the wings of an L",
     )
-    max_runs: int = parameter(8, origin="a kitchen has four to six", bounds=ABOVE_0)
+    max_runs: int = parameter(8, origin="kitchens have four to six runs", bounds=ABOVE_0)
     min_run_share: float = parameter(0.08, unit="share", origin="docs/furniture.md", bounds=SHARE)
     min_run_cells: int = parameter(6, unit="cells", origin="docs/furniture.md", bounds=ABOVE_0)
     size_weight: float = parameter(
-        0.01, unit="IoU", origin="it decides between equals", bounds=SHARE
+        0.01, unit="IoU", origin="only decides between equal matches", bounds=SHARE
     )
     front_weight: float = parameter(
         0.05,
         unit="IoU",
-        origin="the turns of a seat differ by 0.2 on noisy scans of generated rooms, those of a "
-        "box at a wall by nothing",
+        origin="in noisy scans of generated rooms, the rotations of a seat differ by 0.2 in IoU, "
+        "those of a box at a wall not at all",
         bounds=SHARE,
     )
     beyond_weight: float = parameter(
-        0.1, unit="IoU", origin="a tenth outweighs no clear match", bounds=SHARE
+        0.1, unit="IoU", origin="does not outweigh a clear match", bounds=SHARE
     )
     seat_below: float = parameter(0.6, unit="IoU", origin="docs/furniture.md", bounds=SHARE)
     seat_met: float = parameter(0.5, unit="share", origin="docs/furniture.md", bounds=SHARE)
     seat_opposed: float = parameter(
-        0.2, unit="share", origin="construction refuses more", bounds=SHARE
+        0.2, unit="share", origin="limit of the construction stage", bounds=SHARE
     )
     seat_look_m: float = parameter(1.0, unit="m", origin="docs/furniture.md")
     variants: bool = parameter(True)

@@ -163,10 +163,10 @@ class CompletionParameters:
     hint_share: float = parameter(
         0.9,
         unit="chance",
-        origin="object F1 of ten tuning scans was 0.899, 0.891, 0.886 and 0.882 at 0.6, 0.7, 0.8 "
-        "and 0.9 (0.847 by geometry alone); but in the real kitchen, unlike any room that the "
-        "network learnt from, geometry is right more often, and from 0.9 on its table, chairs and "
-        "screen are what they are",
+        origin="the object F1 of ten tuning scans is 0.899, 0.891, 0.886 and 0.882 at 0.6, 0.7, "
+        "0.8 and 0.9 (0.847 with geometry alone); in a real kitchen, which differs from the "
+        "training rooms, geometry is right more often, and the table, chairs and screen are "
+        "labelled correctly at 0.9 and above",
     )
     beside_votes: float = parameter(0.2, unit="votes", origin="not recorded")
     sure: float = parameter(
@@ -176,8 +176,8 @@ class CompletionParameters:
     clear_cells: int = parameter(
         1,
         unit="cells",
-        origin="a cell beside a thing would be hidden, and where a block holds both, the thing "
-        "would be lost to the wall behind it",
+        origin="completed cells next to an object are hidden, and the object is lost if it shares "
+        "a block with the completed wall behind it",
     )
     filled: tuple[int, ...] = parameter(
         (1, 2, 3),

@@ -33,7 +33,7 @@ class HorizontalSurface:
 def find_horizontal_surfaces(
     surface: Surface, rest: np.ndarray, parameters: PlateParameters
 ) -> list[HorizontalSurface]:
-    """Find the plates among the cells ``rest``, bool [X, Y, Z], sorted by height and size."""
+    """Find the plates in a mask of cells, bool [X, Y, Z]; the largest of a height come first."""
     facing_up = rest.copy()
     facing_up[:, :, :-1] &= ~surface.occupied[:, :, 1:] | _next_is_level(surface)
     low, high = parameters.height_m
