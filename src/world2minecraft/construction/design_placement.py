@@ -158,9 +158,9 @@ def recolour_design(
 def _cube_of(
     colour: np.ndarray, wool: str, choices: Sequence[str], parameters: BuildParameters
 ) -> str:
-    """Return the full block nearest to the colour of a cloth: wool, or what is clearly nearer.
+    """Return the full block closest to a fabric's colour: wool, or a clearly closer block.
 
-    Cloth comes in sixteen colours, and no cube looks woven.
+    Wool has only sixteen colours, and no other block looks like fabric.
     """
     own = _change_material([wool], "cloth", colour, parameters)
     offered = [*own, *choices]
@@ -170,13 +170,13 @@ def _cube_of(
 
 
 def _is_far(material: Material, colour: np.ndarray, lightness_weight: float) -> bool:
-    """Whether a fixed material looks unlike an object: books in a red cupboard."""
+    """Return whether a fixed material differs clearly from an object's colour."""
     own = srgb_to_oklab(np.array(colour_of(material.block("full") or ""), np.uint8))
     return float(np.linalg.norm((own - colour) * [lightness_weight**0.5, 1, 1])) > OWN_LOOK
 
 
 def _colour(cells: np.ndarray, own_colours: ObjectColours) -> np.ndarray:
-    """Return the median colour, float32 [3], of cells; that of the whole object where none is."""
+    """Return the median colour of cells, float32 [3], or of the whole object without colours."""
     if own_colours.paint is not None:
         return own_colours.paint
     at = tuple(cells.T)
@@ -197,7 +197,7 @@ def _paint_blocks(
     palette: Palette,
     parameters: BuildParameters,
 ) -> list[str]:
-    """Return full blocks of the palette for cells, each as its own colour asks, but calmly."""
+    """Return full blocks of the palette for cells, by their own colours with smoothing."""
     mask = np.zeros(own_colours.known.shape, bool)
     mask[tuple(cells.T)] = True
     known = own_colours.known & mask if (own_colours.known & mask).any() else own_colours.known
@@ -212,7 +212,7 @@ def _paint_blocks(
 def _change_material(
     states: list[str], kind: str, colour: np.ndarray, parameters: BuildParameters
 ) -> list[str]:
-    """Return states in the material nearest to a colour; those of no known kind stay."""
+    """Return states in the material closest to a colour; unknown kinds are not changed."""
     found = {state: shape_of(state, kind) for state in states}
     own = frozenset(shape for shape in found.values() if shape)
     swatch = _nearest(kind, own, colour, parameters) if own else None
@@ -234,7 +234,7 @@ def _change_material(
 def _nearest(
     kind: str, shapes: frozenset[str], colour: np.ndarray, parameters: BuildParameters
 ) -> Swatch | None:
-    """Return the material nearest to a colour that has all the shapes; its own kind rather."""
+    """Return the material closest to a colour that has all shapes, preferring its own kind."""
     own = list_swatches(kind, shapes)
     others = list_swatches(PLAIN, shapes) if kind in ("wood", "stone") else ()
     offered = [*own, *(one for one in others if one not in own)]
@@ -294,7 +294,7 @@ def body_box(
 
 
 def _protrusion(design: BlockDesign, placement: Placement, lattice: Lattice) -> int:
-    """Return by how many blocks a design stands out to its front alone."""
+    """Return the number of blocks by which a design protrudes at its front only."""
     own = block_size(placement.size_m, lattice.blocks_per_metre)
     along, _, across = design.size
     depth, width = (across, along) if placement.quarter_turns % 2 else (along, across)
@@ -310,7 +310,7 @@ def filled_blocks(design: BlockDesign) -> np.ndarray:
 
 
 def _cells_of(design: BlockDesign) -> np.ndarray:
-    """Return where the blocks of a design stand in its box, int [N, 3] in room axes."""
+    """Return the positions of a design's blocks in its box, int [N, 3] in room axes."""
     offsets = np.array([block.offset for block in design.blocks]).reshape(-1, 3)
     # Offsets are in block axes already: their inverse map is the map itself.
     return cells_to_block_axes(offsets[:, [0, 2, 1]], design.size[2])[:, [0, 2, 1]]

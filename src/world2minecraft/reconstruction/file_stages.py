@@ -136,7 +136,7 @@ def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -
 
 
 def _remove_old_forms(build: Path, wanted: tuple[str, ...]) -> None:
-    """Remove the further forms of an earlier build but for ``wanted``, and their list."""
+    """Remove the additional formats of an earlier build, except ``wanted``, and their list."""
     listed = build / "forms.json"
     if not listed.is_file():
         return
@@ -152,7 +152,7 @@ def _remove_old_forms(build: Path, wanted: tuple[str, ...]) -> None:
 
 
 def _suffix_of(name: str) -> str:
-    """Return the suffix of a form; nothing where there is no such form in this version."""
+    """Return the file suffix of a format, or an empty string if the format is unknown."""
     try:
         return format_by_name(name).suffix
     except UsageError:
@@ -167,7 +167,7 @@ def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:
 def _build_and_repair(
     folder: Path, chosen: Parameters
 ) -> tuple[BlockVolume, tuple[BlockEdit, ...]]:
-    """Return the blocks, and what was repaired in them after they were built."""
+    """Return the blocks, and the repairs made after they were built."""
     grid, _ = read_room(folder / "room.npz")
     volume = build_volume(
         grid,

@@ -100,14 +100,15 @@ class LiveRoom:
     """
 
     def __init__(self, out: Path, parameters: Parameters | None = None):
-        """Begin a room.
+        """Start a room.
 
         Args:
-            out: the folder of the results, made if missing.
-            parameters: as of ``reconstruct``.
+            out: Output folder; created if missing.
+            parameters: Parameters of ``reconstruct``.
 
         Raises:
-            OutputError: the folder cannot be written. UsageError: frames lie there already.
+            OutputError: If the folder cannot be written.
+            UsageError: If the folder already contains frames.
         """
         self.out, self.parameters = Path(out), parameters or Parameters()
         self.frames_folder = self.out / "frames"
@@ -160,7 +161,7 @@ class LiveRoom:
         return reconstruct(self.frames_folder, self.out, self.parameters, progress=progress)
 
     def _keep(self, view: View) -> None:
-        """Write a view's images, and put down what ``capture.json`` shall say of it."""
+        """Write the images of a view and record its entry for ``capture.json``."""
         write_plain(self.frames_folder, [view], depth_unit="m")
         stated = read_json(self.frames_folder / "capture.json")
         (entry,) = stated.pop("frames")
@@ -246,7 +247,7 @@ class Follower:
         ]
 
     def _fuse(self, frame: FrameFiles) -> bool:
-        """Fuse one frame by the depth encoding that the last placing found."""
+        """Fuse a frame with the depth encoding found at the latest room location."""
         encoding = getattr(_innermost(self.live.scan), "encoding", None)
         if encoding is None:
             return False
@@ -317,12 +318,12 @@ def follow(
 
 
 def _scan_of(view: View, scan_to_room: np.ndarray) -> Scan:
-    """Return a scan of one view, for predictors, which take scans."""
+    """Return a scan of a single view, as input of predictors."""
     return Scan([view], scan_to_room, np.ones(3), (view.name,))
 
 
 def _innermost(scan: Scan | None) -> Any:
-    """Return the stream of a scan as it comes from disk, under what corrects its views."""
+    """Return the stream of a scan as read from disk, without corrections of its views."""
     views: Any = None if scan is None else scan.views
     while hasattr(views, "views"):
         views = views.views

@@ -221,7 +221,7 @@ def _parse(example: Any, text: str, key: str) -> Any:
 
 
 def _finite(value: float) -> float:
-    """Return a number. Raises ValueError where it is none, or has no end."""
+    """Return a number. Raises ValueError if it is NaN or infinite."""
     if not math.isfinite(value):
         raise ValueError
     return value

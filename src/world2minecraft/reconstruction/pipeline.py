@@ -105,7 +105,7 @@ def reconstruct(
 
 
 def _register(run: RunFolder, scan: Scan, chosen: Parameters, progress: Progress) -> Scan:
-    """Refine poses and depth scales, write them, and return the scan with them applied."""
+    """Refine poses and depth scales, write them, and return the corrected scan."""
     found = register(scan, chosen.register.suited(scan.depth_kind), progress)
     scan = realign(apply_corrections(scan, found.corrections), found.surface)
     scan = with_registration_note(scan, found.corrections.facts)
@@ -117,7 +117,7 @@ def _register(run: RunFolder, scan: Scan, chosen: Parameters, progress: Progress
 def _fuse(
     run: RunFolder, scan: Scan, chosen: Parameters, network: Predictor, progress: Progress
 ) -> Scan:
-    """Fuse the evidence of all views, write it, and return the scan with what is to be noted."""
+    """Fuse the evidence of all views, write it, and return the scan with the resulting notes."""
     rules = chosen.fuse.suited(scan.depth_kind)
     evidence = fuse_views(network.predict(scan), scan, rules, progress)
     scan = skip_damaged_frames(scan)

@@ -87,7 +87,7 @@ def resume_manifest(
 
 
 def _manifest(out: Path) -> Mapping[str, Any]:
-    """Return the manifest of an earlier run; an empty one where there is none to be read."""
+    """Return the manifest of an earlier run, or an empty mapping if it cannot be read."""
     path = out / "manifest.json"
     try:
         stated = read_json(path) if path.is_file() else None
@@ -99,7 +99,7 @@ def _manifest(out: Path) -> Mapping[str, Any]:
 def _differing(
     stated: Any, requested: Mapping[str, Any], retained: Sequence[str]
 ) -> Iterator[tuple[str, Any, Any]]:
-    """Give the key, the value of then and that of now where kept stages read another one."""
+    """Yield the key, the earlier and the current value of settings of kept stages that differ."""
     for key, was in _flat(stated if isinstance(stated, dict) else {}):
         now = _at(requested, key)
         if first_reader(key) in retained and now is not ... and now != was:
@@ -107,7 +107,7 @@ def _differing(
 
 
 def _flat(stated: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
-    """Return the leaves of nested parameters by dotted keys; the options of a capture are one."""
+    """Return the leaves of nested parameters by dotted key; capture options are one leaf."""
     leaves: list[tuple[str, Any]] = []
     for name, value in stated.items():
         is_group = isinstance(value, dict) and name != "capture"
@@ -116,7 +116,7 @@ def _flat(stated: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
 
 
 def _at(stated: Mapping[str, Any], key: str) -> Any:
-    """Return the leaf at a dotted key; ``...`` where there is none."""
+    """Return the leaf at a dotted key, or ``...`` if it does not exist."""
     value: Any = stated
     for name in key.split("."):
         if not isinstance(value, Mapping) or name not in value:
@@ -126,7 +126,7 @@ def _at(stated: Mapping[str, Any], key: str) -> Any:
 
 
 def _with_value(value: Any, path: Sequence[str], was: Any, out: Path) -> Any:
-    """Return parameters with one leaf as a manifest states it."""
+    """Return parameters with one leaf replaced by its value in a manifest."""
     inner = getattr(value, path[0])
     if is_dataclass(inner):
         return replace(value, **{path[0]: _with_value(inner, path[1:], was, out)})
@@ -139,5 +139,5 @@ def _with_value(value: Any, path: Sequence[str], was: Any, out: Path) -> Any:
 
 
 def _shown(value: Any) -> str:
-    """Return a value as a setting shows it; what is empty or none by a word."""
+    """Format a value as a setting; empty values are shown as ``none``."""
     return str(value) if value not in (None, "", [], {}) else "none"

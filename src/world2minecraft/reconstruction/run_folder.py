@@ -33,16 +33,17 @@ class RunFolder:
     """The state of a run: its folder, its manifest and its times."""
 
     def __init__(self, folder: Path, stages: Sequence[str], start: str | None = None):
-        """Look at the folder; nothing is written before ``begin``.
+        """Inspect the folder; no file is written before ``begin``.
 
         Args:
-            folder: where the files of the run go.
-            stages: all stages, in order.
-            start: the stage to begin at, or None for "after the last finished one of a run that
-                was cut off, else from the first".
+            folder: Folder of the run.
+            stages: All stages in order.
+            start: Stage to start at. None continues an interrupted run after its last finished
+                stage and starts other runs at the first stage.
 
         Raises:
-            OutputError: the folder is a file. UnknownNameError: no stage is named ``start``.
+            OutputError: If the folder is a file.
+            UnknownNameError: If ``start`` is not one of ``stages``.
         """
         if start is not None and start not in stages:
             raise UnknownNameError("stage", start, stages)
@@ -119,12 +120,12 @@ class RunFolder:
         )
 
     def _recorded(self) -> list[str]:
-        """The stages that an earlier run finished, whatever its parameters were."""
+        """The finished stages of an earlier run, whatever its parameters."""
         finished = finished_stages(self.folder)
         return [stage for stage in self.stages if stage in finished]
 
     def _finished_before(self) -> list[str]:
-        """The stages that an earlier run with this very manifest finished."""
+        """The finished stages of an earlier run with the same manifest."""
         path = self.path("manifest.json")
         if not path.is_file():
             return []

@@ -62,7 +62,7 @@ class BlockAligner:
         return moved
 
     def _rise(self, frame: Frame, mount: str) -> float:
-        """Return how far up in metres a thing goes, to stand on its floor or reach its ceiling."""
+        """Return the distance in metres by which an object is raised to its floor or ceiling."""
         scale = self.lattice.blocks_per_metre
         bottom = float(self.lattice.coordinates_of(frame.base_m)[2])
         if mount == "ceiling":
@@ -73,7 +73,7 @@ class BlockAligner:
         return -over if over <= near else 0.0
 
     def _to_ceiling(self, frame: Frame) -> float:
-        """Return the way in metres from the top of a hanging thing to the blocks over it."""
+        """Return the distance in metres from the top of a hanging object to the blocks above."""
         top_m = np.array([*frame.base_m[:2], frame.base_m[2] + frame.size_m[2]])
         x, y, top = self.lattice.coordinates_of(top_m)
         column = np.clip([int(x), int(y)], 0, np.array(self.lattice.shape[:2]) - 1)
@@ -84,7 +84,7 @@ class BlockAligner:
         return float(layers.min() - top) / self.lattice.blocks_per_metre
 
     def _host_of(self, frame: Frame) -> Alignment | None:
-        """Return the highest object under the middle of a frame on which it lies."""
+        """Return the highest object under the centre of a frame that supports it."""
         best = None
         for one in self.placed:
             low, high = one.before.bounds_m
@@ -95,7 +95,7 @@ class BlockAligner:
         return best
 
     def _to_walls(self, frame: Frame) -> np.ndarray:
-        """Return the shift in metres, float64 [3], that closes gaps to the walls it stood at."""
+        """Return the shift in metres, float64 [3], that closes gaps to adjacent walls."""
         shift = np.zeros(3)
         if frame.yaw_deg % 90:
             return shift
@@ -106,7 +106,7 @@ class BlockAligner:
         return shift / self.lattice.blocks_per_metre
 
     def _is_at_wall(self, frame: Frame, axis: int, side: int) -> bool:
-        """Whether cells of a wall lie right behind most of a side."""
+        """Return whether cells of a wall are directly behind most of a side."""
         low, high = (frame.bounds_m - self.grid.origin_m) / self.grid.voxel_m
         reach = AT_WALL_M / self.grid.voxel_m
         low, high = low.copy(), high.copy()
@@ -121,7 +121,7 @@ class BlockAligner:
         return bool(covered.size) and float(covered.mean()) >= AT_WALL_SHARE
 
     def _gap(self, frame: Frame, axis: int, side: int) -> float:
-        """Return the way in blocks, signed, from a side to the blocks before it; 0 for none."""
+        """Return the signed distance in blocks from a side to the blocks in front; 0 for none."""
         low, high = self._bounds(frame)
         face = high[axis] if side > 0 else low[axis]
         for step in (0, 1):
@@ -140,7 +140,7 @@ class BlockAligner:
         return 0.0
 
     def _out_of_walls(self, frame: Frame) -> np.ndarray:
-        """Return the least way sideways out of blocks, float64 [3] in metres."""
+        """Return the shortest horizontal shift out of blocks, float64 [3] in metres."""
         low, high = self._bounds(frame)
         # Floor and ceiling are not met sideways.
         low[2], high[2] = low[2] + _EDGE, max(high[2] - _EDGE, low[2] + 2 * _EDGE)
@@ -160,7 +160,7 @@ class BlockAligner:
         return low.copy(), high.copy()
 
     def _sunk(self, low: np.ndarray, high: np.ndarray, shift: np.ndarray) -> float:
-        """Return the share of a box, moved by a shift, that lies in blocks."""
+        """Return the share of a shifted box that is inside blocks."""
         sums, volume = None, 1.0
         spans, weights = [], []
         for axis in range(3):

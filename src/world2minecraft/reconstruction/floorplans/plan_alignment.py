@@ -86,7 +86,7 @@ def fit_of(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndarray) -> 
 
 
 def _wall_points(plan: CapturedPlan) -> np.ndarray:
-    """Return points on the feet of all walls but where they are open, float64 [N, 2]."""
+    """Return points along the foot of all walls except in openings, float64 [N, 2]."""
     points = [np.zeros((0, 2))]
     for room in plan.rooms:
         gaps = [one for one in room.openings if one.kind != "window"]
@@ -103,7 +103,7 @@ def _wall_points(plan: CapturedPlan) -> np.ndarray:
 
 
 def _same_session(plan: CapturedPlan, evidence: FusedEvidence) -> CapturedPlan | None:
-    """Return the plan carried by the scan's own alignment; None where it would stand askew."""
+    """Return the plan in the scan's alignment, or None if its walls would not be axis-aligned."""
     move = evidence.scan_to_room @ plan.plan_to_session
     tilt = np.degrees(np.arccos(np.clip(move[2, 2], -1, 1)))
     if tilt > MAX_TILT_DEG:
@@ -194,9 +194,9 @@ def _is_one(place: tuple, other: tuple) -> bool:
 def _shifts(
     points: np.ndarray, evidence: FusedEvidence, upright: np.ndarray
 ) -> list[tuple[float, np.ndarray]]:
-    """Return the best shifts of wall points onto upright columns, each with its share that meets.
+    """Return the best shifts of wall points onto upright columns, with their matching shares.
 
-    All shifts by whole cells are tried at once, as a correlation; of near ones the best is kept.
+    All shifts by whole cells are evaluated by a correlation; of close shifts only the best is kept.
     """
     # Imported late: it takes half a second, which a run without a plan need not pay.
     from scipy.signal import fftconvolve  # noqa: PLC0415

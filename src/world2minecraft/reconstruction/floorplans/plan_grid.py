@@ -86,10 +86,10 @@ class Canvas:
     """The labels, instances and colours of all rooms; ``first`` is the index of cell (0, 0, 0)."""
 
     def __init__(self, rooms: Sequence[PlacedRoom], voxel_m: float):
-        """Begin with nothing known.
+        """Create an empty canvas for the rooms.
 
         Raises:
-            UsageError: the rooms are too large for such cells.
+            UsageError: If the rooms are too large for the cell size.
         """
         low = np.min([[*r.outline_m.min(axis=0), r.floor_z_m] for r in rooms], axis=0)
         high = np.max([[*r.outline_m.max(axis=0), r.floor_z_m + r.height_m] for r in rooms], axis=0)
@@ -208,7 +208,7 @@ def place_thing(canvas: Canvas, item: PlanObject, room: PlacedRoom, inside: np.n
 
 
 def _pushed_in(corner: np.ndarray, sides: np.ndarray, inside: np.ndarray) -> np.ndarray:
-    """Return a box's corner [2], moved as little as lets most of it stand in the room."""
+    """Return the corner of a box [2] shifted as little as required to be mostly inside the room."""
     steps = sorted(
         ((a, b) for a in range(-PUSH, PUSH + 1) for b in range(-PUSH, PUSH + 1)),
         key=lambda step: (abs(step[0]) + abs(step[1]), step),
@@ -259,7 +259,7 @@ def rasterize_plan(plan: CapturedPlan, voxel_m: float = 0.08) -> PlanCells:
 
 
 def _columns_of_rooms(canvas: Canvas, rooms: Sequence[PlacedRoom]) -> list[np.ndarray]:
-    """Return bool [X, Y] each: the columns of a room, a cell at least from those before it."""
+    """Return the columns of each room, bool [X, Y], at least one cell from earlier rooms."""
     columns: list[np.ndarray] = []
     for room in rooms:
         inside = _inside(canvas, room.outline_m)
@@ -272,7 +272,7 @@ def _columns_of_rooms(canvas: Canvas, rooms: Sequence[PlacedRoom]) -> list[np.nd
 
 
 def _inside(canvas: Canvas, outline_m: np.ndarray) -> np.ndarray:
-    """Return bool [X, Y]: the cells whose middle lies in an outline, by crossings to the right."""
+    """Return the mask of cells whose centre is inside an outline, bool [X, Y]."""
     x, y = canvas.middles_m()
     inside = np.zeros(canvas.labels.shape[:2], bool)
     for (x0, y0), (x1, y1) in zip(outline_m, np.roll(outline_m, -1, axis=0), strict=True):
@@ -283,7 +283,7 @@ def _inside(canvas: Canvas, outline_m: np.ndarray) -> np.ndarray:
 
 
 def _paint_shell(canvas: Canvas, room: PlacedRoom, inside: np.ndarray) -> None:
-    """Paint floor, air, ceiling and the walls around a room, these where nothing is known yet."""
+    """Paint the floor, air and ceiling of a room, and walls around it in cells still unknown."""
     air = canvas.layers(room.floor_z_m, room.floor_z_m + room.height_m)
     part = canvas.labels[:, :, air.start - 1 : air.stop + 1]
     part[(dilate(inside) & ~inside)[:, :, None] & (part == UNKNOWN)] = WALL
@@ -293,7 +293,7 @@ def _paint_shell(canvas: Canvas, room: PlacedRoom, inside: np.ndarray) -> None:
 
 
 def _paint_partitions(canvas: Canvas, room: PlacedRoom, inside: np.ndarray) -> None:
-    """Paint the walls that stand within a room: those with its floor on both sides."""
+    """Paint the walls inside a room, with its floor on both sides."""
     for wall in room.room.walls:
         count = max(2, int(np.ceil(3 * wall.length_m / canvas.voxel_m)))
         along = wall.end_m - wall.start_m
@@ -308,7 +308,7 @@ def _paint_partitions(canvas: Canvas, room: PlacedRoom, inside: np.ndarray) -> N
 
 
 def _leads_on(canvas: Canvas, opening: PlanSurface, anywhere: np.ndarray) -> bool:
-    """Whether there is a room on both sides of an opening."""
+    """Return whether there is a room on both sides of an opening."""
     along = (opening.end_m - opening.start_m) / max(opening.length_m, 1e-9)
     middle, aside = (opening.start_m + opening.end_m) / 2, np.array([-along[1], along[0]])
     sides = np.array([middle + sign * BEYOND_M * aside for sign in (1, -1)])
@@ -316,9 +316,9 @@ def _leads_on(canvas: Canvas, opening: PlanSurface, anywhere: np.ndarray) -> boo
 
 
 def _paint_opening(canvas: Canvas, room: PlacedRoom, opening: PlanSurface, leads_on: bool) -> None:
-    """Cut a window, a door or a doorway into its walls; the leaf of a closed door is an object.
+    """Cut a window, door or doorway into its walls; the leaf of a closed door is an object.
 
-    Doors between two rooms stand open, so that one can walk through the house.
+    Doors between two rooms are open, so that players can walk through the house.
     """
     columns = _columns_of(canvas, opening)
     low = opening.bottom_m if opening.kind == "window" else room.floor_z_m
@@ -336,7 +336,7 @@ def _paint_opening(canvas: Canvas, room: PlacedRoom, opening: PlanSurface, leads
 
 
 def _columns_of(canvas: Canvas, opening: PlanSurface) -> np.ndarray:
-    """Return bool [X, Y]: what lies between an opening's ends and near its line."""
+    """Return the columns between the ends of an opening and close to its line, bool [X, Y]."""
     x, y = canvas.middles_m()
     along = (opening.end_m - opening.start_m) / max(opening.length_m, 1e-9)
     dx, dy = x - opening.start_m[0], y - opening.start_m[1]

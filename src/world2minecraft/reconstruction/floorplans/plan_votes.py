@@ -84,7 +84,7 @@ def merge_plan_openings(layouts: Sequence[Layout], planned: Sequence[Layout]) ->
 def _vote_for_openings(
     points: np.ndarray, room: PlacedRoom, label: np.ndarray, weight: np.ndarray
 ) -> None:
-    """Let windows and doors claim what lies in the wall, and not the curtains before it."""
+    """Label points in a wall by its windows and doors, except curtains in front of them."""
     middle = room.outline_m.mean(axis=0)
     for opening in room.room.openings:
         kind = CLASS_OF_KIND.get(opening.kind)
@@ -105,7 +105,7 @@ def _vote_for_openings(
 def _vote_for_objects(
     points: np.ndarray, room: PlacedRoom, label: np.ndarray, weight: np.ndarray
 ) -> None:
-    """Let furniture claim what lies in its box; where boxes meet, the smaller one has it."""
+    """Label points in the boxes of furniture; the smaller of overlapping boxes wins."""
     over = points[:, 2] > room.floor_z_m + LEVEL_M
     for item in sorted(room.room.objects, key=lambda item: -float(np.prod(item.size_m))):
         claimed = over & _in_box(points, item)
@@ -113,7 +113,7 @@ def _vote_for_objects(
 
 
 def _in_box(points: np.ndarray, item: PlanObject) -> np.ndarray:
-    """Return which points lie in a thing's box: right behind it the wall begins."""
+    """Return which points are in the box of an object, without margin behind it at the wall."""
     turn = np.radians(item.yaw_deg)
     front = np.array([np.cos(turn), np.sin(turn)])
     offset = points - item.center_m
@@ -125,7 +125,7 @@ def _in_box(points: np.ndarray, item: PlanObject) -> np.ndarray:
 
 
 def _on_wall(opening: Opening, layout: Layout) -> Opening | None:
-    """Return an opening moved onto the nearest wall of a room; None where none is near."""
+    """Return an opening moved onto the nearest wall of a room, or None if no wall is near."""
     corners = layout.floor_polygon_m
     best, least = None, ON_WALL_M
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
@@ -150,7 +150,7 @@ def _on_wall(opening: Opening, layout: Layout) -> Opening | None:
 
 
 def _meet(one: Opening, other: Opening) -> bool:
-    """Whether two openings lie in the same place of a wall."""
+    """Return whether two openings are at the same position of a wall."""
     distance = np.linalg.norm((one.start_m + one.end_m) / 2 - (other.start_m + other.end_m) / 2)
     reach = np.linalg.norm(one.end_m - one.start_m) + np.linalg.norm(other.end_m - other.start_m)
     return bool(distance < reach / 2)

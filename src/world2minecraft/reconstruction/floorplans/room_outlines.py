@@ -122,7 +122,7 @@ def _placed(room: PlanRoom) -> PlacedRoom:
 
 
 def _loop(walls: Sequence[PlanSurface]) -> np.ndarray | None:
-    """Return the corners of the walls' loop, from wall to nearest wall; None where it is open."""
+    """Return the corners of the walls connected to a loop, or None if the loop is open."""
     if len(walls) < 3:
         return None
     left = sorted(walls, key=lambda wall: -wall.length_m)
@@ -149,7 +149,7 @@ def _loop(walls: Sequence[PlanSurface]) -> np.ndarray | None:
 
 
 def _corner(one: tuple, other: tuple) -> np.ndarray:
-    """Return where two walls meet: their lines' crossing, or the middle of their near ends."""
+    """Return the corner of two walls: the intersection of their lines or the mean of their ends."""
     middle = (one[1] + other[0]) / 2
     a, b = one[1] - one[0], other[1] - other[0]
     cross = a[0] * b[1] - a[1] * b[0]

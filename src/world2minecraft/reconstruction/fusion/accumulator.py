@@ -97,7 +97,7 @@ class EvidenceMap:
         return sum(array.nbytes for array in arrays) / (1 << 20)
 
     def _as_evidence(self, log_odds, record, low, votes, colour_sum, offset_sum, hits):
-        """Return dense evidence from dense cells and the sums of their records."""
+        """Create evidence from dense cells and the sums of their records."""
         scale = np.maximum(hits / 65535, 1)[:, None]
         votes[0], colour_sum[0], offset_sum[0], hits[0] = 0, 0, 0, 0
         return FusedEvidence(
@@ -112,7 +112,7 @@ class EvidenceMap:
         )
 
     def _dense(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return log-odds and record numbers of the box of all blocks, and its lowest cell."""
+        """Return the log-odds and record numbers of the box of all blocks, and its lowest cell."""
         numbers, first = self.blocks.cells_of_blocks()
         if not len(numbers):
             return np.zeros((1, 1, 1), np.float32), np.zeros((1, 1, 1), np.int32), np.zeros(3)
@@ -190,7 +190,7 @@ class EvidenceMap:
 
     @property
     def _rules(self) -> ViewRules:
-        """What the kernels of a view need: lengths along rays in cells, the rest in metres."""
+        """The rules of integrating a view; lengths along rays are in cells, others in metres."""
         values = self.parameters
         face_m2 = values.voxel_m**2
         return ViewRules(
@@ -210,7 +210,7 @@ class EvidenceMap:
 
     @property
     def _surface_rules(self) -> SurfaceRules:
-        """What decides which cells are solid."""
+        """The rules that decide which cells are solid."""
         values = self.parameters
         least = min(max(math.ceil(values.solid_share * ALL_SUB_CELLS - 1e-9), 1), ALL_SUB_CELLS)
         return SurfaceRules(

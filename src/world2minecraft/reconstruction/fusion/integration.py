@@ -292,10 +292,10 @@ def carve_free_space(
 
 @njit
 def _carve_ray(camera, target, rules: ViewRules, blocks: BlockTable, cells: CellArrays, base):
-    """Walk from the camera to a surface point.
+    """Lower the log-odds along the ray from the camera to a surface point.
 
-    A cell counts as crossed where the middle of the ray's way through it lies nearer than the
-    clearance before the point. Cells that the view saw a surface in are left alone.
+    A cell counts as crossed if the middle of the ray's segment inside it is closer to the camera
+    than the clearance in front of the point. Cells with surface in this view are not changed.
     """
     way = target - camera
     length = np.sqrt((way * way).sum())

@@ -79,8 +79,8 @@ def decide_surface(log_odds, record, faces, voxel_m, rules: SurfaceRules):
 def _decide_cell(i, j, k, record, faces, voxel_m, rules: SurfaceRules):
     """Return the verdict on a cell, its margin in metres and the face that decided it.
 
-    Any face that leaves the cell solid decides; else the weightiest. Without any plane, as from a
-    network's grid, there is no verdict (0).
+    Any face that leaves the cell solid decides, otherwise the face with the largest weight. A cell
+    without planes, as from a network's grid, has no verdict (0).
     """
     best, best_face, heaviest = -np.inf, -1, 0.0
     decision, margin_m, face = 0, 0.0, 0
@@ -110,10 +110,10 @@ def _decide_cell(i, j, k, record, faces, voxel_m, rules: SurfaceRules):
 
 @njit
 def _spill_share(depth, sigma):
-    """Return the largest part of a surface's points that noise may put behind a cell's back.
+    """Return the maximum share of a surface's points that noise may put behind a cell.
 
-    ``depth`` is the way in metres from where the surface lies to where its points would fall over
-    the edge, ``sigma`` the standard deviation of a point along its ray.
+    ``depth`` is the distance in metres from the surface to the edge of the cell, ``sigma`` the
+    standard deviation of a point along its ray.
     """
     tail = 0.5 * math.erfc(depth / (math.sqrt(2) * max(sigma, 1e-6)))
     return min(tail + SPILL_MORE, SPILL_MOST)
@@ -121,7 +121,7 @@ def _spill_share(depth, sigma):
 
 @njit
 def _weight_before(i, j, k, f, record, faces):
-    """Return the weight of the same face in the cell before, 0 where there is none."""
+    """Return the weight of the same face in the cell in front, or 0 if it has none."""
     towards = 1 if f % 2 else -1
     if f < 2:
         i += towards
@@ -136,9 +136,10 @@ def _weight_before(i, j, k, f, record, faces):
 
 @njit
 def _joined_plane(i, j, k, f, record, faces, voxel_m, rules: SurfaceRules, plane):
-    """Fill ``plane``, float64 [6], with a point (metres from the cell's centre) and a unit normal.
+    """Fill ``plane``, float64 [6], with a point (metres from the cell centre) and a unit normal.
 
-    Neighbours along the face's axis join in by their weight where they may be of one surface.
+    Neighbours along the axis of the face are included by their weight if they may be the same
+    surface.
     """
     own = faces[record[i, j, k], f]
     axis = f // 2
@@ -180,9 +181,9 @@ def _joined_plane(i, j, k, f, record, faces, voxel_m, rules: SurfaceRules, plane
 
 @njit
 def _depth_of_solid(plane, voxel_m, least):
-    """Return how deep the ``least``-deepest sub-cell's centre lies, and whether all are behind.
+    """Return the depth of the ``least``-deepest sub-cell centre, and whether all are behind.
 
-    A positive depth, in metres, means that the plane leaves at least so many sub-cells solid.
+    A positive depth, in metres, means that the plane leaves at least ``least`` sub-cells solid.
     """
     deepest = np.full(least, -np.inf)
     whole = True
@@ -207,7 +208,7 @@ def _depth_of_solid(plane, voxel_m, least):
 
 @njit
 def _heir(i, j, k, face, record, verdict):
-    """Return the record of the solid neighbour behind, or before, a cell of spill; 0 for none."""
+    """Return the record of the solid neighbour that takes over a cell's points, or 0."""
     axis, towards = face // 2, 1 if face % 2 else -1
     for step in (-towards, towards):
         a, b, c = i, j, k

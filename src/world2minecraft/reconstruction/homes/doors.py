@@ -67,7 +67,7 @@ def _of_opening(opening: Opening, layout: Layout) -> Doorway | None:
 
 
 def _outward(opening: Opening, layout: Layout) -> int | None:
-    """Return the quarter turns of the direction that leads out of a room; None where none does."""
+    """Return the quarter turns of the direction out of a room, or None if there is none."""
     middle = (opening.start_m + opening.end_m) / 2
     along = np.abs(opening.end_m - opening.start_m)
     ways = (1, 3) if along[0] >= along[1] else (0, 2)
@@ -79,9 +79,9 @@ def _outward(opening: Opening, layout: Layout) -> int | None:
 
 
 def _passages(run: Run, layout: Layout) -> list[Doorway]:
-    """Return where rays at a body's height crossed the outline of a room.
+    """Return the positions at which rays at body height crossed the outline of a room.
 
-    An open leaf may stand right in the frame, so that one of its sides is not seen as wall.
+    An open door leaf may be in the frame, so that one side of the opening is not seen as wall.
     """
     grid, found = run.grid, []
     clear = _clear(run, layout.floor_z_m)
@@ -112,7 +112,7 @@ def _passages(run: Run, layout: Layout) -> list[Doorway]:
 
 
 def _clear(run: Run, floor_z_m: float) -> np.ndarray:
-    """Return float [X, Y]: the share of a column at a body's height that was seen free."""
+    """Return the free share of each column at body height, float [X, Y]."""
     grid = run.grid
     low, high = (
         int(np.clip(round((floor_z_m + m - grid.origin_m[2]) / grid.voxel_m), 0, grid.shape[2]))
@@ -124,13 +124,13 @@ def _clear(run: Run, floor_z_m: float) -> np.ndarray:
 
 
 def _runs(mask: np.ndarray) -> list[tuple[int, int]]:
-    """Return the [first, past the last) of each run of true values."""
+    """Return the half-open range of each run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
 def _gaps(run: Run, layout: Layout) -> list[Doorway]:
-    """Return the gaps in a run's walls, each with both ways through it."""
+    """Return the gaps in a run's walls, each with both directions through it."""
     grid, found = run.grid, []
     for gap in find_gaps(grid, grid.labels == 0, layout.floor_z_m):
         spans = [

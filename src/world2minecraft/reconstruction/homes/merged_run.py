@@ -78,7 +78,7 @@ def _room_name(run: Run, name: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _Cells:
-    """The arrays of a grid while they are written, by name, and the index of their first cell."""
+    """The arrays of a grid under construction by name, and the index of their first cell."""
 
     arrays: dict[str, np.ndarray]
     first: np.ndarray
@@ -102,7 +102,7 @@ class _Cells:
 
 
 def _one_grid(runs: Sequence[Run]) -> tuple[_Cells, list[int]]:
-    """Return the cells of all runs together, and what is added to the ids of each."""
+    """Return the merged cells of all runs, and the offset of each run's ids."""
     voxel_m = runs[0].grid.voxel_m
     firsts = [np.rint(run.grid.origin_m / voxel_m).astype(int) for run in runs]
     ends = [first + run.grid.shape for first, run in zip(firsts, runs, strict=True)]
@@ -149,10 +149,10 @@ def _most_id(run: Run) -> int:
 
 
 def _owners(runs: Sequence[Run], first: np.ndarray, shape: tuple, voxel_m: float) -> np.ndarray:
-    """Return int16 [X, Y, Z]: the run in whose room a cell lies, -1 in walls and outside.
+    """Return the run whose room contains each cell, int16 [X, Y, Z]; -1 in walls and outside.
 
-    Where rooms of two runs overlap, since one looked far through a door, the run has it that
-    knows more of the cells there.
+    If rooms of two runs overlap, because one scan looked far through a door, the run that knows
+    more of the cells there owns them.
     """
     owner = np.full(shape, -1, np.int16)
     for number, run in enumerate(runs):
@@ -173,7 +173,7 @@ def _owners(runs: Sequence[Run], first: np.ndarray, shape: tuple, voxel_m: float
 
 
 def _columns(layout: Layout, first: np.ndarray, shape: tuple, voxel_m: float) -> np.ndarray:
-    """Return bool [X, Y]: the columns whose middle lies in a room's outline."""
+    """Return the columns whose centre is inside a room's outline, bool [X, Y]."""
     columns = np.zeros(shape[:2], bool)
     polygon = layout.floor_polygon_m
     spans = []
@@ -188,7 +188,7 @@ def _columns(layout: Layout, first: np.ndarray, shape: tuple, voxel_m: float) ->
 
 
 def _known_in(run: Run, mask: np.ndarray, layers: slice, first: np.ndarray) -> int:
-    """Return how many cells of a mask, [X, Y, layers] of the whole, a run knows."""
+    """Return the number of cells of a mask, [X, Y, layers] of the whole, that a run knows."""
     cells = np.argwhere(mask) + np.array([0, 0, layers.start]) + first
     cells -= np.rint(run.grid.origin_m / run.grid.voxel_m).astype(int)
     cells = cells[((cells >= 0) & (cells < run.grid.shape)).all(axis=1)]
@@ -196,7 +196,7 @@ def _known_in(run: Run, mask: np.ndarray, layers: slice, first: np.ndarray) -> i
 
 
 def _open(cells: _Cells, mine: Doorway, theirs: Doorway) -> None:
-    """Make a way through the wall between two doors that meet, and lay a floor in it; in place."""
+    """Open the wall between two doors that meet, and add a floor in the opening, in place."""
     across = mine.outward % 2  # The axis of the way through.
     along = 1 - across
     width = min(mine.width_m, theirs.width_m)
@@ -225,7 +225,7 @@ def _open(cells: _Cells, mine: Doorway, theirs: Doorway) -> None:
 def _objects(
     runs: Sequence[Run], instance: np.ndarray, offsets: Sequence[int]
 ) -> tuple[tuple[ObjectInstance, ...], tuple[Placement, ...], int]:
-    """Return the objects of which most is left, with new numbers, and how many are gone."""
+    """Return the objects that are mostly kept, renumbered, and the number of dropped objects."""
     left = np.bincount(instance.reshape(-1), minlength=offsets[-1] + 1)
     cells = np.argwhere(instance > 0).astype(np.int32)
     owners = instance[tuple(cells.T)]

@@ -116,7 +116,7 @@ def _alike(own: Doorway, theirs: Doorway) -> bool:
 
 
 def _meeting(own: Doorway, theirs: Doorway, voxel_m: float) -> Move:
-    """Return the move that sets a door against another one, a wall's thickness away."""
+    """Return the move that places a door at another one, at the distance of a wall's thickness."""
     turns = (theirs.outward + 2 - own.outward) % 4
     turn = Move(turns).transform(voxel_m)[:2, :2]
     ahead = Move(theirs.outward).transform(voxel_m)[:2, 0]
@@ -127,15 +127,15 @@ def _meeting(own: Doorway, theirs: Doorway, voxel_m: float) -> Move:
 
 
 def _wall_of(door: Doorway, voxel_m: float) -> tuple[int, int]:
-    """Return the axis that a door's wall is square to, and the cell just behind its face."""
+    """Return the axis perpendicular to a door's wall, and the cell directly behind its face."""
     axis = door.outward % 2
     return axis, int(np.floor(door.middle_m[axis] / voxel_m))
 
 
 def _refined(turned: Known, move: Move, outward: int, there: Known, wall: tuple[int, int]) -> Move:
-    """Return the move that agrees best with the other scan, a few cells from where doors meet.
+    """Return the move, within a few cells of the door position, that agrees best with a scan.
 
-    Without enough that both know, it stays.
+    The move is not changed if the scans share too few cells.
     """
     ahead = np.rint(Move(outward).transform(1.0)[:3, 0]).astype(int)
     aside = np.array([-ahead[1], ahead[0], 0])
@@ -157,9 +157,9 @@ def _shifted(turned: Known, move: Move) -> Known:
 def _score(
     run: Run, move: Move, here: Known, by: tuple[Doorway, Doorway, str], others: list
 ) -> float | None:
-    """Return how well a run fits at a place, None where it would stand in another room.
+    """Return how well a run fits at a position, or None if it would overlap another room.
 
-    ``by`` are its own door, the one that it meets, and the name of the run that has that.
+    ``by`` contains its own door, the door it meets, and the name of the run with that door.
     """
     own, theirs, beside = by
     voxel_m = run.grid.voxel_m
@@ -305,7 +305,7 @@ def _index(runs: Sequence[Run], name: str) -> int:
 
 
 def _undecided(left: list[Run], options: Mapping[str, list[Fit]], voxel_m: float) -> str:
-    """Return why no run can be placed, and what to type."""
+    """Return the reason why no run can be placed, and the option to pass."""
     open_ones = [run for run in left if options[run.name]]
     if not open_ones:
         run = left[0]
@@ -328,7 +328,7 @@ def stated(name: str, move: Move, voxel_m: float) -> str:
 
 
 def _check_apart(placed: Sequence[Run], hand: set[str]) -> None:
-    """Refuse runs put by hand into one place, where they did not see the same things."""
+    """Refuse runs whose given positions overlap, unless their observations agree."""
     for number, one in enumerate(placed):
         for other in placed[:number]:
             shared = overlap_m2(one.layouts, other.layouts)

@@ -44,7 +44,7 @@ def facing_of_depth(
 
 @njit
 def _square_means(depth_m, rays, side):
-    """Return float32 [h, w, 3], the mean point of each square; z is 0 where a surface jumps."""
+    """Return the mean point of each square, float32 [h, w, 3]; z is 0 at surface jumps."""
     high, wide = -(-depth_m.shape[0] // side), -(-depth_m.shape[1] // side)
     means = np.zeros((high, wide, 3), np.float32)
     for i in range(high):
@@ -66,7 +66,7 @@ def _square_means(depth_m, rays, side):
 
 @njit
 def _reach(means, i, j, down, across):
-    """Return how many squares the surface goes on from (i, j) in a direction, at most REACH."""
+    """Return the number of squares, at most REACH, over which the surface continues."""
     steps = 0
     while steps < REACH:
         a, b = i + (steps + 1) * down, j + (steps + 1) * across
@@ -81,7 +81,7 @@ def _reach(means, i, j, down, across):
 
 @njit
 def _normals(means):
-    """Return float32 [h, w, 3], unit normals towards the camera."""
+    """Return unit normals towards the camera, float32 [h, w, 3]."""
     result = np.zeros(means.shape, np.float32)
     for i in range(means.shape[0]):
         for j in range(means.shape[1]):
@@ -107,7 +107,7 @@ def _normals(means):
 
 @njit
 def _spread(normals, turn, pixels, width_px, side):
-    """Return the turned normal of the square of each pixel."""
+    """Return the rotated normal of the square of each pixel."""
     turned = np.zeros(normals.shape, np.float32)
     for i in range(normals.shape[0]):
         for j in range(normals.shape[1]):
@@ -194,14 +194,14 @@ class DepthPredictor:
 
 
 def _trust(view: View, pixels: np.ndarray) -> np.ndarray | None:
-    """Return how far each point is to be trusted, 0 to 1; None where all are wholly."""
+    """Return the confidence of each point, 0 to 1, or None if all are fully trusted."""
     if view.trust is None:
         return None
     return view.trust.reshape(-1)[pixels].astype(np.float32) / np.float32(255)
 
 
 def _colour_pixels(view: View, points_m: np.ndarray, pixels: np.ndarray) -> np.ndarray | None:
-    """Return the flat colour pixel of each of a view's points; None where it has no colour."""
+    """Return the flat colour pixel of each of a view's points, or None without colour."""
     if view.colour is None or view.colour_camera is None or view.depth_camera is None:
         return None
     if np.array_equal(view.depth_to_colour, np.eye(4)):
@@ -211,7 +211,7 @@ def _colour_pixels(view: View, points_m: np.ndarray, pixels: np.ndarray) -> np.n
 
 
 def _look_up(view: View, colour_px: np.ndarray | None):
-    """Return the colours and the labels of a view's points, or None for what it lacks."""
+    """Return the colours and the labels of a view's points, each None if the view has none."""
     if colour_px is None or view.colour is None:
         return None, None
     colour = view.colour.reshape(-1, 3)[colour_px]
@@ -220,9 +220,9 @@ def _look_up(view: View, colour_px: np.ndarray | None):
 
 @lru_cache(maxsize=8)
 def _shared_place_map(depth_camera: Camera, colour_camera: Camera) -> np.ndarray:
-    """Return int32 [H*W]: the colour pixel of each depth pixel, for cameras in one place.
+    """Return the colour pixel of each depth pixel, int32 [H*W], for cameras at one position.
 
-    Then a pixel's ray meets the other image at one place whatever its depth.
+    The ray of a pixel then meets the other image at the same position for any depth.
     """
     rays = pixel_rays(depth_camera).reshape(-1, 2)
     ahead = np.concatenate([rays, np.ones((len(rays), 1), np.float32)], axis=1)
@@ -230,7 +230,7 @@ def _shared_place_map(depth_camera: Camera, colour_camera: Camera) -> np.ndarray
 
 
 def _nearest_pixels(at_px: np.ndarray, camera: Camera) -> np.ndarray:
-    """Return the flat indices of the pixels that hold [N, 2] image points, clipped to the edge."""
+    """Return the flat indices of the pixels at image points [N, 2], clipped to the image."""
     u = np.clip(np.floor(at_px[:, 0]), 0, camera.width_px - 1)
     v = np.clip(np.floor(at_px[:, 1]), 0, camera.height_px - 1)
     return (v * camera.width_px + u).astype(np.int32)

@@ -79,7 +79,7 @@ class HuggingFaceSemantics:
 
     @cached_property
     def _told(self) -> dict[str, Any]:
-        """What the network wants to be told beside the picture."""
+        """The additional inputs of the network besides the image."""
         if self._config.model_type != "oneformer":
             return {}
         import torch  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
@@ -103,7 +103,7 @@ class HuggingFaceSemantics:
 
 
 def _kind(model: str, config: Any, transformers: Any) -> Any:
-    """Return the class of the library that loads a segmenter."""
+    """Return the class of the library that loads a segmentation model."""
     architecture = (getattr(config, "architectures", None) or [""])[0]
     families = transformers.models.auto.modeling_auto
     universal = families.MODEL_FOR_UNIVERSAL_SEGMENTATION_MAPPING_NAMES
@@ -120,7 +120,7 @@ def _kind(model: str, config: Any, transformers: Any) -> Any:
 
 
 def _label_scores(torch: Any, found: Any) -> Any:
-    """Return the scores [C, h, w] of labels at pixels, none below 0."""
+    """Return the non-negative scores of labels at pixels, [C, h, w]."""
     masks = getattr(found, "masks_queries_logits", None)
     if masks is None:
         return torch.softmax(found.logits[0].float(), dim=0)

@@ -65,7 +65,7 @@ def read_table(own: str | Path = "") -> dict[str, int | None]:
 
 
 def _keys(name: str) -> list[str]:
-    """Return what a label may be found by: as a whole, then word by word of its synonyms."""
+    """Return the lookup keys of a label: the whole name, then the words of its synonyms."""
     return [_plain(name), *map(_plain, re.split(r"[,;]", name))]
 
 

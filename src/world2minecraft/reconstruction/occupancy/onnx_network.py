@@ -139,7 +139,7 @@ class OccupancyNetwork:
 
 
 def _facts(session: Any) -> NetworkFacts:
-    """Return what a file states. Raises ValueError where it breaks the contract."""
+    """Return the metadata of a file. Raises ValueError if it violates the format."""
     stated = session.get_modelmeta().custom_metadata_map
     contract = stated.get(PREFIX + "contract")
     if contract != CONTRACT:

@@ -147,7 +147,7 @@ def observe(
 
 
 def _stepped(state: State, step: Step) -> State:
-    """Return the state after a step, with the sigmas that all steps together tell."""
+    """Return the state after a step, with standard deviations estimated from all steps."""
     surface, change = state.surface, step.change
     turns = np.array([_rotation(vector) for vector in change[:, :3]])
     eyes = surface.cameras[:, :3, 3]
@@ -166,7 +166,7 @@ def _stepped(state: State, step: Step) -> State:
 
 
 def _rotation(vector: np.ndarray) -> np.ndarray:
-    """Return the rotation [3, 3] about a vector by its length in radians."""
+    """Return the rotation [3, 3] of a rotation vector in radians."""
     angle = float(np.sqrt(np.sum(vector * vector)))
     x, y, z = vector
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -256,7 +256,7 @@ def register_surface(
 
 
 def _fell(before_m: float | None, after_m: float | None) -> bool:
-    """Whether a held-out misfit fell by more than chance; where few judge, it did not."""
+    """Return whether a held-out misfit decreased significantly; False with too few patches."""
     return before_m is not None and after_m is not None and after_m < MUST_FALL * before_m
 
 
@@ -267,7 +267,7 @@ def _told(views: Iterable[View], total: int, progress: Progress) -> Iterable[Vie
 
 
 def _held_out(room: OrientedPoints, share: float) -> np.ndarray:
-    """Return bool [N]: patches in a share of the blocks of space, spread by a fixed hash."""
+    """Return the mask of held-out patches, bool [N], chosen by a fixed hash of space blocks."""
     block = np.floor(room.points_m / HELD_BLOCK_M).astype(np.int64)
     code = block[:, 0] * 73856093 ^ block[:, 1] * 19349663 ^ block[:, 2] * 83492791
     return (code * 2654435761 % 2**32) < share * 2**32
@@ -276,7 +276,7 @@ def _held_out(room: OrientedPoints, share: float) -> np.ndarray:
 def _misfit_m(
     surface: OrientedPoints, held: np.ndarray, chosen: RegistrationParameters
 ) -> float | None:
-    """Return the median distance of held-out patches from their surfels; None where few judge."""
+    """Return the median distance of held-out patches from their surfels, or None if too few."""
     judges = surface.subset(held)
     surfels = surfels_of(judges, chosen.cell_m, JUDGED_GAP_M)
     index = shared(judges, surfels, np.ones(len(judges.points_m), bool))
@@ -305,7 +305,7 @@ def _registered(
 
 
 def _facts(state: State, verdict: Verdict) -> dict[str, Any]:
-    """Return the figures for ``scan.json``."""
+    """Return the results for ``scan.json``."""
     shift_mm = 1000 * np.linalg.norm(state.total[:, 3:6], axis=1)
     turn_deg = np.degrees(np.linalg.norm(state.total[:, :3], axis=1))
     scaled = verdict.accepted and state.sigmas[2] > 0

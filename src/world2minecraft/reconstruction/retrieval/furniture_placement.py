@@ -174,7 +174,7 @@ def _furnish_one(
 def _with_tidy_crumbs(
     grid: OccupancyGrid, instance: ObjectInstance, parts: list[Matched], chosen: RetrievalParameters
 ) -> list[Matched]:
-    """Return the runs, and of what the cut left over only what has to be placed by itself."""
+    """Return the runs, and those remains of the cut that need a placement of their own."""
     runs = [part for part in parts if part.matches]
     placed = [part for part in runs if part.iou >= chosen.min_iou]
     boxes = []
@@ -194,10 +194,10 @@ def _cells_of(part: Matched) -> np.ndarray:
 
 
 def _seated(grid: OccupancyGrid, found: Matched, chosen: RetrievalParameters) -> Matched | None:
-    """Return a whole chair for cells that match none, where it agrees with what was seen.
+    """Return a whole chair for cells without match if it agrees with the observations.
 
-    A chair across the grid meets few cells exactly, and of one at a table only the back is seen.
-    A chair reads as a chair all the same, and a heap of its cells does not.
+    A chair rotated against the grid matches few cells exactly, and of a chair at a table only the
+    back is seen. A whole chair is nevertheless more recognizable than its cells.
     """
     evidence = found.evidence
     cells = _cells_of(found)
@@ -247,9 +247,9 @@ def _may_be_cut(whole: Matched, voxel_m: float, chosen: RetrievalParameters) -> 
 
 
 def _is_better_cut(parts: list[Matched], single: float, chosen: RetrievalParameters) -> bool:
-    """Whether the runs that are large enough to be furniture match better than the whole.
+    """Return whether the runs large enough to be furniture match better than the whole.
 
-    Where nothing explains the whole, runs that explain half of it are better than none.
+    If no template matches the whole, runs that match half of it are accepted.
     """
     every = sum(part.evidence.own for part in parts)
     large = [part for part in parts if part.matches]
@@ -263,7 +263,7 @@ def _is_better_cut(parts: list[Matched], single: float, chosen: RetrievalParamet
 def _choice(
     grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: RetrievalParameters
 ) -> Choice:
-    """Return the placement of a match and the designs that may stand in its place."""
+    """Return the placement of a match and the designs that may replace it."""
     placement = _placement(grid, instance, found, chosen)
     if placement.template == OWN_CELLS or not chosen.variants or chosen.paper_compat:
         return Choice(placement, (), None)
@@ -301,7 +301,7 @@ def _placement(
 
 
 def _own_box(found: Matched) -> tuple[Cells, Cells, int]:
-    """Return the first cell, the size along its own axes and the turn of an object's own box."""
+    """Return the first cell, the size along its own axes and the rotation of an object's box."""
     low, high = found.evidence.low, found.evidence.high
     x, y, z = (high[axis] - low[axis] for axis in range(3))
     return low, (y, x, z) if found.quarter_turns % 2 else (x, y, z), found.quarter_turns

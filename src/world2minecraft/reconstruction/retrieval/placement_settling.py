@@ -99,7 +99,7 @@ def with_box(placement: Placement, box: np.ndarray) -> Placement:
 
 
 def _shared(box: np.ndarray, room: Layout) -> float:
-    """Return the volume that a box shares with the box around a room; how far it is off below 0."""
+    """Return the volume that a box shares with a room's bounding box; negative if it is outside."""
     corners = room.floor_polygon_m
     low = np.array([*corners.min(axis=0), room.floor_z_m])
     high = np.array([*corners.max(axis=0), room.floor_z_m + room.wall_height_m])
@@ -112,7 +112,7 @@ def _shared(box: np.ndarray, room: Layout) -> float:
 
 
 def _within_span(box: np.ndarray, axis: int, low: float, high: float, least: float) -> np.ndarray:
-    """Return a box cut to a span along one axis, or moved into it where too little would stay."""
+    """Return a box cut to a span along an axis, or moved into it if too little would remain."""
     result = box.copy()
     result[:, axis] = np.clip(box[:, axis], low, high)
     if result[1, axis] - result[0, axis] >= least - HAIR_M:
@@ -126,7 +126,7 @@ def _within_span(box: np.ndarray, axis: int, low: float, high: float, least: flo
 
 
 def _within_outline(box: np.ndarray, polygon: np.ndarray, least: np.ndarray) -> np.ndarray | None:
-    """Return a box cut to a polygon where most of it stays, else moved, else as small as may be."""
+    """Return a box inside a polygon: cut if most of it remains, else moved, else minimal."""
     first = _largest_within(box[:, :2], polygon)
     wanted = np.maximum(least[:2], MIN_REMAINING_SHARE * np.ptp(box, axis=0)[:2])
     if first is not None and (np.ptp(first, axis=0) >= wanted - HAIR_M).all():
@@ -144,7 +144,7 @@ def _within_outline(box: np.ndarray, polygon: np.ndarray, least: np.ndarray) -> 
 
 
 def _moved_within(box: np.ndarray, polygon: np.ndarray) -> np.ndarray | None:
-    """Return a box moved by the least way, up to ``LOST_M`` along x and y, that lets it in."""
+    """Return a box moved into a polygon by the shortest way of up to ``LOST_M`` along x and y."""
     steps = np.arange(-LOST_M, LOST_M + HAIR_M, 2 * STEP_M)
     ways = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
     ways = ways[np.argsort(np.round((ways**2).sum(axis=1), 6), kind="stable")]
@@ -156,7 +156,7 @@ def _moved_within(box: np.ndarray, polygon: np.ndarray) -> np.ndarray | None:
 
 
 def _largest_within(plan: np.ndarray, polygon: np.ndarray) -> np.ndarray | None:
-    """Return the largest upright rectangle, float64 [2, 2], of a plan's that lies in a polygon."""
+    """Return the largest axis-aligned part of a plan inside a polygon, float64 [2, 2]."""
     edges = [_cut_positions(plan[:, axis], polygon[:, axis]) for axis in (0, 1)]
     corners = np.stack(np.meshgrid(*edges, indexing="ij"), axis=-1)
     shape = corners.shape[:2]
@@ -172,7 +172,7 @@ def _largest_within(plan: np.ndarray, polygon: np.ndarray) -> np.ndarray | None:
 
 
 def _cut_positions(span: np.ndarray, marks: np.ndarray) -> np.ndarray:
-    """Return the places, rising, at which a span is cut: its ends, the marks and every few cm."""
+    """Return the increasing positions at which a span may be cut: ends, marks and regular steps."""
     count = max(int(np.ceil((span[1] - span[0]) / STEP_M)), 1)
     inner = marks[(marks > span[0]) & (marks < span[1])]
     ends = np.linspace(span[0], span[1], count + 1)
@@ -222,7 +222,7 @@ Box = tuple[np.ndarray, np.ndarray]
 def _turns(
     m: int, n: int, boxes: list[Box], axis: int, placements: list[Placement]
 ) -> list[tuple[int, int]]:
-    """Return who gives way to whom, the better choice first."""
+    """Return the possible pairs of an object and the one it yields to, the better choice first."""
     if axis == 2:
         upper_first = boxes[m][0][2] > boxes[n][0][2]
         return [(m, n), (n, m)] if upper_first else [(n, m), (m, n)]
@@ -305,7 +305,7 @@ def settle_placements(
 
 
 class _Table:
-    """The placements while they are being parted, with what of them is solid."""
+    """The placements during separation, with their solid parts."""
 
     def __init__(
         self, placements: list[Placement | None], grid: OccupancyGrid, rooms: Sequence[Layout]
@@ -351,10 +351,10 @@ class _Table:
 
 
 def _best_change(table: _Table, m: int, n: int) -> Change:
-    """Return the cheapest change of either that parts the two and brings no new meeting.
+    """Return the cheapest change that separates two placements without a new collision.
 
-    Where there is none, one of them becomes its own cells, or goes where it is that already and
-    lies within the other.
+    Without such a change, one of them is built from its own cells, or removed if it already is and
+    is inside the other.
     """
     changes = sorted(
         [*_changes(table, m, n), *_changes(table, n, m)],
@@ -396,7 +396,7 @@ def _changes(table: _Table, index: int, other: int) -> Iterator[Change]:
 
 
 def _moves(voxel_m: float) -> list[np.ndarray]:
-    """Return the ways, metres, to move something on the floor: half cells along x or y."""
+    """Return the possible moves of an object on the floor in metres: half cells along x or y."""
     count = int(FARTHEST_M / voxel_m * 2 + 1e-6)
     sides = (np.eye(3)[0], -np.eye(3)[0], np.eye(3)[1], -np.eye(3)[1])
     return [side * voxel_m / 2 * n for n in range(1, count + 1) for side in sides]
@@ -408,7 +408,7 @@ def _stays(placement: Placement, table: _Table) -> bool:
 
 
 def _trims(box: np.ndarray, solid: np.ndarray, least: np.ndarray) -> Iterator[np.ndarray]:
-    """Give a box cut so that it ends before, or begins behind, the solid boxes it meets."""
+    """Yield a box cut to end before, or begin behind, the solid boxes it overlaps."""
     ways = np.minimum(box[1] - solid[:, 0], solid[:, 1] - box[0]).min(axis=1)
     met = solid[ways > FORGIVEN_M]
     if not len(met):  # Its cells stand out of its box, and they alone meet the other.
@@ -422,7 +422,7 @@ def _trims(box: np.ndarray, solid: np.ndarray, least: np.ndarray) -> Iterator[np
 
 
 def _last_resort(table: _Table, m: int, n: int) -> Change:
-    """Return one of the two as its own cells; of two of cells the smaller is left out."""
+    """Return one of the two built from its cells; if both are, the smaller is removed."""
     for index in sorted((m, n), key=lambda i: len(table.solids[i])):
         one = table.placements[index]
         if one is not None and one.template != OWN_CELLS:

@@ -177,7 +177,7 @@ def _own_axes(evidence: Evidence, low: int, turns: int) -> Cells:
 
 
 def _anchors(trial: Trial, evidence: Evidence, bottom: int, anywhere: bool) -> list[list[int]]:
-    """Return, for each axis of the room, where the trial's box may begin."""
+    """Return the possible first cells of the trial's box for each axis of the room."""
     lows = (evidence.low[0], evidence.low[1], bottom)
     anchors = []
     for axis, count in enumerate(trial.turned_counts):
@@ -211,10 +211,10 @@ def _keep(best: dict[tuple[str, int], Scored], scored: Scored) -> None:
 
 
 def _refine(seed: Scored, evidence: Evidence, bias: Bias, chosen: RetrievalParameters) -> Scored:
-    """Climb from a seed by shifts, parameters and sizes in turn, each within its bounds.
+    """Improve a seed by shifts, parameters and sizes in turn, each within its bounds.
 
-    A parameter is tried at every shift: a seat one cell too low would else be met by a chair
-    one cell too high.
+    A parameter is tested at every shift; otherwise a seat one cell too low would be matched by a
+    chair one cell too high.
     """
     home = seed.trial.corner
     shifts = shifts_within(chosen.shift_cells)
@@ -238,7 +238,7 @@ def _refine(seed: Scored, evidence: Evidence, bias: Bias, chosen: RetrievalParam
 def _better(
     best: Scored, trials: Iterator[Trial], evidence: Evidence, bias: Bias, shifts: np.ndarray
 ) -> Scored:
-    """Return the best of what is known and the trials; of equals what was known first."""
+    """Return the best of the current result and the trials; the current result wins a tie."""
     for trial in trials:
         scored = score_shifts(evidence, trial, shifts, bias)
         best = scored if scored.score > best.score else best
@@ -263,9 +263,9 @@ def _with_parameter(trial: Trial, name: str) -> Iterator[Trial]:
 def _with_size(
     trial: Trial, seed: Trial, axis: int, voxel_m: float, chosen: RetrievalParameters
 ) -> Iterator[Trial]:
-    """Give the trial one cell smaller or larger along one of its own axes, at either end.
+    """Yield the trial one cell smaller or larger along one of its own axes, at either end.
 
-    The bottom stays: it is the floor's, or the shift's to find.
+    The bottom is not changed, since it is given by the floor or by the shift.
     """
     least, most = limits(trial.template, voxel_m, axis)
     room_axis = 1 - axis if axis < 2 and trial.quarter_turns % 2 else axis

@@ -61,7 +61,7 @@ def offers_of(evidence: Evidence, match: Scored, bias: Bias) -> tuple[Offer, ...
 
 
 def _alike(other: Template, own: Template, size_m: np.ndarray) -> bool:
-    """Whether another design stands, turns and is as large as the one that was matched."""
+    """Return whether a design has the mount, orientation and size of the matched design."""
     same = (other.class_id, other.mount, other.turns) == (own.class_id, own.mount, own.turns)
     return same and all(
         span.minimum - SLACK_M <= side <= span.maximum + SLACK_M
@@ -70,7 +70,7 @@ def _alike(other: Template, own: Template, size_m: np.ndarray) -> bool:
 
 
 def _taken_over(other: Template, values: dict[str, float]) -> dict[str, float] | None:
-    """Return another design's parameters with these values; None where one is beyond its span."""
+    """Return another design's parameters with these values, or None if one is out of range."""
     result = other.complete()
     for name, value in values.items():
         if name not in other.parameters or abs(other.parameters[name].clip(value) - value) > 1e-6:
@@ -111,7 +111,7 @@ def _standing(placement: Placement, offer: Offer) -> Placement:
 
 
 def _sets(choices: Sequence[Choice]) -> list[list[int]]:
-    """Return the indices of choices that are of one template, about one size and one colour."""
+    """Group the choices of the same template and of similar size and colour, as indices."""
     found: list[list[int]] = []
     for index, choice in enumerate(choices):
         home = next((one for one in found if _same(choice, choices[one[0]])), None)
@@ -136,7 +136,7 @@ def _colours_apart(one: np.ndarray | None, other: np.ndarray | None) -> float:
 
 
 def _best(members: list[Choice]) -> str:
-    """Return the template that serves a set best, of those that are on offer to all of it."""
+    """Return the template that suits a set best, of those offered to all its members."""
     common = set.intersection(*({offer.template for offer in one.offers} for one in members))
     own = members[0].placement.template
     size = np.mean([one.placement.size_m for one in members], axis=0)
@@ -161,7 +161,7 @@ def _cost(design: Template, size_m: np.ndarray, colour: np.ndarray | None) -> fl
 
 
 def _faded(colour: np.ndarray, suited: np.ndarray) -> float:
-    """Return what it costs to take a grey thing for one with a hue: pale wood is no steel."""
+    """Return the cost of replacing a saturated colour by grey: pale wood is not steel."""
     own, other = (float(np.hypot(*one[1:])) for one in (colour, suited))
     return FADED if own >= CLEAR_CHROMA and other < own / 2 else 0.0
 

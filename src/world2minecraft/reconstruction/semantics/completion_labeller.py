@@ -97,7 +97,7 @@ class CompletionModel:
         return result
 
     def _logits(self, cells: np.ndarray) -> np.ndarray:
-        """Return the logits of one tile, padded with unknown cells to whole multiples."""
+        """Return the logits of one tile, padded with unknown cells to a multiple of the stride."""
         shape = cells.shape[1:]
         padding = [(0, -side % MULTIPLE) for side in shape]
         padded = np.pad(cells, [(0, 0), *padding])
@@ -218,7 +218,7 @@ class CompletionLabeller:
     def _chances(
         self, grid: OccupancyGrid, evidence: FusedEvidence, hint: np.ndarray
     ) -> np.ndarray:
-        """Return float32 [12, X, Y, Z], each storey seen from its own floor."""
+        """Return the probabilities, float32 [12, X, Y, Z], each storey relative to its floor."""
         storeys = find_storeys(surface_of(grid, evidence), self.geometric.parameters.structure)
         chance = np.zeros((CLASS_COUNT, *grid.shape), np.float32)
         for storey in storeys:
@@ -238,7 +238,7 @@ class CompletionLabeller:
         chance: np.ndarray,
         votes: np.ndarray,
     ) -> OccupancyGrid:
-        """Return the straightened grid with the network's classes, voted per piece."""
+        """Return the straightened grid with the network's classes, unified per piece."""
         voted = piece_votes(hint, chance, self.parameters.agreed_share)
         cells = base.occupied
         share = voted.reshape(CLASS_COUNT, -1)[1:, origin[cells]]
@@ -258,14 +258,14 @@ class CompletionLabeller:
         return replace(base, labels=labels, confidence=confidence.astype(np.float16))
 
     def _from_hint(self, hint: np.ndarray) -> np.ndarray:
-        """Return float32 [11, N]: what geometric labels [N] add to each class."""
+        """Return the amounts that geometric labels [N] add to each class, float32 [11, N]."""
         result = np.zeros((CLASS_COUNT - 1, len(hint)), np.float32)
         named = np.flatnonzero(hint)
         result[hint[named] - 1, named] = self.parameters.hint_share
         return result
 
     def _completed(self, grid: OccupancyGrid, chance: np.ndarray) -> OccupancyGrid:
-        """Return the grid with unseen cells filled that are surely solid and near their like."""
+        """Return the grid with confident unseen cells near surface of the same class filled."""
         labels, source = grid.labels.copy(), grid.source.copy()
         confidence, colour = grid.confidence.copy(), grid.colour.copy()
         best = chance[1:].argmax(axis=0).astype(np.uint8) + 1
@@ -349,16 +349,16 @@ def _raised(value: OccupancyGrid | FusedEvidence, layers: slice) -> np.ndarray:
 
 
 def _near(cells: np.ndarray, steps: int) -> np.ndarray:
-    """Return the cells at most so many steps from some, corners and edges counting as one."""
+    """Return the cells within a number of steps of a mask, over faces, edges and corners."""
     box = np.ones([2 * steps + 1] * 3, bool)
     return np.asarray(ndimage.binary_dilation(cells, box), bool)
 
 
 def _reached(way: np.ndarray, kind: int, seen: np.ndarray, steps: int) -> np.ndarray:
-    """Return the cells to which a way of few steps leads within the planes of a class of structure.
+    """Return the cells reachable in few steps within the planes of a class of structure.
 
-    A plane grows along itself and never thicker: the network was not taught what lies behind a
-    wall. Walls are told from what stands across them by the 3 x 3 cells of their plane.
+    A plane grows only along itself, since the network was not trained on the space behind walls.
+    Walls are distinguished from objects across them by the 3 x 3 cells of their plane.
     """
     result = np.zeros(seen.shape, bool)
     level = kind in (SemanticClass.CEILING, SemanticClass.FLOOR)
