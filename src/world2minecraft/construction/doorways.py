@@ -85,14 +85,14 @@ def find_gaps(grid: OccupancyGrid, free: np.ndarray, floor_m: float) -> list[Gap
 
 
 def _leads_on(walled: np.ndarray, axis: int, start: np.ndarray, stop: np.ndarray) -> bool:
-    """Whether no wall stands right before or behind a gap, as at the end of a corridor."""
+    """Return whether there is no wall directly in front of or behind a gap."""
     plan = np.moveaxis(walled, axis, 0)[start[axis] : stop[axis]]
     beside = (int(start[1 - axis]) - 1, int(stop[1 - axis]))
     return not any(0 <= m < plan.shape[1] and plan[:, m].mean() > 0.5 for m in beside)
 
 
 def _between_walls(walled: np.ndarray, clear: np.ndarray, axis: int, most: int) -> np.ndarray:
-    """Return the runs of clear cells, bool [X, Y], between two walls that are ``most`` apart."""
+    """Return the clear cells, bool [X, Y], between two walls at most ``most`` apart."""
     rows_walled, rows_clear = np.moveaxis(walled, axis, 1), np.moveaxis(clear, axis, 1)
     result = np.zeros_like(rows_clear)
     for row, (wall, open_cells) in enumerate(zip(rows_walled, rows_clear, strict=True)):
@@ -107,7 +107,7 @@ def _between_walls(walled: np.ndarray, clear: np.ndarray, axis: int, most: int) 
 def _columns(
     gap: Gap, grid: OccupancyGrid, lattice: Lattice, walled: np.ndarray
 ) -> list[tuple[int, int]]:
-    """Return the columns of wall blocks in a gap: at least one wide, as deep as the wall."""
+    """Return the wall columns of a gap: at least one block wide and as deep as the wall."""
     edges = lattice.edges_of(grid, gap.axis)
     low, high = edges[gap.along[0]], edges[gap.along[1]]
     touched = np.arange(int(np.floor(low)), int(np.ceil(high)))
@@ -123,7 +123,7 @@ def _columns(
 
 
 def _head_blocks(gap: Gap, free, grid, lattice, ground: int) -> int:
-    """Return how many blocks high a gap is open: two at least."""
+    """Return the height of a gap in blocks, at least two."""
     spans = (gap.along, gap.across) if gap.axis == 0 else (gap.across, gap.along)
     window = free[slice(*spans[0]), slice(*spans[1])]
     open_share = window.mean(axis=(0, 1))

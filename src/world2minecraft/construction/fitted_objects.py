@@ -117,10 +117,10 @@ def base_layer(bottom: float, lattice: Lattice) -> tuple[int, int]:
 def _plan(
     placement: Placement, sizes: np.ndarray, middle: np.ndarray
 ) -> tuple[tuple[int, int] | None, np.ndarray | None]:
-    """Return the whole blocks along a placement's own axes and its first block, or None twice.
+    """Return the number of blocks along a placement's own axes and its first block, or None.
 
-    Of what stands along walls the sides are rounded, each to the nearest edge of a block: its
-    front stays where it is.
+    For objects along walls, the sides are rounded to block boundaries, so that the front keeps its
+    position.
     """
     if placement.class_id != SemanticClass.FURN:
         return None, None

@@ -56,7 +56,7 @@ def close_gaps(canvas: Canvas) -> None:
 
 
 def _change(states: np.ndarray, mask: np.ndarray, canvas: Canvas, kinds: tuple[str, str]) -> None:
-    """Turn the slabs of a mask from one kind into another, in place."""
+    """Replace the slabs of a mask by another kind of slab, in place."""
     names = canvas.palette
     for number in np.unique(states[mask]).tolist():
         if kinds[0] in names[number]:
@@ -64,7 +64,7 @@ def _change(states: np.ndarray, mask: np.ndarray, canvas: Canvas, kinds: tuple[s
 
 
 def _is_crumb(canvas: Canvas, blocks: np.ndarray, stands: np.ndarray) -> bool:
-    """Whether a part is small, and of no object or of one that stands elsewhere."""
+    """Return whether a part is small and belongs to no object, or to one supported elsewhere."""
     if len(blocks) > CRUMB_BLOCKS:
         return False
     numbers = np.unique(canvas.instance[tuple(blocks.T)])
@@ -72,9 +72,9 @@ def _is_crumb(canvas: Canvas, blocks: np.ndarray, stands: np.ndarray) -> bool:
 
 
 def _join(canvas: Canvas, blocks: np.ndarray, stands: np.ndarray, parts: np.ndarray) -> bool:
-    """Fill the shortest way from a part to something carried; False where there is none.
+    """Fill the shortest path from a part to a supported block; return False if there is none.
 
-    What stands on the floor gets a leg, and never a bracket.
+    A part that belongs on the floor gets a leg, never a bracket.
     """
     scale = canvas.lattice.blocks_per_metre
     up, aside = (max(1, round(length * scale)) for length in (REACH_M, SIDE_M))
@@ -101,9 +101,9 @@ def _shortest(
     parts: np.ndarray,
     reach: dict[tuple[int, int, int], int],
 ) -> tuple[np.ndarray, tuple[int, int, int], int] | None:
-    """Return the block to start from, the way and the number of blocks between, or None.
+    """Return the start block, the direction and the number of blocks of the gap, or None.
 
-    ``reach`` holds the ways, earlier ones winning ties, and the most blocks between along each.
+    ``reach`` contains the maximum gap in each direction; earlier directions win ties.
     """
     shape = np.array(stands.shape)
     middle = blocks.mean(axis=0)

@@ -41,7 +41,7 @@ APART = 6  # Blocks between lights that are added in one round.
 
 
 class _Room(NamedTuple):
-    """Where lamps may hang in a storey: its first layer, the ceiling's layer, and the columns."""
+    """The space for lamps in a storey: its first layer, its ceiling layer and the columns."""
 
     ground: int
     level: int
@@ -85,7 +85,7 @@ def _room(canvas: Canvas, footprint: np.ndarray, ground: int, end: int) -> _Room
 
 
 def _places(canvas: Canvas, room: _Room) -> list[tuple[int, int]]:
-    """Return the columns of lamps: tables first, then the middles of what stays dark."""
+    """Return the columns of lamps: above tables first, then in the centres of dark areas."""
     scale = canvas.lattice.blocks_per_metre
     free = canvas.mask_of(AIR)[:, :, : room.level]
     clear = room.columns & free[:, :, -max(1, round(CORD_M * scale) + 1) :].all(2)
@@ -106,7 +106,7 @@ def _places(canvas: Canvas, room: _Room) -> list[tuple[int, int]]:
 
 
 def _tables(canvas: Canvas, room: _Room) -> list[np.ndarray]:
-    """Return the middles, float64 [2] each, of a storey's tables, the largest first."""
+    """Return the centres of a storey's tables, float64 [2] each, the largest first."""
     layers = slice(room.ground, room.level)
     tables = canvas.semantic[:, :, layers] == SemanticClass.TABLE
     plan = np.where(tables, canvas.instance[:, :, layers], 0).max(2)
@@ -116,7 +116,7 @@ def _tables(canvas: Canvas, room: _Room) -> list[np.ndarray]:
 
 
 def _take(places: list[tuple[int, int]], clear: np.ndarray, middle: np.ndarray) -> None:
-    """Add the column nearest to a table's middle, where one is free within a block."""
+    """Add the column closest to a table's centre if one is free within a block."""
     x, y = np.floor(middle + 0.5).astype(int).tolist()
     if clear[x, y] and (x, y) not in places:
         places.append((x, y))
@@ -148,7 +148,7 @@ def _hang(canvas: Canvas, room: _Room, x: int, y: int) -> None:
 
 
 def _fits(canvas: Canvas, room: _Room, x: int, y: int, wide: int, depth: int) -> bool:
-    """Whether a wide shade has air around it."""
+    """Return whether a wide lampshade is surrounded by air."""
     low_x, low_y = x - (wide - 1) // 2, y - (wide - 1) // 2
     if min(low_x, low_y) < 0:
         return False
@@ -174,7 +174,7 @@ def put_lights(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
 
 
 def _light_storey(canvas, gives, air, clear, footprint, ground, end) -> None:
-    """Choose, in place, the lights of one storey: its first layer over the floor and its end."""
+    """Choose, in place, the lights of a storey, given its first layer and exclusive end."""
     offset = SPACING // 2
     top = min(_top_of(canvas, ground), end - 1)
     spots = np.zeros_like(air)
@@ -192,7 +192,7 @@ def _light_storey(canvas, gives, air, clear, footprint, ground, end) -> None:
 
 
 def _air_of(air, walkable, footprint, layers) -> np.ndarray:
-    """Return the air, bool [X, Y, Z], of a storey that one sees into: none within cupboards."""
+    """Return the visible air of a storey, bool [X, Y, Z], without the inside of cupboards."""
     ground, top = layers
     room = np.zeros_like(air)
     inside = slice(ground, top + 1)
@@ -203,7 +203,7 @@ def _air_of(air, walkable, footprint, layers) -> np.ndarray:
 
 
 def _light_the_dark(gives, least, air, clear) -> None:
-    """Add lights, in place, until every cell has its least light."""
+    """Add lights, in place, until every cell has its minimum light."""
     while True:
         dark = spread_light(gives, clear) < least
         if not dark.any():
@@ -217,7 +217,7 @@ def _light_the_dark(gives, least, air, clear) -> None:
 
 
 def _top_of(canvas: Canvas, ground: int) -> int:
-    """Return the highest layer under the highest visible block, at least that over the floor."""
+    """Return the highest layer below the highest visible block, at least that above the floor."""
     layers = np.flatnonzero((canvas.semantic > 0).any((0, 1)))
     least = ground + ABOVE_FLOOR
     return min(max(int(layers.max()) - 1 if len(layers) else 0, least), canvas.states.shape[2] - 1)

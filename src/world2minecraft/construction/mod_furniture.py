@@ -90,7 +90,7 @@ def place_mod_furniture(
 
 
 def _put(canvas: Canvas, found: BlockDesign, placement: Placement, within: np.ndarray) -> bool:
-    """Set a piece where all of its place is free; return whether it was."""
+    """Set a piece if all of its blocks are free, and return whether it was set."""
     low, _ = design_box(found, placement, canvas.lattice)
     offsets = np.array([block.offset for block in found.blocks])
     at = cells_to_block_axes(offsets[:, [0, 2, 1]], found.size[2])[:, [0, 2, 1]] + low
@@ -115,7 +115,7 @@ def _fits(piece: FurniturePiece, size: BlockSize) -> bool:
 
 
 def _lay_out(piece: FurniturePiece, size: BlockSize, colour: np.ndarray | None) -> list[LocalBlock]:
-    """Return the blocks of a piece that looks east, each in the colour of the object."""
+    """Return the blocks of a piece that faces east, in the colour of the object."""
     deep, wide, high = {
         "one": (1, 1, 1),
         "row": (1, size.width, 1),
@@ -139,7 +139,7 @@ def _lay_out(piece: FurniturePiece, size: BlockSize, colour: np.ndarray | None) 
 
 
 def _choose_material(name: str, colour: np.ndarray | None) -> str:
-    """Return a block's name with its wood or dye nearest to a colour."""
+    """Return a block name with the wood or dye closest to a colour."""
     for word, kinds, sample in (("{wood}", WOODS, "_planks"), ("{dye}", DYES, "_wool")):
         if word not in name:
             continue
@@ -152,9 +152,9 @@ def _choose_material(name: str, colour: np.ndarray | None) -> str:
 
 
 def _join_neighbours(piece: FurniturePiece, blocks: list[LocalBlock]) -> list[LocalBlock]:
-    """Return blocks that look east with the properties by which they join those beside them.
+    """Return east-facing blocks with the properties that connect them to their neighbours.
 
-    Commands would compute these at the next update; a written world gets none.
+    The game computes these properties only at block updates, which a written world does not get.
     """
     if piece.joins is None:
         return blocks

@@ -130,14 +130,17 @@ class ObjectBuilder:
                 self._put_one(classes[number], number)
 
     def _is_large(self, cells: np.ndarray) -> bool:
-        """Whether cells, int [N, 3], are worth a block: a cup as a cube would hide its table."""
+        """Return whether cells, int [N, 3], are enough for a block.
+
+        A cup as a cube would hide its table.
+        """
         if self.lattice.blocks_per_metre >= FINE_SCALE or not len(cells):
             return True
         size = (np.ptp(cells, axis=0) + 1) * self.cell_blocks
         return float(np.prod(size)) >= MIN_ALONE
 
     def _put_one(self, class_id: int, number: int) -> None:
-        """Set the one free block that stands best for an object all of whose places are taken."""
+        """Set the best single free block for an object whose blocks are all occupied."""
         cells = np.argwhere(self.grid.instance == number)
         if not len(cells):
             return
@@ -149,9 +152,9 @@ class ObjectBuilder:
             self._put_shapes(single_block_design(place), samples, ObjectLabel(class_id, number))
 
     def _represented_cells(self, placements: Sequence[Placement]) -> np.ndarray:
-        """Return the cells, bool [X, Y, Z], that a design of few blocks represents well enough.
+        """Return the mask of cells that a design of few blocks represents, bool [X, Y, Z].
 
-        Beside a chair of one or two blocks what is left of its cells would be a lump.
+        The remaining cells of a chair of one or two blocks would be a lump beside it.
         """
         if self.lattice.blocks_per_metre >= FINE_SCALE or self.parameters.style == "voxels":
             return np.zeros(self.grid.shape, bool)
@@ -160,7 +163,7 @@ class ObjectBuilder:
         return np.isin(self.grid.instance, sorted(designed & set(np.unique(self.canvas.instance))))
 
     def _shown_cells(self) -> np.ndarray:
-        """Return the cells, bool [X, Y, Z], that lie in or beside a block of their own object."""
+        """Return the mask of cells in or next to a block of their object, bool [X, Y, Z]."""
         cells = np.argwhere(np.isin(self.grid.labels, OBJECT_CLASSES))
         numbers = self.grid.instance[tuple(cells.T)]
         blocks = self._blocks_of(cells)
@@ -174,7 +177,7 @@ class ObjectBuilder:
         return result
 
     def _cells_of(self, placement: Placement) -> np.ndarray:
-        """Return the cells, int [N, 3], of a placement's object that lie in its box or by it."""
+        """Return the cells of a placement's object in or next to its box, int [N, 3]."""
         reach = 2 * self.grid.voxel_m
         return own_cells(replace(placement, size_m=placement.size_m + reach), self.grid)
 
@@ -182,7 +185,7 @@ class ObjectBuilder:
         return self._kinds(cells, ObjectLabel(placement.class_id, placement.object_id))
 
     def _put_fit(self, placement: Placement, cells: np.ndarray, made: CellsDesign) -> None:
-        """Set a fit of an object's own cells."""
+        """Place a fit of an object's own cells."""
         cells, samples = self.colour_source.with_tops(cells)
         self.fitted[tuple(cells.T)] = True
         thing = ObjectLabel(placement.class_id, placement.object_id)
@@ -218,14 +221,14 @@ class ObjectBuilder:
         self._put_design(design, ColourSamples(samples, blocks), thing)
 
     def _hangs(self, cells: np.ndarray, class_id: int) -> bool:
-        """Whether nothing that is built lies under an object that may hang on a wall."""
+        """Return whether an object that may hang on a wall has no block below it."""
         blocks = np.unique(self._blocks_of(cells), axis=0)
         lowest = blocks[blocks[:, 2] == blocks[:, 2].min()]
         under = self.canvas.states[tuple((lowest - [0, 0, 1]).T)] > 0
         return class_id in WALL_MOUNTED and not under.any()
 
     def _put_design(self, design: Design, samples: ColourSamples, thing: ObjectLabel) -> None:
-        """Set a design of own cells; one that hangs flush on a wall takes wall blocks."""
+        """Place a design made from cells; one that is flush with a wall replaces wall blocks."""
         window = self._window(design)
         filled = design.filled[window.box]
         if window.is_flush(filled):
@@ -278,7 +281,7 @@ class ObjectBuilder:
         thing: ObjectLabel,
         forced: bool,
     ) -> bool:
-        """Set a vanilla design; at fine scales a guessed one not where it was seen free."""
+        """Place a vanilla design; at fine scales, guessed designs are not placed in free space."""
         low, size = design_box(found, placement, self.lattice)
         if self.lattice.blocks_per_metre >= FINE_SCALE:
             filled = filled_blocks(found)
@@ -299,13 +302,13 @@ class ObjectBuilder:
         return True
 
     def _limit(self, placement: Placement) -> float:
-        """Return how much of a design may stand in space that was seen free."""
+        """Return the maximum share of a design in space seen as free."""
         if placement.class_id == SemanticClass.CHAIR:
             return self.parameters.chair_contradicted
         return self.parameters.most_contradicted
 
     def _open_in(self, filled: np.ndarray, low: np.ndarray) -> float:
-        """Return the share of blocks, bool [X, Y, Z] at ``low``, that were seen free."""
+        """Return the share of blocks, bool [X, Y, Z] at ``low``, that were seen as free."""
         at = np.argwhere(filled) + low
         inside = ((at >= 0) & (at < self.open_share.shape)).all(axis=1)
         return float((self.open_share[tuple(at[inside].T)] > OPEN).mean()) if inside.any() else 0.0
@@ -314,7 +317,7 @@ class ObjectBuilder:
         return canvas_window(self.canvas, self.within, design.low, design.numbers.shape)
 
     def _kinds(self, cells: np.ndarray, thing: ObjectLabel) -> frozenset[str]:
-        """Return the kinds of shape that exist in the colours of an object with cells [N, 3]."""
+        """Return the kinds of shape that exist in the colours of an object of cells [N, 3]."""
         paint = self.paints.get(thing.instance)
         if paint is not None:
             return self.shape_painter.kinds(np.reshape(paint, (-1, 3)), thing.class_id)
@@ -324,10 +327,10 @@ class ObjectBuilder:
         return kinds & PLAIN if coarse and thing.class_id in CLOSED else kinds
 
     def _step(self, filled: np.ndarray, low: np.ndarray, *, held: bool = False) -> np.ndarray:
-        """Return the step of at most a block, int64 [3], that keeps most of a thing whole.
+        """Return the shift by at most one block, int64 [3], that keeps most of an object.
 
-        What is ``held`` in its place by a good match is moved where others stand there alone: a
-        block of a thin part is mostly free wherever it is.
+        An object ``held`` in place by a good match is moved only away from other objects, since the
+        blocks of thin parts are mostly free anyway.
         """
         free = (self.canvas.states == 0) & self.within
         stands = int(low[2]) == self.lattice.ground_under(float(low[2]))
@@ -335,7 +338,7 @@ class ObjectBuilder:
         return best_step(filled, low, free, opened, stands)
 
     def _free_share(self, design: Design, window: CanvasWindow) -> float:
-        """Return the share of a design's blocks that were seen free, but for what they show.
+        """Return the share of a design's blocks seen as free, except blocks that its cells fill.
 
         A thin panel leaves most of its block free.
         """
@@ -347,16 +350,16 @@ class ObjectBuilder:
         return float((self.open_share[tuple((filled + window.low).T)] > most).mean())
 
     def _blocks_of(self, cells: np.ndarray) -> np.ndarray:
-        """Return the block, int [N, 3], in which each cell's centre lies, above the floor."""
+        """Return the block of each cell's centre, int [N, 3], above the floor."""
         centres = self.grid.origin_m + (cells + 0.5) * self.grid.voxel_m
         blocks = np.floor(self.lattice.coordinates_of(centres)).astype(int)
         blocks[:, 2] = np.maximum(blocks[:, 2], self.lattice.ground)
         return blocks
 
     def _put_shapes(self, design: Design, samples: ColourSamples, thing: "ObjectLabel") -> None:
-        """Paint a design and set it.
+        """Paint a design and place it.
 
-        A block without a colour of its own takes that of its part: a seat's that of the seat.
+        Blocks without a colour take the colour of their part.
         """
         filled, low = design.filled, design.low
         if not filled.any():

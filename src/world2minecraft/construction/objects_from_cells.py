@@ -102,7 +102,7 @@ def resample_cells(
 
 
 def _halves(mask: np.ndarray, edges: list[np.ndarray], size: np.ndarray, share: float):
-    """Return the half blocks whose faces are cover_cells; upright sheets are judged whole."""
+    """Return the half blocks whose faces are covered; upright sheets are judged as a whole."""
     shape = tuple(size.tolist())
     doubled = [edges[0], edges[1], edges[2] * 2]
     shares = face_shares(mask, edges, shape)
@@ -116,7 +116,7 @@ def _halves(mask: np.ndarray, edges: list[np.ndarray], size: np.ndarray, share: 
 
 
 def _best_phase(mask: np.ndarray, edges: list[np.ndarray]) -> list[np.ndarray]:
-    """Return the edges shifted along x and y so that few blocks are cover_cells by halves."""
+    """Return the edges shifted along x and y so that few blocks are half covered."""
     best = list(edges)
     for axis in (0, 1):
         profile = mask.sum(tuple({0, 1, 2} - {axis})).astype(np.float64)
@@ -129,7 +129,7 @@ def _best_phase(mask: np.ndarray, edges: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def _blur(profile: np.ndarray, edges: np.ndarray) -> float:
-    """Return how far a profile of cells is from filling whole blocks; small is crisp."""
+    """Return how far a profile of cells is from filling whole blocks; 0 is exact."""
     start = int(np.floor(edges[0]))
     count = int(np.ceil(edges[-1])) - start
     blocks = np.arange(start, start + count)[:, None]
@@ -219,7 +219,7 @@ def _is_copy(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def _center_masks(masks: Sequence[np.ndarray]) -> np.ndarray:
-    """Return masks in one frame, bool [N, X, Y, Z]: middles above each other, bottoms level."""
+    """Return masks in a common frame, bool [N, X, Y, Z], with aligned centres and bottoms."""
     shape = np.max([mask.shape for mask in masks], axis=0)
     result = np.zeros((len(masks), *shape), bool)
     for index, mask in enumerate(masks):
@@ -230,7 +230,7 @@ def _center_masks(masks: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def _majority(masks: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the cells that most of some masks have, bool, cut to their box."""
+    """Return the bool mask of cells set in most of the masks, cropped to its box."""
     mean = _center_masks(masks).mean(0) >= MAJORITY
     at = np.argwhere(mean)
     return mean[tuple(map(slice, at.min(0), at.max(0) + 1))]
@@ -307,10 +307,10 @@ class Body(NamedTuple):
 
 
 def _body_of(mask: np.ndarray, side: float, bottom: int, shift: bool, flush: bool) -> Body:
-    """Return the bulk of cells: what is left of them without a fringe of noise.
+    """Return the main volume of cells, without a fringe of noise.
 
-    A side that nearly ends a block is stretched until it does: a rim of slabs and stairs around a
-    bed shows nothing of the bed.
+    A side that nearly ends at a block boundary is stretched to it: a rim of slabs and stairs around
+    a bed would not be recognizable.
     """
     sides, middle = np.full(3, side), np.zeros(2)
     phase: list[int | None] = [None, None]
@@ -333,14 +333,14 @@ def _body_of(mask: np.ndarray, side: float, bottom: int, shift: bool, flush: boo
 
 
 def _bulk(mask: np.ndarray, axis: int) -> tuple[int, int]:
-    """Return the first layer along an axis that is no fringe, and the one past the last."""
+    """Return the first layer along an axis that is not fringe, and the exclusive end."""
     areas = mask.sum(tuple({0, 1, 2} - {axis}))
     layers = np.flatnonzero(areas >= FRINGE * areas.max())
     return int(layers[0]), int(layers[-1]) + 1
 
 
 def _whole(size: float) -> tuple[float, float]:
-    """Return the blocks that a size is stretched to and the factor; 0 where none is near."""
+    """Return the number of blocks a size is stretched to and the factor; 0 if none is close."""
     for blocks in (np.floor(size + 0.5), np.floor(2 * size + 0.5) / 2):
         if blocks and MIN_STRETCH <= blocks / size <= MAX_STRETCH:
             return float(blocks), float(blocks / size)
@@ -348,7 +348,7 @@ def _whole(size: float) -> tuple[float, float]:
 
 
 def _rotate_offset(way: np.ndarray, turns: int) -> np.ndarray:
-    """Return a way in plan, float64 [2], after quarter turns counter-clockwise."""
+    """Rotate a vector in plan, float64 [2], by quarter turns counter-clockwise."""
     x, y = way.tolist()
     for _ in range(turns % 4):
         x, y = -y, x
@@ -356,20 +356,20 @@ def _rotate_offset(way: np.ndarray, turns: int) -> np.ndarray:
 
 
 def _even(target: Target, body: Body) -> tuple[bool, bool]:
-    """Return along which axes a fit may be its own mirror image: the phase must allow it."""
+    """Return the axes along which a fit may be mirror-symmetric, as far as the phase allows."""
     along = [fixed is None or fixed % (SUB // 2) == 0 for fixed in body.phase]
     even = find_symmetry(target)
     return even[0] and along[0], even[1] and along[1]
 
 
 def _ends_flush(tall: float) -> bool:
-    """Whether a height in blocks ends so little below a block's top that it is raised to it."""
+    """Return whether a height in blocks ends just below a block boundary and is raised to it."""
     rest = tall % 1
     return rest > 1 - FLUSH or rest < TIE
 
 
 def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target:
-    """Return cells as a target about the middle of their bulk."""
+    """Return cells as a target around the centre of their main volume."""
     shape = np.array(mask.shape)
     low = -(shape[:2] / 2 + body.middle) * body.sides[:2]
     high = low + shape[:2] * body.sides[:2]

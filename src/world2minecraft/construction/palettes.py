@@ -253,7 +253,7 @@ def parse_palette(raw: Any) -> Palette:
 
 
 def _extend(keys: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys of a palette over those of the one it begins from."""
+    """Return the keys of a palette merged with those of the palette it extends."""
     base = keys.get("extends", "vanilla")
     if base not in PALETTE_FILES:
         raise ValueError(f"extends must be one of {', '.join(PALETTE_FILES)}, got {base!r}")
@@ -268,7 +268,7 @@ def _extend(keys: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _only(named: Any) -> frozenset[str] | None:
-    """Return the full names of the blocks that a palette is restricted to, None for all."""
+    """Return the full names of the blocks a palette is restricted to, or None for all."""
     if named is None:
         return None
     names = frozenset(_state(block).partition("[")[0] for block in _names("blocks", named))
@@ -280,7 +280,7 @@ def _only(named: Any) -> frozenset[str] | None:
 def _usable(
     number: int, chosen: Mapping[int, tuple[str, ...]], only: frozenset[str] | None
 ) -> tuple[str, ...]:
-    """Return the full blocks of a class, those of ``only`` where there are such."""
+    """Return the allowed full blocks of a class, or other allowed blocks if there are none."""
     usual = chosen.get(number, ())
     if only is None:
         if not usual:
@@ -300,7 +300,7 @@ def _usable(
 def _by_class(
     what: str, raw: Any, groups: Mapping[str, tuple[str, ...]]
 ) -> dict[int, tuple[str, ...]]:
-    """Return blocks by class number: each class names groups, or blocks themselves."""
+    """Return blocks by class number; each class lists groups or blocks."""
     result = {}
     for name, listed in _mapping(what, raw).items():
         if name not in CLASS_NAMES[1:]:
@@ -316,7 +316,7 @@ def _by_class(
 
 
 def _defaults(raw: Any, blocks: Mapping[int, tuple[str, ...]]) -> dict[int, str]:
-    """Return the block of each class where no colour is known: a usable one like the stated."""
+    """Return the block of each class for unknown colours: the allowed block like the stated."""
     stated = _by_class("defaults", {k: [v] for k, v in _mapping("defaults", raw).items()}, {})
     result = {}
     for number, choices in blocks.items():
@@ -328,7 +328,7 @@ def _defaults(raw: Any, blocks: Mapping[int, tuple[str, ...]]) -> dict[int, str]
 
 
 def _shapes(what: str, raw: Any, only: frozenset[str] | None) -> dict[str, str]:
-    """Return slabs or fences by their full block, both of them usable."""
+    """Return allowed slabs or fences by their allowed full block."""
     result = {}
     for block, shape in _mapping(what, raw).items():
         full, name = _cube(block), _state(shape)
@@ -338,7 +338,7 @@ def _shapes(what: str, raw: Any, only: frozenset[str] | None) -> dict[str, str]:
 
 
 def _glass(what: str, stated: Any, only: frozenset[str] | None) -> str:
-    """Return what windows are of: as stated where it is usable, else a glass of ``only``."""
+    """Return the window block: the stated block if allowed, otherwise a glass of ``only``."""
     if stated is None:
         raise ValueError(f"a palette must contain the key {what}, such as {what}: glass")
     state = str(complete(parse_state(_state(stated))))
@@ -355,7 +355,7 @@ def _glass(what: str, stated: Any, only: frozenset[str] | None) -> str:
 
 
 def _cube(text: Any) -> str:
-    """Return a full block, complete, that stands by itself for good."""
+    """Return a complete state of a full block that does not fall, melt, grow or change."""
     state = str(complete(parse_state(_state(text))))
     name = state.partition("[")[0].partition(":")[2]
     if not is_full_cube(state):
@@ -368,7 +368,7 @@ def _cube(text: Any) -> str:
 
 
 def _state(text: Any) -> str:
-    """Return a block state as text, checked; blocks of other namespaces are taken as they are."""
+    """Return a validated block state; blocks of other namespaces are not checked."""
     if not isinstance(text, str):
         raise ValueError(f"a block must be a name such as oak_planks, got {_short(text)}")
     state = parse_state(text)

@@ -183,7 +183,7 @@ class BuildParameters:
                 )
 
     def _choose(self, name: str, known: tuple[str, ...]) -> None:
-        """Check one of some words; true and false stand for the first two."""
+        """Check that a value is one of some words; true and false mean the first two words."""
         given = getattr(self, name)
         value = given.lower() if isinstance(given, str) else given
         value = known[0] if value in _YES else known[1] if value in _NO else value

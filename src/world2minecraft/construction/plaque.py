@@ -54,7 +54,7 @@ def add_plaque(volume: BlockVolume, name: str) -> BlockVolume:
 
 
 def _text(volume: BlockVolume, name: str) -> tuple[list[str], str]:
-    """Return the lines of the sign, and what a click on it does."""
+    """Return the lines of the sign and the command of a click on it."""
     if volume.blocks_per_metre < LARGER:
         return wrap_sign_text(name, 4), ""
     lines = wrap_sign_text(name, 2)
@@ -106,13 +106,13 @@ def _on_the_floor(volume: BlockVolume, spawn: Spawn) -> tuple[tuple[int, int, in
 
 
 def _free(volume: BlockVolume) -> np.ndarray:
-    """Return the cells, bool [X, Y, Z], of air and of light that nobody sees."""
+    """Return the mask of cells of air and invisible light, bool [X, Y, Z]."""
     numbers = [i for i, state in enumerate(volume.palette) if state in (AIR, LIGHT)]
     return np.isin(volume.states, numbers)
 
 
 def _walls(volume: BlockVolume) -> np.ndarray:
-    """Return the cells, bool [X, Y, Z], of wall that hold a sign."""
+    """Return the mask of wall cells that can carry a sign, bool [X, Y, Z]."""
     solid = np.array([is_solid(s) and len(boxes_of(s)) == 1 for s in volume.palette], bool)
     return solid[volume.states] & (volume.semantic == SemanticClass.WALL)
 
@@ -129,7 +129,7 @@ def _cost(
     cell: tuple[int, int, int],
     facing: tuple[int, int] | None,
 ) -> float | None:
-    """Return how bad a place is for a sign: not near, or aside of one's look; None if unseen."""
+    """Return the cost of a sign position by distance and angle, or None if it is not visible."""
     eye = np.array(spawn.position) - volume.corner + [0, 1.0, 0]
     way = np.array(cell) + 0.5 - eye
     far = float(np.hypot(way[0], way[2]))
@@ -144,7 +144,7 @@ def _cost(
 
 
 def _sees(free: np.ndarray, eye: np.ndarray, way: np.ndarray) -> bool:
-    """Whether all is air on the way from the eye to a place, but for the place itself."""
+    """Return whether all cells between the eye and a position are air."""
     steps = np.linspace(0, 1, max(2, int(np.linalg.norm(way) * 3)))[:-2]
     cells = np.floor(eye + steps[:, None] * way).astype(int)
     cells = np.clip(cells, 0, np.array(free.shape) - 1)

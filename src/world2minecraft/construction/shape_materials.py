@@ -80,7 +80,7 @@ class Materials:
         return frozenset(kinds)
 
     def _distances_to(self, kind: str, wanted: np.ndarray) -> np.ndarray:
-        """Return how far the blocks of a kind are from Oklab colours [N, 3], float64 [N, M]."""
+        """Return the distances of a kind's blocks from Oklab colours [N, 3], float64 [N, M]."""
         distances = np.linalg.norm((wanted[:, None] - self.colours[kind]) * WEIGHTS, axis=2)
         return np.round(distances + self.handicaps[kind], 6)
 
@@ -113,9 +113,9 @@ class Materials:
 
 
 def _distances(colours, offered, light, handicaps) -> np.ndarray:
-    """Return how far Oklab colours [N, 3] are from others [M, 3], float64 [N, M].
+    """Return the distances of Oklab colours [N, 3] from others [M, 3], float64 [N, M].
 
-    Where a clear colour would turn grey, that counts most: a teal curtain of stone is grey.
+    Turning a saturated colour grey has the highest cost: a teal curtain of stone is grey.
     """
     own, other = (np.hypot(one[:, 1], one[:, 2]) for one in (colours, offered))
     clear = np.clip((own - FAINT) / FAINT, 0, 1)[:, None]
@@ -158,13 +158,13 @@ def materials_of(palette: Palette) -> Materials:
 
 
 def _known(names: Mapping[str, str]) -> dict[str, str]:
-    """Return the pairs whose second is a block that the game has, by its full name."""
+    """Return the pairs whose second block exists in the game, by its full name."""
     full = {block: name if ":" in name else f"minecraft:{name}" for block, name in names.items()}
     return {block: name for block, name in full.items() if name in block_table().blocks}
 
 
 def _alike(names: Mapping[str, str]) -> dict[str, str]:
-    """Return the pairs whose blocks look alike: an oak trapdoor is darker than stripped oak."""
+    """Return the pairs of blocks that look alike; an oak trapdoor is darker than stripped oak."""
     if not names:
         return {}
     colours = [srgb_to_oklab(colours_of(list(side))) for side in (names, names.values())]

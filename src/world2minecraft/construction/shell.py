@@ -82,7 +82,7 @@ def find_contrasting_parts(
 def _differ(
     at: np.ndarray, colours: np.ndarray, steps: PaintThresholds
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return which blocks surely differ from the paint of most, and which may, bool [N] each."""
+    """Return which blocks surely, and which possibly, differ from the main paint, bool [N] each."""
     lightness = np.maximum(colours[:, 0], 0.05)
     middle = np.median(lightness)
     hues = colours[:, 1:] / lightness[:, None] * middle
@@ -95,7 +95,7 @@ def _differ(
 
 
 def _smooth(at: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return a quadratic surface, float64 [N], fitted to most of the values at places [N, 2]."""
+    """Return a robust quadratic surface fitted to values at positions [N, 2], float64 [N]."""
     u, v = (at / np.maximum(at.max(0), 1)).T
     terms = np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=1)
     fitted = np.full(len(values), np.median(values))
@@ -148,7 +148,7 @@ def _put_surface(
     choice: BlockChoice,
     used: frozenset[str],
 ) -> frozenset[str]:
-    """Set a surface, and on it, in blocks of their own, what stands out from it.
+    """Paint a surface, and the parts that stand out from it in other blocks.
 
     Returns:
         The blocks of the surface itself.
@@ -175,7 +175,7 @@ def _put_surface(
 
 
 def _patches(mask: np.ndarray, numbers: np.ndarray):
-    """Yield the surfaces of a mask; the small ones come together as one."""
+    """Yield the surfaces of a mask; small surfaces are combined into one."""
     held = numbers[mask]
     counts = np.bincount(held, minlength=int(numbers.max()) + 1)
     small = counts < MIN_PATCH
@@ -186,9 +186,9 @@ def _patches(mask: np.ndarray, numbers: np.ndarray):
 
 
 def _name_foundations(canvas: Canvas) -> None:
-    """Count the floor's blocks under walls as wall: so the floor's class is what one sees.
+    """Assign the class wall to floor blocks under walls, since they are not visible as floor.
 
-    A doorway has a wall over it and floor in it.
+    A doorway has wall above and floor inside.
     """
     for ground in canvas.lattice.grounds:
         above = np.isin(canvas.semantic[:, :, ground], (WALL, WINDOW))
@@ -197,7 +197,7 @@ def _name_foundations(canvas: Canvas) -> None:
 
 
 def _put_windows(canvas: Canvas, windows: np.ndarray, palette: Palette) -> None:
-    """Set panes where they join something on both sides, else glass blocks."""
+    """Set panes that connect on both sides, otherwise glass blocks."""
     if not windows.any():
         return
     held = np.pad((canvas.states > 0) | windows, ((1, 1), (1, 1), (0, 0)))

@@ -191,10 +191,10 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
 
 
 def _open_floor(grid, free, lattice: Lattice, ground: int) -> np.ndarray:
-    """Return the columns, bool [X, Y], in which an upper storey's floor was seen through.
+    """Return the columns, bool [X, Y], in which free space was seen through an upper floor.
 
-    It is inferred from the layers of cells in which the rest of its floor lies, which may be a
-    tenth of a block thick.
+    They are inferred from the layers of cells of the rest of the floor, which may be as thin as a
+    tenth of a block.
     """
     shape = lattice.shape[:2]
     if ground == lattice.ground:
@@ -210,14 +210,14 @@ def _open_floor(grid, free, lattice: Lattice, ground: int) -> np.ndarray:
 
 
 def _one_slab(ceiling: np.ndarray, floor: np.ndarray, layer: int) -> None:
-    """Leave out, in place, what of a ceiling lies in or over the floor that it carries."""
+    """Remove, in place, the parts of a ceiling in or above the floor that it carries."""
     under = floor[:, :, layer]
     for z in (layer, layer + 1):
         ceiling[:, :, z] &= ~under
 
 
 def _number_levels(patches, ceiling, floor, lattice) -> None:
-    """Number, in place, each storey's ceiling and floor as surfaces of their own."""
+    """Number, in place, each storey's ceiling and floor as separate surfaces."""
     for ground, top in lattice.storeys:
         for mask, start in ((ceiling, ground), (floor, ground - 1)):
             part = mask[:, :, start:top]
@@ -225,7 +225,7 @@ def _number_levels(patches, ceiling, floor, lattice) -> None:
 
 
 def _walls(grid, free, open_share, lattice, parameters, patches, coloured) -> np.ndarray:
-    """Return where walls and windows stand, straight and one block thick."""
+    """Return the mask of walls and windows, straight and one block thick."""
     solid = (grid.labels == WALL) | (grid.labels == WINDOW)
     walls = np.zeros(lattice.shape, bool)
     for axis in (0, 1):
@@ -250,14 +250,14 @@ def _walls(grid, free, open_share, lattice, parameters, patches, coloured) -> np
 
 
 def _closed(sheet, axis, open_share, lattice, parameters) -> np.ndarray:
-    """Close the small unseen holes of wall sheets square to an axis, leaving openings open."""
+    """Close small unseen holes of wall sheets perpendicular to an axis; openings stay open."""
     gap = max(1, round(parameters.gap_m * lattice.blocks_per_metre / 2))
     reach = tuple(0 if other == axis else gap for other in range(3))
     return sheet | (binary_closing(sheet, reach) & (open_share < OPEN_SHARE))
 
 
 def _unfaced(grid, solid, free, walls, lattice, parameters) -> np.ndarray:
-    """Return wall blocks whose cells touch no seen free space, away from the walls that do."""
+    """Return wall blocks whose cells touch no free space, away from walls that do."""
     faced = dilate_faces(free)
     edges = [lattice.edges_of(grid, axis) for axis in range(3)]
     rest = face_shares(solid & ~faced, edges, lattice.shape) >= max(0.5, parameters.face_share)
@@ -266,7 +266,7 @@ def _unfaced(grid, solid, free, walls, lattice, parameters) -> np.ndarray:
 
 
 def _with_corners(walls: np.ndarray, open_share: np.ndarray) -> np.ndarray:
-    """Fill the block where two walls meet at an inner corner, which no face speaks for."""
+    """Fill the block at an inner corner of two walls, which has no face."""
     along_x = np.zeros_like(walls)
     along_x[1:] |= walls[:-1]
     along_x[:-1] |= walls[1:]
@@ -277,9 +277,9 @@ def _with_corners(walls: np.ndarray, open_share: np.ndarray) -> np.ndarray:
 
 
 def _up_and_down(walls, ceiling, open_share, lattice, storey, parameters) -> None:
-    """Continue walls, in place, to their floor, over unseen gaps, and to a ceiling that is near.
+    """Extend walls, in place, to their floor, across unseen gaps and to a close ceiling.
 
-    ``storey`` is its first layer above the floor and the one past its last.
+    ``storey`` is its first layer above the floor and its exclusive end.
     """
     ground, top = storey
     own = walls[:, :, ground:top]
@@ -298,7 +298,7 @@ def _up_and_down(walls, ceiling, open_share, lattice, storey, parameters) -> Non
 def _level_tops(walls, patches, open_share, storey) -> None:
     """Raise, in place, the columns of each wall to the height that much of it reaches.
 
-    Where a scan looks down, walls end at a ragged line; what was seen free stays open.
+    If a scan looks down, walls end at a ragged line. Space seen as free stays open.
     """
     ground, top = storey
     own, shut = walls[:, :, ground:top], open_share[:, :, ground:top] < OPEN_SHARE
@@ -313,9 +313,9 @@ def _level_tops(walls, patches, open_share, storey) -> None:
 
 
 def _footprint(grid, open_share, walls, lattice, storey, open_floor) -> np.ndarray:
-    """Return the columns, bool [X, Y], in which one stands inside a storey's rooms.
+    """Return the columns inside a storey's rooms, bool [X, Y].
 
-    ``open_floor`` bool [X, Y] are those where the floor itself was seen through: a stairwell.
+    ``open_floor`` bool [X, Y] are the columns of a stairwell, in which the floor was seen through.
     """
     ground, end = storey
     top = min(ground + max(1, round(STANDING_M * lattice.blocks_per_metre)), end)
@@ -335,16 +335,16 @@ def _footprint(grid, open_share, walls, lattice, storey, open_floor) -> np.ndarr
 
 
 def _rooms(plan: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """Return a plan, bool [X, Y], without what walls part from it and is too small for a room."""
+    """Return a plan, bool [X, Y], without separate parts that are too small for a room."""
     parts, sizes = label_face_components(plan)
     least = min(ROOM_M2 * lattice.blocks_per_metre**2, sizes.max(initial=0))
     return plan & (sizes[parts] >= least)
 
 
 def _carried_by_floor(plan: np.ndarray, grid, lattice, ground: int) -> np.ndarray:
-    """Return the parts of an upper storey's plan, bool [X, Y], under which floor was seen.
+    """Return the parts of an upper storey's plan, bool [X, Y], with floor below.
 
-    What was seen free outside, over the roof of a lower part of the house, is no room.
+    Free space seen outside, above the roof of a lower part of the house, is not a room.
     """
     edges = lattice.edges_of(grid, 2)
     middles = (edges[:-1] + edges[1:]) / 2
@@ -358,7 +358,7 @@ def _carried_by_floor(plan: np.ndarray, grid, lattice, ground: int) -> np.ndarra
 
 
 def _wide(mask: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """Return what of a plan, bool [X, Y], is as wide as a stairwell; the rest are holes."""
+    """Return the parts of a plan, bool [X, Y], that are as wide as a stairwell."""
     reach = max(0, round(STAIRWELL_M * lattice.blocks_per_metre / 2) - 1)
     core = mask.copy()
     for _ in range(reach):
@@ -367,7 +367,7 @@ def _wide(mask: np.ndarray, lattice: Lattice) -> np.ndarray:
 
 
 def _floor(grid, footprint, walls, lattice, storey, open_floor, floor, coloured) -> None:
-    """Set, in place, a storey's floor: one flat layer under its rooms, walls and open rim."""
+    """Set, in place, a storey's floor as a flat layer under its rooms, walls and open rim."""
     ground, top = storey
     plan = dilate(footprint, (1, 1)) | walls[:, :, ground:top].any(2)
     floor[:, :, ground - 1] |= plan & ~_wide(open_floor, lattice)
@@ -384,7 +384,7 @@ def _floor(grid, footprint, walls, lattice, storey, open_floor, floor, coloured)
 
 
 def _windows(grid, walls, free, lattice, parameters) -> np.ndarray:
-    """Return the wall blocks that are glass: where windows outvote walls."""
+    """Return the wall blocks in which the votes for window exceed those for wall."""
     shape = lattice.shape
     area = {WALL: np.zeros(shape, np.float32), WINDOW: np.zeros(shape, np.float32)}
     if not (grid.labels == WINDOW).any():
@@ -403,7 +403,7 @@ def _windows(grid, walls, free, lattice, parameters) -> np.ndarray:
 
 
 def _grow_patches(patches: np.ndarray, walls: np.ndarray) -> np.ndarray:
-    """Give wall blocks that were added later the patch of the nearest wall block."""
+    """Assign wall blocks that were added later to the patch of the nearest wall block."""
     missing = walls & (patches == 0)
     if not missing.any() or not (patches > 0).any():
         return patches

@@ -64,12 +64,12 @@ def standing_cells(volume: BlockVolume) -> np.ndarray:
 
 
 def _within(volume: BlockVolume, ground: int) -> np.ndarray:
-    """Return the columns whose four neighbours are floor too: not the rim beyond the walls."""
+    """Return the columns whose four neighbours are floor too, excluding the rim beyond walls."""
     return erode_faces(volume.states[:, ground - 1] > 0)
 
 
 def _focus(volume: BlockVolume, standing: np.ndarray) -> np.ndarray:
-    """Return the middle, float64 [2], of the furniture, or of the floor where there is none."""
+    """Return the centre of the furniture, or of the floor without furniture, float64 [2]."""
     things = np.isin(volume.semantic, OBJECT_CLASSES).sum(1)
     if not things.any():
         return np.argwhere(standing).mean(0) + 0.5
@@ -78,7 +78,7 @@ def _focus(volume: BlockVolume, standing: np.ndarray) -> np.ndarray:
 
 
 def _free_way(volume: BlockVolume, cell: np.ndarray, focus: np.ndarray, ground: int) -> float:
-    """Return how far, in blocks, the eye sees from a cell towards the focus."""
+    """Return the distance, in blocks, that is visible from a cell towards the focus."""
     start = cell + 0.5
     length = float(np.hypot(*(focus - start)))
     steps = np.arange(0.5, max(length, 0.5), 0.5)

@@ -63,10 +63,10 @@ def find_faces(
 
 
 def _spread_wide(faces: np.ndarray, voxel_m: float) -> np.ndarray:
-    """Return where faces [axis, side, up] are part of something wide, and no side of a bump.
+    """Return which faces [axis, side, up] belong to a wide surface instead of a bump.
 
-    Of the places sideways, a quarter of a metre each way, most of one side's must have a face
-    too, at about the same depth and height.
+    Within 0.25 m to each side, most positions of at least one side must have a face at about the
+    same depth and height.
     """
     reach = max(1, round(MIN_WIDTH_M / voxel_m))
     near = ndimage.maximum_filter(faces.astype(np.uint8), size=(3, 1, 3))
@@ -77,7 +77,7 @@ def _spread_wide(faces: np.ndarray, voxel_m: float) -> np.ndarray:
 
 
 def _sheet_ends(body: np.ndarray, below: np.ndarray, above: np.ndarray, thin: int) -> np.ndarray:
-    """Return, at the low face of each thin sheet, how many cells it is thick; else 0."""
+    """Return the thickness in cells of each thin sheet at its low face; 0 elsewhere."""
     ends = np.zeros(body.shape, np.intp)
     running = below.copy()
     for thickness in range(1, thin + 1):

@@ -190,7 +190,7 @@ def _nearest_candidates(
     handicaps: np.ndarray,
     fading: float,
 ) -> np.ndarray:
-    """Return the candidate nearest to the median of each part, intp [parts]."""
+    """Return the candidate closest to the median of each part, intp [parts]."""
     medians, _ = group_medians(parts, colours, int(parts.max()) + 1)
     return colour_costs(medians, candidates, weight, handicaps, fading).argmin(1)
 
@@ -198,7 +198,7 @@ def _nearest_candidates(
 def _merge_similar(
     parts: np.ndarray, colours: np.ndarray, count: int, lightness_weight: float, noticed: float
 ) -> np.ndarray:
-    """Return the parts, int [N], a smaller one named as a larger one that looks like it."""
+    """Return parts, int [N], in which smaller parts are merged with similar larger parts."""
     medians, sizes = group_medians(parts, colours, count)
     medians[:, 0] *= np.sqrt(lightness_weight)
     result = np.arange(count)
@@ -337,7 +337,7 @@ def paint_surface(
 
 
 def _distinct_choices(choices: tuple[str, ...], beside: frozenset[str]) -> tuple[str, ...]:
-    """Return the choices that one can tell from some blocks; all where none is left."""
+    """Return the choices that look different from some blocks, or all if there are none."""
     if not beside:
         return choices
     offered = srgb_to_oklab(colours_of(choices))

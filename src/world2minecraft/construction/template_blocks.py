@@ -105,7 +105,7 @@ class ShapePainter:
         return result[design.filled]
 
     def _is_near(self, block: str, other: str, colour: np.ndarray) -> bool:
-        """Whether a block shows a colour nearly as well as another does."""
+        """Return whether a block matches a colour nearly as well as another block."""
         offered = srgb_to_oklab(colours_of([block, other]))
         light = np.sqrt(self.parameters.lightness_weight)
         distances = np.linalg.norm((offered - colour) * [light, *WEIGHTS[1:]], axis=1)
@@ -159,10 +159,10 @@ def half_block_design(
 def _plan(
     placement: Placement, sizes: np.ndarray, middle: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the blocks, int [2], along a placement's own depth and width, and its first block.
+    """Return the size of a placement in blocks, int [2], along its own axes, and its first block.
 
-    Sizes are rounded, so that equal things come out equal. Of what stands along walls the sides
-    are rounded instead, each to the nearest edge of a block: its front stays where it is.
+    Sizes are rounded, so equal objects stay equal. For objects along walls, the sides are rounded
+    to block boundaries instead, so that the front keeps its position.
     """
     odd = placement.quarter_turns % 2
     if placement.class_id == SemanticClass.FURN:
@@ -178,7 +178,7 @@ def _plan(
 
 
 def _is_post(box: np.ndarray) -> bool:
-    """Whether a box, float64 [6] in blocks, is upright and thinner than a post both ways."""
+    """Return whether a box, float64 [6] in blocks, is upright and thinner than a post."""
     wide = box[3:] - box[:3]
     return bool((wide[:2] < POST).all() and wide[2] > 1)
 
@@ -186,8 +186,8 @@ def _is_post(box: np.ndarray) -> bool:
 def _rest_on_posts(seat: int, owner: np.ndarray, posts: np.ndarray) -> None:
     """Lower a thin seat from the upper to the lower half of its blocks, in place.
 
-    A half post cannot be built: under a plate in the upper half it would have to be a whole
-    block, and a chair became a cube. What stands on the seat comes down with it.
+    Half a post cannot be built: under a plate in the upper half it would be a whole block, and a
+    chair would become a cube. Parts on the seat are lowered with it.
     """
     layers = np.unique(np.argwhere(owner == seat)[:, 2])
     if len(layers) != 1 or layers[0] % 2 == 0 or layers[0] < 3:
@@ -219,7 +219,7 @@ def _volume(box: np.ndarray) -> float:
 
 
 def _span(low: float, high: float, count: int) -> tuple[int, int]:
-    """Return the layers [start, stop) of a part from low to high, the same for its mirror image."""
+    """Return the layers [start, stop) of a part, symmetric for its mirror image."""
     if high - low < THIN:
         start = int(np.clip(np.floor((low + high) / 2), 0, count - 1))
         return start, start + 1

@@ -87,7 +87,7 @@ def _put_room(
     instances: Sequence[ObjectInstance],
     source: BuildSource,
 ) -> tuple[np.ndarray, ...]:
-    """Set shell and objects; return each storey's footprint, bool [X, Y]."""
+    """Place the shell and the objects, and return each storey's footprint, bool [X, Y]."""
     grid, colours, coloured, palette, parameters = source
     shell = build_shell(grid, canvas.lattice, parameters)
     put_shell(canvas, shell, source)

@@ -51,14 +51,14 @@ def place_voxels(
 
 
 def _start(grid: OccupancyGrid, lattice: Lattice) -> tuple[int, int, int]:
-    """Return the lattice index of cell (0, 0, 0), a whole number by construction."""
+    """Return the lattice index of cell (0, 0, 0)."""
     at = lattice.coordinates_of(grid.origin_m)
     x, y, z = np.rint(at).astype(int).tolist()
     return x, y, z
 
 
 def _footprint(grid: OccupancyGrid, ground: int) -> np.ndarray:
-    """Return the columns in which one stands: seen free or furnished low down, and no wall.
+    """Return the columns in which a person can stand: free or furnished near the floor, no wall.
 
     ``ground`` is the first layer of cells above a storey's floor.
     """

@@ -72,7 +72,7 @@ def step_cells(grid: OccupancyGrid, cells: np.ndarray) -> np.ndarray:
 
 
 def _box(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, tuple[slice, ...]]:
-    """Return the box around an object in which its top may lie, and its low corner, int [3]."""
+    """Return the box around an object that may contain its top, and its low corner, int [3]."""
     reach = max(1, round(REACH_M / grid.voxel_m))
     low = np.maximum(cells.min(0) - [reach, reach, 1], 0)
     high = np.minimum(cells.max(0) + np.array([reach + 1, reach + 1, 3]), grid.shape)
@@ -82,7 +82,7 @@ def _box(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, tuple[slic
 def _body_and_steps(
     grid: OccupancyGrid, cells: np.ndarray, low: np.ndarray, steps: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return an object's own tall cells and the steps that join it, bool in the box of steps."""
+    """Return the tall cells of an object and the steps connected to it, as bool masks."""
     reach = max(1, round(REACH_M / grid.voxel_m))
     body = np.zeros(steps.shape, bool)
     tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= MIN_RIM_M
@@ -91,7 +91,7 @@ def _body_and_steps(
 
 
 def _steps(grid: OccupancyGrid, box: tuple[slice, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the unseen cells, bool, that lie right under seen free space, and that space."""
+    """Return the unseen cells directly below free space, and that space, as bool masks."""
     unseen = grid.source[box] == UNSEEN
     free = (grid.labels[box] == 0) & ~unseen
     steps = np.zeros_like(unseen)
@@ -100,7 +100,7 @@ def _steps(grid: OccupancyGrid, box: tuple[slice, ...]) -> tuple[np.ndarray, np.
 
 
 def _steps_at_rim(steps: np.ndarray, rim: np.ndarray, reach: int) -> np.ndarray:
-    """Return the steps that join the rim layer by layer, within ``reach`` cells of it."""
+    """Return the steps connected to the rim by layer, within ``reach`` cells."""
     flat = np.zeros((3, 3, 3), bool)
     flat[:, :, 1] = [[0, 1, 0], [1, 1, 1], [0, 1, 0]]
     return dilate_within(rim, steps | rim, flat, reach) & steps & ~rim
@@ -180,7 +180,7 @@ def join_worktops(tops: dict[int, Worktop]) -> dict[int, Worktop]:
 
 
 def _area(top: Worktop) -> int:
-    """Return how large it is, by cells where they are known: at any scale the same is largest."""
+    """Return the area of a worktop, in cells if known, so that it does not depend on the scale."""
     return int((top.columns if top.plan is None else top.plan).sum())
 
 
@@ -191,7 +191,7 @@ def _meets(top: Worktop, other: Worktop, near: np.ndarray) -> bool:
 def _rim_of(
     rim: np.ndarray, front: np.ndarray, colours: np.ndarray, coloured: np.ndarray
 ) -> np.ndarray | None:
-    """Return the cells, int [N, 3], of the plate's edge: the darkest at the rim but the front's."""
+    """Return the cells of the plate's edge, int [N, 3]: the darkest of the rim except the front."""
     rim, front = rim[coloured[tuple(rim.T)]], front[coloured[tuple(front.T)]]
     if not len(rim) or not len(front):
         return None
@@ -204,7 +204,7 @@ def _rim_of(
 
 
 def _plan(grid: OccupancyGrid, cells: np.ndarray, steps: np.ndarray, level: int) -> np.ndarray:
-    """Return where the plate lies seen from above, bool [X, Y] of the grid."""
+    """Return the area of the plate from above, bool [X, Y] of the grid."""
     own = np.zeros(grid.shape, bool)
     own[tuple(cells.T)] = True
     low, high = max(level - PILLAR_CELLS, 0), level + 2 + PILLAR_CELLS
@@ -235,7 +235,7 @@ class PlateBuilder:
             self._put_plate(top, top.columns, number)
 
     def _put_plate(self, top: Worktop, columns: np.ndarray, number: int) -> None:
-        """Set the plate of a worktop over columns, bool [X, Y], where nothing stands."""
+        """Set the plate of a worktop in the free blocks of columns bool [X, Y]."""
         mask = np.zeros(self.lattice.shape, bool)
         mask[1:-1, 1:-1, top.layer] = columns[1:-1, 1:-1]
         mask &= self.canvas.states == 0

@@ -167,9 +167,9 @@ def template_boxes(
 
 
 def _whole(parts: Sequence[Part], labels: Sequence[int], planes: Planes) -> np.ndarray:
-    """Return the parts themselves as boxes, int64 [N, 7], between planes; the smallest first.
+    """Return the parts as boxes, int64 [N, 7], between planes; the smallest first.
 
-    Where they overlap the larger stands back from the smaller, which shows.
+    If parts overlap, the larger part is set back so that the smaller one is visible.
     """
     corners = np.array([part.box_m for part in parts])
     order = np.argsort(np.round(np.prod(corners[:, 3:] - corners[:, :3], axis=1), 9), kind="stable")
@@ -182,7 +182,7 @@ def _whole(parts: Sequence[Part], labels: Sequence[int], planes: Planes) -> np.n
 
 
 def _cut(parts: Sequence[Part], labels: Sequence[int]) -> tuple[np.ndarray, Planes]:
-    """Return labels, int32 [X, Y, Z], of the cells between the planes of parts, and the planes."""
+    """Return the planes of parts, and the labels of the cells between them, int32 [X, Y, Z]."""
     boxes = np.array([part.box_m for part in parts], np.float64).reshape(-1, 2, 3)
     x, y, z = (_distinct(boxes[:, :, axis].ravel()) for axis in range(3))
     planes = (x, y, z)
@@ -199,7 +199,7 @@ def _cut(parts: Sequence[Part], labels: Sequence[int]) -> tuple[np.ndarray, Plan
 
 
 def _distinct(values: np.ndarray) -> np.ndarray:
-    """Return the values, rising, without those that another is as good as."""
+    """Return the increasing values without those close to another value."""
     ordered = np.unique(values)
     return ordered[np.concatenate([[True], np.diff(ordered) > SAME_M])]
 
@@ -209,7 +209,7 @@ def _place(planes: np.ndarray, value: float) -> int:
 
 
 def _coarse(labels: np.ndarray, planes: Planes, most: int) -> tuple[np.ndarray, Planes]:
-    """Return boxes of a grid of 2 cm whose union has an IoU of at least a bound."""
+    """Return boxes on a grid of 2 cm whose union has at least the minimum IoU."""
     fine, picks = [], []
     for each in planes:
         count = max(1, round((each[-1] - each[0]) / FINE_M))
@@ -222,7 +222,7 @@ def _coarse(labels: np.ndarray, planes: Planes, most: int) -> tuple[np.ndarray, 
 
 
 def _depths(boxes: np.ndarray) -> np.ndarray:
-    """Return how far each box stands back, int [N]: one step more than those it overlaps."""
+    """Return the set-back of each box, int [N]: one step more than the boxes it overlaps."""
     depths = np.zeros(len(boxes), np.int64)
     for n in range(1, len(boxes)):
         meets = (boxes[:n, 1:4] < boxes[n, 4:]) & (boxes[n, 1:4] < boxes[:n, 4:])

@@ -100,7 +100,7 @@ def boxes_of_cells(
 
 
 def _between(mask: np.ndarray) -> np.ndarray:
-    """Return the cells, bool, with cells of a mask on both sides along two axes and more."""
+    """Return the bool mask of cells with mask cells on both sides along at least two axes."""
     count = np.zeros(mask.shape, np.int8)
     for axis in range(3):
         before = np.logical_or.accumulate(mask, axis=axis)
@@ -181,7 +181,7 @@ class DisplayBuilder:
                 self._put(*plate, int(SemanticClass.FURN), number, "any")
 
     def _worktops(self) -> dict[int, Worktop]:
-        """Return the glossy worktops of the room by their objects."""
+        """Return the glossy worktops of the room by object number."""
         found = {}
         furn = self.grid.labels == SemanticClass.FURN
         for number in np.unique(self.grid.instance[furn & (self.grid.instance > 0)]).tolist():
@@ -253,14 +253,14 @@ class DisplayBuilder:
         )
 
     def _is_within_blocks(self, frame: Frame) -> bool:
-        """Whether an object's entities stand in a block that keeps light out."""
+        """Return whether an object's entities are inside a block that blocks light."""
         middle = frame.base_m + np.array([0.0, 0.0, frame.size_m[2] / 2])
         at = np.floor(self.canvas.lattice.coordinates_of(middle)).astype(int)
         at = tuple(np.clip(at, 0, np.array(self.canvas.lattice.shape) - 1).tolist())
         return bool(self.canvas.states[at]) and not self.canvas.mask_of(*UNSEEN_BLOCKS)[at]
 
     def _put_rest(self) -> None:
-        """Set the cells of objects that lie in no placement and not beside one of their own."""
+        """Place the object cells that are in no placement and not next to one of their object."""
         rest = np.isin(self.grid.labels, OBJECT_CLASSES) & ~self.shown
         keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
         for key in np.unique(keys[rest]).tolist():
@@ -270,7 +270,7 @@ class DisplayBuilder:
                 self.put_cells(cells, key >> 16, key & 0xFFFF)
 
     def _frame_of(self, placement: Placement, counts: Counter[int]) -> Frame:
-        """Return where a placement stands: as it was matched, or as its askew object was seen."""
+        """Return the frame of a placement: as matched, or as observed for an oblique object."""
         base = placement.center_m - [0.0, 0.0, placement.size_m[2] / 2]
         yaw = 90.0 * placement.quarter_turns
         frame = Frame(base, placement.size_m, yaw)
@@ -292,7 +292,7 @@ class DisplayBuilder:
         return self.parameters.chair_contradicted if chair else self.parameters.most_contradicted
 
     def _free_share(self, parts: Sequence[Part], frame: Frame, placement: Placement) -> float:
-        """Return the share of a template's volume that was seen free, well off its own cells."""
+        """Return the share of a template's volume seen as free, well away from its own cells."""
         own = self.grid.instance == placement.object_id
         free = self.free & ~dilate_faces(dilate_faces(own))
         step = FREE_SHARE * self.grid.voxel_m
@@ -333,7 +333,7 @@ class DisplayBuilder:
         return role_colours(parts, frame, stretched, colours, self.grid.voxel_m, kinds)
 
     def _outward(self, cells: np.ndarray) -> np.ndarray:
-        """Return the side, float64 [N, 3] of -1 to 1, on which each cell borders on free space."""
+        """Return the direction in which each cell borders free space, float64 [N, 3] of -1 to 1."""
         result = np.zeros((len(cells), 3))
         limit = np.array(self.grid.shape) - 1
         for axis in range(3):
@@ -345,7 +345,7 @@ class DisplayBuilder:
 
 
 def _clamp_to_box(centres_m: np.ndarray, frame: Frame) -> np.ndarray:
-    """Return the middles of cells, float64 [N, 3], drawn into the box of what shows them."""
+    """Clip the centres of cells, float64 [N, 3], to the box that represents them."""
     local = apply(invert(frame.object_to_room), centres_m)
     half = frame.size_m / 2
     local[:, :2] = np.clip(local[:, :2], -half[:2], half[:2])

@@ -92,7 +92,7 @@ def put_colliders(
 
 
 def _solid(cover: Cover, canvas: Canvas) -> np.ndarray:
-    """Return the blocks, bool [X, Y, Z], that stop a player."""
+    """Return the mask of blocks that stop a player, bool [X, Y, Z]."""
     solid = cover.face >= COVERED
     volume = np.where(solid, cover.volume, 0)
     padded = np.pad(volume, ((0, 0), (0, 0), (1, 1)))
@@ -103,7 +103,7 @@ def _solid(cover: Cover, canvas: Canvas) -> np.ndarray:
 
 
 def _is_flat(cover: Cover, canvas: Canvas) -> np.ndarray:
-    """Return the blocks, bool [X, Y, Z], whose part lies flat on a floor."""
+    """Return the mask of blocks with a part flat on a floor, bool [X, Y, Z]."""
     layers = cover.low[2] + np.arange(cover.height.shape[2])
     return np.isin(layers, canvas.lattice.grounds) & (cover.height <= FLAT)
 
@@ -111,7 +111,7 @@ def _is_flat(cover: Cover, canvas: Canvas) -> np.ndarray:
 def _glowing(
     pieces: Sequence[DisplayBox], frame: Frame, canvas: Canvas, cover: Cover
 ) -> np.ndarray:
-    """Return the blocks, bool [X, Y, Z], that hold a part which gives light."""
+    """Return the mask of blocks with a glowing part, bool [X, Y, Z]."""
     result = np.zeros(cover.face.shape, bool)
     lit = [piece for piece in pieces if is_luminous(piece.state)]
     if lit:
@@ -129,7 +129,7 @@ def _glowing(
 def _inside(
     points: list[np.ndarray], middle: np.ndarray, half: np.ndarray, turn: np.ndarray, slack: float
 ) -> np.ndarray:
-    """Tell which points of a raster lie in a turned box; one thinner than it holds one layer."""
+    """Return which points of a raster are in a rotated box; thin boxes contain one layer."""
     x, y = points[0][:, None] - middle[0], points[1][None, :] - middle[1]
     reach = np.maximum(half, slack) + 1e-9
     along = np.abs(turn[0, 0] * x + turn[1, 0] * y) <= reach[0]
@@ -139,7 +139,7 @@ def _inside(
 
 
 def _others(axis: int) -> tuple[int, ...]:
-    """The axes of samples that are left in [X, f, Y, f, Z, f] when one of them is gone."""
+    """The sample axes that remain in [X, f, Y, f, Z, f] without one of them."""
     places = [1, 3, 5]
     del places[axis]
     return tuple(place - (place > 1 + 2 * axis) for place in places)

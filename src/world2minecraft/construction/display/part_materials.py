@@ -60,7 +60,7 @@ def states_of_parts(
 
 
 def _is_alike(one: Material | None, main: Material | None) -> bool:
-    """Whether a role that nobody saw is of what most of its object is."""
+    """Return whether an unseen role has the same kind of material as most of its object."""
     if one is None or main is None:
         return one is main
     return one.takes_colour and main.takes_colour and one.kind == main.kind
@@ -159,7 +159,7 @@ def _state_of_role(
 
 
 def _whole(material: Material, default: str) -> str:
-    """Return the full block of a material: only a cube can be stretched over a part."""
+    """Return the full block of a material, since only cubes can be stretched."""
     name = material.block("full")
     if name is None:
         return default

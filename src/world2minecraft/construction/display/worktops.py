@@ -94,7 +94,7 @@ def deepened(placement: Placement, grid: OccupancyGrid) -> Placement:
 def _unseen_depth(
     low: np.ndarray, high: np.ndarray, axis: int, side: int, grid: OccupancyGrid
 ) -> float:
-    """Return how far in metres it is from a side to a wall over unseen space; 0 where it is not."""
+    """Return the distance in metres from a side to a wall across unseen space, or 0."""
     first = np.clip(np.floor((low - grid.origin_m) / grid.voxel_m + 0.5), 0, grid.shape).astype(int)
     last = np.clip(np.floor((high - grid.origin_m) / grid.voxel_m + 0.5), first + 1, grid.shape)
     window = [slice(int(a), int(b)) for a, b in zip(first, last, strict=True)]

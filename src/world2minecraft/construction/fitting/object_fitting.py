@@ -72,7 +72,7 @@ def score_phases(
 
 
 def _phases(rules: Rules) -> Iterator[tuple[int, int]]:
-    """Yield where the middle may lie in its block, in sub-cells along x and y."""
+    """Yield the allowed positions of the centre in its block, in sub-cells along x and y."""
     along = [
         range(0, SUB, SUB // 2 if mirror else PHASE_STEP) if fixed is None else (fixed,)
         for mirror, fixed in zip(rules.even, rules.phase, strict=True)
@@ -92,7 +92,7 @@ def solve(
 
 
 def _put_best(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
-    """Set, in place, the one block that shows most of what no shape is worth: nothing vanishes."""
+    """Set, in place, the best block of an object for which no shape pays, so that it is visible."""
     able = np.flatnonzero(~np.isin(shapes.kinds[: shapes.free], ("empty", "carpet", "post")))
     met, spilt = problem.gains.met[:, able], problem.gains.spilt[:, able]
     row, column = np.unravel_index(int(np.argmax(met / (problem.gains.whole + spilt))), met.shape)
@@ -133,7 +133,7 @@ def evaluate_fit(grid: np.ndarray, problem: Problem, shapes: ShapeSet, lam: floa
 
 
 def _filled_box(grid: np.ndarray) -> tuple[tuple[slice, ...], np.ndarray]:
-    """Return the box of the filled blocks, from the lowest layer on, and its first block."""
+    """Return the box of the filled blocks, from the lowest layer up, and its first block."""
     at = np.argwhere(grid > 0)
     if not len(at):
         return (slice(0, 1),) * 3, np.zeros(3, int)
@@ -196,7 +196,7 @@ def fit_parts(
 
 
 def _finalists(boxes, thin, shapes, rules, counts, bottom):
-    """Return for each height the stretch and phase that are best without joints."""
+    """Return for each height the best stretch and phase without joints."""
     size = boxes[:, 3:].max(0) - boxes[:, :3].min(0)
     sides = [_sides(size[axis], None if counts is None else counts[axis]) for axis in (0, 1)]
     found = []
@@ -215,7 +215,7 @@ def _finalists(boxes, thin, shapes, rules, counts, bottom):
 
 
 def _sides(size: float, count: int | None) -> list[float]:
-    """Return the stretches to try along one horizontal axis."""
+    """Return the stretches to try along a horizontal axis."""
     if count is not None:
         return [count / size]
     halves = max(round(2 * size), 1) / 2
@@ -226,7 +226,7 @@ def _sides(size: float, count: int | None) -> list[float]:
 
 
 def _heights(boxes: np.ndarray, bottom: int) -> list[float]:
-    """Return the stretches upward to try: each brings some plate or the top to a block's edge."""
+    """Return the vertical stretches to try; each moves a plate or the top to a block boundary."""
     levels = np.unique(np.round(boxes[:, [2, 5]].ravel(), 4))
     factors = {1.0}
     start = bottom / SUB
@@ -239,7 +239,7 @@ def _heights(boxes: np.ndarray, bottom: int) -> list[float]:
 
 
 def _target(boxes: np.ndarray, thin: np.ndarray, bottom: int) -> Target:
-    """Return boxes about their middle as a target."""
+    """Return boxes around their centre as a target."""
     half = np.ceil(boxes[:, 3:5].max(0) * SUB - SAME).astype(int)
     tall = int(np.ceil(boxes[:, 5].max() * SUB - SAME))
     moved = boxes + np.tile([*(half / SUB), 0], 2)
@@ -251,7 +251,7 @@ def _target(boxes: np.ndarray, thin: np.ndarray, bottom: int) -> Target:
 
 
 def _is_even(boxes: np.ndarray, axis: int) -> bool:
-    """Whether boxes are their own mirror image along an axis."""
+    """Return whether boxes are mirror-symmetric along an axis."""
     other = boxes.copy()
     other[:, axis], other[:, axis + 3] = -boxes[:, axis + 3], -boxes[:, axis]
     one, two = (np.round(rows, 4) for rows in (boxes, other))
@@ -264,7 +264,7 @@ def _cost(factors: np.ndarray, counts: tuple[int, int] | None) -> float:
 
 
 def _owners(boxes: np.ndarray, fit: Fit, shapes: ShapeSet, bottom: int) -> np.ndarray:
-    """Return which box fills most of what is shown of each block, int16 [X, Y, Z]."""
+    """Return the box that fills most of each block, int16 [X, Y, Z]."""
     moved = boxes + np.tile([*fit.middle, bottom / SUB], 2)
     best = np.zeros(fit.numbers.shape, np.float32)
     result = np.zeros(fit.numbers.shape, np.int16)

@@ -42,7 +42,7 @@ def cover_blocks(
 
 
 def _windows(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return which cells lie by each block, int [count, K], and their shares, [count, 8, K]."""
+    """Return the cells next to each block, int [count, K], and their shares, [count, 8, K]."""
     side = float(edges[-1] - edges[0]) / (len(edges) - 1)
     places = np.round((np.arange(count * SUB + 1) / SUB - edges[0]) / side, SNAP)
     first = np.floor(places[:-1:SUB]).astype(int)
@@ -56,7 +56,7 @@ def _windows(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _met(solid: np.ndarray, windows: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    """Return which blocks have a solid cell in their window, bool [X', Y', Z']."""
+    """Return the mask of blocks with a solid cell in their window, bool [X', Y', Z']."""
     for axis, (cells, shares) in enumerate(windows):
         touched = np.asarray((shares > 0).any(1))
         result = np.zeros((*solid.shape[:axis], len(cells), *solid.shape[axis + 1 :]), bool)
@@ -69,7 +69,7 @@ def _met(solid: np.ndarray, windows: Sequence[tuple[np.ndarray, np.ndarray]]) ->
 
 
 def _resample(values: np.ndarray, shares: Sequence[np.ndarray]) -> np.ndarray:
-    """Return cells [N, A, B, C] as sub-cells [N, 512] by each block's own shares [N, 8, K]."""
+    """Resample cells [N, A, B, C] to sub-cells [N, 512] with each block's shares [N, 8, K]."""
     count, a, b, c = values.shape
     along = np.matmul(shares[0], values.reshape(count, a, b * c)).reshape(count, SUB, b, c)
     across = np.matmul(shares[1][:, None], along)
@@ -115,7 +115,7 @@ def cover_boxes(boxes: np.ndarray, counts: Sequence[int]) -> np.ndarray:
 
 
 def _span(low: float, high: float, count: int) -> tuple[int, np.ndarray]:
-    """Return the first sub-cell that an interval meets and its share of each, float32 [N]."""
+    """Return the first sub-cell that an interval touches and its share of each, float32 [N]."""
     start = int(np.clip(np.floor(low + 1e-9), 0, count - 1))
     stop = int(np.clip(np.ceil(high - 1e-9), start + 1, count))
     at = np.arange(start, stop)
@@ -143,7 +143,7 @@ def _pad_axis(values: np.ndarray, reach: int, axis: int) -> np.ndarray:
 
 
 def _sliding_reduce(values: np.ndarray, side: int, axis: int, reduce: np.ufunc) -> np.ndarray:
-    """Return ``reduce`` over each run of ``side`` cells along an axis."""
+    """Apply ``reduce`` to each window of ``side`` cells along an axis."""
     count = values.shape[axis] - side + 1
     run = [slice(None)] * values.ndim
     run[axis] = slice(0, count)

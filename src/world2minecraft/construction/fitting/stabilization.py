@@ -235,9 +235,9 @@ def _touching_shape(
     scores: np.ndarray,
     shapes: ShapeSet,
 ) -> int:
-    """Return the best shape for a block over (side 0) or under (1) a post; 0 where there is none.
+    """Return the best shape for a block above (0) or below (1) a post, or 0 if there is none.
 
-    It touches the post, and every neighbour that the shape touched that stands there now.
+    It touches the post, and every existing neighbour that the previous shape touched.
     """
     core = slice(SUB // 2 - 1, SUB // 2 + 1)
     able = np.asarray(shapes.faces[:, 2, side, core, core].any((1, 2)))
@@ -332,7 +332,7 @@ def choose_stable(
 
 
 def _add_posts(grid, at, scores, shapes, shut) -> None:
-    """Set single posts, in place, where they gain and nothing beside them would join them."""
+    """Set single posts, in place, where they gain and no neighbour would connect to them."""
     for number in np.flatnonzero(shapes.kinds == "post"):
         joins = np.isin(shapes.kinds, JOINING)
         gain = np.where(shut[:, number], -np.inf, scores[:, number])
@@ -352,7 +352,7 @@ def _add_posts(grid, at, scores, shapes, shut) -> None:
 
 
 def _add_carpets(grid, cells, scores, shapes, shut, ground) -> None:
-    """Set carpets, in place, where they gain and lie on something; lower layers first."""
+    """Set carpets, in place, where they gain and lie on a support; lower layers first."""
     for number in np.flatnonzero(shapes.kinds == "carpet"):
         for row in np.argsort(cells[:, 2], kind="stable").tolist():
             x, y, z = cells[row].tolist()
@@ -397,7 +397,7 @@ def stabilize(
 
 
 def _find_barred(problem: Problem, shapes: ShapeSet, rules: Rules) -> np.ndarray:
-    """Return what may not stand where, bool [N, S]."""
+    """Return which shapes are not allowed in each block, bool [N, S]."""
     barred = np.zeros((len(problem.cells), len(shapes)), bool)
     for axis in (0, 1):  # On a mirror plane, only what is its own mirror image.
         if rules.even[axis] and problem.shape[axis] % 2:
@@ -425,7 +425,7 @@ def mirror_shapes(grid: np.ndarray, shapes: ShapeSet, even: tuple[bool, bool]) -
 
 
 def _poles(problem: Problem) -> np.ndarray:
-    """Return which blocks hold a leg or a pole, bool [N]: upright, thin both ways, or its foot."""
+    """Return which blocks contain a leg, a pole or its foot, bool [N]: upright and thin."""
     filled = problem.wanted.reshape(-1, SUB, SUB, SUB) > POLE_FILL
     upright = filled.any((1, 2)).sum(1) >= SUB - 1
     along, across = (np.asarray(filled.any(axes)) for axes in ((2, 3), (1, 3)))
@@ -437,13 +437,13 @@ def _poles(problem: Problem) -> np.ndarray:
 
 
 def _span(rows: np.ndarray) -> np.ndarray:
-    """Return how far apart the first and the last set cells of rows, bool [N, 8], are, int [N]."""
+    """Return the distance between the first and last set cell of rows bool [N, 8], int [N]."""
     first, last = rows.argmax(1), SUB - 1 - rows[:, ::-1].argmax(1)
     return np.where(rows.any(1), last - first + 1, 0)
 
 
 def _add_legs(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
-    """Set posts, in place, where legs or a pole run from the floor to what was chosen."""
+    """Set posts, in place, where legs or a pole connect the floor to the chosen shapes."""
     numbers = np.flatnonzero(shapes.kinds == "post")
     if not len(numbers):
         return
@@ -484,7 +484,7 @@ def remove_crumbs(
 
 
 def _without_bare_carpets(grid: np.ndarray, shapes: ShapeSet, ground: int | None) -> np.ndarray:
-    """Return shapes, int [X, Y, Z], without carpets under which nothing is left."""
+    """Return shapes, int [X, Y, Z], without carpets that have no support."""
     bare = np.zeros(grid.shape, bool)
     bare[:, :, 1:] = grid[:, :, :-1] == 0
     bare[:, :, 0] = ground is None

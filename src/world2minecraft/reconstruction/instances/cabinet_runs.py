@@ -88,7 +88,7 @@ def _smallest_sliver(pieces: np.ndarray, voxels: ObjectVoxels, retained: set[int
 
 
 def _most_adjacent(pieces: np.ndarray, number: int) -> int:
-    """Return the piece that has most cells beside those of ``number``; of equals the lowest."""
+    """Return the piece with the most cells next to those of ``number``; the lowest wins a tie."""
     own = pieces == number
     adjacent = pieces[ndimage.binary_dilation(own, np.ones((3, 3, 3), np.bool_)) & ~own]
     counts = np.bincount(adjacent[adjacent > 0])
@@ -140,7 +140,7 @@ def _best_cut(plan: np.ndarray, air: np.ndarray, voxels: ObjectVoxels) -> tuple[
 
 
 def _remove_fringe(plan: np.ndarray) -> np.ndarray:
-    """Return the plan without columns that have few neighbours: noise would widen its box."""
+    """Return the plan without columns that have few neighbours, as noise would widen its box."""
     near = ndimage.convolve(plan.astype(np.int32), np.ones((3, 3), np.int32), mode="constant")
     return plan & (near >= MIN_NEIGHBOURS)
 
@@ -151,7 +151,7 @@ def _plan_box(plan: np.ndarray) -> tuple[slice, slice] | None:
 
 
 def _count_air(plan: np.ndarray, air: np.ndarray) -> int:
-    """Return how many columns of the box around a plan are air."""
+    """Return the number of air columns in the bounding box of a plan."""
     box = _plan_box(plan)
     return int(np.count_nonzero(air[box])) if box else 0
 
@@ -181,7 +181,7 @@ def hanging_cells(voxels: ObjectVoxels) -> np.ndarray:
 
 
 def _hanging_bottoms(voxels: ObjectVoxels) -> np.ndarray:
-    """Return int64 [X, Y]: the layer in which a hanging thing begins in each column, or 0."""
+    """Return the first layer of a hanging object in each column, or 0, int64 [X, Y]."""
     first = max(voxels.floor + voxels.cells_of(MIN_HANGING_HEIGHT_M), 1)
     gap = voxels.cells_of(MIN_GAP_M)
     result = np.zeros(voxels.own.shape[:2], np.int64)
@@ -194,7 +194,7 @@ def _hanging_bottoms(voxels: ObjectVoxels) -> np.ndarray:
 
 
 def _is_clear(voxels: ObjectVoxels, plan: np.ndarray, bottom: int) -> bool:
-    """Tell whether the layers under a plan hold next to nothing: no side, no back of a case."""
+    """Return whether the layers below a plan are nearly empty, without the sides of a case."""
     own = voxels.own & plan[:, :, None]
     columns = own[:, :, bottom:].any(axis=2).sum()
     gap = own[:, :, max(bottom - voxels.cells_of(MIN_GAP_M), 0) : bottom]
@@ -218,7 +218,7 @@ def split_by_height(voxels: ObjectVoxels) -> list[np.ndarray]:
 
 
 def _merge_plans(plans: list[np.ndarray], top: np.ndarray, step: float) -> list[np.ndarray]:
-    """Join plans of one height that lie beside one another, stray columns between them or not."""
+    """Merge adjacent plans of the same height, including stray columns between them."""
     result: list[np.ndarray] = []
     for plan in plans:
         height = float(np.median(top[plan]))
@@ -233,7 +233,7 @@ def _merge_plans(plans: list[np.ndarray], top: np.ndarray, step: float) -> list[
 
 
 def _height_regions(top: np.ndarray, step: float) -> np.ndarray:
-    """Number the regions, int64 [X, Y], of columns whose tops differ little between neighbours."""
+    """Label the regions of columns with similar top heights, int64 [X, Y]."""
     from scipy.sparse import coo_matrix  # noqa: PLC0415
     from scipy.sparse.csgraph import connected_components  # noqa: PLC0415
 
@@ -280,7 +280,7 @@ def split_at_seams(voxels: ObjectVoxels) -> list[np.ndarray]:
 
 
 def _front_colours(voxels: ObjectVoxels, axis: int) -> np.ndarray:
-    """Return the front's colour, float64 [N, 3], of each slice across the run, NaN if unseen."""
+    """Return the front colour of each slice across the run, float64 [N, 3]; NaN if unseen."""
     across = 1 - axis
     own = np.moveaxis(voxels.own, (axis, across, 2), (0, 1, 2))
     free = np.moveaxis(voxels.free, (axis, across, 2), (0, 1, 2))
@@ -301,12 +301,12 @@ def _front_colours(voxels: ObjectVoxels, axis: int) -> np.ndarray:
 
 
 def _count_front_cells(own: np.ndarray, free: np.ndarray) -> int:
-    """Count the own cells that have free air before them, on the side of index 0."""
+    """Count the object's cells with free air in front, on the side of index 0."""
     return int((own[:, 1:] & free[:, :-1]).sum())
 
 
 def _change_points(colours: np.ndarray, least: int) -> list[int]:
-    """Return where a run changes: the cuts of least squared change, each worth its penalty."""
+    """Return the cuts of a run with the least squared change, each worth its penalty."""
     known = np.asarray(np.isfinite(colours).all(axis=1))
     values = np.where(known[:, None], colours, 0.0) / _colour_step(colours)
     total = np.vstack([np.zeros(3), np.cumsum(values, axis=0)])
@@ -332,7 +332,7 @@ def _change_points(colours: np.ndarray, least: int) -> list[int]:
 
 
 def _colour_step(colours: np.ndarray) -> float:
-    """Return what counts as one step of colour: more where neighbours differ, as books do."""
+    """Return the threshold of a colour change, larger if neighbours differ, as books do."""
     change = np.linalg.norm(np.diff(colours, axis=0), axis=1)
     usual = float(np.nanmedian(change)) if np.isfinite(change).any() else 0.0
     return max(COLOUR_STEP, 2 * usual)
@@ -368,7 +368,7 @@ def split_run(voxels: ObjectVoxels) -> np.ndarray:
 
 
 def _assign_to_nearest(own: np.ndarray, seeds: np.ndarray) -> np.ndarray:
-    """Give every own cell the number of its seed, or of the nearest one; of equals the lowest."""
+    """Assign every cell of an object to the nearest seed; the lowest number wins a tie."""
     if seeds.max(initial=0) < 2:
         return own.astype(np.int32)
     loose = np.argwhere(own & (seeds == 0))

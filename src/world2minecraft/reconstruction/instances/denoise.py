@@ -38,7 +38,7 @@ def relabel_specks(labels: np.ndarray) -> np.ndarray:
 
 
 def _surrounding_class(own: np.ndarray, labels: np.ndarray) -> int:
-    """Return the class in which a speck, bool [A, B, C], lies; 0 for none."""
+    """Return the class that surrounds a speck, bool [A, B, C], or 0."""
     adjacent = labels[ndimage.binary_dilation(own, NEIGHBOURHOOD) & ~own]
     occupied = adjacent[(adjacent > 0) & (adjacent <= OBJECT_CLASSES[-1])]
     counts = np.bincount(occupied, minlength=1)
@@ -52,7 +52,7 @@ def _surrounding_class(own: np.ndarray, labels: np.ndarray) -> int:
 
 
 def _count_enclosing_axes(own: np.ndarray, surrounding: np.ndarray) -> int:
-    """Count the axes along which each cell's row ends at the surrounding class on both sides."""
+    """Count the axes along which the surrounding class is on both sides of each cell's row."""
     own, surrounding = np.pad(own, 1), np.pad(surrounding, 1)
     return sum(
         _all_rows_end(own, surrounding, axis, 1) and _all_rows_end(own, surrounding, axis, -1)

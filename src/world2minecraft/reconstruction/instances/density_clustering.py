@@ -127,7 +127,7 @@ def assign_voxels(
 
 @njit
 def _flood(labels, binary, owners, seeds):  # pragma: no cover - compiled
-    """Carry owners outward ring by ring; within a ring the lowest owner wins."""
+    """Extend owners outward ring by ring; within a ring the lowest owner wins."""
     nx, ny, nz = labels.shape
     ring = seeds
     while len(ring):

@@ -62,7 +62,7 @@ def _is_fragment(cells: np.ndarray, grid: OccupancyGrid) -> bool:
 
 
 def _vertical_gap(fragment: np.ndarray, whole: np.ndarray, grid: OccupancyGrid) -> int | None:
-    """Return the layers between a fragment and a thing over or under it; None if it is not."""
+    """Return the layers between a fragment and an object above or below it, or None."""
     middle = fragment[:, :2].mean(axis=0)
     inside = (middle >= whole[:, :2].min(axis=0) - 1) & (middle <= whole[:, :2].max(axis=0) + 1)
     if not inside.all():
@@ -149,7 +149,7 @@ def merge_small_pieces(
 def _merge_class(
     mask: np.ndarray, owners: np.ndarray, min_whole_cells: int, parameters: InstanceParameters
 ) -> None:
-    """Merge, in place, the loose pieces of a class and its objects of too few cells."""
+    """Merge, in place, the loose pieces and the small objects of a class."""
     sizes = np.bincount(owners[mask])
     small = np.flatnonzero((sizes > 0) & (sizes < min_whole_cells))
     loose = mask & ((owners == 0) | np.isin(owners, small[small > 0]))

@@ -59,7 +59,7 @@ def min_area_rectangle(cells: np.ndarray, class_id: int, voxel_m: float) -> Rect
 
 
 def _rectangle_at(plan: np.ndarray, angle_deg: float) -> Rectangle:
-    """Return the rectangle of one angle around some points, float64 [N, 2]."""
+    """Return the rectangle at an angle around points, float64 [N, 2]."""
     cos, sin = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
     along = plan[:, 0] * cos + plan[:, 1] * sin
     aside = plan[:, 1] * cos - plan[:, 0] * sin
@@ -80,7 +80,7 @@ def vertical_extent(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> tu
 
 
 def _is_in_air(cells: np.ndarray, grid: OccupancyGrid) -> bool:
-    """Tell whether nothing holds an object: neither below nor beside."""
+    """Return whether an object has no support, neither below nor beside it."""
     labels = grid.labels
     low = np.maximum(cells[:, :2].min(axis=0) - WALL_CELLS, 0)
     high = cells[:, :2].max(axis=0) + 1 + WALL_CELLS
@@ -94,7 +94,7 @@ def _is_in_air(cells: np.ndarray, grid: OccupancyGrid) -> bool:
 
 
 def _lamp_layers(cells: np.ndarray, grid: OccupancyGrid, floor: int) -> tuple[int, int]:
-    """Return the layers of a thing with a post below or a cord above that was not seen."""
+    """Return the layers of an object with an unseen post below or an unseen cord above."""
     low, high = int(cells[:, 2].min()), int(cells[:, 2].max()) + 1
     x, y = (int(value) for value in np.round(cells[:, :2].mean(axis=0)))
     column = grid.labels[x, y]
@@ -112,9 +112,9 @@ def _lamp_layers(cells: np.ndarray, grid: OccupancyGrid, floor: int) -> tuple[in
 
 
 def _ceiling_layer(grid: OccupancyGrid, high: int) -> int:
-    """Return the layer of the ceiling over most of the room; ``high`` where there is none.
+    """Return the layer of the ceiling over most of the room, or ``high`` if there is none.
 
-    The next floor over ``high`` ends the search: over that is another storey's ceiling.
+    The search ends at the next floor above ``high``, which belongs to another storey.
     """
     layers = np.count_nonzero(grid.labels == SemanticClass.CEILING, axis=(0, 1))
     floors = np.count_nonzero(grid.labels == SemanticClass.FLOOR, axis=(0, 1))

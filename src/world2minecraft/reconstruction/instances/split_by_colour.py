@@ -37,7 +37,7 @@ def split_by_colour(
 
 
 def _part_of_cells(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
-    """Return the part, int32 [N] from 1, of each cell."""
+    """Return the part of each cell, int32 [N] from 1."""
     low = cells.min(axis=0)
     shape = cells.max(axis=0) + 1 - low
     own = np.zeros(shape, np.bool_)
@@ -56,7 +56,7 @@ def _part_of_cells(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
 
 
 def _colour_patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
-    """Number the patches, int32 [X, Y, Z] from 1, of neighbours that look alike and are many."""
+    """Label the large patches of neighbouring cells of similar colour, int32 [X, Y, Z] from 1."""
     from scipy.sparse import coo_matrix  # noqa: PLC0415
     from scipy.sparse.csgraph import connected_components  # noqa: PLC0415
 
@@ -80,7 +80,7 @@ def _colour_patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
 
 
 def _merge_stacked_patches(patches: np.ndarray) -> np.ndarray:
-    """Return patches, renumbered, of which those that share a good part of a plan are one."""
+    """Return patches, renumbered, in which patches that share much of their plan are merged."""
     result = patches.copy()
     while True:
         count = int(result.max(initial=0))

@@ -73,7 +73,7 @@ def join_plans_in_air(
 
 
 def _columns_at_wall(own: np.ndarray, labels: np.ndarray, floor: int, voxel_m: float) -> np.ndarray:
-    """Return bool [X, Y]: columns of ``own`` that hang beside a wall."""
+    """Return the columns of ``own`` that hang next to a wall, bool [X, Y]."""
     wall = ((labels == SemanticClass.WALL) | (labels == SemanticClass.WINDOW)).any(axis=2)
     if not wall.any():
         return wall
@@ -90,9 +90,9 @@ def _columns_at_wall(own: np.ndarray, labels: np.ndarray, floor: int, voxel_m: f
 
 
 def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: LocalScene) -> bool:
-    """Tell whether what hangs in some columns is no part of what stands beside them.
+    """Return whether the cells that hang in some columns are separate from objects beside them.
 
-    The leaves of a plant that lean to a wall are no thing of their own.
+    Leaves of a plant that touch a wall are not a separate object.
     """
     sheet = own & plan[:, :, None]
     around = ndimage.binary_dilation(plan, PLAN_BOX, iterations=AROUND_CELLS)
@@ -125,7 +125,7 @@ def split_by_support(
 
 
 def _part_of_cells(cells: np.ndarray, owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
-    """Return the part, int32 [N] from 1, of each cell, 1 where all hang together."""
+    """Return the part of each cell, int32 [N] from 1; all 1 if they are connected."""
     floor = floor_layer_below(cells, grid)
     low = np.maximum(cells.min(axis=0) - WALL_CELLS, 0)
     low[2] = max(int(cells[:, 2].min()) - UNDER_CELLS, 0)
@@ -146,7 +146,7 @@ def _part_of_cells(cells: np.ndarray, owners: np.ndarray, grid: OccupancyGrid) -
 def _seed_parts(
     own: np.ndarray, labels: np.ndarray, owners: np.ndarray, scene: LocalScene
 ) -> np.ndarray:
-    """Return int32 [X, Y, Z]: the numbers of the supports in the columns that they hold."""
+    """Return the number of the support in the columns above it, int32 [X, Y, Z]."""
     support = _supports(own, labels, owners, scene.floor)
     sheets = hanging_plans(own, labels, support >= 0, scene)
     hung = np.logical_or.reduce([np.zeros(support.shape, np.bool_), *sheets])
@@ -170,7 +170,7 @@ def _seed_parts(
 def _floating_shades(
     rest: np.ndarray, stood: np.ndarray, hung: np.ndarray, scene: LocalScene
 ) -> list[np.ndarray]:
-    """Return what floats before a curtain, bool [X, Y, Z] each: a lamp whose post is unseen."""
+    """Return the masks of floating parts in front of a curtain: lamps with an unseen post."""
     pieces, count = label_components(rest)
     adjacent = ndimage.binary_dilation(stood, np.ones((3, 3), np.bool_))[:, :, None]
     curtain = np.median(scene.colour[hung], axis=0)
@@ -186,9 +186,9 @@ def _floating_shades(
 
 
 def _supports(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, floor: int) -> np.ndarray:
-    """Return int64 [X, Y]: what each column stands on: 0 the floor, else an owner; -1 nothing.
+    """Return the support of each column, int64 [X, Y]: 0 is the floor, -1 none, else an owner.
 
-    What lies flat on a table may fill the cells of its top; then the top beside it counts.
+    A flat object on a table can fill the cells of its top; then the top beside it counts.
     """
     object_ = (labels >= OBJECT_CLASSES[0]) & (labels <= OBJECT_CLASSES[-1])
     holder = np.where(object_ & (labels != SemanticClass.OBJS) & (owners > 0), owners, -1)
@@ -211,7 +211,7 @@ def _supports(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, floor: in
 
 
 def _split_disconnected(own: np.ndarray, parts: np.ndarray) -> np.ndarray:
-    """Return parts, int32 [X, Y, Z], of which each hangs together: what a curtain joined is two."""
+    """Return parts, int32 [X, Y, Z], split into connected parts."""
     result = np.zeros_like(parts)
     for number in range(1, int(parts.max(initial=0)) + 1):
         pieces, _ = label_components(own & (parts == number))
@@ -220,7 +220,7 @@ def _split_disconnected(own: np.ndarray, parts: np.ndarray) -> np.ndarray:
 
 
 def _merge_small_parts(parts: np.ndarray) -> np.ndarray:
-    """Number the parts anew from 1; cells of a part that is too small join the largest."""
+    """Renumber the parts from 1; cells of small parts are added to the largest."""
     counts = np.bincount(parts)
     keep = counts >= MIN_CELLS
     keep[0] = False

@@ -84,10 +84,10 @@ def merge_chair_backs(
 
 
 def _separate_far_pieces(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
-    """Return owners in which a piece that lies too far from its chair has a number of its own.
+    """Return owners in which pieces far from their chair have a separate number.
 
-    Of a chair whose seat was not seen the top of the back is left, and joins a neighbour. With the
-    largest piece it is wider than an easy chair.
+    Of a chair with an unseen seat, the top of the back remains and is merged with a neighbour.
+    Together with the largest piece it is wider than an easy chair.
     """
     result = owners.copy()
     next_id = int(owners.max(initial=0))
@@ -119,20 +119,20 @@ Box = tuple[np.ndarray, np.ndarray]
 
 
 def _gap_cells(one: Box, other: Box) -> float | None:
-    """Return how many cells lie between two boxes; None for more than ``MAX_GAP_CELLS``."""
+    """Return the number of cells between two boxes, or None above ``MAX_GAP_CELLS``."""
     gap = np.maximum(np.maximum(one[0] - other[1], other[0] - one[1]), 0)
     return float(gap.sum()) if gap.max() <= MAX_GAP_CELLS else None
 
 
 def _joint_width(one: Box, other: Box) -> float:
-    """Return the longer side in plan of two boxes together."""
+    """Return the longer side, in plan, of the bounding box of two boxes."""
     return float((np.maximum(one[1], other[1]) - np.minimum(one[0], other[0]))[:2].max())
 
 
 def _chair_of_cells(
     cells: np.ndarray, labels: np.ndarray, tables: np.ndarray, voxel_m: float, floor: int
 ) -> np.ndarray:
-    """Return the chair, int32 [N] from 0, of each cell; all 0 where it is one."""
+    """Return the chair of each cell, int32 [N] from 0; all 0 for a single chair."""
     code, corner = _crop(cells, labels)
     own = cells - corner
     look = direction_to_table(cells, tables, int(TABLE_SEARCH_M / voxel_m))
@@ -144,7 +144,7 @@ def _chair_of_cells(
 
 
 def _crop(cells: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return what was seen around some cells, as codes uint8 [X, Y, Z], and its first cell."""
+    """Return the observations around cells, as codes uint8 [X, Y, Z], and the first cell."""
     low = np.maximum(cells.min(axis=0) - (MARGIN_CELLS, MARGIN_CELLS, 0), 0)
     low[2] = 0
     high = np.minimum(cells.max(axis=0) + 1 + MARGIN_CELLS, labels.shape)
@@ -157,7 +157,7 @@ def _crop(cells: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray
 def _fit_chairs(
     code: np.ndarray, own: np.ndarray, floor: int, voxel_m: float, look: np.ndarray
 ) -> list[SeatFit]:
-    """Lay chairs over the voxels, each where it meets most of what the ones before left."""
+    """Fit chairs to the voxels one by one, each to most of the remaining cells."""
     fits: list[SeatFit] = []
     while len(fits) < MAX_CHAIRS:
         fit = fit_seat(template("chair"), code, floor, voxel_m, look)
@@ -172,7 +172,7 @@ def _fit_chairs(
 def _clearly_better(
     fits: list[SeatFit], code: np.ndarray, own: np.ndarray, floor: int, voxel_m: float
 ) -> bool:
-    """Return whether several chairs meet the voxels better than one easy chair does."""
+    """Return whether several chairs fit the voxels better than one easy chair."""
     if (np.ptp(own[:, :2], axis=0).max() + 1) * voxel_m > MAX_EASY_CHAIR_M:
         return True
     easy = [fit_seat(template(name), code, floor, voxel_m, np.zeros(2))

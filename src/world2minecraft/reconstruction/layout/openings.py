@@ -64,10 +64,10 @@ def read_wall(
 
 
 def _bend(surface: Surface, relief: PlaneResiduals) -> np.ndarray:
-    """Return how far the wall around each place stands off its plane, float [A, B].
+    """Return the distance of the wall around each position from its plane, float [A, B].
 
-    Lens and sensor bend a long wall by some centimetres; a median follows them, and neither the
-    edge of a curtain nor a shelf board.
+    Lens and sensor bend a long wall by some centimetres. A median follows this bend, but not the
+    edge of a curtain or a shelf board.
     """
     gap_m = np.where(relief.seen, relief.gap_m, 0.0)
     bend = ndimage.median_filter(gap_m, 2 * surface.cells_of(BEND_M) + 1, mode="nearest")
@@ -75,7 +75,7 @@ def _bend(surface: Surface, relief: PlaneResiduals) -> np.ndarray:
 
 
 class _Face:
-    """A wall that is being read: each step looks at the places that none before has claimed."""
+    """A wall during classification; each step handles the positions not yet classified."""
 
     def __init__(self, surface: Surface, relief: PlaneResiduals, parameters: StructureParameters):
         self.surface, self.relief, self.parameters = surface, relief, parameters
@@ -131,7 +131,7 @@ class _Face:
                 self._add_gap("doorway" if kind == "door" else kind, part)
 
     def _has_edge(self, part: np.ndarray) -> bool:
-        """Return whether the depth steps around most of a part, where it was seen."""
+        """Return whether the depth changes abruptly around most of the seen border of a part."""
         gap_m = self.relief.gap_m
         ring = dilate(part, 2) & ~dilate(part) & self.relief.seen
         depth = np.median(gap_m[part])
@@ -139,7 +139,7 @@ class _Face:
         return bool(ring.sum() >= 0.4 * part.sum() ** 0.5 and step.mean() >= 0.6)
 
     def _claim(self, places: np.ndarray, kind: SemanticClass, gap_m: float) -> None:
-        """Say what places are: all as deep, but for the bars of a window."""
+        """Set the class and depth of positions, except for the bars of a window."""
         relief = self.relief
         depth_m = np.where(np.abs(relief.gap_m - gap_m) <= BAR_M, gap_m, relief.gap_m)
         self.classes[places] = kind
@@ -151,7 +151,7 @@ class _Face:
         self.gaps.append(Gap(kind, along, (low, height[1])))
 
     def _metres(self, part: np.ndarray) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return where a part begins and ends along the wall, and above the floor."""
+        """Return the range of a part along the wall and above the floor."""
         relief, voxel_m = self.relief, self.surface.voxel_m
         corner = self.surface.origin_m[1 - relief.axis] + relief.box[1].start * voxel_m
         bottom = self.surface.origin_m[2] + relief.box[2].start * voxel_m
@@ -167,7 +167,7 @@ def _parts(mask: np.ndarray) -> list[np.ndarray]:
 
 
 def _bridged(mask: np.ndarray) -> np.ndarray:
-    """Return a mask with what the bars of a window part joined."""
+    """Return a mask with parts connected across the bars of a window."""
     result = mask
     for shape in ((4, 1), (1, 4)):
         padded = np.pad(mask, 4)
@@ -177,18 +177,18 @@ def _bridged(mask: np.ndarray) -> np.ndarray:
 
 
 def _box_cells(part: np.ndarray) -> int:
-    """Return how many places the box around a part has."""
+    """Return the number of positions in the bounding box of a part."""
     a, b = np.nonzero(part)
     return int((np.ptp(a) + 1) * (np.ptp(b) + 1))
 
 
 def _between(values: np.ndarray, low: float, high: float) -> np.ndarray:
-    """Return where values lie within bounds, both included."""
+    """Return the mask of values within bounds, inclusive."""
     return (values >= low) & (values <= high)
 
 
 def _passed(surface: Surface, relief: PlaneResiduals) -> np.ndarray:
-    """Return bool [A, B]: rays went through the wall here, and it was not seen."""
+    """Return the mask of positions at which rays passed an unseen wall, bool [A, B]."""
     free = relief.of(surface.free)
     edge_m = relief.edge_m(surface)
     layer = np.floor((relief.plane_m - edge_m) / surface.voxel_m).astype(int)
@@ -203,7 +203,7 @@ def _kind(
     voxel_m: float,
     parameters: StructureParameters,
 ) -> Literal["window", "door"] | None:
-    """Return what a part, seen face on, is; None where it is too small or ragged."""
+    """Return the kind of an opening, or None if it is too small or irregular."""
     (left, right), (bottom, top) = metres
     width, height = right - left, top - bottom
     if part.sum() * voxel_m**2 < parameters.opening_area_m2:
@@ -218,6 +218,6 @@ def _kind(
 
 
 def _framed(part: np.ndarray, plane: np.ndarray) -> float:
-    """Return the share of the ring around a part that lies on the wall's plane."""
+    """Return the share of the ring around a part that is on the plane of the wall."""
     ring = dilate(part, 3) & ~dilate(part)
     return float(plane[ring].mean()) if ring.any() else 0.0

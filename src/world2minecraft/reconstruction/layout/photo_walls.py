@@ -100,7 +100,7 @@ def complete_walls(grid: OccupancyGrid, rooms: Sequence[Layout]) -> OccupancyGri
 
 
 def _flat_on_walls(grid: OccupancyGrid, rooms: Sequence[Layout]) -> np.ndarray:
-    """Return bool [X, Y, Z]: objects too flat on a wall for stereo to tell them from it."""
+    """Return the mask of objects too flat on a wall for stereo, bool [X, Y, Z]."""
     objects = (grid.labels >= SemanticClass.CHAIR) & (grid.labels <= SemanticClass.OBJS)
     cells = np.argwhere(objects)
     points_m = cell_centers_m(cells, grid.origin_m, grid.voxel_m)
@@ -114,7 +114,7 @@ def _flat_on_walls(grid: OccupancyGrid, rooms: Sequence[Layout]) -> np.ndarray:
 
 
 def _mark_levels(classes: np.ndarray, grid: OccupancyGrid, room: Layout) -> None:
-    """Mark the unseen cells of the layer under a room's floor and, where one was seen, over it."""
+    """Mark the unseen cells of a room's floor layer and, if a ceiling was seen, its layer."""
     columns = np.argwhere(np.ones(grid.shape[:2], bool))
     plan_m = grid.origin_m[:2] + (columns + 0.5) * grid.voxel_m
     inside = inside_polygon(plan_m, room.floor_polygon_m, 0.0).reshape(grid.shape[:2])
@@ -129,7 +129,7 @@ def _mark_levels(classes: np.ndarray, grid: OccupancyGrid, room: Layout) -> None
 
 
 def _mark_wall(classes: np.ndarray, grid: OccupancyGrid, room: Layout, edge: WallEdge) -> None:
-    """Mark the cells of a wall, where enough of it was seen."""
+    """Mark the cells of a wall if enough of it was seen."""
     middle_m = edge.at_m - edge.inward * grid.voxel_m / 2
     layer = int(np.floor((middle_m - grid.origin_m[edge.axis]) / grid.voxel_m))
     if not 0 <= layer < grid.shape[edge.axis]:
@@ -169,7 +169,7 @@ def wall_edges(room: Layout) -> list[WallEdge]:
 
 
 def _outside(rooms: Sequence[Layout], points_m: np.ndarray) -> np.ndarray:
-    """Whether points [N, 3] lie farther outside all rooms than walls and floors are thick."""
+    """Return whether points [N, 3] are outside all rooms by more than a wall's thickness."""
     outside = np.ones(len(points_m), bool)
     sides = np.array([[x, y] for x in (-THICK_M, THICK_M) for y in (-THICK_M, THICK_M)])
     for room in rooms:
@@ -182,13 +182,13 @@ def _outside(rooms: Sequence[Layout], points_m: np.ndarray) -> np.ndarray:
 
 
 def _seen_share(edge: WallEdge, face_m: np.ndarray, voxel_m: float) -> float:
-    """Return the share of a wall's columns in which something of its face was seen."""
+    """Return the share of a wall's columns in which its face was seen."""
     columns = np.floor((face_m[:, 1 - edge.axis] - edge.from_m) / voxel_m)
     return len(np.unique(columns)) / max(1.0, (edge.to_m - edge.from_m) / voxel_m)
 
 
 def _opened(room: Layout, edge: WallEdge, points_m: np.ndarray) -> np.ndarray:
-    """Whether points lie before or behind an opening of a wall that one can see through."""
+    """Return whether points are in front of or behind a transparent opening of a wall."""
     opened = np.zeros(len(points_m), bool)
     for one in room.openings:
         if np.abs(np.array([one.start_m, one.end_m])[:, edge.axis] - edge.at_m).max() > FACE_M:
@@ -202,7 +202,7 @@ def _opened(room: Layout, edge: WallEdge, points_m: np.ndarray) -> np.ndarray:
 def _alike(
     edge: WallEdge, face_m: np.ndarray, face: np.ndarray, at_m: np.ndarray, colour: np.ndarray
 ) -> np.ndarray:
-    """Whether the colours of places are those of the wall behind them."""
+    """Return whether the colours of positions match the wall behind them."""
     if len(face_m) < AROUND or not len(at_m):
         return np.zeros(len(at_m), bool)
     plane = [1 - edge.axis, 2]
@@ -212,7 +212,7 @@ def _alike(
 
 
 def _emptied(grid: OccupancyGrid, hidden: np.ndarray, guessed: np.ndarray) -> OccupancyGrid:
-    """Return a grid with some cells unseen and others free."""
+    """Return a grid with some cells set to unseen and others to free."""
     labels, source = np.array(grid.labels), np.array(grid.source)
     confidence = np.array(grid.confidence)
     at = tuple(hidden.T)

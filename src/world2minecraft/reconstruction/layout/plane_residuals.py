@@ -73,7 +73,7 @@ def measure_plane_residuals(
 
 
 def _fitted(depth_m: np.ndarray, weight: np.ndarray, voxel_m: float) -> np.ndarray:
-    """Return the plane through the places seen, float [A, B], without what lies off it."""
+    """Return the plane fitted robustly to the seen positions, float [A, B]."""
     a, b = np.nonzero(weight)
     if not len(a):
         return np.zeros(depth_m.shape)

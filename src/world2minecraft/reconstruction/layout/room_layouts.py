@@ -62,7 +62,7 @@ def outline_of(
 
 
 def _lines(cells: np.ndarray, corner_m: float, voxel_m: float, walls_m: list[float]) -> list:
-    """Return the sorted cuts along one axis: the walls', and the ends where none is near."""
+    """Return the sorted cuts along an axis: the walls, and ends that are not close to a wall."""
     ends = corner_m + np.array([cells[0], cells[-1] + 1]) * voxel_m
     cuts = [x for x in walls_m if ends[0] - NEAR_WALL_M <= x <= ends[1] + NEAR_WALL_M]
     cuts += [float(end) for end in ends if all(abs(end - x) > NEAR_WALL_M for x in cuts)]
@@ -76,7 +76,7 @@ def _lines(cells: np.ndarray, corner_m: float, voxel_m: float, walls_m: list[flo
 
 
 def _filled_shares(region: np.ndarray, corner_m: np.ndarray, voxel_m: float, edges) -> np.ndarray:
-    """Return which share of each rectangle is region, float [columns, rows]."""
+    """Return the share of each rectangle inside the region, float [columns, rows]."""
     total = np.pad(region.astype(np.int64).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
     at = [
         np.clip(np.round((np.array(e) - corner_m[a]) / voxel_m).astype(int), 0, region.shape[a])
@@ -88,7 +88,7 @@ def _filled_shares(region: np.ndarray, corner_m: np.ndarray, voxel_m: float, edg
 
 
 def _ring(mask: np.ndarray) -> list[tuple[int, int]]:
-    """Return the corners around a mask without holes, counter-clockwise, straight runs as one."""
+    """Return the corners around a mask without holes, counter-clockwise."""
     steps: dict[tuple[int, int], list[tuple[int, int]]] = {}
     padded = np.pad(mask, 1)
     for i, j in np.argwhere(mask):
@@ -113,7 +113,7 @@ def _ring(mask: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _turn(way: tuple[int, int], at: tuple[int, int], to: tuple[int, int]) -> int:
-    """Return how far left a step turns: 1 left, 0 straight, -1 right."""
+    """Return the direction of a turn: 1 is left, 0 straight, -1 right."""
     step = (to[0] - at[0], to[1] - at[1])
     return int(np.sign(way[0] * step[1] - way[1] * step[0]))
 
@@ -151,7 +151,7 @@ def find_structure(
 
 
 def _regions(structure: Structure) -> list[np.ndarray]:
-    """Return the rooms' columns, bool [X, Y] each, by decreasing area."""
+    """Return the columns of each room, bool [X, Y], by decreasing area."""
     surface = structure.surface
     band = slice(max(surface.floor_layer + 2, 0), None)
     inside = surface.free[:, :, band].sum(axis=2) >= 3
@@ -170,10 +170,10 @@ def _regions(structure: Structure) -> list[np.ndarray]:
 
 
 def _line(wall: Wall, structure: Structure) -> np.ndarray:
-    """Return the columns that a wall stands in, bool [X, Y], hidden parts too.
+    """Return the columns of a wall, bool [X, Y], including hidden parts.
 
-    Where rays passed through its line it goes on only if something of it was seen, such as the
-    lintel of a doorway; those cells are closed as cells of the wall.
+    Across a passage the wall continues only if a part of it was seen, such as the lintel of a
+    doorway; these cells count as wall.
     """
     surface, run = structure.surface, wall.run
     columns = np.zeros(surface.occupied.shape[:2], bool)
@@ -188,7 +188,7 @@ def _line(wall: Wall, structure: Structure) -> np.ndarray:
 
 
 def _plane_layer(wall: Wall, surface: Surface) -> int:
-    """Return the layer of the turned grid just behind a wall's face."""
+    """Return the layer of the rotated grid directly behind a wall's face."""
     relief = wall.relief
     inside_m = float(np.median(relief.plane_m)) - relief.edge_m(surface)
     return int(np.floor(inside_m / surface.voxel_m + 0.1)) + relief.box[0].start
@@ -216,12 +216,12 @@ def _layout(structure: Structure, region: np.ndarray, floor_z_m: float, name: st
 
 
 def _position_m(wall: Wall) -> float:
-    """Return where a wall stands, along the axis that it is square to."""
+    """Return the position of a wall along its perpendicular axis in metres."""
     return wall.run.sign * float(np.median(wall.relief.plane_m))
 
 
 def _bounds(wall: Wall, region: np.ndarray, surface: Surface) -> bool:
-    """Return whether a region lies just before a wall."""
+    """Return whether a region is directly in front of a wall."""
     view = turn_surface(region, wall.run.axis, wall.run.sign)
     layer = _plane_layer(wall, surface)
     before = view[max(layer - 4, 0) : max(layer, 0), wall.run.span[0] : wall.run.span[1] + 1]
@@ -236,7 +236,7 @@ def _opening(wall: Wall, gap: Gap) -> Opening:
 
 
 def _on_outline(opening: Opening, polygon: np.ndarray) -> bool:
-    """Return whether an opening's middle lies on an edge of a polygon."""
+    """Return whether the centre of an opening is on an edge of a polygon."""
     middle = (opening.start_m + opening.end_m) / 2
     first, second = polygon, np.roll(polygon, -1, axis=0)
     low, high = np.minimum(first, second) - 0.15, np.maximum(first, second) + 0.15

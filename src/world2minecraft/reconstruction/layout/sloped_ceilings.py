@@ -55,7 +55,7 @@ def find_slopes(surface: Surface, level: np.ndarray, parameters: StructureParame
 
 
 def _under_roof(surface: Surface, parameters: StructureParameters) -> np.ndarray:
-    """Return the cells seen from below over which nothing was seen to be free."""
+    """Return the cells seen from below without free cells above."""
     free_above = np.zeros_like(surface.free)
     free_above[:, :, :-1] = np.logical_or.accumulate(surface.free[:, :, :0:-1], axis=2)[:, :, ::-1]
     below = np.zeros_like(surface.free)
@@ -68,7 +68,7 @@ def _under_roof(surface: Surface, parameters: StructureParameters) -> np.ndarray
 def _largest_roof(
     points: np.ndarray, voxel_m: float, parameters: StructureParameters
 ) -> Roof | None:
-    """Return the plane on which most points, float [N, 3], lie; None where all hold too few."""
+    """Return the plane with the most points, float [N, 3], or None if all have too few."""
     best, best_count = None, parameters.roof_area_m2 / voxel_m**2
     if len(points) < best_count:
         return None
@@ -88,7 +88,7 @@ def _largest_roof(
 
 
 def _is_wide(points: np.ndarray, axis: int, parameters: StructureParameters) -> bool:
-    """Return whether points reach far along the ridge, and up the slope."""
+    """Return whether points extend far enough along the ridge and up the slope."""
     low, high = np.quantile(points, [0.05, 0.95], axis=0)
     side = (high - low)[1 - axis]
     return bool(side >= parameters.roof_length_m and (high - low)[2] >= parameters.roof_rise_m)

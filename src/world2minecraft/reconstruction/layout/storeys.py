@@ -66,7 +66,7 @@ def find_storeys(surface: Surface, parameters: StructureParameters) -> tuple[Sto
 
 
 def _other_floors(surface: Surface, parameters: StructureParameters) -> list[float]:
-    """Return the heights of the floors over and under the ground floor."""
+    """Return the heights of the floors above and below the ground floor."""
     standing = surface.occupied & _room_above(surface, parameters.standing_m)
     heights = surface.points_m[..., 2][standing]
     heights = heights[np.abs(heights) >= parameters.storey_m]
@@ -83,7 +83,7 @@ def _other_floors(surface: Surface, parameters: StructureParameters) -> list[flo
 
 
 def _room_above(surface: Surface, standing_m: float) -> np.ndarray:
-    """Return bool [X, Y, Z]: over the cell a person has room, most of it seen to be free."""
+    """Return the cells with enough space above for a person, mostly seen as free, bool."""
     cells = surface.cells_of(standing_m)
     total = np.pad(surface.free.cumsum(axis=2, dtype=np.int32), ((0, 0), (0, 0), (1, 0)))
     above = np.zeros(surface.free.shape, np.int32)

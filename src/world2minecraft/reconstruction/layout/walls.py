@@ -68,7 +68,7 @@ def find_walls(
 
 
 class _Turned:
-    """A room's arrays turned so that axis 0 leads outward, axis 1 along the wall, axis 2 up."""
+    """The arrays of a room, rotated to axes outward, along the wall and up."""
 
     def __init__(
         self, surface: Surface, level: np.ndarray, slopes: np.ndarray, axis: int, sign: int
@@ -91,7 +91,7 @@ class _Turned:
 def _runs(
     view: _Turned, ceiling_m: float | None, parameters: StructureParameters
 ) -> Iterator[WallRun]:
-    """Yield the planes that may be walls, split where they stop for long."""
+    """Yield the planes that may be walls, split at long gaps."""
     fronts = view.occupied & _facing(view.free)
     fronts[:, :, : view.above_floor] = False
     hidden = fronts & ~_passed_behind(view, parameters)
@@ -108,16 +108,17 @@ def _runs(
 
 
 def _under_slope(run: WallRun, view: _Turned) -> bool:
-    """Return whether a sloped ceiling begins at a run: then it is a wall, however low."""
+    """Return whether a sloped ceiling begins at a run, which makes it a wall of any height."""
     layer = int(np.floor((run.outward_m - view.edge_m) / view.voxel_m))
     near = view.slopes[max(layer - 3, 0) : layer + 2, run.span[0] : run.span[1] + 1]
     return bool(near.any(axis=(0, 2)).mean() >= 0.5)
 
 
 def _facing(free: np.ndarray) -> np.ndarray:
-    """Return where a surface would face the room: one of the two cells before it is free.
+    """Return the positions at which a surface would face the room.
 
-    The second counts only where nothing behind is free: else it is the far face of a thin wall.
+    One of the two cells in front is free. The second counts only if no cell behind is free, since
+    the surface is otherwise the far face of a thin wall.
     """
     next_, second = np.zeros((2, *free.shape), bool)
     next_[1:] = free[:-1]
@@ -126,7 +127,7 @@ def _facing(free: np.ndarray) -> np.ndarray:
 
 
 def _free_before(free: np.ndarray) -> np.ndarray:
-    """Return where one of the two cells on the room's side is free."""
+    """Return the cells with a free cell among the two on the room's side."""
     before = np.zeros_like(free)
     before[1:] = free[:-1]
     before[2:] |= free[:-2]
@@ -134,7 +135,7 @@ def _free_before(free: np.ndarray) -> np.ndarray:
 
 
 def _passed_behind(view: _Turned, parameters: StructureParameters) -> np.ndarray:
-    """Return bool [A, B, 1]: in the columns behind, rays passed at some height."""
+    """Return the columns behind which rays passed at some height, bool [A, B, 1]."""
     free = view.free[:, :, view.above_floor :].sum(axis=2) >= parameters.passed_cells
     behind = np.zeros_like(free)
     for step in range(1, 1 + round(parameters.hidden_m / view.voxel_m)):
@@ -145,7 +146,7 @@ def _passed_behind(view: _Turned, parameters: StructureParameters) -> np.ndarray
 def _peeled(
     view: _Turned, fronts: np.ndarray, parameters: StructureParameters, top_m: float
 ) -> Iterator[WallRun]:
-    """Yield runs, the plane with most cells first, until none is large enough."""
+    """Yield runs, the plane with the most cells first, until none is large enough."""
     along = np.nonzero(fronts)[1]
     outward, height = view.outward_m[fronts], view.height_m[fronts]
     needed = parameters.wall_area_m2 / view.voxel_m**2
@@ -167,7 +168,7 @@ def _peeled(
 
 
 def _spans(along: np.ndarray, gap_cells: int) -> list[tuple[int, int]]:
-    """Split positions along a wall where more than ``gap_cells`` lie between two."""
+    """Split positions along a wall at gaps of more than ``gap_cells``."""
     present = np.unique(along)
     breaks = np.flatnonzero(np.diff(present) > gap_cells + 1)
     firsts = present[np.concatenate([[0], breaks + 1])]
@@ -178,8 +179,7 @@ def _spans(along: np.ndarray, gap_cells: int) -> list[tuple[int, int]]:
 def _is_shadow(run: WallRun, runs: list[WallRun], parameters: StructureParameters) -> bool:
     """Return whether a run only follows a larger one within little more than a cell.
 
-    Noise, windows, door leaves and curtains make such runs; a pillar stands where the wall does
-    not.
+    Noise, windows, door leaves and curtains cause such runs. A pillar is at a gap of the wall.
     """
     for wall in runs:
         near = abs(wall.outward_m - run.outward_m) <= parameters.shadow_m
@@ -191,7 +191,7 @@ def _is_shadow(run: WallRun, runs: list[WallRun], parameters: StructureParameter
 
 
 def _is_open_above(run: WallRun, view: _Turned, ceiling_m: float | None) -> bool:
-    """Return whether rays passed over a run: a door that stands open, a wardrobe, a balustrade."""
+    """Return whether rays passed above a run, as of an open door, a wardrobe or a balustrade."""
     layer = int(np.floor((run.outward_m - view.edge_m) / view.voxel_m))
     low = view.layers_below(run.top_m + 2 * view.voxel_m)
     high = view.layers_below(HIGH_M if ceiling_m is None else ceiling_m - view.voxel_m)
@@ -209,7 +209,7 @@ def _is_furniture(
     view: _Turned,
     parameters: StructureParameters,
 ) -> bool:
-    """Return whether a run is the front of a tall piece of furniture before a wider wall."""
+    """Return whether a run is the front of tall furniture in front of a wider wall."""
     width = (run.span[1] - run.span[0] + 1) * view.voxel_m
     low, high = parameters.recess_m if ceiling_m is None else (0.05, parameters.recess_m[1])
     for wall in runs:
@@ -227,11 +227,11 @@ def _is_furniture(
 def _marked(
     view: _Turned, run: WallRun, parameters: StructureParameters
 ) -> tuple[tuple[slice, slice, slice], np.ndarray]:
-    """Return a box of the turned room and the cells of a run in it, bool [N, A, B].
+    """Return a box of the rotated room and the mask of a run's cells in it, bool [N, A, B].
 
-    They are those on its plane, and those that noise put before or behind it. A cell before the
-    plane is noise where the cell behind it was seen too; a picture, a curtain or a screen hides
-    what is behind.
+    The mask contains the cells on the plane and those that noise put in front of or behind it. A
+    cell in front of the plane is noise if the cell behind it was also seen; pictures, curtains and
+    screens hide the cells behind them.
     """
     box = _box(view, run, parameters)
     occupied, free = view.occupied[box], view.free[box]
@@ -248,7 +248,7 @@ def _marked(
 def _box(
     view: _Turned, run: WallRun, parameters: StructureParameters
 ) -> tuple[slice, slice, slice]:
-    """Return the part of the turned room in which a run's cells lie."""
+    """Return the part of the rotated room that contains a run's cells."""
     x, y, z = view.occupied.shape
     layer = (run.outward_m - view.edge_m) / view.voxel_m
     first = int(np.floor(layer)) - 3
@@ -261,17 +261,17 @@ def _box(
 
 
 def _free_beyond(free: np.ndarray) -> np.ndarray:
-    """Return where one of the two cells on the far side is free."""
+    """Return the cells with a free cell among the two on the far side."""
     return _free_before(free[::-1])[::-1]
 
 
 def _bend(
     view: _Turned, occupied: np.ndarray, gap: np.ndarray, parameters: StructureParameters
 ) -> np.ndarray:
-    """Return how far a wall stands off its plane around each place, float [A, B], metres.
+    """Return the distance of a wall from its plane around each position, float [A, B], metres.
 
-    Lens and sensor bend a long wall by some centimetres; the mean over about half a metre follows
-    them, and is drawn to 0 where little of the wall was seen.
+    Lens and sensor bend a long wall by some centimetres. The mean over about half a metre follows
+    the bend and tends to 0 where little of the wall was seen.
     """
     near = occupied & (np.abs(gap) <= parameters.plane_gate_m)
     sigma = parameters.bend_m / view.voxel_m

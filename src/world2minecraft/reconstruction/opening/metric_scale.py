@@ -124,7 +124,7 @@ def scale_capture(
 
 
 def _stretched(matrix: list[list[float]], scale: float) -> list[list[float]]:
-    """Return a stated 4x4 transform with its shift multiplied."""
+    """Return a 4x4 transform with its translation multiplied by the scale."""
     stretched = np.array(matrix)
     stretched[:3, 3] *= scale
     return stretched.tolist()

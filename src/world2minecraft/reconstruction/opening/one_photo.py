@@ -104,7 +104,7 @@ def _told_depth(model: DepthModel) -> str:
 
 
 def _straight(judged: ValidatedCapture) -> tuple[str, np.ndarray, Camera]:
-    """Return the photo's name, its picture without distortion, and the camera of that."""
+    """Return the photo's name, its undistorted image, and the camera of that image."""
     photo = next(iter(photos_of_capture(judged)), None)
     if photo is None or photo.camera is None:
         raise CaptureError(judged.capture.folder, "cannot decode the photo; export it as JPEG")

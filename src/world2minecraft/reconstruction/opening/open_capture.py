@@ -177,7 +177,7 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
 
 
 def _size_of(judged: ValidatedCapture, name: str) -> tuple[int, int]:
-    """Return the size in pixels of a photo as the user has it."""
+    """Return the size in pixels of an original photo."""
     places = {frame.name: frame.colour_path for frame in judged.frames}
     place = places.get(name)
     if place is None:
@@ -188,7 +188,7 @@ def _size_of(judged: ValidatedCapture, name: str) -> tuple[int, int]:
 def _with_own_depth(
     judged: ValidatedCapture, photos: CapturePhotos, scene: SparseScene
 ) -> tuple[Iterator[View], Told]:
-    """The views of a capture whose depth is a sensor's; only its poses were found."""
+    """Return the views of a capture with measured depth and computed poses."""
     scaled, sigma = scale_by_depth(judged, scene)
     told = {"scale": "metric", "scale_sigma": sigma}
     return depth_views(judged, photos, scaled), told

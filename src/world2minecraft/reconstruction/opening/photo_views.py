@@ -92,7 +92,7 @@ def _resized(depth_path: ImagePlace, camera: Camera) -> Camera:
 
 
 def _photos_of(photos: PhotoStream, scene: SparseScene) -> Iterator[tuple[Photo, int]]:
-    """Yield the placed photos with their indices in the scene."""
+    """Yield the posed photos with their indices in the scene."""
     places = {name: index for index, name in enumerate(scene.names)}
     for photo in photos:
         if photo.name in places:

@@ -49,7 +49,7 @@ def classes_with_backs(surface: Surface, wall: Wall, labels: np.ndarray) -> np.n
 def _cases_before(
     surface: Surface, wall: Wall, labels: np.ndarray
 ) -> Iterator[tuple[tuple[slice, ...], np.ndarray]]:
-    """Give the box on the wall's face, two slices, and the Oklab colour of each case before it."""
+    """Yield the box on the wall's face, two slices, and the Oklab colour of each case."""
     deep, *across = wall.relief.box
     first = max(deep.start - surface.cells_of(REACH_M), 0)
     box = (slice(first, deep.stop), *across)

@@ -116,7 +116,7 @@ def back_of(
 
 
 def _is_board(surface: Surface, plate: HorizontalSurface, parameters: PlateParameters) -> bool:
-    """Return whether much stands over a plate higher than any chair: then it is a shelf's board."""
+    """Return whether tall objects above a plate make it the board of a shelf."""
     first, last = (surface.layers_below(height) for height in parameters.shelf_m)
     over = project_to_plan(surface.occupied[:, :, first:last])
     return bool(over[plate.footprint].mean() >= parameters.shelf_share)
@@ -188,7 +188,7 @@ def classify_surface(
 
 
 def _is_table_top(plate: HorizontalSurface, parameters: PlateParameters) -> bool:
-    """Return whether a plate has the height and the size of a table's top, high or low."""
+    """Return whether a plate has the height and the size of a high or low table top."""
     if within(plate.height_m, parameters.table_height_m):
         wide = plate.width_m >= parameters.table_width_m
         return wide and plate.area_m2 >= parameters.table_area_m2
@@ -220,22 +220,22 @@ def classify_piece(
 
 
 def _is_leg(piece: Piece, table: Table, parameters: PieceParameters) -> bool:
-    """Return whether a piece stands or hangs under a table, up to its top: a leg, an apron."""
+    """Return whether a piece is a leg or apron, below a table and up to its top."""
     below = table.height_m - piece.high_m[2]
     return table.under[piece.at[:2]].mean() >= 0.8 and -0.04 <= below <= parameters.under_table_m
 
 
 def _is_foot(piece: Piece, seat: Seat, parameters: PieceParameters) -> bool:
-    """Return whether a piece stands under a seat: the star of a chair whose post is too thin."""
+    """Return whether a piece is the star base below a seat whose post is too thin."""
     stands = piece.low_m[2] <= parameters.foot_bottom_m and piece.high_m[2] <= seat.height_m
     off = np.linalg.norm((piece.low_m + piece.high_m)[:2] / 2 - seat.middle_m)
     return bool(stands and off <= parameters.foot_off_m and seat.under[piece.at[:2]].mean() >= 0.8)
 
 
 def _is_screen(piece: Piece, parameters: PieceParameters) -> bool:
-    """Return whether a piece is a thin, upright plate off the floor, wider than high.
+    """Return whether a piece is a thin upright plate above the floor, wider than high.
 
-    It is dark, or a small flat one blue, as a lit one is: cupboards may be blue too.
+    It must be dark, or small, flat and blue like a lit screen, since cupboards may also be blue.
     """
     off_floor = piece.low_m[2] >= parameters.screen_bottom_m
     dark = piece.oklab[0] <= parameters.screen_lightness
@@ -250,7 +250,7 @@ def _is_screen(piece: Piece, parameters: PieceParameters) -> bool:
 
 
 def _is_back_at(piece: Piece, table: Table, parameters: PieceParameters) -> bool:
-    """Return whether a piece is the back of a chair that its table hides: at the rim, upright."""
+    """Return whether a piece is the upright back, at the rim, of a chair hidden by a table."""
     sized = within(piece.long_m, parameters.back_length_m)
     sized &= piece.tall_m >= parameters.back_height_m and piece.thin_m <= parameters.back_thick_m
     rises = piece.high_m[2] >= table.height_m + parameters.back_over_m
@@ -262,7 +262,7 @@ def _is_back_at(piece: Piece, table: Table, parameters: PieceParameters) -> bool
 
 
 def _is_chair(piece: Piece, parameters: PieceParameters) -> bool:
-    """Return whether a piece has a chair's box and stands away from walls."""
+    """Return whether a piece has the size of a chair and is away from walls."""
     low = piece.low_m[2] <= parameters.chair_bottom_m and piece.tall_m >= 0.25
     sized = within(piece.high_m[2], parameters.chair_top_m)
     return low and sized and within(piece.long_m, parameters.chair_length_m) and not piece.near_wall
@@ -296,9 +296,10 @@ def _label_group(
     labels: np.ndarray,
     parameters: GeometricParameters,
 ) -> None:
-    """Write the classes of things that stand together.
+    """Write the classes of connected objects.
 
-    A plate that says what it is takes its thing with it; what is left falls into pieces.
+    A plate with a known class determines the class of its object; the remaining cells are divided
+    into pieces.
     """
     left = rest.copy()
     tables, seats = _label_plates(surface, left, labels, parameters)
@@ -311,7 +312,7 @@ def _label_group(
 def _label_plates(
     surface: Surface, left: np.ndarray, labels: np.ndarray, parameters: GeometricParameters
 ) -> tuple[list[Table], list[Seat]]:
-    """Write what plates say to ``labels``, take their cells from ``left``.
+    """Write the classes of plates to ``labels`` and remove their cells from ``left``.
 
     Returns:
         The tables and the seats of chairs.
@@ -344,7 +345,7 @@ def _label_plates(
 def _claimed(
     surface: Surface, plate: HorizontalSurface, left: np.ndarray, kind: SemanticClass
 ) -> np.ndarray:
-    """Return the cells that go with a plate: a table's top alone, a closed box's whole body."""
+    """Return the cells of a plate's object: only the top of a table, all of a closed box."""
     height = surface.points_m[..., 2]
     reach_m, top_m = REACH_M[kind]
     is_bed = kind == SemanticClass.BED
@@ -362,7 +363,7 @@ def _claimed(
 
 
 def _with_head(surface: Surface, plate: HorizontalSurface, left: np.ndarray) -> np.ndarray:
-    """Return a bed's outline with its head: pillows and a headboard rise along a whole side."""
+    """Return the outline of a bed including its pillows and headboard along one side."""
     first = surface.layers_below(plate.height_m + TOP_M)
     risen = project_to_plan(left[:, :, first : surface.layers_below(REACH_M[SemanticClass.BED][1])])
     rows, columns = np.nonzero(plate.footprint)
@@ -387,9 +388,9 @@ def _stands_free(
     left: np.ndarray,
     parameters: PlateParameters,
 ) -> bool:
-    """Return whether a chair's cells do not go on into something larger.
+    """Return whether a chair's cells do not continue into a larger object.
 
-    What touches an easy chair, which is closed all around, in another colour is another thing.
+    Cells that touch an upholstered chair in another colour belong to another object.
     """
     beyond = dilate(claimed, 2) & left & ~claimed
     count = int(beyond.sum())
@@ -402,7 +403,7 @@ def _stands_free(
 def _joined_class(
     piece: Piece, contact: dict[SemanticClass, np.ndarray], parameters: GeometricParameters
 ) -> SemanticClass | None:
-    """Return the class of the thing whose side a piece is: low, and touching it over a third."""
+    """Return the class of the object of which a low piece, in contact over a third, is a side."""
     if piece.low_m[2] > parameters.pieces.joining_bottom_m:
         return None
     # A curtain beside an easy chair is no side of it.

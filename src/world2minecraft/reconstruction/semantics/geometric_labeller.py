@@ -59,7 +59,7 @@ class GeometricLabeller:
         return _trusted(straight.applied(grid, labels)), straight.origin
 
     def _label_storey(self, straight: Straightening, labels: np.ndarray) -> None:
-        """Write the classes of a storey to ``labels`` [X, Y, Z] and pull its planes straight."""
+        """Write the classes of a storey to ``labels`` [X, Y, Z] and straighten its planes."""
         surface = straight.surface
         structure = structure_of(surface, self.parameters.structure)
         rest, floor = structure.rest, structure.floor
@@ -78,7 +78,7 @@ class GeometricLabeller:
 
 
 def _trusted(grid: OccupancyGrid) -> OccupancyGrid:
-    """Return the grid with its confidence drawn down by how far each class may be trusted."""
+    """Return the grid with its confidence reduced by the reliability of each class."""
     confidence = np.array(grid.confidence, np.float32)
     known = grid.labels <= SemanticClass.OBJS
     confidence[known] *= RELIABILITY[grid.labels[known]]

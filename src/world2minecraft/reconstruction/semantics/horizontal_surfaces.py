@@ -52,13 +52,13 @@ def find_horizontal_surfaces(
 
 
 def _next_is_level(surface: Surface) -> np.ndarray:
-    """Return where the cell above holds the same level surface, split by noise."""
+    """Return whether the cell above contains the same horizontal surface, split by noise."""
     height = surface.points_m[..., 2]
     return np.abs(height[:, :, 1:] - height[:, :, :-1]) <= 0.4 * surface.voxel_m
 
 
 def _neighbours(mask: np.ndarray, height: np.ndarray, gate_m: float) -> np.ndarray:
-    """Count, of the 8 columns around each cell of a mask, those at its height."""
+    """Count, of the 8 columns around each cell of a mask, those at the same height."""
     padded = np.pad(mask, 1)
     heights = np.pad(np.where(mask, height, -1e3), 1, constant_values=-1e3)
     count = np.zeros(mask.shape, np.int8)
@@ -78,7 +78,7 @@ def _neighbours(mask: np.ndarray, height: np.ndarray, gate_m: float) -> np.ndarr
 def _plates_at(
     surface: Surface, near: np.ndarray, parameters: PlateParameters
 ) -> list[HorizontalSurface]:
-    """Return the plates among cells of one height, by decreasing number of columns."""
+    """Return the plates among cells of one height, by decreasing area."""
     parts, count = label_components(project_to_plan(near))
     sizes = np.bincount(parts.reshape(-1), minlength=count + 1)[1:]
     found = []
@@ -110,8 +110,8 @@ def _plate(surface: Surface, mask: np.ndarray) -> HorizontalSurface:
 def _rim_share(surface: Surface, footprint: np.ndarray, layer: int) -> float:
     """Return the share of surface among the seen cells under the rim of a plate.
 
-    A column of the rim counts as closed at a height where a cell of it, or of the columns next to
-    it, is occupied: fronts may stand a little back.
+    A column of the rim is closed at a height if a cell in it or in a neighbouring column is
+    occupied, since fronts may be slightly recessed.
     """
     bottom = max(surface.floor_layer + 2, 0)
     if layer - 1 <= bottom:

@@ -63,7 +63,7 @@ def label_screens(
 def _box_before(
     surface: Surface, run: WallRun, parameters: PieceParameters
 ) -> tuple[slice, slice, slice]:
-    """Return the part of the turned room in which screens before a wall may be."""
+    """Return the part of the rotated room in which screens in front of a wall may be."""
     size = surface.occupied.shape[run.axis]
     ends = surface.origin_m[run.axis] + np.array([0, size]) * surface.voxel_m
     face = (run.outward_m - min(run.sign * ends)) / surface.voxel_m
@@ -78,7 +78,7 @@ def _box_before(
 
 
 def _plates(near: np.ndarray) -> list[np.ndarray]:
-    """Return the parts of cells at one depth that hang together, seen face on."""
+    """Return the connected parts of cells at one depth."""
     parts, count = label_components(cast(np.ndarray, near.any(axis=0)))
     return [near & (parts == part)[None] for part in range(1, count + 1)]
 
@@ -86,7 +86,7 @@ def _plates(near: np.ndarray) -> list[np.ndarray]:
 def _just_below(
     surface: Surface, rest: np.ndarray, run: WallRun, box: tuple[slice, slice, slice]
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return the layer under a box: which cells are no structure, bool [N, A], and its Oklab."""
+    """Return the layer below a box: its non-structure cells, bool [N, A], and Oklab colours."""
     under = box[2].start - 1
     if under < 0:
         return None
@@ -96,9 +96,9 @@ def _just_below(
 
 
 def _goes_on(plate: np.ndarray, oklab: np.ndarray, rest: np.ndarray, below: np.ndarray) -> bool:
-    """Return whether a plate goes on below where screens begin: the back of an easy chair does.
+    """Return whether a plate continues below the height of screens, as the back of a chair.
 
-    What a screen stands on has another colour.
+    The support of a screen has another colour.
     """
     foot = plate[:, :, 0]
     alike = np.linalg.norm(below - np.median(oklab[plate], axis=0), axis=-1) <= ALIKE
@@ -109,7 +109,7 @@ def _goes_on(plate: np.ndarray, oklab: np.ndarray, rest: np.ndarray, below: np.n
 def _is_screen(
     plate: np.ndarray, oklab: np.ndarray, voxel_m: float, parameters: PieceParameters
 ) -> bool:
-    """Return whether a plate has a screen's size, shape and colours."""
+    """Return whether a plate has the size, shape and colours of a screen."""
     face = plate.any(axis=0)
     along, up = np.nonzero(face)
     width, height = (np.ptp(along) + 1) * voxel_m, (np.ptp(up) + 1) * voxel_m
