@@ -55,7 +55,7 @@ def colour_costs(
 ) -> np.ndarray:
     """Compute the squared distances, float32 [N, M], between Oklab colours [N, 3] and M blocks.
 
-    The distance is divided into lightness, chroma and hue.
+    The distance has separate terms for lightness, chroma and hue.
 
     Args:
         colours: Oklab colours, float32 [N, 3].

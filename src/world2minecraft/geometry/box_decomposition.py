@@ -62,7 +62,7 @@ def partition_boxes(labels: np.ndarray) -> np.ndarray:
 
 
 def _crop(labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first cell that holds something, and the labels of the box around all."""
+    """Return the first occupied cell, and the labels in the bounding box of all occupied cells."""
     held = np.argwhere(labels)
     if not len(held):
         return np.zeros(3, np.int32), np.empty((0, 0, 0), np.int32)
@@ -72,7 +72,7 @@ def _crop(labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _sweep(labels: np.ndarray, axes: tuple[int, ...], flips: tuple[bool, ...]) -> np.ndarray:
-    """Return the boxes of one sweep: the axes in an order, some of them backwards."""
+    """Return the boxes of one sweep with a given order and direction of the axes."""
     turned = labels.transpose(axes)
     turned = turned[tuple(slice(None, None, -1 if flip else 1) for flip in flips)]
     boxes = np.empty((int(np.count_nonzero(labels)), 7), np.int32)
@@ -89,7 +89,7 @@ def _sweep(labels: np.ndarray, axes: tuple[int, ...], flips: tuple[bool, ...]) -
 
 @njit
 def _grow(labels, boxes):  # pragma: no cover
-    """Write the boxes that grow from each free cell along the last axis first; return how many."""
+    """Write the boxes that grow from each free cell, and return their number."""
     size_x, size_y, size_z = labels.shape
     done = np.zeros(labels.shape, np.bool_)
     count = 0
@@ -198,10 +198,10 @@ def simplify_boxes(
 
 @njit
 def _coarsen(boxes, empty, size, least, enough):  # pragma: no cover
-    """Change ``boxes`` in place, step by step; return which of them are left, bool [N].
+    """Simplify ``boxes`` in place, step by step, and return the mask of remaining boxes, bool [N].
 
-    ``met`` is the size of what the shape and the boxes share, less what was relabelled by half;
-    ``union`` that of both together.
+    ``met`` is the size of the intersection of the shape and the boxes, in which relabelled cells
+    count half; ``union`` is the size of their union.
     """
     alive = np.ones(len(boxes), np.bool_)
     met, union = size, size
@@ -248,7 +248,7 @@ def _is_near(one, other):  # pragma: no cover
 
 @njit
 def _bounding_box(one, other):  # pragma: no cover
-    """Return the box around two, labelled as the larger of them."""
+    """Return the bounding box of two boxes with the label of the larger one."""
     box = one.copy() if _volume(one) >= _volume(other) else other.copy()
     for axis in range(1, 4):
         box[axis] = min(one[axis], other[axis])
@@ -258,9 +258,9 @@ def _bounding_box(one, other):  # pragma: no cover
 
 @njit
 def _join_cost(boxes, alive, empty, i, j):  # pragma: no cover
-    """Return the cells that a join adds, what it relabels by cost, and how many boxes it saves.
+    """Return the number of cells a merge adds, its relabelling cost and the number of boxes saved.
 
-    It saves none where another box lies partly in the box around both.
+    No box is saved if another box is partly inside the bounding box of both.
     """
     box = _bounding_box(boxes[i], boxes[j])
     recoloured, inside = 0.0, 0
@@ -282,7 +282,7 @@ def _join_cost(boxes, alive, empty, i, j):  # pragma: no cover
 
 @njit
 def _sum_in_box(sums, box):  # pragma: no cover
-    """Return the sum over a box from the sums [X + 1, Y + 1, Z + 1] of all below each corner."""
+    """Return the sum over a box from cumulative sums [X + 1, Y + 1, Z + 1]."""
     total = 0
     for x in range(2):
         for y in range(2):
@@ -294,7 +294,7 @@ def _sum_in_box(sums, box):  # pragma: no cover
 
 @njit
 def _join(boxes, alive, first, second):  # pragma: no cover
-    """Put the box around two in the place of the first; what lies in it goes."""
+    """Replace two boxes by their bounding box and remove the boxes inside it."""
     box = _bounding_box(boxes[first], boxes[second])
     for n in range(len(boxes)):
         within = True
@@ -364,7 +364,7 @@ def _cover_from_corner(labels: np.ndarray, flips: tuple[bool, ...]) -> np.ndarra
 
 @njit
 def _cover(labels, orders, boxes):  # pragma: no cover
-    """Write the boxes of a cover; return how many."""
+    """Write the boxes of a cover and return their number."""
     times = np.zeros(labels.shape, np.int32)
     count = 0
     for x in range(labels.shape[0]):
@@ -387,7 +387,7 @@ def _cover(labels, orders, boxes):  # pragma: no cover
 
 @njit
 def _prune(times, boxes, count):  # pragma: no cover
-    """Drop, from the last to the first, the boxes whose every cell another covers too."""
+    """Remove, from the last to the first, the boxes whose cells are all covered by others."""
     count_left = 0
     needed = np.ones(count, np.bool_)
     for n in range(count - 1, -1, -1):
@@ -404,7 +404,7 @@ def _prune(times, boxes, count):  # pragma: no cover
 
 @njit
 def _grow_from_cell(labels, order, x, y, z):  # pragma: no cover
-    """Return the box, int64 [6], that grows from a cell along each axis of an order in turn."""
+    """Return the box, int64 [6], that grows from a cell along the axes of an order in turn."""
     box = np.array([x, y, z, x + 1, y + 1, z + 1])
     label = labels[x, y, z]
     for axis in order:
@@ -422,7 +422,7 @@ def _grow_from_cell(labels, order, x, y, z):  # pragma: no cover
 
 @njit
 def _layer_has_label(labels, label, box, axis, place):  # pragma: no cover
-    """Tell whether a box's layer at a place along an axis is of one label."""
+    """Return whether all cells of a box's layer along an axis have one label."""
     low, high = box[:3].copy(), box[3:].copy()
     low[axis], high[axis] = place, place + 1
     for x in range(low[0], high[0]):

@@ -58,9 +58,9 @@ def find_horizontal_planes(
 
 
 def _tops(labels: np.ndarray, mean_height_m: np.ndarray, hits: np.ndarray, voxel_m: float):
-    """Return the cells under free air: their columns [N, 2], heights [N] and classes [N].
+    """Return the cells below free air: their columns [N, 2], heights [N] and classes [N].
 
-    A surface near a cell's edge falls into two layers; both then give one weighted mean.
+    A surface close to a cell border is divided between two layers; both get the weighted mean.
     """
     occupied = (labels > 0) & (labels != 255) & (hits > 0)
     above_free = np.zeros_like(occupied)
@@ -82,7 +82,7 @@ def _tops(labels: np.ndarray, mean_height_m: np.ndarray, hits: np.ndarray, voxel
 
 
 def _peaks(heights: np.ndarray) -> list[float]:
-    """Return the heights at which columns gather, the fullest first."""
+    """Return the most frequent heights, the most frequent first."""
     if not len(heights):
         return []
     low = np.floor(heights.min() / BIN_M) - 4

@@ -92,7 +92,7 @@ def collect_oriented_points(
 
 @njit
 def _moved(points, rotation, shift):
-    """Return R p + t for each row; in one order, where a library's product may choose others."""
+    """Return R p + t for each row, with a fixed order of operations for identical bits."""
     result = np.empty((len(points), 3))
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]

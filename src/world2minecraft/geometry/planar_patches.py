@@ -62,7 +62,7 @@ def extract_patches(depth_m: np.ndarray, camera: Camera) -> Patches:
 
 @njit
 def _moments(depth, rays, top, left, side):
-    """Sums of 1, x, y, xx, xy, yy, d, xd, yd, dd over a square, d the inverse depth."""
+    """Return sums of 1, x, y, xx, xy, yy, d, xd, yd, dd over a square; d is the inverse depth."""
     sums = np.zeros(10)
     for v in range(top, top + side):
         for u in range(left, left + side):
@@ -84,7 +84,7 @@ def _moments(depth, rays, top, left, side):
 
 @njit
 def _fit(sums, least, row):
-    """Fit a square; write point, normal and sigma to ``row``; return its squares left, or -1."""
+    """Fit a square, write point, normal and sigma to ``row``, and return the residual, or -1."""
     n = sums[0]
     if n < least or n < 8:
         return -1.0

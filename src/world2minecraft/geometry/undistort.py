@@ -44,7 +44,7 @@ def undistort_image(colour: np.ndarray, camera: Camera, target: Camera) -> np.nd
 
 @njit
 def _sample_bilinear(colour, at_px, side, step):
-    """Read each place as the mean of side x side bilinear samples, ``step`` pixels in all."""
+    """Sample each position as the mean of side x side bilinear samples, ``step`` pixels wide."""
     high, wide, channels = colour.shape
     result = np.empty((at_px.shape[0], at_px.shape[1], channels), np.uint8)
     for v in range(at_px.shape[0]):

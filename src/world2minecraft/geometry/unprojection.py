@@ -31,7 +31,7 @@ def pixel_rays(camera: Camera) -> np.ndarray:
 
 
 def _lens(x: np.ndarray, y: np.ndarray, distortion: tuple[float, ...]):
-    """Return OpenCV's radial factor and its tangential shifts at undistorted (x, y)."""
+    """Return OpenCV's radial factor and tangential shifts at undistorted (x, y)."""
     k1, k2, p1, p2, k3 = distortion
     square = x * x + y * y
     scale = 1 + square * (k1 + square * (k2 + square * k3))

@@ -56,7 +56,7 @@ class LiveMap:
 
     @property
     def due(self) -> bool:
-        """Return whether the room should be located again before more frames are added."""
+        """Whether the room should be located again before more frames are added."""
         return self.frames >= self._next
 
     def add(self, view: View) -> None:

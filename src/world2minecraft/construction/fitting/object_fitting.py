@@ -142,7 +142,7 @@ def _filled_box(grid: np.ndarray) -> tuple[tuple[slice, ...], np.ndarray]:
 
 
 class PartsFit(NamedTuple):
-    """A fit, and the number of the part that fills most of each block."""
+    """A fit of furniture given as boxes, and the box that fills most of each block."""
 
     fit: Fit
     part: np.ndarray  # int16 [X, Y, Z], index into the boxes + 1; 0 where there is nothing

@@ -178,11 +178,11 @@ class Canvas:
 
 
 def place_thing(canvas: Canvas, item: PlanObject, room: PlacedRoom, inside: np.ndarray) -> None:
-    """Add an object to its box: the cells of its template that are free air of its room.
+    """Fill the free air in an object's box with the cells of its template.
 
     Args:
         canvas: Canvas, modified in place.
-        item: The object.
+        item: Object of the plan.
         room: Room of the object.
         inside: Bool [X, Y] mask of the columns of that room.
     """

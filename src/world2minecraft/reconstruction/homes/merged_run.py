@@ -85,14 +85,14 @@ class _Cells:
     voxel_m: float
 
     def slice_of(self, axis: int, low_m: float, high_m: float, more: int = 0) -> slice:
-        """Return the cells between two places along an axis, and some more on both sides."""
+        """Return the cells between two positions along an axis, with a margin on both sides."""
         low, high = (
             round(value / self.voxel_m) - int(self.first[axis]) for value in (low_m, high_m)
         )
         return slice(max(low - more, 0), max(high + more, low + 1, 1))
 
     def grid(self, instances: Sequence[ObjectInstance]) -> OccupancyGrid:
-        """Return the grid; cells of objects that are gone belong to none."""
+        """Return the grid; cells of dropped objects belong to no object."""
         known = np.zeros(MAX_OBJECTS + 1, bool)
         known[[one.id for one in instances]] = True
         instance = self.arrays["instance"]

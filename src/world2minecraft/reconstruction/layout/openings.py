@@ -87,7 +87,7 @@ class _Face:
         self.gaps: list[Gap] = []
 
     def cut(self, recessed: np.ndarray) -> None:
-        """Claim the windows and the leaves of doors that lie well behind the face."""
+        """Classify windows and door leaves that are well behind the face of the wall."""
         for part in _parts(binary_opening(_bridged(recessed) & self.relief.seen)):
             kind = _kind(part, self._metres(part), self.surface.voxel_m, self.parameters)
             if kind is None or _framed(part, self.plane) < self.parameters.frame_share:
@@ -99,7 +99,7 @@ class _Face:
             self._add_gap(kind, whole)
 
     def cut_leaves(self) -> None:
-        """Claim the leaves of doors that lie hardly behind the face, and differ in colour."""
+        """Classify door leaves that are almost flush with the wall but differ in colour."""
         relief, parameters = self.relief, self.parameters
         gap = ndimage.median_filter(relief.gap_m, 3)
         inside = relief.seen & (self.classes == SemanticClass.WALL)
@@ -114,7 +114,7 @@ class _Face:
                 self._add_gap("door", part)
 
     def hang(self, raised: np.ndarray) -> None:
-        """Claim what hangs flat on the wall: pictures, boards, mirrors."""
+        """Classify flat objects on the wall, such as pictures, boards and mirrors."""
         for part in _parts(binary_opening(raised & (self.classes == SemanticClass.WALL))):
             large = part.sum() * self.surface.voxel_m**2 >= self.parameters.hung_area_m2
             flat = part.sum() >= 0.6 * _box_cells(part)
@@ -124,7 +124,7 @@ class _Face:
                 self._claim(part | rim, SemanticClass.OBJS, depth)
 
     def pass_through(self, passed: np.ndarray) -> None:
-        """Note the openings that rays went through."""
+        """Record the openings through which rays passed."""
         for part in _parts(binary_opening(passed)):
             kind = _kind(part, self._metres(part), self.surface.voxel_m, self.parameters)
             if kind is not None and _framed(part, self.plane) >= self.parameters.frame_share:

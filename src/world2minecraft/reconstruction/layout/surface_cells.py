@@ -48,7 +48,7 @@ class Surface:
 
 
 def surface_of(grid: OccupancyGrid, evidence: FusedEvidence) -> Surface:
-    """Return the surface of a grid and its evidence.
+    """Combine a grid and its evidence into the observed surface of the room.
 
     Raises:
         ValueError: If grid and evidence do not have the same cells.

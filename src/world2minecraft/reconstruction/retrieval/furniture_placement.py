@@ -115,7 +115,7 @@ class Matched(NamedTuple):
         return self.matches[0].iou if self.matches else 0.0
 
     def unmatched(self) -> "Matched":
-        """The same cells without any match, so that the cells themselves are built."""
+        """Return the object cells without any match, so that they are built as blocks."""
         return self._replace(matches=())
 
 

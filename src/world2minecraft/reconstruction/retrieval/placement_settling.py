@@ -322,7 +322,7 @@ class _Table:
         return np.zeros((0, 2, 3)) if placement is None else solids_m(placement, self.grid)
 
     def meets(self, index: int, placement: Placement | None, solid: np.ndarray) -> np.ndarray:
-        """Return how deep a placement in the place of ``index`` meets each other one."""
+        """Return the depth by which a placement at the place of ``index`` overlaps each other."""
         result = np.zeros(len(self.placements))
         if placement is None or not len(solid):
             return result
@@ -335,7 +335,7 @@ class _Table:
         return result
 
     def worst_pair(self) -> tuple[int, int] | None:
-        """Return the two that meet deepest, the first of equals, or None."""
+        """Return the pair of placements with the deepest overlap, or None."""
         if not self.depths.size or self.depths.max() <= FORGIVEN_M:
             return None
         m, n = np.unravel_index(int(np.argmax(np.round(self.depths, 6))), self.depths.shape)

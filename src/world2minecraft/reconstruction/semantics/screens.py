@@ -32,9 +32,9 @@ def label_screens(
     Args:
         surface: Surface of the room.
         rest: Mask of the cells that are not structure, bool [X, Y, Z].
-        runs: Walls.
+        runs: Walls of the room.
         labels: Labels, uint8 [X, Y, Z], modified in place.
-        parameters: Thresholds.
+        parameters: Thresholds of the size, position and colour of screens.
     """
     found = np.zeros(rest.shape, bool)
     for run in runs:
