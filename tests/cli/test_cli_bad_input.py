@@ -195,7 +195,7 @@ def test_a_full_disk_is_said(good, tmp_path, capsys, monkeypatch):
         (["reconstruct", "x", "--out", "o", "--set", "find"], "takes key=value"),
         (
             ["reconstruct", "x", "--out", "o", "--set", "fuse.min_points=two"],
-            "takes a whole number",
+            "must be a whole number",
         ),
         (["reconstruct", "x", "--out", "o", "--from", "fusse"], "did you mean 'fuse'"),
         (["reconstruct", "x", "--out", "o", "--mc-version", "1.99"], "1.99"),
