@@ -82,12 +82,12 @@ def test_a_person_walks_as_an_agent(window):
     walk_episode(OpenField(), an_episode(), agent, observers=[agent])
     ((shape, text),) = shown
     assert shape == (30, 40, 3) and text.startswith("Go to the post\nMove 0 of at most 60.")
-    assert "The walk before: Stopped 2.9" in text
+    assert "Previous walk: Stopped 2.9" in text
 
 
 def test_a_person_who_is_not_there_is_told(window):
     agent = HumanAgent(window, patience_s=0.05)
-    with pytest.raises(UsageError, match="nobody pressed a key in 0.05 s; http://127"):
+    with pytest.raises(UsageError, match="no key was pressed within 0.05 s; open http://127"):
         walk_episode(OpenField(), an_episode(), agent)
 
 
@@ -96,7 +96,7 @@ def test_a_stroll_goes_where_the_keys_say(flat, window):
         window.keys.put(key)
     shown = []
     window.show = lambda frame, text: shown.append((frame, text))
-    with pytest.raises(UsageError, match="nobody pressed a key"):
+    with pytest.raises(UsageError, match="no key was pressed"):
         walk_freely(flat, window, patience_s=0.05)
     assert len(shown) == 5 and all("living room" in text for _, text in shown)
     assert not np.array_equal(shown[0][0], shown[1][0])
@@ -119,7 +119,7 @@ def test_a_person_plays_and_is_scored(flat):
     info = play(env, open_browser=False, patience_s=5)
     assert info["steps"] == 3 and info["score"]["steps"] == 3
     env.reset(seed=1)
-    with pytest.raises(UsageError, match="nobody pressed a key in 0.1 s; http://127"):
+    with pytest.raises(UsageError, match="no key was pressed within 0.1 s; open http://127"):
         play(env, open_browser=False, patience_s=0.1)
     env.close()
     assert env.window is None
@@ -127,5 +127,5 @@ def test_a_person_plays_and_is_scored(flat):
 
 def test_only_single_moves_are_played(flat):
     env = VlnEnv(flat, eyes=Eyes(32, 24), observations=["pose"], move_set="macro")
-    with pytest.raises(UsageError, match='render_mode="human" and single discrete moves'):
+    with pytest.raises(UsageError, match='render_mode="human" and the discrete action space'):
         play(env)

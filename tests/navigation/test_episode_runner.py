@@ -101,7 +101,7 @@ def test_an_unreachable_episode_is_refused_before_the_first_walk(tmp_path):
 
     agent = Script(Decision((S,)))
     episodes = [an_episode(), an_episode(name="lost", goal=(9.0, 64.0, 0.0))]
-    told = "field: no way leads from the start of episode lost to its goal; were the blocks changed"
+    told = "field: no path leads from the start of episode lost to its goal; if blocks have changed"
     with pytest.raises(InputError, match=told):
         evaluate_agent(episodes, lambda _: Walled(), agent, observers=lambda *_: ())
     assert not agent.sights

@@ -31,7 +31,9 @@ def test_an_export_tells_rows_tokens_steps_and_the_command(folder, tmp_path, cap
 def test_notes_are_told(folder, tmp_path, capsys):
     assert call("vln", "export", folder, "--to", "easyr1", "--out", tmp_path / "out") == 0
     told = capsys.readouterr().out
-    assert "note: mcvln_next_view_combined_train: 10 rows do not fill the paper's batch" in told
+    assert (
+        "note: mcvln_next_view_combined_train: 10 rows are fewer than the paper's batch size"
+    ) in told
     assert "python3 -m verl.trainer.main config=next_view_combined_grpo.yaml" in told
 
 
@@ -42,6 +44,5 @@ def test_what_is_no_format_and_no_set_is_told(folder, tmp_path, capsys):
     )
     assert call("vln", "export", tmp_path, "--to", "trl", "--out", tmp_path / "y") == 3
     assert (
-        "items.jsonl: is not there; w2m vln build SCENE --out SET writes it"
-        in capsys.readouterr().err
+        "items.jsonl: not found; w2m vln build SCENE --out SET writes it" in capsys.readouterr().err
     )

@@ -106,7 +106,7 @@ def test_places_stand_where_the_exported_stage_stands(tmp_path):
 
 def test_a_scene_that_says_no_transform_is_refused(tmp_path):
     write_json(tmp_path / "home/scene.json", {"block_to_room": [[1]]})
-    with pytest.raises(DamagedFileError, match="block_to_room must be a 4 x 4"):
+    with pytest.raises(DamagedFileError, match="block_to_room must be a finite 4 x 4"):
         block_to_habitat("home", tmp_path, 1.0)
 
 
@@ -168,5 +168,5 @@ def test_turns_on_the_spot_and_ways_that_cross_share_viewpoints(tmp_path):
 def test_a_set_without_episodes_is_told(tmp_path):
     folder = small_set(tmp_path / "set")
     (folder / "episodes.jsonl").unlink()
-    with pytest.raises(InputError, match="episodes.jsonl: is not there"):
+    with pytest.raises(InputError, match="episodes.jsonl: not found"):
         export_set(folder, "vlnce", tmp_path / "out")

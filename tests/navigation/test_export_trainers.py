@@ -182,20 +182,20 @@ def test_the_grpo_recipe_trains_on_few_rows_and_says_so(grpo):
         assert per_gpu % recipe["trainer"]["n_gpus_per_node"] == 0
         assert recipe["data"]["max_pixels"] == 262_144 and recipe["data"]["min_pixels"] == 3136
     assert (
-        "mcvln_next_view_combined_train: 10 rows do not fill the paper's batch of 128; the recipe "
-        "says 8"
+        "mcvln_next_view_combined_train: 10 rows are fewer than the paper's batch size of 128; "
+        "the recipe uses a batch size of 8"
     ) in grpo.notes
     assert (
-        "mcvln_next_view_combined_train: the loader drops what fills no batch, 2 of 10 rows an "
-        "epoch, others each time"
+        "mcvln_next_view_combined_train: the loader drops the incomplete last batch, which is "
+        "2 of 10 rows in each epoch (different rows each time)"
     ) in grpo.notes
     assert (
-        "mcvln_next_view_base_train: has no recipe, because 5 rows do not fill one batch on 8 "
-        "GPUs; say --gpus 5"
+        "mcvln_next_view_base_train: no recipe was written, because 5 rows do not fill one "
+        "batch on 8 GPUs; set --gpus to 5 or fewer"
     ) in grpo.notes
     extend = yaml.safe_load((grpo.out / "next_action_extend_grpo.yaml").read_text())
     assert extend["trainer"]["val_before_train"] is False  # Nothing of it is held out.
-    assert "mcvln_next_action_extend_train: the set holds nothing out" in "\n".join(grpo.notes)
+    assert "mcvln_next_action_extend_train: the set has no held-out items" in "\n".join(grpo.notes)
 
 
 def test_the_three_trainers_are_told_the_same(sft, grpo, trl):
@@ -239,14 +239,14 @@ def test_the_same_set_gives_the_same_bytes(folder, tmp_path, format):
 def test_max_samples_takes_first_rows_of_a_shuffled_file(folder, tmp_path):
     done = export_set(folder, "llamafactory", tmp_path / "out", ExportOptions(max_samples=6))
     assert done.notes == [
-        "mcvln_next_view_combined_train: max_samples 6 leaves 4 rows out, the same in every epoch, "
-        "as in the paper; --max-samples 0 takes all",
-        "mcvln_next_action_base_train: max_samples 6 leaves 2 rows out, the same in every epoch, "
-        "as in the paper; --max-samples 0 takes all",
-        "mcvln_next_action_extend_train: max_samples 6 leaves 2 rows out, the same in every epoch, "
-        "as in the paper; --max-samples 0 takes all",
-        "mcvln_next_action_combined_train: max_samples 6 leaves 10 rows out, the same in every "
-        "epoch, as in the paper; --max-samples 0 takes all",
+        "mcvln_next_view_combined_train: --max-samples 6 omits the same 4 rows in every epoch, "
+        "as in the paper; use --max-samples 0 for all rows",
+        "mcvln_next_action_base_train: --max-samples 6 omits the same 2 rows in every epoch, "
+        "as in the paper; use --max-samples 0 for all rows",
+        "mcvln_next_action_extend_train: --max-samples 6 omits the same 2 rows in every epoch, "
+        "as in the paper; use --max-samples 0 for all rows",
+        "mcvln_next_action_combined_train: --max-samples 6 omits the same 10 rows in every "
+        "epoch, as in the paper; use --max-samples 0 for all rows",
     ]
     rows = json.loads((done.out / "mcvln_next_action_combined_train.json").read_text())
     scenes = {row["id"].split("-")[0] for row in rows[:6]}
@@ -261,8 +261,8 @@ def test_pictures_that_overflow_a_prompt_are_told(tmp_path):
     with pytest.raises(UsageError) as caught:
         export_set(folder, "easyr1", tmp_path / "out", ExportOptions(max_pixels=1 << 24))
     assert re.fullmatch(
-        r"item \S+ takes up to 8,\d\d\d tokens, over the 4,096 of a prompt; export with "
-        "--max-pixels set lower",
+        r"item \S+ needs up to 8,\d\d\d tokens, more than the 4,096 of a prompt; export with "
+        "a smaller --max-pixels",
         str(caught.value),
     )
     done = export_set(folder, "easyr1", tmp_path / "capped")
@@ -274,7 +274,9 @@ def test_a_picture_that_was_changed_or_lost_is_told(tmp_path):
     picture = folder / "images/kitchen/t0/003.jpg"
     kept = picture.read_bytes()
     picture.write_bytes(kept[:-20])
-    with pytest.raises(DamagedFileError, match="is not the picture that the items were made of"):
+    with pytest.raises(
+        DamagedFileError, match=("the image's SHA-256 does not match the one recorded in the items")
+    ):
         export_set(folder, "trl", tmp_path / "out")
     picture.unlink()
     with pytest.raises(InputError, match="003.jpg: cannot be read"):
@@ -296,17 +298,22 @@ def test_a_picture_that_no_trainer_reads_is_told(tmp_path):
     ]
     write_items(tmp_path / "items.jsonl", [with_sums(items[0]), *items[1:]])
     write_items(tmp_path / "items.jsonl", items)
-    with pytest.raises(DamagedFileError, match="is no picture that trainers read"):
+    with pytest.raises(DamagedFileError, match="not an image that trainers can read"):
         export_set(tmp_path, "llamafactory", tmp_path / "out")
 
 
 def test_a_folder_of_something_else_is_left_alone(folder, tmp_path):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine/thesis.tex").write_text("...")
-    with pytest.raises(ConflictError, match="is not empty and no export; name another folder"):
+    with pytest.raises(
+        ConflictError,
+        match=("the folder is not empty and does not contain an export; choose another folder"),
+    ):
         export_set(folder, "trl", tmp_path / "mine")
     export_set(folder, "trl", tmp_path / "trl")
-    with pytest.raises(ConflictError, match=r"by other choices \(seed 0, not 1\); name another"):
+    with pytest.raises(
+        ConflictError, match=(r"with other options \(seed " r"0, not 1\); choose another")
+    ):
         export_set(folder, "trl", tmp_path / "trl", ExportOptions(seed=1))
     with pytest.raises(UnknownNameError, match="did you mean 'easyr1'"):
         export_set(folder, "easyr2", tmp_path / "x")
@@ -320,7 +327,7 @@ def test_a_failed_export_leaves_nothing_and_can_be_repeated(format, tmp_path):
     assert not (tmp_path / "out").exists()
     large = small_set(tmp_path / "large", width=1280, height=960)
     if format in ("llamafactory", "easyr1", "trl"):
-        with pytest.raises(UsageError, match="export with --max-pixels set lower"):
+        with pytest.raises(UsageError, match="export with a smaller --max-pixels"):
             export_set(large, format, tmp_path / "out", ExportOptions(max_pixels=1 << 24))
         assert not (tmp_path / "out").exists()
     assert export_set(large, format, tmp_path / "out").written
@@ -336,13 +343,28 @@ def broken(root, name, change):
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (lambda row: row["messages"].reverse(), r"row 0: turns do not alternate: \('assistant', "),
-        (lambda row: row["messages"].pop(), r"row 0: turns do not alternate: \('user',\)"),
-        (lambda row: row["images"].pop(), "row 0: 1 marks <image>, 0 pictures"),
-        (lambda row: row["images"].__setitem__(0, "images/x.jpg"), "images/x.jpg is not there"),
-        (lambda row: row["images"].__setitem__(0, "../x.jpg"), "must be a path under the set's"),
-        (lambda row: row.pop("images"), r"not as the trainer reads it \(KeyError: 'images'\)"),
-        (lambda row: row.update(messages=[3]), "not as the trainer reads it"),
+        (
+            lambda row: row["messages"].reverse(),
+            (r"row 0: user and assistant turns " r"must alternate, got \('assistant', "),
+        ),
+        (
+            lambda row: row["messages"].pop(),
+            (r"row 0: user and assistant turns " r"must alternate, got \('user',\)"),
+        ),
+        (
+            lambda row: row["images"].pop(),
+            ("row 0: the text has 1 <image> placeholders for 0 images"),
+        ),
+        (lambda row: row["images"].__setitem__(0, "images/x.jpg"), "image images/x.jpg not found"),
+        (
+            lambda row: row["images"].__setitem__(0, "../x.jpg"),
+            ("must be a path inside the folder of the set"),
+        ),
+        (
+            lambda row: row.pop("images"),
+            (r"not have the structure that the " r"trainer expects \(KeyError: 'images'\)"),
+        ),
+        (lambda row: row.update(messages=[3]), "not have the structure that the trainer expects"),
     ],
 )
 def test_rows_that_llamafactory_would_drop_are_named(folder, tmp_path, change, reason):
@@ -357,7 +379,9 @@ def test_a_form_that_loses_the_prompt_is_named(folder, tmp_path):
     root = export_set(folder, "easyr1", tmp_path / "out").out
     check_easyr1(root, ".")
     (root / "mc.jinja").write_text("{{ problem }} Think.")
-    with pytest.raises(DamagedFileError, match="row 0: 0 marks <image>, 1 pictures"):
+    with pytest.raises(
+        DamagedFileError, match=("row 0: the text has 0 <image> placeholders for 1 images")
+    ):
         check_easyr1(root, ".")
 
 
@@ -365,5 +389,5 @@ def test_text_that_holds_a_mark_is_named(folder, tmp_path):
     root = export_set(folder, "trl", tmp_path / "out").out
     path = root / "mcvln_next_action_base_train.jsonl"
     path.write_text(path.read_text().replace("Go ", "<image> ").replace("You see", "<image>"))
-    with pytest.raises(DamagedFileError, match="row 0: a text holds <image>"):
+    with pytest.raises(DamagedFileError, match="row 0: a text must not contain <image>"):
         check_trl(root)

@@ -56,6 +56,6 @@ def test_words_that_hold_a_mark_are_refused(mark):
     with pytest.raises(UsageError) as caught:
         question_of(item)
     assert str(caught.value) == (
-        f"item kitchen-t0-na-0: its words hold {mark!r}, which trainers and models read as a "
-        "picture or the end of a turn; reword it"
+        f"item kitchen-t0-na-0: the text contains {mark!r}, which trainers and models "
+        "interpret as an image or the end of a turn; reword it"
     )

@@ -87,28 +87,37 @@ def changed(**fields):
 @pytest.mark.parametrize(
     ("line", "reason"),
     [
-        ("{", "line 2: is not JSON"),
+        ("{", "line 2: not valid JSON"),
         ("[]", "line 2: the line: Input should be an object"),
-        ("NaN", "line 2: is not JSON (NaN is no finite number)"),
+        ("NaN", "line 2: not valid JSON (NaN is not a finite number)"),
         (changed(step="2"), "line 2: step: Input should be a valid integer"),
-        (changed(step=-1), "line 2: step: is -1, not 0 or more"),
-        (changed(metres_per_block=0), "line 2: metres_per_block: is 0.0, not 0.001 to 1000"),
-        (changed(task="sing"), "line 2: task must be one of next_view, next_action, not 'sing'"),
-        (changed(split="test"), "split must be one of train, val_seen, val_unseen, not 'test'"),
-        (changed(composition="all"), "line 2: composition: must be base or extend, not 'all'"),
-        (changed(answer="E"), "options are lettered A, B, ... and one is the answer"),
-        (changed(options=[]), "options are lettered A, B, ... and one is the answer"),
-        (changed(current="../../etc/passwd"), "must be a path under the set's folder"),
-        (changed(current="/etc/passwd"), "must be a path under the set's folder"),
-        (changed(current="images/other.jpg"), "sha256 of images/other.jpg: must be 64"),
-        (changed(task="next_action"), "option A: of a next_action item has text alone"),
-        (changed(scene_id="../x"), "scene '../x': its id must be a name that a file could have"),
-        (changed(scene_id=".."), "scene '..': its id must be a name that a file could have"),
-        (changed(item_id=" "), "line 2: ' ' is no name: it has 1 to 240 printable marks"),
-        (changed(instruction={"text": " "}), "line 2: an instruction has words; this one is empty"),
+        (changed(step=-1), "line 2: step must be 0 or more, got -1"),
+        (changed(metres_per_block=0), "line 2: metres_per_block must be 0.001 to 1000, got 0.0"),
+        (changed(task="sing"), "line 2: task must be one of next_view, next_action, got 'sing'"),
+        (changed(split="test"), "split must be one of train, val_seen, val_unseen, got 'test'"),
+        (changed(composition="all"), "line 2: composition must be base or extend, got 'all'"),
+        (changed(answer="E"), "options must be labelled A, B, ... and include the answer"),
+        (changed(options=[]), "options must be labelled A, B, ... and include the answer"),
+        (changed(current="../../etc/passwd"), "must be a path inside the folder of the set"),
+        (changed(current="/etc/passwd"), "must be a path inside the folder of the set"),
+        (changed(current="images/other.jpg"), "sha256 of images/other.jpg must be 64"),
+        (
+            changed(task="next_action"),
+            ("option A: the options of a next_action item must have text only"),
+        ),
+        (changed(scene_id="../x"), "scene ID '../x' must be a valid file name"),
+        (changed(scene_id=".."), "scene ID '..' must be a valid file name"),
+        (
+            changed(item_id=" "),
+            ("line 2: ' ' is not a valid name: expected 1 to 240 printable characters"),
+        ),
+        (changed(instruction={"text": " "}), "line 2: an instruction must not be empty"),
         (changed(instruction={"text": "x" * 5000}), "the instruction has 5,000 characters"),
-        (changed(history=["images/kitchen/t0/000.jpg"] * 70), "shows 75 images; at most 64"),
-        (to_json_line(ITEMS[1]), "line 2: kitchen-t0-nv-3 was there before"),
+        (
+            changed(history=["images/kitchen/t0/000.jpg"] * 70),
+            ("the item has 75 images, the limit is 64"),
+        ),
+        (to_json_line(ITEMS[1]), "line 2: duplicate ID kitchen-t0-nv-3"),
     ],
 )
 def test_what_is_no_item_is_refused_with_its_line(tmp_path, line, reason):
@@ -123,7 +132,7 @@ def test_what_is_no_item_is_refused_with_its_line(tmp_path, line, reason):
 def test_numbers_beyond_all_bounds_are_refused(tmp_path):
     line = changed(metres_per_block=5).replace('"metres_per_block": 5', '"metres_per_block": 1e999')
     (tmp_path / "items.jsonl").write_text(line)
-    with pytest.raises(DamagedFileError, match="1e999 is no finite number"):
+    with pytest.raises(DamagedFileError, match="1e999 is not a finite number"):
         read_items(tmp_path)
 
 
@@ -135,22 +144,20 @@ def test_deep_json_is_refused():
 def test_sizes_come_before_memory(tmp_path, monkeypatch):
     write_items(tmp_path / "items.jsonl", ITEMS)
     monkeypatch.setattr(records, "MAX_LINE_BYTES", 100)
-    with pytest.raises(LimitError, match="line 1: has over 100 bytes"):
+    with pytest.raises(LimitError, match="line 1: exceeds the limit of 100 bytes"):
         read_items(tmp_path)
     monkeypatch.setattr(records, "MAX_FILE_BYTES", 100)
-    with pytest.raises(LimitError, match="at most 100 are read"):
+    with pytest.raises(LimitError, match="exceeds the limit of 100"):
         read_items(tmp_path)
 
 
 def test_a_missing_file_is_told(tmp_path):
-    with pytest.raises(
-        InputError, match="items.jsonl: is not there; w2m vln build SCENE --out SET"
-    ):
+    with pytest.raises(InputError, match="items.jsonl: not found; w2m vln build SCENE --out SET"):
         read_items(tmp_path)
 
 
 def test_what_is_not_sound_is_not_written(tmp_path):
-    with pytest.raises(UsageError, match="under the set's folder"):
+    with pytest.raises(UsageError, match="inside the folder of the set"):
         write_items(tmp_path / "items.jsonl", [replace(ITEMS[2], current="a\\b.jpg")])
     for odd in (object(), float("nan"), "\ud800"):
         with pytest.raises(UsageError, match="cannot be written as JSON"):
@@ -162,7 +169,7 @@ def test_what_is_not_sound_is_not_written(tmp_path):
     "name", ["", "/a", "a//b", "../a", "a/..", "a/./b", "C:/a", "a\\b", "a\nb", "a" * 300, "a/ /b"]
 )
 def test_a_name_that_leaves_the_folder_is_refused(name):
-    with pytest.raises(UsageError, match="must be a path under the set's folder"):
+    with pytest.raises(UsageError, match="must be a path inside the folder of the set"):
         check_image_name(name)
 
 

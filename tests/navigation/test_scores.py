@@ -126,15 +126,21 @@ def test_agents_are_compared_item_by_item():
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (lambda: ndtw(np.zeros((0, 3)), LINE), r"one point or more, \[N, 3\], not \(0, 3\)"),
-        (lambda: rate(3, 2), "hits must be 0 to 2, not 3"),
-        (lambda: paired_p(np.ones(2), np.ones(3)), "answers must be of the same items"),
-        (lambda: WalkedPath(LINE, np.zeros(3), True, 1), "distance_m must be 40 numbers"),
+        (
+            lambda: ndtw(np.zeros((0, 3)), LINE),
+            (r"shape \[N, 3\] with at " r"least one point, got \(0, 3\)"),
+        ),
+        (lambda: rate(3, 2), "hits must be 0 to 2, got 3"),
+        (lambda: paired_p(np.ones(2), np.ones(3)), "both methods must be scored on the same items"),
+        (
+            lambda: WalkedPath(LINE, np.zeros(3), True, 1),
+            ("distance_m must contain 40 non-negative numbers"),
+        ),
         (
             lambda: score_episode(WalkedPath(LINE[:1], np.array([np.inf]), True, 1), LINE),
-            "no way leads",
+            "no path leads",
         ),
-        (lambda: summarise([]), "scores of no episode"),
+        (lambda: summarise([]), "at least one episode score"),
     ],
 )
 def test_what_cannot_be_scored_is_refused(call, text):

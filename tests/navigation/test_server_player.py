@@ -67,13 +67,13 @@ def test_the_blocks_of_a_server_are_those_that_stand_there(honest):
 @pytest.mark.parametrize(
     ("mode", "text"),
     [
-        ("dead", "the body on the server has ended; its last words: out of memory"),
-        ("huge", "an answer is longer than 8,388,608 bytes"),
-        ("junk", "an answer is no JSON object"),
-        ("a list", "an answer is no JSON object"),
+        ("dead", "the player process has exited; last error output: out of memory"),
+        ("huge", "a reply of the player process exceeds 8,388,608 bytes"),
+        ("junk", "a reply of the player process is not a JSON object"),
+        ("a list", "a reply of the player process is not a JSON object"),
         ("refuses", "hold: keys are held [31malready"),
-        ("liar", "the body tells of other ticks than it was asked for"),
-        ("not a number", "the body tells of a place that is no number"),
+        ("liar", "the player process reported an unexpected number of ticks"),
+        ("not a number", "the player process sent a position that is not a number"),
     ],
 )
 def test_what_a_body_says_is_not_trusted(mode, text):
@@ -85,9 +85,9 @@ def test_what_a_body_says_is_not_trusted(mode, text):
 def test_a_silent_body_is_not_waited_for(monkeypatch):
     monkeypatch.setattr(body_module, "SLACK_S", 0.2)
     with fake("silent") as body:
-        with pytest.raises(ServerError, match="hold: no answer in 1.2 s"):
+        with pytest.raises(ServerError, match="hold: no reply within 1.2 s"):
             body.hold(AHEAD)
-        with pytest.raises(ServerError, match="hold: no answer"):
+        with pytest.raises(ServerError, match="hold: no reply"):
             body.hold(AHEAD)  # It is gone, and stays so.
 
 
@@ -99,11 +99,11 @@ def test_answers_that_nobody_asked_for_are_passed_over():
 @pytest.mark.parametrize(
     ("mode", "text"),
     [
-        ("far away", "the server has not sent the blocks around -1 -1; stand nearer, name a "
-         "smaller box, or raise view-distance in server.properties"),
-        ("bomb", "9 blocks of a chunk were asked for, and others came"),
-        ("too long", "9 blocks of a chunk were asked for, and others came"),
-        ("odd names", "the server's blocks have a state that cannot be read"),
+        ("far away", "the server has not sent the blocks around -1 -1; move the player closer, "
+         "choose a smaller box, or raise view-distance in server.properties"),
+        ("bomb", "expected 9 blocks of a chunk, but the server sent another number"),
+        ("too long", "expected 9 blocks of a chunk, but the server sent another number"),
+        ("odd names", "the server sent a block state that cannot be parsed"),
     ],
 )  # fmt: skip
 def test_blocks_that_cannot_be_are_refused(mode, text):
@@ -116,7 +116,8 @@ def test_a_player_who_may_not_teleport_is_told_what_to_say():
     with fake("no operator") as body, pytest.raises(ServerError) as caught:
         body.place((9.0, 65.0, 3.0))
     assert str(caught.value) == (
-        "the server did not put the player at 9.0 65.0 3.0; on its console say: op w2m_walker"
+        "the server did not move the player to 9.0 65.0 "
+        "3.0; run 'op w2m_walker' on the server console"
     )
 
 
@@ -126,16 +127,16 @@ def test_a_server_that_moves_one_to_its_spawn_late_is_told_again():
     with fake("stubborn") as body, pytest.raises(ServerError) as caught:
         body.place((6.0, 65.0, 5.0))
     assert str(caught.value) == (
-        "the server moves the player away from where it is put, to 3.0 3.0"
+        "the server moved the player away from the requested position, to 3.0 3.0"
     )
 
 
 def test_boxes_are_cut_to_what_can_be_read():
     assert checked_box([0, 0, 0, 1, 2, 3]) == (0, 0, 0, 1, 2, 3)
     for wrong in ([0, 0, 0, 0, 2, 3], [0, 0, 0, 1, 2], [0, 0, 0, 1e9, 1, 1]):
-        with pytest.raises(UsageError, match="a box is x0 y0 z0"):
+        with pytest.raises(UsageError, match="a box must be x0 y0 z0"):
             checked_box(wrong)
-    with pytest.raises(UsageError, match=f"up to {MAX_CELLS:,} blocks"):
+    with pytest.raises(UsageError, match=f"at most {MAX_CELLS:,} blocks"):
         checked_box([0, 0, 0, 300, 300, 300])
 
 
@@ -232,22 +233,24 @@ def test_without_labels_blocks_tell_what_they_are(honest):
 
 
 def test_labels_of_other_blocks_are_refused(honest, flat_path, tmp_path):
-    with pytest.raises(InputError, match="holds no scene.json"):
+    with pytest.raises(InputError, match="does not contain scene.json"):
         open_server_scene(honest, labels=tmp_path)
-    with pytest.raises(UsageError, match="labels have their scale"):
+    with pytest.raises(UsageError, match="the labels already define the scale"):
         open_server_scene(honest, labels=flat_path, blocks_per_metre=2)
-    with pytest.raises(InputError, match="nothing but air"):
+    with pytest.raises(InputError, match="only air"):
         open_server_scene(honest, box=(100, 64, 100, 110, 70, 110))
 
 
 @pytest.mark.parametrize(
     ("address", "options", "text"),
     [
-        ("local host", {}, "a server is HOST:PORT, such as localhost:25565, not 'local host'"),
-        ("localhost:0", {}, "a server is HOST:PORT, such as localhost:25565, not 'localhost:0'"),
+        ("local host", {},
+         "the server address must be HOST:PORT, such as localhost:25565, got 'local host'"),
+        ("localhost:0", {},
+         "the server address must be HOST:PORT, such as localhost:25565, got 'localhost:0'"),
         ("localhost", {"name": "a;b"},
-         "a player's name is 3 to 16 letters, digits and _, not 'a;b'"),
-        ("localhost", {"version": "newest"}, "a version is like 1.20.1, not 'newest'"),
+         "a player name must be 3 to 16 letters, digits or underscores, got 'a;b'"),
+        ("localhost", {"version": "newest"}, "the version must have the form 1.20.1, got 'newest'"),
     ],
 )  # fmt: skip
 def test_wrong_options_are_refused_before_anything_starts(address, options, text):
@@ -261,7 +264,7 @@ def test_nothing_is_fetched_unasked(monkeypatch, tmp_path):
     with pytest.raises(UsageError) as caught:
         join("localhost")
     assert str(caught.value) == (
-        "a body on a server needs mineflayer; fetch it once with w2m vln server --install"
+        "playing on a server requires mineflayer; install it once with w2m vln server --install"
     )
     assert not list(tmp_path.iterdir())
 
@@ -271,10 +274,10 @@ def test_the_verb_tells_what_is_missing(monkeypatch, tmp_path, capsys):
 
     monkeypatch.setattr(installing, "user_cache_dir", lambda: tmp_path)
     assert cli.run(["vln", "server"]) == 2
-    assert "fetch it once with w2m vln server --install" in capsys.readouterr().err
+    assert "install it once with w2m vln server --install" in capsys.readouterr().err
     monkeypatch.setattr(installing.shutil, "which", lambda name: None)
     assert cli.run(["vln", "server", "--install"]) == 2
-    assert "Node is not installed; a body needs Node 18 or newer" in capsys.readouterr().err
+    assert "Node.js not found; install version 18 or newer" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 
@@ -286,7 +289,7 @@ def test_an_interrupted_install_is_none(monkeypatch, tmp_path):
     monkeypatch.setattr(installing, "user_cache_dir", lambda: tmp_path / "cache")
     monkeypatch.setattr(installing, "node", lambda: "node")
     monkeypatch.setattr(installing.shutil, "which", lambda name: str(npm))
-    with pytest.raises(ServerError, match="npm could not fetch mineflayer: no network"):
+    with pytest.raises(ServerError, match="npm could not install mineflayer: no network"):
         installing.install()
     assert not installing.is_installed()
     npm.write_text("#!/bin/sh\ntest -f package-lock.json && test $1 = ci\n")
@@ -296,7 +299,7 @@ def test_an_interrupted_install_is_none(monkeypatch, tmp_path):
 def test_it_is_an_environment_of_gymnasium():
     spec = gymnasium.spec("world2minecraft/MinecraftVLN-Server-v0")
     assert spec.entry_point == "world2minecraft.navigation.server.env:ServerEnv"
-    with pytest.raises(UsageError, match="has no option 'scene'"):
+    with pytest.raises(UsageError, match="the option 'scene' is not available"):
         ServerEnv("localhost", scene="x")
 
 

@@ -131,7 +131,7 @@ def test_a_set_without_what_is_wanted_is_told():
             [next_view(step=2)], ExportOptions(tasks=("next_action",), compositions=("base",))
         )
     assert str(caught.value) == (
-        "the set has no item of next_action that is base; it has base next_view"
+        "the set has no next_action items of composition base; it contains base next_view"
     )
 
 
@@ -141,10 +141,13 @@ def test_a_set_without_what_is_wanted_is_told():
         ({"tasks": ("next_viev",)}, "no task is named 'next_viev'; did you mean 'next_view'?"),
         ({"compositions": ("all",)}, "no composition is named 'all'; known: base, combined, ext"),
         ({"image_style": "inline"}, "no image style is named 'inline'; known: embedded, paths"),
-        ({"max_pixels": 5}, "max_pixels is 784 to 16777216, not 5"),
-        ({"gpus": 0}, "gpus is 1 to 4096, not 0"),
-        ({"max_samples": -1}, "max_samples is 0 (all rows) or more, not -1"),
-        ({"model": "a\nb"}, "model is a name such as Qwen/Qwen2.5-VL-3B-Instruct, or a path"),
+        ({"max_pixels": 5}, "--max-pixels must be 784 to 16777216, got 5"),
+        ({"gpus": 0}, "--gpus must be 1 to 4096, got 0"),
+        ({"max_samples": -1}, "--max-samples must be 0 (all rows) or more, got -1"),
+        (
+            {"model": "a\nb"},
+            ("--model must be a model name such as Qwen/Qwen2.5-VL-3B-Instruct, or a folder"),
+        ),
     ],
 )
 def test_choices_that_cannot_be_are_refused(choice, reason):

@@ -121,16 +121,18 @@ def test_a_model_is_recorded_and_replayed(flat_path, tmp_path, capsys):
     assert replayed["cost"]["calls"] == 0
     other = [*words[:3], "Go to the red table", *words[4:], *replay]
     assert cli.run(other) == 3
-    assert "has no reply to question" in capsys.readouterr().err
+    assert "no reply is recorded for question" in capsys.readouterr().err
 
 
 def test_the_words_say_where_to_go(flat):
     for words in ("Walk past the red table to the PIANO.", "upright piano"):
         assert find_named_landmark(flat, words).name == "upright piano"
     assert find_named_landmark(flat, "Leave the piano and go to the table").noun == "table"
-    with pytest.raises(UsageError, match="nothing of flat is named by 'go home, pianos!'; it has"):
+    with pytest.raises(
+        UsageError, match=("no object of flat matches 'go home, pianos!'; known objects")
+    ):
         find_named_landmark(flat, "Go home, pianos!")
-    with pytest.raises(UsageError, match="2 things are called 'chair'; say one of 'chair beside"):
+    with pytest.raises(UsageError, match="'chair' matches 2 objects; use one of 'chair beside"):
         find_named_landmark(flat, "Go to the chair")
 
 
@@ -143,7 +145,7 @@ GOLDEN = [
         2,
         "no map is named 'globe'; known: none, plan, text",
     ),
-    (["SCENE", "Go to the piano", "--moves", "leap"], 2, "set of moves"),
+    (["SCENE", "Go to the piano", "--moves", "leap"], 2, "move set"),
     (["SCENE", "Go to the piano", "--agent", "gemini"], 2, "export GEMINI_API_KEY="),
     (["nowhere", "Go to the piano"], 3, "nowhere"),
 ]
@@ -222,7 +224,7 @@ def test_items_are_picked(tmp_path):
     drawn = select_items(items, count=3, seed=1)
     assert len(drawn) == 3 and drawn == select_items(items, count=3, seed=1)
     assert drawn == [item for item in items if item in drawn]
-    with pytest.raises(UsageError, match="none of 8 items is of split train"):
+    with pytest.raises(UsageError, match="none of the 8 items has split train"):
         select_items(items, split="train")
     with pytest.raises(UsageError, match="no split is named 'tets'; did you mean 'test'"):
         select_items(items, split="tets")

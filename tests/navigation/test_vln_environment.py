@@ -172,19 +172,35 @@ def test_a_longer_list_of_episodes_begins_with_the_shorter(flat):
 @pytest.mark.parametrize(
     ("options", "kind", "message"),
     [
-        ({"actions": "keys"}, UnknownNameError, "no kind of actions is named 'keys'"),
+        ({"actions": "keys"}, UnknownNameError, "no action space is named 'keys'"),
         (
             {"observations": ["rbg"]},
             UnknownNameError,
             "no observation is named 'rbg'; did you mean",
         ),
-        ({"observations": []}, UsageError, "observations are one or more of rgb, depth"),
-        ({"move_set": "vln"}, UnknownNameError, "no set of moves is named 'vln'; did you mean"),
-        ({"max_steps": 0}, UsageError, "max_steps is 1 or more, not 0"),
-        ({"success_m": 0}, UsageError, "success_m is a length above 0, in metres, not 0"),
-        ({"span_m": (5, 2)}, UsageError, "span_m is the shortest and the longest way in metres"),
-        ({"body": 0.5}, UsageError, "an open scene has its body, box and scale; leave them out"),
-        ({"episodes": []}, UsageError, "none of 0 episodes is of the scene 'flat'; they are of"),
+        (
+            {"observations": []},
+            UsageError,
+            ("at least one observation is required; choose from rgb, depth"),
+        ),
+        ({"move_set": "vln"}, UnknownNameError, "no move set is named 'vln'; did you mean"),
+        ({"max_steps": 0}, UsageError, "max_steps must be 1 or more, got 0"),
+        ({"success_m": 0}, UsageError, "success_m must be a positive distance in metres, got 0"),
+        (
+            {"span_m": (5, 2)},
+            UsageError,
+            ("span_m must be the shortest and longest path length in metres"),
+        ),
+        (
+            {"body": 0.5},
+            UsageError,
+            ("body, box and blocks_per_metre cannot be changed for a scene that is already open"),
+        ),
+        (
+            {"episodes": []},
+            UsageError,
+            ("none of the 0 episodes belongs to scene 'flat'; they belong to"),
+        ),
     ],
 )
 def test_impossible_options_are_refused(flat, options, kind, message):
@@ -194,21 +210,23 @@ def test_impossible_options_are_refused(flat, options, kind, message):
 
 def test_what_reset_and_step_cannot_do_is_told(flat):
     env = env_of(flat, observations=["pose"])
-    with pytest.raises(UnknownNameError, match="no option of reset is named 'gaol'; did you mean"):
+    with pytest.raises(UnknownNameError, match="no reset option is named 'gaol'; did you mean"):
         env.reset(options={"gaol": "piano"})
-    with pytest.raises(UsageError, match="the option 'episode' needs episodes"):
+    with pytest.raises(UsageError, match="the reset option 'episode' requires an episode file"):
         env.reset(options={"episode": 1})
     given = env_of(flat, observations=["pose"], episodes=random_episodes(flat, 2))
     for wanted in (2, None, 0.5):
         with pytest.raises(
-            UsageError, match=f"an episode is 0 to 1, or an episode_id, not {wanted}"
+            UsageError, match=f"must be an index from 0 to 1 or an episode ID, got {wanted}"
         ):
             given.reset(options={"episode": wanted})
     env.reset(seed=0)
-    told = r"an action is one of Discrete\(4\), not 7: 0 stop, 1 forward, 2 left, 3 right"
+    told = r"action must be in Discrete\(4\), got 7: 0 stop, 1 forward, 2 left, 3 right"
     with pytest.raises(UsageError, match=told):
         env.step(7)
-    with pytest.raises(UsageError, match="a picture has 1 to 4096 pixels a side, not 0x24"):
+    with pytest.raises(
+        UsageError, match=("image width and height must be 1 to 4096 pixels, got 0x24")
+    ):
         Eyes(0, 24)
 
 
@@ -228,7 +246,7 @@ def test_an_episode_that_no_way_solves_is_refused_when_it_begins(flat):
     env = env_of(flat, episodes=[walled, fine], observations=["pose"])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(type(flat), "distance_m", lambda *_: float("inf"))
-        with pytest.raises(InputError, match="no way leads from the start of episode walled"):
+        with pytest.raises(InputError, match="no path leads from the start of episode walled"):
             env.reset(seed=0)
     assert env.reset()[1]["episode_id"] == fine.episode_id
 

@@ -144,7 +144,7 @@ def test_left_is_counter_clockwise_from_above(flat):
 def test_a_step_has_the_length_of_its_set(flat):
     lengths = {name: forward_blocks(flat, get_move_set(name)) for name in MOVE_SETS}
     assert lengths == {"vlnce": 0.5, "rxr": 0.5, "block": 1.0, "macro": 0.5}
-    with pytest.raises(UnknownNameError, match="no set of moves is named 'vlncee'; did you mean"):
+    with pytest.raises(UnknownNameError, match="no move set is named 'vlncee'; did you mean"):
         get_move_set("vlncee")
 
 

@@ -45,7 +45,7 @@ def test_a_name_that_means_nothing_or_two_things_is_told(flat):
         UnknownNameError, match="no landmark is named 'tables'; did you mean 'table'"
     ):
         flat.landmark("tables")
-    two = "2 things are called 'chair'; say one of 'chair beside the table', 'chair beside the"
+    two = "2 landmarks are named 'chair'; use one of 'chair beside the table', 'chair beside the"
     with pytest.raises(UsageError, match=two):
         flat.landmark("chair")
     assert flat.landmark("piano").number == flat.landmark("The upright piano").number == 3
@@ -113,7 +113,7 @@ def test_a_picture_shows_what_is_ahead(flat):
 
 
 def test_a_body_out_of_range_is_told(flat_path):
-    with pytest.raises(UsageError, match="a body is 0.1 to 2 times a person, not 9"):
+    with pytest.raises(UsageError, match="body must be 0.1 to 2 times human size, got 9"):
         open_scene(flat_path, body=9)
 
 

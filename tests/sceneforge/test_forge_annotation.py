@@ -87,7 +87,7 @@ def test_what_is_written_is_kept_and_imported(client, folder):
     ("changed", "error"),
     [
         ({"text": "Go to the sofa over there."},
-         "it does not name where the walk ends: the upright piano"),
+         "the instruction must name the goal: the upright piano"),
         ({"annotator": " "}, "enter an annotator name of up to 60 characters"),
         ({"language": "x"}, "invalid language 'x'; use a code such as en or de-AT"),
         ({"level": "dance"},

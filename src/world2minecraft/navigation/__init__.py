@@ -1,1 +1,4 @@
-"""MinecraftVLN: worlds to walk, instructions to follow, agents to score."""
+"""MinecraftVLN: vision-and-language navigation in voxel worlds.
+
+The package contains the scenes, the navigation data sets, the agents and the evaluation.
+"""

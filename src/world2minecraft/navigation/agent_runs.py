@@ -1,10 +1,10 @@
-"""One agent walks episodes: those of a set, or one of a sentence; the run is written to a folder.
+"""Run an agent on a set of episodes, or on a single instruction, and write the results.
 
-::
+The output folder contains::
 
     OUT/episodes.jsonl, OUT/result.json
-    OUT/trace.jsonl, OUT/views/, OUT/walk.mp4    of a single walk
-    OUT/episodes/NNNNN/...                       the same of each of several
+    OUT/trace.jsonl, OUT/views/, OUT/walk.mp4    for a single walk
+    OUT/episodes/NNNNN/...                       the same files for each of several walks
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -36,10 +36,17 @@ PageCallback = Callable[[str], object]
 
 @dataclass(frozen=True)
 class RunRequest:
-    """What is walked and what is written.
+    """The scene, goal and output options of a run.
 
-    ``goal`` holds the instruction of a single walk; ``count`` limits the episodes of a set;
-    ``server`` is the game server whose player walks; ``observers`` follow every walk.
+    Attributes:
+        scene: The scene folder, or a file or folder with episodes.
+        folder: The output folder.
+        goal: The instruction and goal of a single walk. Ignored for a set of episodes.
+        count: The maximum number of episodes to walk. None walks all episodes.
+        seed: The random seed of the agent.
+        video: Whether to write a video of each walk.
+        server: The address of a game server on which to walk. Empty walks in the simulator.
+        observers: Additional observers of every walk.
     """
 
     scene: Path
@@ -58,16 +65,20 @@ def run_walks(
     on_page: PageCallback,
     facts: Callable[[], dict[str, Any]] = dict,
 ) -> tuple[list[Episode], dict[str, Any]]:
-    """Walk the episodes and write the run; return the episodes and what ``result.json`` holds.
+    """Walk the requested episodes and write the run to its folder.
 
     Args:
-        request: what is walked.
-        agent: who walks.
-        on_page: called with the address of the page where a human walks.
-        facts: called at the end, for what else ``result.json`` holds.
+        request: The scene, goal and output options.
+        agent: The agent that walks.
+        on_page: Called with the URL of the browser page if the agent is a human player.
+        facts: Called at the end of the run. Its result is added to ``result.json``.
+
+    Returns:
+        The episodes, and the content of ``result.json``.
 
     Raises:
-        UsageError: an option is wrong. InputError: the scene or the goal is not found.
+        UsageError: If an option is invalid.
+        InputError: If the scene or the goal is not found.
     """
     with closing(Simulators(request.server)) as grounds, _human_page(agent, on_page):
         episodes = _episodes(request, grounds)
@@ -75,14 +86,18 @@ def run_walks(
 
 
 def check_out(folder: Path, scene: Path) -> None:
-    """Raise UsageError where the run would overwrite the episodes that it walks."""
+    """Check that a run does not overwrite the episodes that it reads.
+
+    Raises:
+        UsageError: If the output folder contains the input episode file.
+    """
     source = scene if scene.suffix == ".jsonl" else scene / EPISODES
     if source.is_file() and source.resolve() == (folder / EPISODES).resolve():
         raise UsageError(f"--out {folder} would overwrite {source}; choose another folder")
 
 
 class Simulators:
-    """Opens each scene once, on a game server where one is named."""
+    """A factory of simulators, optionally on a game server, that opens each scene once."""
 
     def __init__(self, server: str) -> None:
         self._server, self._bodies = server, list[Any]()
@@ -90,18 +105,18 @@ class Simulators:
         self._grounds: dict[tuple[str, str], Simulator] = {}
 
     def scene(self, path: str) -> VlnScene:
-        """Return the scene of a path."""
+        """Return the scene at a path, opening it on the first call."""
         if path not in self._scenes:
             self._scenes[path] = self._on_server(path) if self._server else open_scene(path)
         return self._scenes[path]
 
     def close(self) -> None:
-        """Leave the server."""
+        """Disconnect all players from the server."""
         for body in self._bodies:
             body.close()
 
     def __call__(self, episode: Episode) -> Simulator:
-        """Return what an episode is walked on."""
+        """Return the simulator in which to walk an episode."""
         key = (episode.scene, episode.move_set)
         if key not in self._grounds:
             self._grounds[key] = self._simulator(self.scene(episode.scene), episode.move_set)
@@ -128,7 +143,11 @@ class Simulators:
 
 
 def walk_folder(folder: Path, number: int, episodes: Sequence[Episode]) -> Path:
-    """Return the folder of a walk: that of the run for a single one, else one by its number."""
+    """Return the output folder of a walk.
+
+    A single walk is written to the run folder itself, each of several walks to a numbered
+    subfolder.
+    """
     return folder if len(episodes) == 1 else folder / f"episodes/{number:05d}"
 
 
@@ -136,10 +155,12 @@ def _episodes(request: RunRequest, grounds: Simulators) -> list[Episode]:
     scene, goal = request.scene, request.goal
     if scene.suffix == ".jsonl" or (scene / EPISODES).is_file():
         if goal.instruction or goal.goal:
-            raise UsageError(f"the episodes of {scene} have instructions; leave out INSTRUCTION")
+            raise UsageError(
+                f"{scene} already contains episodes with instructions; omit INSTRUCTION and --goal"
+            )
         found = read_episodes(scene)[: request.count]
         if not found:
-            raise UsageError(f"{scene} has no episode")
+            raise UsageError(f"{scene} does not contain any episodes")
         folder = scene if scene.is_dir() else scene.parent
         return [replace(one, scene=str(resolve_scene_path(one.scene, folder))) for one in found]
     if not goal.instruction:
@@ -179,7 +200,7 @@ def _walk(
 
 @contextmanager
 def _human_page(agent: Agent, on_page: PageCallback) -> Iterator[None]:
-    """Report the page where a person walks, which exists while the block runs."""
+    """Report the URL of the human player's page, and close the page when the block ends."""
     try:
         for person in _people(agent):
             on_page(person.window.link)
@@ -190,5 +211,5 @@ def _human_page(agent: Agent, on_page: PageCallback) -> Iterator[None]:
 
 
 def _people(agent: Agent) -> list[HumanAgent]:
-    """Return the agent in a list where it is a person, who observes the walks too."""
+    """Return the agent in a list if it is a human player, who also observes the walks."""
     return [agent] if isinstance(agent, HumanAgent) else []

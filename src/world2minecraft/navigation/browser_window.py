@@ -1,8 +1,8 @@
-"""A window to watch walks and to walk oneself: a page of this machine's browser.
+"""A local web page for watching walks and for walking manually.
 
-The page shows the frames as they come (a stream of JPEGs, as web cameras send them) with a few
-words, and sends back the keys that are pressed. Only this machine can open it, and only with the
-link's token. No display server and no GL is needed.
+The page shows the frames as a JPEG stream with a text, and sends pressed keys back. It is served on
+the loopback interface only and requires the token in its URL. Neither a display server nor OpenGL
+is needed.
 """
 
 import io
@@ -65,7 +65,10 @@ KEYS = {
 
 
 class Window:
-    """A page that shows frames; ``link`` opens it, ``keys`` holds what was pressed in it."""
+    """A local web page that shows frames.
+
+    ``link`` is the URL of the page, and ``keys`` is the queue of keys that were pressed in it.
+    """
 
     def __init__(self, width_px: int = 224):
         self.keys: queue.Queue[str] = queue.Queue(MAX_QUEUED_KEYS)
@@ -79,11 +82,16 @@ class Window:
 
     @property
     def link(self) -> str:
-        """What a browser opens."""
+        """The URL of the page, with its access token."""
         return f"http://{LOOPBACK}:{self._server.server_address[1]}/?token={self._token}"
 
     def show(self, frame: np.ndarray, text: str | None = None) -> None:
-        """Show a frame, uint8 [H, W, 3], and words where there are new ones, on all open pages."""
+        """Show a frame on all open pages.
+
+        Args:
+            frame: The image as uint8 [H, W, 3].
+            text: The text beside the image. None keeps the current text.
+        """
         stream = io.BytesIO()
         Image.fromarray(frame).save(stream, "JPEG", quality=88)
         with self._changed:
@@ -92,13 +100,13 @@ class Window:
             self._changed.notify_all()
 
     def say(self, text: str) -> None:
-        """Show words beside the frame that is there."""
+        """Replace the text beside the current frame."""
         with self._changed:
             self._text, self._number = text, self._number + 1
             self._changed.notify_all()
 
     def close(self) -> None:
-        """Stop serving; pages keep the last frame."""
+        """Stop the server. Open pages keep showing the last frame."""
         with self._changed:
             self._is_open = False
             self._changed.notify_all()
@@ -106,21 +114,26 @@ class Window:
         self._server.server_close()
 
     def page(self) -> bytes:
-        """Return the page."""
+        """Return the HTML of the page."""
         return _PAGE.format(token=self._token, width=self._width_px).encode()
 
     def knows(self, token: str) -> bool:
-        """Whether a token is that of the link."""
+        """Return whether a token equals the access token of the page."""
         return secrets.compare_digest(token.encode(), self._token.encode())
 
     def after(self, number: int) -> tuple[bytes, int]:
-        """Wait for a frame later than one of a number; return the last, empty where none comes."""
+        """Wait for a frame with a number greater than ``number``.
+
+        Returns:
+            The latest JPEG and its number. The JPEG is empty before the first frame and after
+            closing.
+        """
         with self._changed:
             self._changed.wait_for(lambda: self._number > number or not self._is_open, IDLE_S)
             return (self._frame if self._is_open else b""), self._number
 
     def words(self, after: str) -> bytes:
-        """Wait as ``after`` does for a number that the page says; return the words as JSON."""
+        """Wait for a text change after a number, and return number, text and state as JSON."""
         number = int(after[:12]) if after.isascii() and after.isdigit() else -1
         with self._changed:
             self._changed.wait_for(lambda: self._number > number or not self._is_open, IDLE_S)
@@ -129,7 +142,7 @@ class Window:
 
 
 def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
-    """Return the class that answers for a window."""
+    """Return the HTTP request handler class of a window."""
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:  # The library's name.
@@ -162,7 +175,7 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
             words = parse_qs(parts.query)
             if window.knows(words.get("token", [""])[0]):
                 return parts.path, words
-            self.send_error(403, "the link's token is missing")
+            self.send_error(403, "access token missing or wrong")
             return None
 
         def _send(self, kind: str, body: bytes) -> None:
@@ -190,17 +203,22 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
 
 
 def wait_for_move(window: Window, patience_s: float = PATIENCE_S) -> Move:
-    """Wait for a key that means a move, and return the move.
+    """Wait for a key press that maps to a move, and return the move.
+
+    Args:
+        window: The page in which keys are pressed.
+        patience_s: Seconds to wait for each key press.
 
     Raises:
-        UsageError: nobody pressed a key for that long.
+        UsageError: If no key is pressed in time.
     """
     while True:
         try:
             key = window.keys.get(timeout=patience_s)
         except queue.Empty:
             raise UsageError(
-                f"nobody pressed a key in {patience_s:g} s; {window.link} is the page for them"
+                f"no key was pressed within {patience_s:g} s; open {window.link} and use "
+                "the keys there"
             ) from None
         if key in KEYS:
             return KEYS[key]

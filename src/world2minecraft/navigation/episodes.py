@@ -1,7 +1,7 @@
-"""Episodes of a scene: from somewhere to a thing that has a name, with the oracle's way.
+"""Random episodes of a scene, and the scoring of walks.
 
-``random_episodes`` draws them; ``score_walk`` scores a walk through one. Files of episodes are read
-and written by ``navigation.records``.
+An episode leads from a random start to a named goal along the expert path. ``navigation.records``
+reads and writes episode files.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,13 @@ TRIES = 40  # Of places for one episode.
 
 @dataclass(frozen=True)
 class Target:
-    """What one can be sent to: its name, where one stands before it, and where it is itself."""
+    """A possible goal: its name, the positions in front of it, and its own position.
+
+    Attributes:
+        name: The name of the landmark or room.
+        goals: The goal positions of the feet in world blocks.
+        point: The centre of the landmark in world blocks, or None for a room.
+    """
 
     name: str
     goals: tuple[tuple[float, float, float], ...]  # feet, world blocks
@@ -33,10 +39,10 @@ class Target:
 
 
 def targets_of(scene: VlnScene) -> tuple[Target, ...]:
-    """Return what one can be sent to in a scene: things, or its rooms where no thing has a name.
+    """Return the possible goals of a scene: its landmarks, or its rooms if no landmark is suitable.
 
     Raises:
-        UsageError: it has one room and nothing in it that a name tells.
+        UsageError: If the scene has a single room without uniquely named landmarks.
     """
     things = []
     for landmark in scene.landmarks:
@@ -47,8 +53,8 @@ def targets_of(scene: VlnScene) -> tuple[Target, ...]:
     rooms = [Target(room.name, (room.center,)) for room in scene.rooms]
     if not things and len(rooms) < 2:
         raise UsageError(
-            f"{scene.path} has one room and nothing in it with a name of its own; give episodes "
-            "with goals, or another world"
+            f"{scene.path} has a single room without uniquely named objects, so no goals "
+            "can be chosen; give episodes with goals, or another world"
         )
     return tuple(things or rooms)
 
@@ -71,24 +77,27 @@ def random_episodes(
     max_m: float = MAX_PATH_M,
     split: str = "train",
 ) -> list[Episode]:
-    """Return episodes that the oracle solves; the same for the same seed, a longer list begins so.
+    """Return random episodes that the oracle can solve.
+
+    The same seed gives the same episodes, and a longer list starts with the shorter one.
 
     Args:
-        scene: where one walks.
-        count: how many.
-        seed: 0 or more.
-        move_set: the moves' name.
-        min_m: the shortest way on foot.
-        max_m: the longest.
-        split: train, val_seen or val_unseen.
+        scene: The scene.
+        count: The number of episodes.
+        seed: The random seed, 0 or more.
+        move_set: The name of the move set.
+        min_m: The minimum path length in metres.
+        max_m: The maximum path length in metres.
+        split: "train", "val_seen" or "val_unseen".
 
     Raises:
-        UsageError: the scene gives none, or a number cannot be. UnknownNameError: no such moves.
+        UsageError: If a number is invalid, or the scene permits no such episodes.
+        UnknownNameError: If the move set is unknown.
     """
     if count < 1 or not 0 <= min_m < max_m:
         raise UsageError(
-            f"episodes are 1 or more with ways of 0 <= least < most metres, not {count} of "
-            f"{min_m:g} to {max_m:g}"
+            "random episodes require a count of 1 or more and 0 <= minimum < maximum path "
+            f"length, got count {count} and {min_m:g} to {max_m:g} m"
         )
     get_move_set(move_set)
     targets = targets_of(scene)
@@ -111,10 +120,10 @@ def random_episode(
     span_m: tuple[float, float] = (MIN_PATH_M, MAX_PATH_M),
     split: str = "train",
 ) -> Episode:
-    """Draw one episode to one of some targets.
+    """Sample one episode to a random target.
 
     Raises:
-        UsageError: no place and target were found that a way of this length leads between.
+        UsageError: If no start and target with a path of this length are found.
     """
     turn_deg = get_move_set(move_set).turn_deg
     for _ in range(TRIES):
@@ -130,8 +139,8 @@ def random_episode(
         if way is not None:
             return episode_of(scene, way, target, episode_id, move_set, split)
     raise UsageError(
-        f"{scene.path}: in {TRIES} tries no way of {span_m[0]:g} to {span_m[1]:g} m to a thing "
-        f"was found by the moves of {move_set!r}; ask for shorter ways"
+        f"{scene.path}: no path of {span_m[0]:g} to {span_m[1]:g} m to a goal was found in "
+        f"{TRIES} attempts with the move set {move_set!r}; allow shorter paths"
     )
 
 
@@ -143,7 +152,7 @@ def episode_of(
     move_set: str,
     split: str = "train",
 ) -> Episode:
-    """Return the episode of the oracle's way to a target."""
+    """Return the episode of an expert path to a target."""
     called = target.name if target.name[-1:].isdigit() else f"the {target.name}"  # "Go to room 2."
     words = Instruction(f"Go to {called}.", level="goal", landmarks=(target.name,))
     return Episode(
@@ -174,19 +183,19 @@ def score_walk(
     collisions: int = 0,
     radius_m: float = 3.0,
 ) -> EpisodeScore:
-    """Return the scores of a walk; an episode without a reference is held against the oracle's.
+    """Score a walk against the episode's reference path, or against the expert path if it has none.
 
     Args:
-        scene: where it was walked.
-        episode: what was asked.
-        stances: where the walker was, the start first.
-        stopped: whether it said STOP.
-        steps: actions, STOP among them.
-        collisions: how many of them met something.
-        radius_m: success in SPL and SDTW.
+        scene: The scene of the walk.
+        episode: The episode.
+        stances: The stances of the walk, starting with the first one.
+        stopped: Whether the agent ended the walk with STOP.
+        steps: The number of actions, including STOP.
+        collisions: The number of actions that collided.
+        radius_m: The success radius for SPL and SDTW in metres.
 
     Raises:
-        ValueError: no way leads from the start to a goal.
+        ValueError: If no path leads from the start to a goal.
     """
     reference = episode.reference
     if not reference:
@@ -204,5 +213,5 @@ def score_walk(
 
 
 def moves_of(episode: Episode) -> MoveSet:
-    """Return the moves of an episode."""
+    """Return the move set of an episode."""
     return get_move_set(episode.move_set)

@@ -1,4 +1,4 @@
-"""A free walk through a scene: a person walks and sees as agents do, with no task."""
+"""A free walk in the browser, with the same movement and view as agents but without a task."""
 
 from world2minecraft.navigation.browser_window import PATIENCE_S, Window, wait_for_move
 from world2minecraft.navigation.moves import apply_move
@@ -11,10 +11,16 @@ VIEW_PX, VIEW_FOV_DEG = (640, 480), 79.0  # RxR's camera, as runs have it.
 def walk_freely(
     scene: VlnScene, window: Window, *, move_set: str = "vlnce", patience_s: float = PATIENCE_S
 ) -> None:
-    """Walk where the keys say until nobody presses one; space leads back to the start.
+    """Let a person walk through a scene with the keyboard. The space key returns to the start.
+
+    Args:
+        scene: The scene.
+        window: The page that shows the view and receives the keys.
+        move_set: The name of the move set.
+        patience_s: Seconds to wait for each key press.
 
     Raises:
-        UsageError: nobody pressed a key for that long.
+        UsageError: If no key is pressed in time, which ends the walk.
     """
     camera = camera_of(*VIEW_PX, VIEW_FOV_DEG)
     stance, collided = scene.start, False
@@ -31,5 +37,5 @@ def walk_freely(
 
 def _caption(scene: VlnScene, feet: tuple[float, float, float], collided: bool) -> str:
     room = scene.room_at(feet)
-    name = scene.rooms[room].name if 0 <= room < len(scene.rooms) else "no room"
-    return f"{scene.scene_id}, {name}" + (": something is in the way" if collided else "")
+    name = scene.rooms[room].name if 0 <= room < len(scene.rooms) else "outside all rooms"
+    return f"{scene.scene_id}, {name}" + (": blocked by an obstacle" if collided else "")

@@ -1,8 +1,8 @@
-"""Registers the environments with Gymnasium; each is imported when one is made.
+"""Registration of the environments with Gymnasium, without importing them.
 
 Gymnasium before 1.0 calls ``register_environments`` through the entry point ``gymnasium.envs``.
-Later releases load no plugins, so ``import world2minecraft`` registers the environments as soon as
-Gymnasium is imported, before or after it. Nothing here imports Gymnasium on its own.
+Later releases load no plug-ins, so ``import world2minecraft`` registers the environments as soon as
+Gymnasium is imported. This module never imports Gymnasium on its own.
 """
 
 import importlib.abc
@@ -22,24 +22,24 @@ ENTRY_POINTS = {
 
 
 def register_environments() -> None:
-    """Register the environments with Gymnasium, once.
+    """Register the environments with Gymnasium, unless they are already registered.
 
     Raises:
-        MissingExtraError: Gymnasium is not installed.
+        MissingExtraError: If Gymnasium is not installed.
     """
     try:
         from gymnasium.envs.registration import register, registry  # noqa: PLC0415  # An extra.
     except ImportError as error:
         from world2minecraft.core.errors import MissingExtraError  # noqa: PLC0415
 
-        raise MissingExtraError("the environment", "vln") from error
+        raise MissingExtraError("the Gymnasium environment", "vln") from error
     for name, entry_point in ENTRY_POINTS.items():
         if name not in registry:
             register(name, entry_point)
 
 
 def register_with_gymnasium() -> None:
-    """Register the environments now where Gymnasium is imported, else when it will be."""
+    """Register the environments now if Gymnasium is imported, or when it is imported later."""
     if "gymnasium" in sys.modules:
         register_environments()
     elif not any(isinstance(finder, _GymnasiumFinder) for finder in sys.meta_path):
@@ -47,12 +47,12 @@ def register_with_gymnasium() -> None:
 
 
 class _GymnasiumFinder(importlib.abc.MetaPathFinder):
-    """Finds Gymnasium as the other finders do, with a loader that registers the environments."""
+    """A finder that wraps Gymnasium's loader in order to register the environments."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> importlib.machinery.ModuleSpec | None:
-        """Return the spec of Gymnasium; None for every other module."""
+        """Return the spec of Gymnasium, or None for every other module."""
         if fullname != "gymnasium":
             return None
         for finder in sys.meta_path:
@@ -67,17 +67,17 @@ class _GymnasiumFinder(importlib.abc.MetaPathFinder):
 
 
 class _RegisteringLoader(importlib.abc.Loader):
-    """Executes Gymnasium by its own loader, then registers the environments."""
+    """A loader that executes Gymnasium with its own loader and registers the environments."""
 
     def __init__(self, loader: importlib.abc.Loader):
         self._loader = loader
 
     def create_module(self, spec: importlib.machinery.ModuleSpec) -> ModuleType | None:
-        """Create the module as its own loader does."""
+        """Create the module with Gymnasium's own loader."""
         return self._loader.create_module(spec)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Execute the module under its own loader, so that nothing else sees the difference."""
+        """Execute the module with its own loader restored, then register the environments."""
         module.__loader__ = self._loader
         if module.__spec__ is not None:
             module.__spec__.loader = self._loader

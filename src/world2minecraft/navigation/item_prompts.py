@@ -1,7 +1,7 @@
-"""An item as a question: words with a mark where each picture stands, the pictures, the answer.
+"""Conversion of items to questions: a text with a placeholder for each image, and the answer.
 
-Exports for trainers and agents that answer items ask by the same words, so that what a model was
-trained on is what it is scored on.
+Trainer exports and question-answering agents use the same texts, so a model is evaluated on the
+prompts it was trained on.
 """
 
 import re
@@ -25,7 +25,7 @@ _MARK = re.compile(r"<(?:image|video|audio)>|<\|[^<>|]{1,40}\|>", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class Question:
-    """What an item asks. ``text`` has one ``IMAGE`` for each of ``images``, in their order."""
+    """The question of an item, with one ``IMAGE`` placeholder in ``text`` per image."""
 
     text: str
     images: tuple[str, ...]
@@ -33,7 +33,7 @@ class Question:
 
     @property
     def parts(self) -> Iterator[tuple[Literal["text", "image"], str]]:
-        """The text between pictures and the pictures' names, in the order in which one reads."""
+        """The text segments and image names in reading order."""
         images = iter(self.images)
         for number, text in enumerate(self.text.split(IMAGE)):
             if number:
@@ -43,7 +43,7 @@ class Question:
 
 
 def find_reserved_token(text: str) -> str:
-    """Return what a trainer or a model would take for a picture or a turn's end; "" for nothing.
+    """Return the first substring that trainers or models treat as a special token, or "".
 
     Example:
         >>> find_reserved_token("Go to the <image>.")
@@ -57,7 +57,7 @@ def question_of(item: Item) -> Question:
     """Return the question of an item.
 
     Raises:
-        UsageError: its words hold a mark that a trainer would take for a picture or a turn's end.
+        UsageError: If a text contains a special token of trainers or models.
 
     Example:
         >>> from world2minecraft.navigation.types import Instruction, Option
@@ -76,8 +76,8 @@ def question_of(item: Item) -> Question:
     for text in words:
         if found := find_reserved_token(text):
             raise UsageError(
-                f"item {item.item_id}: its words hold {found!r}, which trainers and models read "
-                "as a picture or the end of a turn; reword it"
+                f"item {item.item_id}: the text contains {found!r}, which trainers and "
+                "models interpret as an image or the end of a turn; reword it"
             )
     lines = [_ROLE, f"Instruction: {' '.join(item.instruction.text.split())}"]
     if item.history:

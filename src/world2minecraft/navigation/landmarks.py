@@ -1,8 +1,7 @@
-"""The things of a scene that people speak of: what each is called, its colour, and where it is.
+"""Landmarks: the named objects of a scene, with colour, position and size.
 
-In: a volume with instances and the furniture design of each block. Out: ``Landmark`` values whose
-names differ. Doubles are told apart as people do: by colour, then by what stands beside them, and
-by a number only where nothing else tells.
+The names are unique. Objects of the same kind are distinguished by colour, then by a neighbouring
+object, and by a number only as a last resort.
 """
 
 from collections import Counter
@@ -73,11 +72,20 @@ _COLOURS = {
 
 @dataclass(frozen=True, eq=False)
 class Landmark:
-    """A thing of a scene. Metres and boxes are those of the room's frame.
+    """A named object of a scene, with coordinates in metres of the room frame.
 
-    ``name`` is its own in the scene ("piano", "red chair", "chair beside the piano"); ``noun`` is
-    the plain word. ``is_unambiguous`` says whether a person knows which one the name means: names
-    that end in a number, and "object", are not.
+    Attributes:
+        number: The instance ID in the volume.
+        name: The unique name in the scene, such as "piano" or "chair beside the piano".
+        noun: The noun without distinguishing words.
+        class_id: The semantic class.
+        colour: The name of the colour.
+        center_m: The centre of the bounding box as float64 [3].
+        size_m: The size of the bounding box as float64 [3].
+        design: The furniture design, or "" if unknown.
+        room: The index of the room, or -1.
+        is_unambiguous: Whether a person can identify the object by its name. Names that end in a
+            number, and "object", are ambiguous.
     """
 
     number: int  # its instance in the volume
@@ -93,17 +101,17 @@ class Landmark:
 
     @property
     def class_name(self) -> str:
-        """One of the 12 classes."""
+        """The name of the semantic class."""
         return CLASS_NAMES[self.class_id]
 
     @property
     def low_m(self) -> np.ndarray:
-        """The box's low corner, float64 [3]."""
+        """The minimum corner of the bounding box as float64 [3]."""
         return self.center_m - self.size_m / 2
 
     @property
     def high_m(self) -> np.ndarray:
-        """The box's high corner, float64 [3]."""
+        """The maximum corner of the bounding box as float64 [3]."""
         return self.center_m + self.size_m / 2
 
 
@@ -113,13 +121,14 @@ def landmarks_of(
     titles: Mapping[str, str],
     room_of: Callable[[np.ndarray], int],
 ) -> tuple[Landmark, ...]:
-    """Return the things of a volume, by their numbers, with names that differ.
+    """Return the named objects of a volume, sorted by instance ID.
 
     Args:
-        volume: the blocks; ``instance`` says what belongs together.
-        designs: the design of each block, uint16 [X, Y, Z], and the names, "" first.
-        titles: what people call a design.
-        room_of: the room's number of a place in metres, float64 [3].
+        volume: The blocks, with instance IDs.
+        designs: The index of each block's design as uint16 [X, Y, Z], and the design names, ""
+            first.
+        titles: The common name of each design.
+        room_of: A function from a position in metres, float64 [3], to the index of its room.
     """
     codes, names = designs
     owned = np.flatnonzero((volume.instance.reshape(-1) > 0) & (volume.states.reshape(-1) > 0))
@@ -138,7 +147,7 @@ def landmarks_of(
 
 
 def assign_unique_names(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
-    """Return landmarks with names that differ: noun, colour, neighbour, and a number at last."""
+    """Assign unique names to landmarks, from the noun, colour and neighbour, or a number."""
     nouns = Counter(one.noun for one in landmarks)
     coloured = Counter((one.colour, one.noun) for one in landmarks)
     anchors = [one for one in landmarks if nouns[one.noun] == 1]
@@ -154,7 +163,7 @@ def assign_unique_names(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
 
 
 def colour_name(rgb: np.ndarray) -> str:
-    """Return the word for a colour, sRGB bytes [3].
+    """Return the name of an sRGB colour, given as bytes [3].
 
     Example:
         >>> colour_name(np.array([160, 39, 34]))
@@ -202,7 +211,7 @@ def _phrase(one: Landmark, nouns: Counter, coloured: Counter, anchors: Sequence[
 
 
 def _gap(one: Landmark, other: Landmark) -> np.ndarray:
-    """Return how far two boxes are from each other along each axis, metres."""
+    """Return the distance between two boxes along each axis in metres."""
     return np.maximum(0.0, np.maximum(one.low_m - other.high_m, other.low_m - one.high_m))
 
 

@@ -1,11 +1,12 @@
-"""Discrete moves: a turn on the spot, or a step forward that is made whole or not at all.
+"""Discrete moves: turns on the spot, and forward steps that succeed completely or not at all.
 
-The body is the game's, times the scene's scale: it steps up 0.6 of its size and drops 3, and walks
-on no furniture, as the walkable graph. One who slides goes on along what stops him, as in the game.
+The body has the game's dimensions times the scene's scale. It climbs 0.6 and drops 3 of its units,
+and, like the walk graph, never stands on furniture. With sliding, a blocked body continues along
+the obstacle as in the game.
 
-A step is cut into short pieces, each shorter than the body, so that nothing is passed through. Of
-each piece only its end is checked: the body fits there, or fits on top of what is in the way.
-Places are feet in world blocks.
+A step is divided into pieces shorter than the body, so that it cannot pass through blocks. For each
+piece, only the end is checked: the body must fit there, or on top of the obstacle. Positions are
+those of the feet in world blocks.
 """
 
 import math
@@ -29,7 +30,14 @@ _YAW_DIGITS = 6  # Of a yaw in degrees: turns there and back give the same numbe
 
 
 class BodySize(NamedTuple):
-    """Lengths of a body, in blocks."""
+    """The dimensions of a body in blocks.
+
+    Attributes:
+        half: Half of the width.
+        height: The height.
+        climb: The maximum height of an upward step without a jump.
+        drop: The maximum height of a downward step.
+    """
 
     half: float  # of its width
     height: float
@@ -39,10 +47,20 @@ class BodySize(NamedTuple):
 
 @njit
 def move_body(solid, corner, x, y, z, dx, dz, size, sliding):
-    """Return the feet after a way along the ground, and whether something stopped it.
+    """Move a body along the ground, and return its feet and whether it was blocked.
 
-    ``solid`` is a volume's ``Solid``, ``corner`` int64 [3] the world place of its first cell,
-    ``size`` a ``BodySize``. One who does not slide either goes the whole way or stays.
+    Without sliding, the body either covers the whole distance or stays in place.
+
+    Args:
+        solid: The ``Solid`` of a volume.
+        corner: The world position of the volume's first cell as int64 [3].
+        x: The x coordinate of the feet in world blocks.
+        y: The y coordinate of the feet.
+        z: The z coordinate of the feet.
+        dx: The distance to move along x in blocks.
+        dz: The distance to move along z in blocks.
+        size: The ``BodySize``.
+        sliding: Whether a blocked body continues along the obstacle.
     """
     pieces = max(1, int(np.ceil(np.sqrt(dx * dx + dz * dz) / (size.half * SUBSTEP))))
     px, pz = dx / pieces, dz / pieces
@@ -66,7 +84,7 @@ def move_body(solid, corner, x, y, z, dx, dz, size, sliding):
 
 @njit
 def _ground_at(solid, corner, x, y, z, px, pz, size):
-    """Return whether a body comes to the end of a piece of a way, and the height of its feet."""
+    """Return whether a body can make a piece of a step, and the height of its feet then."""
     at_x, at_y, at_z = x + px - corner[0], y - corner[1], z + pz - corner[2]
     if px == 0.0 and pz == 0.0:
         return True, y
@@ -90,7 +108,7 @@ def _ground_at(solid, corner, x, y, z, px, pz, size):
 
 @njit
 def _top_in(solid, x, y, z, size):
-    """Return the highest top of what is in a body's box, -1e9 for nothing; grid coordinates."""
+    """Return the highest top in a body's box in grid coordinates, or -1e9 if it is empty."""
     nx, ny, nz = solid.kinds.shape
     low_x, high_x = x - size.half + TOUCH, x + size.half - TOUCH
     low_z, high_z = z - size.half + TOUCH, z + size.half - TOUCH
@@ -116,7 +134,7 @@ def _top_in(solid, x, y, z, size):
 
 @njit
 def _under(solid, x, y, z, size):
-    """Return the highest top under a body's feet and its class; -1e9 and 0 for nothing."""
+    """Return the highest top under a body's feet and its class, or -1e9 and 0 for none."""
     nx, ny, nz = solid.kinds.shape
     low_x, high_x = x - size.half + TOUCH, x + size.half - TOUCH
     low_z, high_z = z - size.half + TOUCH, z + size.half - TOUCH
@@ -153,17 +171,17 @@ def apply_move(
     *,
     sliding: bool = False,
 ) -> tuple[Stance, bool]:
-    """Return where one stands after a move, and whether something was in the way.
+    """Return the stance after a move, and whether the move collided.
 
     Args:
-        scene: where one walks.
-        stance: where one stands.
-        move: STOP leaves all as it is.
-        move_set: how far a move goes, or its name.
-        sliding: go on along what is in the way, rather than stay.
+        scene: The scene.
+        stance: The stance before the move.
+        move: The move. STOP changes nothing.
+        move_set: The move set or its name.
+        sliding: Whether a blocked step continues along the obstacle instead of failing.
 
     Raises:
-        UnknownNameError: no set of moves has this name.
+        UnknownNameError: If the move set is unknown.
 
     Example:
         >>> apply_move(scene, Stance(3.0, 65.0, 3.0), Move.LEFT)               # doctest: +SKIP
@@ -180,31 +198,35 @@ def apply_move(
 
 
 def get_move_set(move_set: str | MoveSet) -> MoveSet:
-    """Return a set of moves by its name. Raises UnknownNameError: none has it."""
+    """Return a move set by its name.
+
+    Raises:
+        UnknownNameError: If the move set is unknown.
+    """
     if isinstance(move_set, MoveSet):
         return move_set
     if move_set not in MOVE_SETS:
-        raise UnknownNameError("set of moves", move_set, MOVE_SETS)
+        raise UnknownNameError("move set", move_set, MOVE_SETS)
     return MOVE_SETS[move_set]
 
 
 def forward_blocks(scene: VlnScene, move_set: MoveSet) -> float:
-    """Return how many blocks a step forward goes; one where the set names no length."""
+    """Return the length of a forward step in blocks, which is 1 if the move set defines none."""
     return move_set.forward_m * scene.blocks_per_metre or 1.0
 
 
 def wrap_yaw(yaw_deg: float) -> float:
-    """Return an angle from -180 up to 180, rounded so that turns there and back are exact."""
+    """Normalise an angle to [-180, 180), rounded so that opposite turns cancel exactly."""
     return round((yaw_deg + 180.0) % 360.0 - 180.0, _YAW_DIGITS)
 
 
 def heading_vector(yaw_deg: float) -> tuple[float, float]:
-    """Return where one looks along the ground: x and z, of length 1."""
+    """Return the horizontal unit vector (x, z) of a yaw."""
     return -math.sin(math.radians(yaw_deg)), math.cos(math.radians(yaw_deg))
 
 
 def body_size(scene: VlnScene) -> BodySize:
-    """Return the lengths of the scene's walker, in blocks."""
+    """Return the dimensions of the scene's body in blocks."""
     scale = scene.scale
     return BodySize(WIDTH * scale / 2, HEIGHT * scale, STEP_HEIGHT * scale, DROP * scale)
 

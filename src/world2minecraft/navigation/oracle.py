@@ -1,10 +1,10 @@
-"""The oracle: from where one stands to a goal by discrete moves, as short as they allow.
+"""The oracle, which plans the shortest path to a goal in discrete moves.
 
-A* over the very steps that the walker makes, so the path can be walked: ``plan_expert_path`` walks
-it once more before it returns it. A node of the search is a place with its own exact coordinates,
-so that nothing is rounded; of nodes that are nearly at one place the cheapest is expanded. The
-distance on foot to the goal, times a factor, is the heuristic, since the graph's own paths have
-corners. Files that hold expert moves name ``ORACLE_VERSION``.
+A* searches over the same steps as the walker makes, so its paths can be walked, and
+``plan_expert_path`` verifies each path by walking it. A search node has exact coordinates without
+rounding, and among nodes at nearly the same position only the cheapest is expanded. The heuristic
+is the walking distance to the goal times a factor, because the paths of the walk graph have
+corners. Files with expert moves record ``ORACLE_VERSION``.
 """
 
 import math
@@ -37,7 +37,15 @@ MAX_NODES = 400_000
 
 
 class SearchRules(NamedTuple):
-    """The lengths and limits of a search."""
+    """The lengths and limits of a search.
+
+    Attributes:
+        step_m: The length of a step in metres.
+        goal_m: The distance to the goal at which the search ends, in metres.
+        turn_m: The cost of a turn by one heading, in metres.
+        fineness: The number of positions that are distinguished along a step.
+        max_nodes: The maximum number of search nodes.
+    """
 
     step_m: float  # the length of a step
     goal_m: float  # how near to the goal ends the search
@@ -48,17 +56,20 @@ class SearchRules(NamedTuple):
 
 @njit
 def search_path(solid, corner, floor, field, start, steps, size, rules):
-    """Return the headings, int64 [T], of the steps from a place to a goal, and whether one is.
+    """Search for a path to a goal with A*.
 
     Args:
-        solid: the blocks.
-        corner: the world place of their first cell.
-        floor: ``FloorTable`` of the graph.
-        field: metres from each place to the goal.
-        start: float64 [3], feet.
-        steps: float64 [K, 2], the step along each heading in blocks; 0 is the first heading.
-        size: the body, ``BodySize``.
-        rules: ``SearchRules``.
+        solid: The blocks.
+        corner: The world position of the first block cell.
+        floor: The ``FloorTable`` of the walk graph.
+        field: The distance from each position to the goal in metres.
+        start: The feet at the start as float64 [3].
+        steps: The step along each heading in blocks as float64 [K, 2], first heading first.
+        size: The ``BodySize``.
+        rules: The ``SearchRules``.
+
+    Returns:
+        The headings of the steps as int64 [T], and whether a path was found.
     """
     count, limit = len(steps), rules.max_nodes
     feet = np.empty((limit, 3))
@@ -101,7 +112,7 @@ def search_path(solid, corner, floor, field, start, steps, size, rules):
 
 @njit
 def _headings_to(parent, headings, last):
-    """Return the headings from the start to a node, int64 [T]."""
+    """Return the headings of the steps from the start to a node as int64 [T]."""
     length, here = 0, last
     while parent[here] >= 0:
         length, here = length + 1, parent[here]
@@ -113,7 +124,7 @@ def _headings_to(parent, headings, last):
 
 @njit
 def _visit(seen, feet, cell):
-    """Whether a place nearly the same was followed before; it is from now on."""
+    """Return whether nearly the same position was visited before, and mark it as visited."""
     i, k = int(np.floor(feet[0] / cell)), int(np.floor(feet[2] / cell))
     j = int(np.floor(feet[1] * 4))
     key = ((i + 524288) << 42) | ((k + 524288) << 21) | (j + 524288)
@@ -128,7 +139,7 @@ def _visit(seen, feet, cell):
 
 @njit
 def _heap_push(heap, keys, waiting, node):
-    """Put a node into the heap; of equal keys the earlier node comes first."""
+    """Push a node to the heap. Nodes with equal keys keep their order."""
     n = waiting
     while n > 0:
         up = (n - 1) // 2
@@ -142,7 +153,7 @@ def _heap_push(heap, keys, waiting, node):
 
 @njit
 def _heap_pop(heap, keys, waiting):
-    """Take the first node out of the heap."""
+    """Remove the first node of the heap."""
     waiting -= 1
     node, n = heap[waiting], 0
     while 2 * n + 1 < waiting:
@@ -164,7 +175,13 @@ def _precedes(keys, one, other):
 
 @dataclass(frozen=True)
 class ExpertPath:
-    """The oracle's way: moves, STOP last, and where each but STOP comes to, the start first."""
+    """The path of the oracle.
+
+    Attributes:
+        moves: The moves, with STOP last.
+        stances: The start and the stance after each move except STOP.
+        length_m: The path length in metres.
+    """
 
     moves: tuple[Move, ...]
     stances: tuple[Stance, ...]
@@ -179,17 +196,17 @@ def plan_expert_path(
     *,
     facing: tuple[float, float, float] | None = None,
 ) -> ExpertPath | None:
-    """Return the oracle's way to the nearest goal; None where moves of this set do not lead there.
+    """Plan the shortest path to the nearest goal, or return None if no goal is reachable.
 
     Args:
-        scene: where one walks.
-        stance: where one stands, on the floor.
-        goals: feet in world blocks.
-        move_set: the moves, or their name.
-        facing: a place in world blocks to look at in the end, as nearly as turns allow.
+        scene: The scene.
+        stance: The start on the floor.
+        goals: The goal positions of the feet in world blocks.
+        move_set: The move set or its name.
+        facing: A position in world blocks to face at the end, as closely as the turns permit.
 
     Raises:
-        UnknownNameError: no set of moves has this name.
+        UnknownNameError: If the move set is unknown.
 
     Example:
         >>> way = plan_expert_path(scene, scene.start, scene.goals_at(scene.landmark("piano")))
@@ -219,7 +236,7 @@ def plan_expert_path(
 
 
 def _moves_of_headings(headings: list[int], count: int) -> list[Move]:
-    """Return the moves of steps along headings, of which 0 is where one looks."""
+    """Convert the headings of steps to moves. Heading 0 is the initial direction."""
     moves, now = [], 0
     for heading in headings:
         right = (heading - now) % count
@@ -233,7 +250,7 @@ def _moves_of_headings(headings: list[int], count: int) -> list[Move]:
 def _make_path(
     scene: VlnScene, stance: Stance, moves: list[Move], how: MoveSet
 ) -> ExpertPath | None:
-    """Return the way of moves; None where something is in the way after all."""
+    """Walk the moves, and return the path, or None if a move collides."""
     stances, length = [stance], 0.0
     for move in moves[:-1]:
         stance, collided = apply_move(scene, stance, move, how)
@@ -247,7 +264,7 @@ def _make_path(
 def _turn_to_face(
     scene: VlnScene, way: ExpertPath, facing: tuple[float, float, float], how: MoveSet
 ) -> ExpertPath:
-    """Return a way with turns at its end towards a place."""
+    """Append turns to a path so that it ends facing a position."""
     last, moves, stances = way.stances[-1], list(way.moves[:-1]), list(way.stances)
     x, z = facing[0] - last.x, facing[2] - last.z
     off_deg = wrap_yaw(math.degrees(math.atan2(-x, z)) - last.yaw_deg)

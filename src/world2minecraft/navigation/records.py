@@ -1,9 +1,9 @@
-"""Items, trajectories and episodes on disk: JSONL, one record a line, checked before it is used.
+"""Reading and writing of items, trajectories and episodes as JSONL, one validated record per line.
 
-A line is the JSON object of a value of ``navigation.types`` under the names of its fields; a
-``Move`` is its number. The lines of ``write_items`` are sorted by nothing but the caller, and the
-same values give the same bytes. Files of others are hostile until read: sizes come before memory,
-types are exact (no number in quotes), and a name that would leave the folder is refused.
+A line is a JSON object with the fields of a type in ``navigation.types``. A ``Move`` is written as
+its number. Records keep the order of the caller, and equal records give identical files. Input
+files are not trusted: sizes are limited, types must match exactly (numbers must not be quoted), and
+names that would leave the folder are rejected.
 """
 
 import json
@@ -40,51 +40,75 @@ Record = TypeVar("Record", Item, Trajectory, Episode)
 
 
 def read_items(path: str | Path) -> list[Item]:
-    """Read the items of a set folder or of one JSONL file.
+    """Read the items of a set folder or a JSONL file.
 
     Raises:
-        InputError: it is not there. DamagedFileError: a line is no item, or an id comes twice; the
-            message names the line. LimitError: it is too large.
+        InputError: If the file is missing.
+        DamagedFileError: If a line is not a valid item, or an ID occurs twice.
+        LimitError: If the file is too large.
     """
     return _read(_file(path, ITEMS), Item, check_item, lambda item: item.item_id)
 
 
 def read_trajectories(path: str | Path) -> list[Trajectory]:
-    """Read the trajectories of a set folder or of one JSONL file. Raises as ``read_items``."""
+    """Read the trajectories of a set folder or a JSONL file.
+
+    Raises:
+        InputError: If the file is missing.
+        DamagedFileError: If a line is not a valid trajectory, or an ID occurs twice.
+        LimitError: If the file is too large.
+    """
     return _read(
         _file(path, TRAJECTORIES), Trajectory, check_trajectory, lambda one: one.trajectory_id
     )
 
 
 def read_episodes(path: str | Path) -> list[Episode]:
-    """Read the episodes of a set folder or of one JSONL file. Raises as ``read_items``."""
+    """Read the episodes of a set folder or a JSONL file.
+
+    Raises:
+        InputError: If the file is missing.
+        DamagedFileError: If a line is not a valid episode, or an ID occurs twice.
+        LimitError: If the file is too large.
+    """
     return _read(_file(path, EPISODES), Episode, check_episode, lambda one: one.episode_id)
 
 
 def write_items(path: str | Path, items: Iterable[Item]) -> None:
-    """Write items to a JSONL file; ``read_items`` gives the same back.
+    """Write items to a JSONL file that ``read_items`` can read.
 
     Raises:
-        UsageError: an item is not sound. OutputError: the file cannot be written.
+        UsageError: If an item is invalid.
+        OutputError: If the file cannot be written.
     """
     _write(path, items, check_item)
 
 
 def write_trajectories(path: str | Path, trajectories: Iterable[Trajectory]) -> None:
-    """Write trajectories to a JSONL file. Raises as ``write_items``."""
+    """Write trajectories to a JSONL file.
+
+    Raises:
+        UsageError: If a trajectory is invalid.
+        OutputError: If the file cannot be written.
+    """
     _write(path, trajectories, check_trajectory)
 
 
 def write_episodes(path: str | Path, episodes: Iterable[Episode]) -> None:
-    """Write episodes to a JSONL file. Raises as ``write_items``."""
+    """Write episodes to a JSONL file.
+
+    Raises:
+        UsageError: If an episode is invalid.
+        OutputError: If the file cannot be written.
+    """
     _write(path, episodes, check_episode)
 
 
 def to_json_line(record: Item | Trajectory | Episode) -> str:
-    """Return the JSON line of a record, its end of line not included.
+    """Return the JSON line of a record, without the line break.
 
     Raises:
-        UsageError: it holds a number that is not finite, or something that JSON has no form for.
+        UsageError: If a value is not finite or cannot be represented in JSON.
     """
     try:
         line = json.dumps(
@@ -92,15 +116,15 @@ def to_json_line(record: Item | Trajectory | Episode) -> str:
         )
         line.encode()  # Half a surrogate pair is no text.
     except (TypeError, ValueError) as error:
-        raise UsageError(f"a record cannot be written as JSON: {error}") from error
+        raise UsageError(f"the record cannot be written as JSON: {error}") from error
     return line
 
 
 def parse_record(kind: type[Record], line: str | bytes) -> Record:
-    """Return the record of a JSON line, its types checked but not its names.
+    """Parse a JSON line into a record, and check the types of its fields.
 
     Raises:
-        UsageError: it is none; the message says which field is wrong and how.
+        UsageError: If the line is not a valid record. The message names the invalid field.
     """
     try:
         json.loads(line, parse_constant=_not_finite, parse_float=_finite)
@@ -110,32 +134,34 @@ def parse_record(kind: type[Record], line: str | bytes) -> Record:
         place = ".".join(str(part) for part in first["loc"]) or "the line"
         raise UsageError(f"{place}: {first['msg']}") from error
     except (ValueError, RecursionError) as error:
-        raise UsageError(f"is not JSON ({error})") from error
+        raise UsageError(f"not valid JSON ({error})") from error
 
 
 def check_item(item: Item) -> None:
-    """Refuse an item that no reader could use.
+    """Check that an item is valid.
 
     Raises:
-        UsageError: a name is no name, an image leaves the folder or has no sum, or the options
-            are not what the task shows.
+        UsageError: If a name is invalid, an image path leaves the folder or has no checksum, or the
+            options do not fit the task.
     """
     _check_names(item.item_id, item.trajectory_id)
     check_scene_id(item.scene_id)
     _check_text("the instruction", item.instruction.text)
     if item.step < 0:
-        raise UsageError(f"step: is {item.step}, not 0 or more")
+        raise UsageError(f"step must be 0 or more, got {item.step}")
     if item.composition not in ("base", "extend"):
-        raise UsageError(f"composition: must be base or extend, not {item.composition!r}")
+        raise UsageError(f"composition must be base or extend, got {item.composition!r}")
     if len(item.options) < 2:
-        raise UsageError(f"options: a choice has two or more, not {len(item.options)}")
+        raise UsageError(f"options must have two or more entries, got {len(item.options)}")
     shown, hidden = ("image", "text") if item.task == "next_view" else ("text", "image")
     for option in item.options:
         _check_text(f"option {option.label}", option.text or option.label)
         if not getattr(option, shown) or getattr(option, hidden):
-            raise UsageError(f"option {option.label}: of a {item.task} item has {shown} alone")
+            raise UsageError(
+                f"option {option.label}: the options of a {item.task} item must have {shown} only"
+            )
     if len(item.images) > MAX_IMAGES:
-        raise UsageError(f"shows {len(item.images)} images; at most {MAX_IMAGES} are read")
+        raise UsageError(f"the item has {len(item.images)} images, the limit is {MAX_IMAGES}")
     for name in item.images:
         check_image_name(name)
         _check_sum(name, item.sha256.get(name, ""))
@@ -143,11 +169,15 @@ def check_item(item: Item) -> None:
 
 
 def check_trajectory(trajectory: Trajectory) -> None:
-    """Refuse a trajectory that no reader could use. Raises UsageError."""
+    """Check that a trajectory is valid.
+
+    Raises:
+        UsageError: If a field of the trajectory is invalid.
+    """
     _check_names(trajectory.trajectory_id)
     check_scene_id(trajectory.scene_id)
     if not trajectory.keyframes:
-        raise UsageError(f"trajectory {trajectory.trajectory_id} has no keyframe")
+        raise UsageError(f"trajectory {trajectory.trajectory_id} has no keyframes")
     for keyframe in trajectory.keyframes:
         check_image_name(keyframe.image)
         if keyframe.sha256:
@@ -155,27 +185,31 @@ def check_trajectory(trajectory: Trajectory) -> None:
     for instruction in trajectory.instructions:
         _check_text("an instruction", instruction.text)
     if trajectory.path_m < 0:
-        raise UsageError(f"path_m: is {trajectory.path_m}, not 0 or more")
+        raise UsageError(f"path_m must be 0 or more, got {trajectory.path_m}")
     _check_scale(trajectory.metres_per_block)
 
 
 def check_episode(episode: Episode) -> None:
-    """Refuse an episode that no reader could use. Raises UsageError."""
+    """Check that an episode is valid.
+
+    Raises:
+        UsageError: If a field of the episode is invalid.
+    """
     _check_names(episode.episode_id)
     check_scene_id(episode.scene_id)
     _check_text("the instruction", episode.instruction.text)
     if not 1 <= episode.max_steps <= 100_000:
-        raise UsageError(f"max_steps: is {episode.max_steps}, not 1 to 100000")
+        raise UsageError(f"max_steps must be 1 to 100000, got {episode.max_steps}")
 
 
 def resolve_scene_path(scene: str, folder: Path) -> Path:
-    """Return where an episode's scene lies: as its path says, or from the folder of its set.
+    """Return the path of an episode's scene, as recorded or relative to its set.
 
-    A set that was moved brings along the scenes that were made for it, in its ``SCENES_FOLDER``.
+    If the set has been moved, the scene is also searched for in the ``SCENES_FOLDER`` of the set.
 
     Args:
-        scene: the path that the episode says.
-        folder: of the set.
+        scene: The path recorded in the episode.
+        folder: The folder of the set.
     """
     stated = Path(scene)
     own = folder / SCENES_FOLDER / stated.name
@@ -184,10 +218,10 @@ def resolve_scene_path(scene: str, folder: Path) -> Path:
 
 
 def check_image_name(name: str) -> None:
-    """Refuse a name of an image that is not a plain path under the folder of the set.
+    """Check that an image name is a plain path inside the folder of the set.
 
     Raises:
-        UsageError: it is empty, absolute, leaves the folder, or has marks that no path of ours has.
+        UsageError: If the name is empty, absolute, leaves the folder or has invalid characters.
 
     Example:
         >>> check_image_name("images/kitchen/t003/004.jpg")
@@ -196,19 +230,20 @@ def check_image_name(name: str) -> None:
     strange = any(not mark.isprintable() or mark in '\\:*?"<>|' for mark in name)
     if strange or len(name) > MAX_NAME or any(part.strip(". ") == "" for part in parts):
         raise UsageError(
-            f"image {name[:80]!r}: must be a path under the set's folder, like images/room/t0/0.jpg"
+            f"image {name[:80]!r} must be a path inside the folder of the set, such as "
+            "images/room/t0/0.jpg"
         )
 
 
 def check_scene_id(name: str) -> None:
-    """Refuse the id of a scene that is no name of a file: exports call files by it.
+    """Check that a scene ID is a valid file name, because exports use it in file names.
 
     Raises:
-        UsageError: it is empty, long, or has marks that no name of a file may have.
+        UsageError: If the ID is empty, too long or has invalid characters.
     """
     _check_names(name)
     if any(mark in '/\\:*?"<>|' for mark in name) or not name.strip(". "):
-        raise UsageError(f"scene {name[:80]!r}: its id must be a name that a file could have")
+        raise UsageError(f"scene ID {name[:80]!r} must be a valid file name")
 
 
 @cache
@@ -235,32 +270,34 @@ def _read(
         except UsageError as error:
             raise DamagedFileError(path, f"line {number}: {error}") from error
         if name(record) in seen:
-            raise DamagedFileError(path, f"line {number}: {name(record)} was there before")
+            raise DamagedFileError(path, f"line {number}: duplicate ID {name(record)}")
         seen.add(name(record))
         records.append(record)
     return records
 
 
 def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
-    """Yield the lines that hold something, with their numbers from 1."""
+    """Yield the non-empty lines of a file with their numbers, starting at 1."""
     try:
         size = path.stat().st_size
         if size > MAX_FILE_BYTES:
-            raise LimitError(path, f"has {size:,} bytes; at most {MAX_FILE_BYTES:,} are read")
+            raise LimitError(
+                path, f"file of {size:,} bytes exceeds the limit of {MAX_FILE_BYTES:,}"
+            )
         with path.open("rb") as stream:
             number = 0
             while line := stream.readline(MAX_LINE_BYTES + 1):
                 number += 1
                 if len(line) > MAX_LINE_BYTES:
-                    raise LimitError(path, f"line {number}: has over {MAX_LINE_BYTES:,} bytes")
-                if number > MAX_RECORDS:
                     raise LimitError(
-                        path, f"has over {MAX_RECORDS:,} lines, the most that are read"
+                        path, f"line {number}: exceeds the limit of {MAX_LINE_BYTES:,} bytes"
                     )
+                if number > MAX_RECORDS:
+                    raise LimitError(path, f"file exceeds the limit of {MAX_RECORDS:,} lines")
                 if line.strip():
                     yield number, line
     except FileNotFoundError as error:
-        raise InputError(path, "is not there; w2m vln build SCENE --out SET writes it") from error
+        raise InputError(path, "not found; w2m vln build SCENE --out SET writes it") from error
     except OSError as error:
         raise InputError(path, f"cannot be read: {error.strerror or error}") from error
 
@@ -276,22 +313,24 @@ def _write(path: str | Path, records: Iterable[Record], check: Callable[[Record]
 def _check_names(*names: str) -> None:
     for name in names:
         if not name or len(name) > MAX_NAME or not name.isprintable() or name != name.strip():
-            raise UsageError(f"{name[:80]!r} is no name: it has 1 to {MAX_NAME} printable marks")
+            raise UsageError(
+                f"{name[:80]!r} is not a valid name: expected 1 to {MAX_NAME} printable characters"
+            )
 
 
 def _check_text(what: str, text: str) -> None:
     if len(text) > MAX_TEXT:
-        raise UsageError(f"{what} has {len(text):,} characters; at most {MAX_TEXT:,} are read")
+        raise UsageError(f"{what} has {len(text):,} characters, the limit is {MAX_TEXT:,}")
 
 
 def _check_sum(name: str, sum_: str) -> None:
     if not _SHA256.fullmatch(sum_):
-        raise UsageError(f"sha256 of {name}: must be 64 hexadecimal digits, not {sum_[:80]!r}")
+        raise UsageError(f"sha256 of {name} must be 64 hexadecimal digits, got {sum_[:80]!r}")
 
 
 def _check_scale(metres_per_block: float) -> None:
     if not 1e-3 <= metres_per_block <= 1e3:
-        raise UsageError(f"metres_per_block: is {metres_per_block}, not 0.001 to 1000")
+        raise UsageError(f"metres_per_block must be 0.001 to 1000, got {metres_per_block}")
 
 
 def _finite(text: str) -> float:
@@ -300,4 +339,4 @@ def _finite(text: str) -> float:
 
 
 def _not_finite(text: str) -> NoReturn:
-    raise ValueError(f"{text} is no finite number")
+    raise ValueError(f"{text} is not a finite number")

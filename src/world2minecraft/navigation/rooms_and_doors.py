@@ -1,4 +1,4 @@
-"""The rooms of a scene and the doors between them, as a walker knows them."""
+"""The rooms of a scene and the doors between them, in terms of the walk graph."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -23,7 +23,12 @@ ROOM_WORDS = {"bed": "bedroom", "living": "living room", "dining": "dining room"
 
 @dataclass(frozen=True, eq=False)
 class Door:
-    """Where one goes from a room to another: the middle of the passage, feet, world blocks."""
+    """A passage from one room to another.
+
+    Attributes:
+        to: The index of the other room.
+        feet: The middle of the passage in world blocks.
+    """
 
     to: int
     feet: tuple[float, float, float]
@@ -31,7 +36,16 @@ class Door:
 
 @dataclass(frozen=True, eq=False)
 class SceneRoom:
-    """A room: its number and name, its places in the graph, and its doors."""
+    """A room of a scene.
+
+    Attributes:
+        number: The index of the room.
+        name: The unique name of the room.
+        places: The indices of its nodes in the walk graph as int64 [N].
+        floor_m2: The floor area in square metres.
+        center: The node closest to the centre of the room, in world blocks.
+        doors: The passages to other rooms.
+    """
 
     number: int
     name: str
@@ -42,7 +56,7 @@ class SceneRoom:
 
 
 def rooms_of_places(graph: WalkGraph, rooms: list[TourRoom]) -> np.ndarray:
-    """Return the room of each place of a graph, int64 [N]; -1 for those near no room."""
+    """Return the room of each walk graph node as int64 [N], with -1 for nodes outside rooms."""
     number = np.full(len(graph), -1, np.int64)
     if not rooms:
         return number
@@ -65,11 +79,11 @@ def scene_rooms(
     """Return the rooms with names and doors.
 
     Args:
-        volume: the blocks.
-        graph: where one walks.
-        rooms: as ``find_rooms`` gives them.
-        number: the room of each place, see ``rooms_of_places``.
-        layouts: floor plans with names; may be empty.
+        volume: The blocks.
+        graph: The walk graph.
+        rooms: The result of ``find_rooms``.
+        number: The room of each node, as returned by ``rooms_of_places``.
+        layouts: Floor plans with room names. May be empty.
     """
     doors = _doors(graph, number, len(rooms))
     names = _names(
@@ -87,7 +101,7 @@ def scene_rooms(
 
 
 def _names(rooms_m: list[np.ndarray], layouts: tuple[Layout, ...]) -> list[str]:
-    """Return names that differ; one that is alone of its kind needs no number."""
+    """Return unique names. A room that is the only one of its kind needs no number."""
     kinds = [_kind(points_m, layouts) or "room" for points_m in rooms_m]
     total, seen, names = Counter(kinds), Counter[str](), []
     for kind in kinds:
@@ -97,7 +111,7 @@ def _names(rooms_m: list[np.ndarray], layouts: tuple[Layout, ...]) -> list[str]:
 
 
 def _kind(points_m: np.ndarray, layouts: tuple[Layout, ...]) -> str:
-    """Return the word for the layout that most of some places are in, without its number."""
+    """Return the kind of the layout that contains most of the points, without a number."""
     best, most = "", 0
     for layout in layouts:
         level = abs(points_m[:, 2] - layout.floor_z_m) < layout.wall_height_m / 2
@@ -110,7 +124,7 @@ def _kind(points_m: np.ndarray, layouts: tuple[Layout, ...]) -> str:
 
 
 def _doors(graph: WalkGraph, number: np.ndarray, count: int) -> list[list[Door]]:
-    """Return the doors of each room: steps between two rooms, those beside each other as one."""
+    """Return the doors of each room, merging adjacent graph edges between two rooms."""
     found: list[list[Door]] = [[] for _ in range(count)]
     begin, end = graph.edge_from, graph.edge_to
     crossing = (number[begin] != number[end]) & (number[begin] >= 0) & (number[end] >= 0)
@@ -127,7 +141,7 @@ def _doors(graph: WalkGraph, number: np.ndarray, count: int) -> list[list[Door]]
 
 
 def _clusters(points: np.ndarray, max_gap: float) -> list[np.ndarray]:
-    """Return points in groups of those that hang together by less than a distance."""
+    """Group points that are connected by distances of at most ``max_gap``."""
     near = KDTree(points).query_pairs(max_gap + 1e-6, output_type="ndarray")
     links = coo_matrix((np.ones(len(near)), tuple(near.T)), (len(points), len(points)))
     total, group = connected_components(links, directed=False)

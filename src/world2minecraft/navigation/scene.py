@@ -1,8 +1,8 @@
-"""A world as a walker has it: floor to walk on, distances on foot, things with names, and a view.
+"""Scenes for navigation, with walkable floor, walking distances, landmarks, rooms and views.
 
-In: the path of any place that holds blocks. Out: ``VlnScene``; each of its parts is made when it is
-first asked for. Doors that a player can open stand open, to body and eye alike. ``FloorTable`` has
-the walkable graph by columns, so that a place between those of the graph finds its neighbours.
+``VlnScene`` represents any world with blocks and computes its parts on first use. Doors that
+players can open are treated as open for movement and rendering. ``FloorTable`` stores the walk
+graph by columns, for fast lookups of positions between its nodes.
 """
 
 from collections import OrderedDict
@@ -61,7 +61,18 @@ MAX_FIELDS = 64  # Kept of those last used.
 
 
 class FloorTable(NamedTuple):
-    """The places of a graph by columns of a regular grid; of each column those in a row."""
+    """The nodes of a walk graph, sorted into the columns of a regular grid.
+
+    Attributes:
+        origin: The x and z of the first column in world blocks, as float64 [2].
+        shape: The number of columns along x and z, as int64 [2].
+        start: The offset of each column in ``place``, as int64 [C + 1].
+        place: The node indices by column, as int32 [N].
+        feet: The position of each node, as float64 [N, 3].
+        spacing: The distance between columns in blocks.
+        level: The maximum height difference to a node on the same floor, in blocks.
+        metres_per_block: The scale.
+    """
 
     origin: np.ndarray  # float64 [2], x and z of the first column, world blocks
     shape: np.ndarray  # int64 [2], columns along x and z
@@ -74,7 +85,7 @@ class FloorTable(NamedTuple):
 
 
 def build_floor_table(graph: WalkGraph) -> FloorTable:
-    """Return the table of a graph with one place or more."""
+    """Build the table of a non-empty walk graph."""
     origin = graph.feet[:, [0, 2]].min(axis=0)
     at = np.round((graph.feet[:, [0, 2]] - origin) / graph.spacing).astype(np.int64)
     shape = at.max(axis=0) + 1
@@ -90,7 +101,11 @@ def build_floor_table(graph: WalkGraph) -> FloorTable:
 
 @njit
 def distance_from_field(floor, field, x, y, z):
-    """Return the way in metres from feet by a field over places, float64 [N]; inf off the floor."""
+    """Look up the distance in metres from a position in a distance field over nodes, float64 [N].
+
+    Returns:
+        The distance, or inf if the position is not on the floor.
+    """
     i = int(np.floor((x - floor.origin[0]) / floor.spacing))
     k = int(np.floor((z - floor.origin[1]) / floor.spacing))
     reach = REACH_SPACINGS * floor.spacing
@@ -110,10 +125,24 @@ def distance_from_field(floor, field, x, y, z):
 
 
 class VlnScene:
-    """A world to walk in.
+    """A world in which an agent can walk.
 
-    ``volume`` has its doors open. ``graph`` are the places of a body ``body`` times as large as a
-    person. Places are feet in world blocks, lengths on foot are metres of the room.
+    Positions are those of the feet in world blocks, and walking distances are in metres of the
+    room.
+
+    Args:
+        source: The source of the blocks.
+        body: The body size relative to a person. None chooses the largest that has floor to walk
+            on.
+        opens_doors: Whether doors are treated as open.
+
+    Attributes:
+        volume: The blocks, with open doors.
+        graph: The walk graph of the body.
+        body: The body size relative to a person.
+
+    Raises:
+        InputError: If no floor is large enough for the body.
     """
 
     def __init__(self, source: SceneSource, body: float | None = None, *, opens_doors: bool = True):
@@ -128,37 +157,37 @@ class VlnScene:
 
     @property
     def blocks_per_metre(self) -> float:
-        """The scale of the build."""
+        """The number of blocks per metre of the room."""
         return self.volume.blocks_per_metre
 
     @property
     def metres_per_block(self) -> float:
-        """The length of a block in the room."""
+        """The length of a block in metres of the room."""
         return 1 / self.volume.blocks_per_metre
 
     @property
     def scale(self) -> float:
-        """How many times larger the body is than the game's player, in blocks."""
+        """The size of the body relative to the game's player, in blocks."""
         return self.body * self.blocks_per_metre
 
     @property
     def eye_blocks(self) -> float:
-        """How high the eye is over the feet, blocks."""
+        """The height of the eyes above the feet in blocks."""
         return EYE * self.scale
 
     @cached_property
     def corner(self) -> np.ndarray:
-        """The world place of the volume's first cell, int64 [3]."""
+        """The world position of the volume's first cell as int64 [3]."""
         return np.array(self.volume.corner, np.int64)
 
     @cached_property
     def corner_graph(self) -> WalkGraph:
-        """The graph again, with the places at corners where shortest ways bend."""
+        """The walk graph with additional nodes at corners, where shortest paths bend."""
         return walk_graph(self.volume, WalkRule(scale=self.scale, at_corners=True))
 
     @cached_property
     def floor(self) -> FloorTable:
-        """The ways as a table, for places between their own."""
+        """The lookup table of ``corner_graph`` for positions between its nodes."""
         return build_floor_table(self.corner_graph)
 
     @cached_property
@@ -167,45 +196,45 @@ class VlnScene:
 
     @cached_property
     def _own_places(self) -> np.ndarray:
-        """The place in the ways of each place of the graph, int64 [N]."""
+        """The index in ``corner_graph`` of each node of ``graph``, as int64 [N]."""
         return np.asarray(KDTree(self.corner_graph.feet).query(self.graph.feet)[1])
 
     @cached_property
     def render_scene(self) -> BlockScene:
-        """What pictures are taken of."""
+        """The scene prepared for rendering."""
         return prepare_scene(self.volume)
 
     @cached_property
     def layouts(self) -> tuple[Layout, ...]:
-        """The floor plans that lie beside the blocks; none of worlds of others."""
+        """The floor plans stored beside the blocks. Worlds from other programs have none."""
         return layouts_beside(Path(self.path))
 
     @cached_property
     def room_of_places(self) -> np.ndarray:
-        """The room of each place of the graph, int64 [N], -1 for none."""
+        """The room of each node of the graph as int64 [N], or -1."""
         return rooms_of_places(self.graph, self._found)
 
     @cached_property
     def rooms(self) -> tuple[SceneRoom, ...]:
-        """The rooms in which one can stand, with their doors."""
+        """The rooms with walkable floor, and their doors."""
         return scene_rooms(self.volume, self.graph, self._found, self.room_of_places, self.layouts)
 
     @cached_property
     def landmarks(self) -> tuple[Landmark, ...]:
-        """The things of the scene, named apart."""
+        """The landmarks of the scene, with unique names."""
         designs = self.source.designs()
         return landmarks_of(self.volume, designs, _titles(designs[1]), self._room_of_point)
 
     @cached_property
     def main_places(self) -> np.ndarray:
-        """The places of rooms that hang together most, int64 [N]: where episodes begin and end."""
+        """The nodes of the largest connected group of rooms, int64 [N], for starts and goals."""
         places = np.concatenate([room.places for room in self._found])
         number = connected_parts(self.graph)[places]
         return np.sort(places[number == np.bincount(number).argmax()])
 
     @property
     def start(self) -> Stance:
-        """Where a player of the world begins, moved to the nearest place of the rooms."""
+        """The room position nearest to the world's spawn point."""
         spawn = self.source.start()
         rooms = self.graph.feet[self.main_places]
         target = rooms.mean(axis=0) if spawn is None else np.array(spawn)
@@ -213,10 +242,11 @@ class VlnScene:
         return Stance(float(x), float(y), float(z))
 
     def landmark(self, name: str) -> Landmark:
-        """Return the landmark of a name; a noun or a part of it will do where it means one thing.
+        """Return the landmark with a name, noun or part of a noun that identifies it.
 
         Raises:
-            UnknownNameError: no thing is called so. UsageError: several are.
+            UnknownNameError: If no landmark matches.
+            UsageError: If several landmarks match.
         """
         wanted = name.strip().lower().removeprefix("the ")
         words = set(wanted.split())
@@ -230,12 +260,12 @@ class VlnScene:
         if not found:
             raise UnknownNameError("landmark", wanted, [one.name for one in self.landmarks])
         names = ", ".join(repr(one.name) for one in found[:6])
-        raise UsageError(f"{len(found)} things are called {wanted!r}; say one of {names}")
+        raise UsageError(f"{len(found)} landmarks are named {wanted!r}; use one of {names}")
 
     def goals_at(self, landmark: Landmark) -> tuple[tuple[float, float, float], ...]:
-        """Return the places right before a landmark, feet in world blocks; none where none is.
+        """Return the nearest positions in front of a landmark, as feet in world blocks.
 
-        They are places of the rooms from which no wall hides it, the nearest ones.
+        Only room positions from which no wall hides the landmark are returned. There may be none.
         """
         feet = self.graph.feet[self.main_places]
         points = apply(self.volume.block_to_room, feet)
@@ -251,16 +281,18 @@ class VlnScene:
         return tuple((float(x), float(y), float(z)) for x, y, z in feet[picked])
 
     def distances_m(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
-        """Return how far it is on foot from each place to the nearest goal, float64 [N].
+        """Return the walking distance from each node to the nearest goal in metres, as float64 [N].
 
-        Ways are straight wherever a body can walk straight. Infinite where none leads.
+        Paths are straight wherever the body can walk straight. Unreachable nodes have the distance
+        inf.
         """
         return self.corner_distances_m(goals)[self._own_places]
 
     def corner_distances_m(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
-        """Return the same for each place of ``corner_graph``.
+        """Return the walking distance from each node of ``corner_graph`` in metres.
 
-        The last fields are kept: one serves a whole episode.
+        The most recently used distance fields are cached, because an episode needs one of them
+        repeatedly.
         """
         key = tuple(map(tuple, goals))
         if key in self._fields:
@@ -276,7 +308,7 @@ class VlnScene:
     def distance_m(
         self, feet: tuple[float, float, float], goals: Sequence[tuple[float, float, float]]
     ) -> float:
-        """Return how far it is on foot from a place, also one between those of the graph."""
+        """Return the walking distance in metres from any position to the nearest goal."""
         field = self.corner_distances_m(goals)
         over = distance_from_field(self.floor, field, *(float(value) for value in feet))
         if np.isfinite(over) or not np.isfinite(field).any():
@@ -286,17 +318,17 @@ class VlnScene:
         return float(field[nearest] + offset * self.metres_per_block)
 
     def room_at(self, feet: tuple[float, float, float]) -> int:
-        """Return the number of the room that a place is in, -1 for none."""
+        """Return the index of the room at a position, or -1."""
         return int(self.room_of_places[self.graph.nearest(feet)])
 
     def to_room_m(
         self, feet: np.ndarray | Sequence[float] | Sequence[tuple[float, float, float]]
     ) -> np.ndarray:
-        """Return places in metres of the room, float64 [..., 3]."""
+        """Convert block positions to metres of the room, as float64 [..., 3]."""
         return apply(self.volume.block_to_room, np.asarray(feet, np.float64))
 
     def camera_to_room(self, stance: Stance) -> np.ndarray:
-        """Return the 4x4 pose of the eyes of one who stands so."""
+        """Return the 4x4 camera-to-room pose of the eyes at a stance."""
         pose = GamePose(*stance.feet, stance.yaw_deg, stance.pitch_deg)
         return pose.camera_to_room(self.volume.block_to_room, self.eye_blocks)
 
@@ -309,14 +341,14 @@ class VlnScene:
         light: LightSettings = DAY,
         threads: int = 1,
     ) -> Picture:
-        """Return what one who stands so sees."""
+        """Render the view at a stance."""
         pose = self.camera_to_room(stance)
         return render_volume(
             self.render_scene, camera, pose, outputs=outputs, light=light, threads=threads
         )
 
     def _walkable(self, body: float | None) -> tuple[float, WalkGraph, list[TourRoom]]:
-        """Return the largest body that has floor to walk on, its graph and its rooms."""
+        """Return the largest body that has enough floor, with its walk graph and rooms."""
         rule = TourRule(start=self.source.start(), layouts=self.layouts)
         for size in BODIES if body is None else (body,):
             scale = size * self.blocks_per_metre
@@ -328,12 +360,12 @@ class VlnScene:
         size = min(BODIES) if body is None else body
         raise InputError(
             self.path,
-            f"has no floor that a body of {size:g} times a person can stand on; a smaller one may, "
-            "or a box around its rooms",
+            f"no floor on which a body of {size:g} times human size can stand; use a "
+            "smaller body, or a box around the rooms",
         )
 
     def _room_of_point(self, point_m: np.ndarray) -> int:
-        """Return the room of a thing: that of the place nearest to it on the floor under it."""
+        """Return the room of an object, which is that of the nearest node on the floor below it."""
         places = np.concatenate([room.places for room in self._found])
         at = apply(self.volume.block_to_room, self.graph.feet[places])
         under = (at[:, 2] > point_m[2] - STOREY_M) & (at[:, 2] < point_m[2] + 0.3)
@@ -342,7 +374,7 @@ class VlnScene:
         return int(self.room_of_places[places[nearest]]) if away[nearest] <= STOREY_M else -1
 
     def _sees(self, feet_m: np.ndarray, landmark: Landmark) -> bool:
-        """Whether no wall, floor or ceiling lies between the eyes at a place and a thing."""
+        """Return whether no wall, floor or ceiling hides a landmark from a position."""
         eye = feet_m + np.array([0, 0, EYE * self.body])
         target = np.clip(eye, landmark.low_m, landmark.high_m)
         target = target + 0.1 * (landmark.center_m - target)
@@ -364,18 +396,19 @@ def open_scene(
     blocks_per_metre: float | None = None,
     body: float | None = None,
 ) -> VlnScene:
-    """Open a place that holds blocks as a scene to walk in.
+    """Open a world as a scene for navigation.
 
     Args:
-        path: a run's folder, a generated house, a world of anyone, or a file such as
-            ``house.schem``; what ``minecraftocc.source.open_scene_source`` reads.
-        box: x0 y0 z0 x1 y1 z1 in blocks of a world of others, the last ones not included.
-        blocks_per_metre: the scale, where the place does not say it.
-        body: the walker's size next to a person's. None takes 1, or the largest of 0.6 and 0.4
-            that finds floor in a cluttered scan.
+        path: The folder of a run, a generated house, a Minecraft world, or a file such as
+            ``house.schem``, as accepted by ``minecraftocc.scene_sources.open_scene_source``.
+        box: The block range x0 y0 z0 x1 y1 z1 to load from a Minecraft world, with exclusive ends.
+        blocks_per_metre: The scale, if the path does not define one.
+        body: The body size relative to a person. None uses 1, or 0.6 or 0.4 in a cluttered scan
+            without floor for larger bodies.
 
     Raises:
-        InputError: it cannot be read, or nobody can stand in it. UsageError: an option cannot be.
+        InputError: If the world cannot be read, or has no floor to stand on.
+        UsageError: If an option is invalid.
 
     Example:
         >>> scene = open_scene("worlds/house_0001")                       # doctest: +SKIP
@@ -383,12 +416,12 @@ def open_scene(
         (41.5, 64.0, 12.5)
     """
     if body is not None and not 0.1 <= body <= 2:
-        raise UsageError(f"a body is 0.1 to 2 times a person, not {body}")
+        raise UsageError(f"body must be 0.1 to 2 times human size, got {body}")
     return VlnScene(open_scene_source(path, box=box, blocks_per_metre=blocks_per_metre), body)
 
 
 def camera_of(width_px: int, height_px: int, hfov_deg: float) -> Camera:
-    """Return a camera of a size in pixels and a horizontal field of view, as Habitat names it."""
+    """Return a camera with a size in pixels and a horizontal field of view in degrees."""
     focal_px = float(focal_px_of_fov(width_px, hfov_deg))
     return Camera(width_px, height_px, focal_px, focal_px, width_px / 2, height_px / 2)
 
@@ -399,7 +432,11 @@ def _titles(names: Sequence[str]) -> dict[str, str]:
 
 
 def layouts_beside(path: Path) -> tuple[Layout, ...]:
-    """Return the floor plans beside a house, or of a run whose folder or build is named."""
+    """Return the floor plans stored beside a house or a run.
+
+    Args:
+        path: The folder or the blocks of the house or run.
+    """
     folder = path if path.is_dir() else path.parent
     blocks = find_blocks(path) if path.is_dir() else path
     for place in (folder, blocks.parent, blocks.parent.parent):

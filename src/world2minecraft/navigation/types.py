@@ -1,8 +1,8 @@
-"""What MinecraftVLN is made of: moves, where a walker stands, episodes, trajectories and items.
+"""The data types of MinecraftVLN: moves, stances, episodes, trajectories and items.
 
-Places are world block coordinates of the feet (x east, y up, z south); angles are the game's: yaw 0
-looks south, to +z, and grows clockwise from above; pitch grows downward; degrees. Lengths whose
-name ends in ``_m`` are metres of the room.
+Positions are those of the feet in world blocks (x east, y up, z south). Angles are the game's, in
+degrees: yaw 0 looks south (+z) and increases clockwise from above, and pitch increases downward.
+Names that end in ``_m`` are lengths in metres of the room.
 """
 
 import math
@@ -20,7 +20,7 @@ LETTERS = "ABCDEFGH"
 
 
 class Move(IntEnum):
-    """What a walker does in a step, by Habitat's numbers."""
+    """A discrete move, with Habitat's number."""
 
     STOP = 0
     FORWARD = 1
@@ -30,7 +30,14 @@ class Move(IntEnum):
 
 @dataclass(frozen=True)
 class MoveSet:
-    """How far a move goes. ``is_macro``: one action is a whole run of equal moves."""
+    """The lengths and angles of discrete moves.
+
+    Attributes:
+        name: The name of the move set.
+        forward_m: The length of a forward step in metres, or 0 for one block.
+        turn_deg: The angle of a turn in degrees.
+        is_macro: Whether one action is a whole run of equal moves.
+    """
 
     name: str
     forward_m: float
@@ -49,7 +56,7 @@ MOVE_SETS = {
 
 @dataclass(frozen=True)
 class Stance:
-    """Where a walker stands and looks: feet in world blocks, the game's angles in degrees."""
+    """A position and viewing direction: feet in world blocks, and the game's angles in degrees."""
 
     x: float
     y: float
@@ -59,13 +66,22 @@ class Stance:
 
     @property
     def feet(self) -> tuple[float, float, float]:
-        """The feet, world blocks."""
+        """The position of the feet in world blocks."""
         return (self.x, self.y, self.z)
 
 
 @dataclass(frozen=True)
 class Instruction:
-    """What a walker is told. ``landmarks`` are the names that it speaks of, in their order."""
+    """An instruction for a walk.
+
+    Attributes:
+        text: The text.
+        source: One of ``INSTRUCTION_SOURCES``.
+        level: One of ``LEVELS``.
+        landmarks: The names of the mentioned landmarks in order.
+        annotator: The person or model that wrote the text.
+        language: The language code.
+    """
 
     text: str
     source: str = "template"
@@ -75,19 +91,32 @@ class Instruction:
     language: str = "en"
 
     def __post_init__(self):
-        _check_known("source of an instruction", self.source, INSTRUCTION_SOURCES)
-        _check_known("level of an instruction", self.level, LEVELS)
+        _check_known("instruction source", self.source, INSTRUCTION_SOURCES)
+        _check_known("instruction level", self.level, LEVELS)
         if not self.text.strip():
-            raise UsageError("an instruction has words; this one is empty")
+            raise UsageError("an instruction must not be empty")
 
 
 @dataclass(frozen=True)
 class Episode:
-    """A way to go in a scene, and what is told of it.
+    """A navigation task in a scene, with its instruction and the expert's path.
 
-    ``reference`` is the expert's way, dense, a stance a move; ``moves`` are its moves, STOP at the
-    end. ``goals`` are feet, world blocks: success is being near one of them, on foot. An expert
-    who got there turns to ``facing``.
+    Attributes:
+        episode_id: The ID of the episode.
+        scene: The path of the scene, as accepted by ``open_scene``.
+        scene_id: The ID of the scene.
+        start: The start.
+        goals: The goal positions of the feet in world blocks. Success means stopping close to one.
+        goal_name: The name of the goal landmark or room.
+        instruction: The instruction.
+        move_set: The name of the move set.
+        moves: The moves of the expert, with STOP at the end.
+        reference: The dense path of the expert, with one stance per move.
+        trajectory_id: The trajectory that the episode was made from.
+        split: One of ``SPLITS``.
+        max_steps: The maximum number of steps.
+        oracle_version: The version of the planner that produced ``moves``.
+        facing: The position of the goal object in world blocks, which the expert faces at the end.
     """
 
     episode_id: str
@@ -107,31 +136,40 @@ class Episode:
     facing: tuple[float, float, float] | None = None  # the thing itself, world blocks
 
     def __post_init__(self):
-        _check_known("set of moves", self.move_set, MOVE_SETS)
+        _check_known("move set", self.move_set, MOVE_SETS)
         _check_known("split", self.split, SPLITS)
         if not self.goals:
-            raise UsageError(f"episode {self.episode_id} has no goal")
+            raise UsageError(f"episode {self.episode_id} has no goals")
 
 
 def check_reachable(episode: Episode, distance_m: float) -> None:
-    """Refuse an episode from whose start no way leads to its goal: nothing of it can be scored.
+    """Check that the goal of an episode can be reached from its start.
+
+    Args:
+        episode: The episode.
+        distance_m: The walking distance to the goal in metres, or inf if unreachable.
 
     Raises:
-        InputError: ``distance_m``, the way on foot in metres, is infinite.
+        InputError: If ``distance_m`` is infinite.
     """
     if not math.isfinite(distance_m):
         raise InputError(
             episode.scene,
-            f"no way leads from the start of episode {episode.episode_id} to its goal; were the "
-            "blocks changed since? Make episodes anew, with w2m vln build",
+            f"no path leads from the start of episode {episode.episode_id} to its goal; if "
+            "blocks have changed, create the episodes again with w2m vln build",
         )
 
 
 @dataclass(frozen=True)
 class Keyframe:
-    """A picture of a trajectory, taken where a run of equal moves ends.
+    """An image of a trajectory at the end of a run of equal moves.
 
-    ``chunk`` are the next moves from here, at most four, STOP among them.
+    Attributes:
+        image: The POSIX path of the image in the set.
+        stance: The position and viewing direction.
+        move: The next macro action: "move forward", "turn left", "turn right" or "stop".
+        chunk: The next moves, at most four, including STOP.
+        sha256: The SHA-256 of the image.
     """
 
     image: str  # path beside the records, POSIX
@@ -143,7 +181,18 @@ class Keyframe:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """A valid way through a scene with its keyframes and all that was said of it."""
+    """A path through a scene with its keyframes and instructions.
+
+    Attributes:
+        trajectory_id: The ID of the trajectory.
+        scene_id: The ID of the scene.
+        keyframes: The keyframes in order.
+        instructions: All instructions for the path.
+        path_m: The path length in metres.
+        split: One of ``SPLITS``.
+        metres_per_block: The scale of the scene.
+        source: "generated" or "recorded".
+    """
 
     trajectory_id: str
     scene_id: str
@@ -157,7 +206,15 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class Option:
-    """A choice of an item. ``kind`` says how a wrong one was made; the right one is "positive"."""
+    """An answer option of an item, with a text or an image.
+
+    Attributes:
+        label: The letter of the option.
+        kind: "positive" for the correct option, otherwise the kind of distractor.
+        text: The text of a Next-Action option.
+        image: The image path of a Next-View option.
+        stance: The stance of the image, if known.
+    """
 
     label: str  # a letter
     kind: str
@@ -168,10 +225,25 @@ class Option:
 
 @dataclass(frozen=True)
 class Item:
-    """The canonical record of one question; exporters make every other format of it.
+    """A multiple-choice question, from which exporters create all other formats.
 
-    ``history`` are images before ``current``, oldest first. ``extra`` has what a task adds, such as
-    ``gold_chunk`` and ``progress`` of a Next-Action item.
+    Attributes:
+        item_id: The ID of the item.
+        task: One of ``TASKS``.
+        scene_id: The ID of the scene.
+        trajectory_id: The ID of the trajectory.
+        step: The index of the current keyframe.
+        instruction: The instruction.
+        history: The images before ``current``, oldest first.
+        current: The current image.
+        options: The answer options.
+        answer: The label of the correct option.
+        split: One of ``SPLITS``.
+        composition: "base" for reconstructions or "extend" for large houses.
+        metres_per_block: The scale of the scene.
+        oracle_version: The version of the code that planned the moves.
+        sha256: The SHA-256 of each image.
+        extra: Task-specific values, such as ``gold_chunk`` and ``progress``.
     """
 
     item_id: str
@@ -197,17 +269,17 @@ class Item:
         labels = [option.label for option in self.options]
         if labels != list(LETTERS[: len(labels)]) or self.answer not in labels:
             raise UsageError(
-                f"item {self.item_id}: options are lettered A, B, ... and one is the answer, "
-                f"not {labels} and {self.answer!r}"
+                f"item {self.item_id}: options must be labelled A, B, ... and include the "
+                f"answer, got options {labels} and answer {self.answer!r}"
             )
 
     @property
     def images(self) -> tuple[str, ...]:
-        """Every image that a reader is shown, in the order of the prompt."""
+        """The images that the prompt shows, in order."""
         chosen = tuple(option.image for option in self.options if option.image)
         return (*self.history, self.current, *chosen)
 
 
 def _check_known(what: str, value: str, allowed: Any) -> None:
     if value not in allowed:
-        raise UsageError(f"{what} must be one of {', '.join(allowed)}, not {value!r}")
+        raise UsageError(f"{what} must be one of {', '.join(allowed)}, got {value!r}")

@@ -1,9 +1,9 @@
-"""A recorded walk as moves: turns and steps of one size that end where the walk ended.
+"""Conversion of a recorded walk into discrete moves that end where the walk ended.
 
-The walk's path is simplified to its corners (Ramer, Douglas and Peucker), which are aimed at one
-after the other from where the moves so far have led: what a turn or a step is off is corrected by
-the next ones, never dropped. Each move is made by the world's physics (``StepFunction``); a walk
-that meets a wall, or that ends elsewhere, is refused.
+The path is simplified to its corners (Ramer-Douglas-Peucker), which are approached one after the
+other from the position reached so far, so that errors are corrected by later moves instead of
+accumulating. Each move is simulated with the world's physics (``StepFunction``). A walk that
+collides, or that ends elsewhere, is rejected.
 """
 
 from collections.abc import Callable, Sequence
@@ -25,11 +25,11 @@ MAX_MOVES = 500
 
 
 def simplify_path(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
-    """Return the indices, rising, of the points that keep a path within ``epsilon`` of itself.
+    """Return the ascending indices of the points that approximate a path to within ``epsilon``.
 
     Args:
-        path: float64 [N, 2], N at least 1.
-        epsilon: how far a left out point may lie from the line that stays.
+        path: The path as float64 [N, 2] with N at least 1.
+        epsilon: The maximum distance of an omitted point from the simplified path.
 
     Example:
         >>> simplify_path(np.array([[0, 0], [1, 0.01], [2, 0], [2, 3]]), 0.25).tolist()
@@ -52,7 +52,7 @@ def simplify_path(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
 
 
 def _distances_from_segment(points: np.ndarray, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Return how far points lie from the line between two others, its ends included."""
+    """Return the distance of each point to a line segment."""
     along = end - begin
     length2 = float(along @ along)
     if length2 == 0:
@@ -62,15 +62,15 @@ def _distances_from_segment(points: np.ndarray, begin: np.ndarray, end: np.ndarr
 
 
 StepFunction = Callable[[Stance, Move], tuple[Stance, bool]]
-"""Where a move leads, and whether it met something."""
+"""Return the stance after a move, and whether the move collided."""
 
 PathPlanner = Callable[[Stance, tuple[float, float, float]], Sequence[Move]]
-"""Moves from a stance to feet in world blocks; none where it knows no way."""
+"""Return the moves from a stance to a position in world blocks, or no moves without a path."""
 
 
 @dataclass(frozen=True)
 class DiscreteWalk:
-    """Moves with the stances before each and after the last; ``refusal`` says why it is none."""
+    """The moves of a walk and the stances between them, or the reason why it was rejected."""
 
     moves: tuple[Move, ...] = ()
     stances: tuple[Stance, ...] = ()
@@ -84,18 +84,18 @@ def discretize_walk(
     walker: StepFunction,
     guide: PathPlanner | None = None,
 ) -> DiscreteWalk:
-    """Return a segment as moves, STOP last, or with the reason why it is none.
+    """Convert a walk segment to moves with STOP at the end, or to a rejected walk with a reason.
 
-    It ends within half a step and 0.1 m of the recorded end and within half a turn of its heading.
-    Where moves along the corners meet something, corners are followed closer; where that fails
-    too, and a guide knows the world, it says another way to the same end.
+    The result ends within half a step plus 0.1 m of the recorded end, and within half a turn of its
+    heading. If moves along the corners collide, the corners are followed more closely. If that also
+    fails, the moves of ``guide`` to the same end are tried.
 
     Args:
-        segment: a walk of ``split_into_walks``.
-        move_set: how far a move goes; where ``forward_m`` is 0, a block.
-        blocks_per_metre: of the world.
-        walker: the world's physics.
-        guide: moves from a stance to a place.
+        segment: A walk from ``split_into_walks``.
+        move_set: The move set. If its ``forward_m`` is 0, a step is one block.
+        blocks_per_metre: The scale of the world.
+        walker: The physics of the world.
+        guide: A planner of moves from a stance to a position.
     """
     path = feet_m(segment, blocks_per_metre)[:, [0, 2]]
     refusal = ""
@@ -129,7 +129,7 @@ def _finished(
 
 
 def _end_mismatch(follower: "_CornerFollower", end_m: np.ndarray, yaw_deg: float) -> str:
-    """Return how the end differs from the recorded one; nothing where it does not."""
+    """Return how the end differs from the recorded one, or ""."""
     away_m = float(np.linalg.norm(follower.place_m - end_m))
     turn_deg = abs(float(wrap_deg(yaw_deg - follower.stance.yaw_deg)))
     if away_m > follower.step_m / 2 + SLACK_M:
@@ -138,7 +138,7 @@ def _end_mismatch(follower: "_CornerFollower", end_m: np.ndarray, yaw_deg: float
 
 
 class _CornerFollower:
-    """Someone who walks to corners by moves."""
+    """A walker that follows corners with discrete moves."""
 
     def __init__(
         self,
@@ -162,7 +162,7 @@ class _CornerFollower:
         return np.array([self.stance.x, self.stance.z]) / self._blocks_per_metre
 
     def go_to(self, corner_m: np.ndarray, passing_m: float, is_last: bool) -> None:
-        """Walk until no step would come nearer."""
+        """Walk to a corner until no further step would get closer."""
         near_m = self.step_m * (0.5 if is_last else 1.0)
         while not self.refusal:
             ahead = corner_m - self.place_m
@@ -176,20 +176,20 @@ class _CornerFollower:
             self._make(Move.FORWARD)
 
     def make(self, moves: Sequence[Move]) -> None:
-        """Make moves of another, but for STOP."""
+        """Make the given moves except STOP."""
         for move in moves:
             if move != Move.STOP:
                 self._make(move)
 
     def _aim(self, ahead_m: np.ndarray, passing_m: float) -> None:
-        """Turn to what lies ahead, unless the present heading passes it as near as need be."""
+        """Turn to a target, unless the current heading already passes it closely enough."""
         yaw_deg = float(np.degrees(np.arctan2(-ahead_m[0], ahead_m[1])))
         off = np.radians(float(wrap_deg(yaw_deg - self.stance.yaw_deg)))
         if np.cos(off) < 0 or abs(np.sin(off)) * np.linalg.norm(ahead_m) > passing_m:
             self.face(yaw_deg)
 
     def face(self, yaw_deg: float) -> None:
-        """Turn to the heading of whole turns that is nearest."""
+        """Turn to the closest heading that whole turns can reach."""
         off_deg = float(wrap_deg(yaw_deg - self.stance.yaw_deg))
         turns = int(np.floor(abs(off_deg) / self.turn_deg + 0.5 - 1e-9))
         for _ in range(turns):

@@ -1,4 +1,4 @@
-"""A stream: where a walker was, frame after frame; planned by us or imported from the game."""
+"""Streams: sequences of poses of a walker, planned or imported from recordings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +11,15 @@ from world2minecraft.rendering.views.pose_file import TourPose
 
 @dataclass(frozen=True)
 class StreamFrame:
-    """One look of a walk: when, where the feet were, and the picture where there is one."""
+    """A pose of a walk at a time, optionally with an image.
+
+    Attributes:
+        t_s: The time in seconds.
+        stance: The position and viewing direction.
+        scene_id: The ID of the scene, or "".
+        tour_id: The ID of the tour, or "".
+        image: The path of the image, or "".
+    """
 
     t_s: float
     stance: Stance
@@ -21,7 +29,7 @@ class StreamFrame:
 
 
 def frame_of_pose(one: TourPose, eye: float) -> StreamFrame:
-    """Return a line of a tour file as a frame; ``eye`` is its height over the feet, blocks."""
+    """Convert a pose of a tour file to a frame, given the eye height in blocks."""
     pose = one.pose
     down = eye if pose.at == "eye" else 0.0
     stance = Stance(pose.x, pose.y - down, pose.z, pose.yaw_deg, pose.pitch_deg)
@@ -29,17 +37,17 @@ def frame_of_pose(one: TourPose, eye: float) -> StreamFrame:
 
 
 def assign_even_times(frames: Sequence[StreamFrame], every_s: float) -> list[StreamFrame]:
-    """Return the frames with times ``every_s`` apart: of files that say the order alone."""
+    """Return the frames with times ``every_s`` seconds apart, for files without times."""
     return [replace(frame, t_s=number * every_s) for number, frame in enumerate(frames)]
 
 
 def feet_m(frames: Sequence[StreamFrame], blocks_per_metre: float) -> np.ndarray:
-    """Return where the feet were in metres along the block axes, float64 [N, 3]."""
+    """Return the positions of the feet in metres along the block axes, as float64 [N, 3]."""
     return np.array([frame.stance.feet for frame in frames]).reshape(-1, 3) / blocks_per_metre
 
 
 def wrap_deg(angle_deg: np.ndarray | float) -> np.ndarray:
-    """Return angles from -180 up to 180.
+    """Normalise angles to [-180, 180) degrees.
 
     Example:
         >>> wrap_deg(np.array([190.0, -180.0, 540.0])).tolist()

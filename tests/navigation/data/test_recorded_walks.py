@@ -110,21 +110,23 @@ def test_a_stream_finds_its_scene(tmp_path):
     told = assign_streams([str(both)], ["east", "west"])
     assert Counter(told) == Counter({"east": (str(both),), "west": (str(both),)})
     assert assign_streams([str(none)], ["east"]) == {"east": (str(none),)}
-    with pytest.raises(UsageError, match=r"b\.jsonl does not say of which scene it is; name one"):
+    with pytest.raises(UsageError, match=r"b\.jsonl does not state its scene; give a single scene"):
         assign_streams([str(none)], ["east", "west"])
-    with pytest.raises(UsageError, match="is of scene 'west', which is not among east, north"):
+    with pytest.raises(
+        UsageError, match=("belongs to scene 'west', which is not one of east, north")
+    ):
         assign_streams([str(both)], ["east", "north"])
-    with pytest.raises(UsageError, match="--at is feet or eye, not 'head'"):
+    with pytest.raises(UsageError, match="--at must be 'feet' or 'eye', got 'head'"):
         parse_at("head")
 
 
 @pytest.mark.parametrize(
     ("text", "error"),
     [
-        ('{"scene": "flat"}\n{"stance": [1, 2]}\n', "line 2 has no stance"),
-        ('{"scene": "flat"}\n{"stance": {"x": "a"}}\n', "line 2 has no stance"),
+        ('{"scene": "flat"}\n{"stance": [1, 2]}\n', "line 2 has no valid stance"),
+        ('{"scene": "flat"}\n{"stance": {"x": "a"}}\n', "line 2 has no valid stance"),
         ('{"stance": {"x": 1, "y": 2, "z": 1e999}}\n', "line 1"),
-        ("", "is empty; it is no trace"),
+        ("", "the file is empty; expected a trace"),
     ],
 )
 def test_a_damaged_trace_is_named(flat, tmp_path, text, error):

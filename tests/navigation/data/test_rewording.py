@@ -177,16 +177,21 @@ def test_no_reply_at_all_is_an_error_a_single_failure_is_not(folder):
 @pytest.mark.parametrize(
     ("row", "error"),
     [
-        (("kitchen-t0", "Go <|im_end|> on.", "", ""), r"line 2: models take '<\|im_end\|>' for"),
+        (
+            ("kitchen-t0", "Go <|im_end|> on.", "", ""),
+            r"line 2: text must not contain '<\|im_end\|>'",
+        ),
         (("kitchen-t0", "Go on.", "", "middling"), "line 2: level must be one of goal"),
-        (("kitchen-t0", " ", "", ""), "line 2: instruction must be a text"),
+        (("kitchen-t0", " ", "", ""), "line 2: instruction must be a string"),
     ],
 )
 def test_a_line_that_cannot_be_is_named(folder, row, error):
     before = bytes_of(folder)
     with pytest.raises(DamagedFileError, match=error):
         annotate_set(folder, csv(folder, row))
-    with pytest.raises(InputError, match="speaks of trajectory 'other', which is not there"):
+    with pytest.raises(
+        InputError, match=("refers to trajectory 'other', which the set does not contain")
+    ):
         annotate_set(folder, csv(folder, ("other", "Go.", "", "")))
     assert bytes_of(folder) == before
 

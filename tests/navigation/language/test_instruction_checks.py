@@ -48,25 +48,26 @@ def test_nothing_is_said_of_what_is_right(level, text):
 @pytest.mark.parametrize(
     ("level", "text", "expected"),
     [
-        ("goal", "  \n ", [(True, "write something: an instruction has words")]),
-        ("goal", "x" * 5000, [(True, "5,000 characters; at most 4,000 are kept")]),
+        ("goal", "  \n ", [(True, "the instruction is empty")]),
+        ("goal", "x" * 5000, [(True, "the instruction has 5,000 characters, the limit is 4,000")]),
         ("goal", "Go to the blue chair.",
-         [(True, "it does not name where the walk ends: the upright piano")]),
-        ("goal", "The piano!", [(False, "10 characters; the paper's have 15 to 334")]),
+         [(True, "the instruction must name the goal: the upright piano")]),
+        ("goal", "The piano!", [
+            (False, "the instruction has 10 characters, but those of the paper have 15 to 334")]),
         ("goal", "Go to the pianos over there.",
-         [(True, "it does not name where the walk ends: the upright piano")]),
+         [(True, "the instruction must name the goal: the upright piano")]),
         ("route", "Turn right, walk two metres and stop.",
-         [(False, "the walk turns left, right; this says right")]),
+         [(False, "the walk turns left, right, but the instruction says right")]),
         ("route", "Turn left, walk to the piano, turn right.",
-         [(False, "a route is told by turns and distances; 'piano' is a thing")]),
+         [(False, "a route must use only turns and distances, but 'piano' is a landmark")]),
         ("landmark", "Turn left, turn right and stop at the piano.",
-         [(False, "it names no thing on the way, only where it ends")]),
+         [(False, "the instruction names only the goal, but no landmark on the way")]),
         ("landmark", "Turn left at the chair, turn right at the piano.",
-         [(False, "3 things are called 'chair' here: say one of blue chair, red chair, red chair "
-           "beside the piano")]),
+         [(False, "'chair' matches 3 landmarks; use one of blue chair, red chair, red chair beside "
+           "the piano")]),
         ("landmark", "Walk past the blue chair.",
-         [(True, "it does not name where the walk ends: the upright piano"),
-          (False, "the walk turns left, right; this says nowhere")]),
+         [(True, "the instruction must name the goal: the upright piano"),
+          (False, "the walk turns left, right, but the instruction says nowhere")]),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told_first(level, text, expected):
@@ -74,7 +75,7 @@ def test_what_is_wrong_is_told_first(level, text, expected):
 
 
 def test_there_are_three_levels():
-    with pytest.raises(UsageError, match="level of an instruction must be one of"):
+    with pytest.raises(UsageError, match="instruction level must be one of"):
         check_instruction("Go.", "dance", a_walk(), NAMES)
 
 
@@ -82,15 +83,15 @@ def test_a_goal_that_shares_its_name_is_told_apart():
     told = (Instruction("Go to the red chair.", level="goal", landmarks=("red chair",)),)
     found = check_instruction("Please go to the chair.", "goal", a_walk(told), NAMES)
     assert [one.text for one in found if one.is_wrong] == [
-        "it does not name where the walk ends: the red chair"
+        "the instruction must name the goal: the red chair"
     ]
-    assert "3 things are called 'chair'" in found[1].text
+    assert "'chair' matches 3 landmarks" in found[1].text
 
 
 def test_a_walk_that_nothing_is_told_of_asks_for_no_goal():
     assert goal_name(a_walk(())) == ""
     assert check_instruction("Walk on until you are there.", "landmark", a_walk(()), ()) == [
-        (False, "it names no thing on the way, only where it ends")
+        (False, "the instruction names only the goal, but no landmark on the way")
     ]
     assert check_instruction("Walk on until you are there.", "goal", a_walk(()), ()) == []
 

@@ -242,8 +242,12 @@ def test_people_are_added_and_replace_nobody(tmp_path):
     assert with_annotations([more], notes, "said.csv") == [more]
     lines = tmp_path / "said.jsonl"
     lines.write_text(json.dumps({"trajectory_id": "t9", "instruction": "Go"}) + "\n")
-    with pytest.raises(InputError, match="speaks of trajectory 't9', which is not there"):
+    with pytest.raises(
+        InputError, match=("refers to trajectory 't9', which the set does not contain")
+    ):
         with_annotations([trajectory], read_annotations(lines), "said.jsonl")
     lines.write_text('{"trajectory_id": "t1"}\n')
-    with pytest.raises(DamagedFileError, match="line 1: instruction must be a text, up to 4000"):
+    with pytest.raises(
+        DamagedFileError, match=("line 1: instruction must be a string of at most 4000")
+    ):
         read_annotations(lines)

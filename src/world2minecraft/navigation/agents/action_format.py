@@ -1,8 +1,8 @@
-"""The format of a step: what a model must reply to move, and how its reply is parsed.
+"""The reply format of one navigation step, and its parser.
 
-Strict where a server is: a JSON object with the four fields and nothing else. For plain text, an
-``Actions:`` line or a tagged answer is read, or a reply that is actions alone. A word among prose
-is never taken for an action: "do not go forward" is no step forward.
+Servers with structured output return a JSON object with exactly four fields. In plain text, the
+parser accepts an ``Actions:`` line, a tagged answer, or a reply that consists of actions only. It
+never extracts action words from prose, so "do not go forward" does not count as a forward step.
 """
 
 import re
@@ -60,7 +60,7 @@ SCHEMA: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class Step:
-    """The moves that a model replied with, and why."""
+    """The moves parsed from a model reply, with the model's reasoning and progress notes."""
 
     moves: tuple[Move, ...]
     thought: str = ""
@@ -68,7 +68,7 @@ class Step:
 
 
 def step_form(max_moves: int = MAX_MOVES) -> ReplyFormat[Step]:
-    """Return the form of a step of at most so many moves."""
+    """Return the reply format of a step with at most ``max_moves`` moves."""
     count = "one action" if max_moves == 1 else f"1 to {max_moves} actions"
     words = (
         'Reply with one JSON object: {"thought": "...", "progress": "...", "actions": '
@@ -80,10 +80,10 @@ def step_form(max_moves: int = MAX_MOVES) -> ReplyFormat[Step]:
 
 
 def parse_step(text: str, max_moves: int = MAX_MOVES) -> Step:
-    r"""Return the step that a reply says.
+    r"""Parse a model reply into a navigation step.
 
     Raises:
-        UnreadableError: it says none, or more than one way.
+        UnreadableError: If the reply contains no valid actions, or contradicts itself.
 
     Example:
         >>> parse_step("Thought: the door is left.\nActions: turn left, move forward").moves
@@ -98,7 +98,7 @@ def parse_step(text: str, max_moves: int = MAX_MOVES) -> Step:
             moves = tuple(_move(word) for word in _words(found_texts[0]))
             thought = (_THOUGHT.findall(text) or [""])[0].strip()
             return Step(_validate(moves, None, max_moves), thought[:MAX_THOUGHT_CHARACTERS])
-    raise UnreadableError("it is empty")
+    raise UnreadableError("the reply is empty")
 
 
 def _of_json(found: dict[str, Any], max_moves: int) -> Step:
@@ -118,7 +118,7 @@ def _of_json(found: dict[str, Any], max_moves: int) -> Step:
 
 
 def _words(text: str) -> list[str]:
-    """Return the actions of a plain list: parted by commas, lines, 'then' or spaces."""
+    """Split a plain-text action list at commas, line breaks, 'then', 'and' or spaces."""
     plain = text.strip().strip("[]().\"'`* ")
     parts = re.split(r"[,;|\n]+|\bthen\b|\band\b", plain, flags=re.I)
     whole = [part.strip(" \t\"'`*.[]") for part in parts]
@@ -136,15 +136,15 @@ def _move(word: str) -> Move:
     name = _name(word)
     if name not in _ALL:
         known = ", ".join(NAMES)
-        raise UnreadableError(f"{word[:40]!r} is no action; actions are {known}")
+        raise UnreadableError(f"{word[:40]!r} is not a valid action; expected one of {known}")
     return _ALL[name]
 
 
 def _validate(moves: tuple[Move, ...], done: bool | None, max_moves: int) -> tuple[Move, ...]:
     if not 1 <= len(moves) <= max_moves:
-        raise UnreadableError(f"it has {len(moves)} actions; 1 to {max_moves} are taken")
+        raise UnreadableError(f"the reply contains {len(moves)} actions; expected 1 to {max_moves}")
     if Move.STOP in moves[:-1]:
-        raise UnreadableError("an action comes after STOP, which ends the walk")
+        raise UnreadableError("STOP ends the walk, so it must be the last action")
     if done is True and moves[-1] != Move.STOP:
         raise UnreadableError("done is true but the last action is not STOP")
     return moves

@@ -1,7 +1,8 @@
-"""Baseline agents: some see nothing, and the privileged ones know the scene.
+"""Baseline agents: blind ones, and privileged ones that know the scene.
 
-Random, forward and stop are what any other agent has to beat; oracle and shortest say what can be
-reached at best. None of them looks at pictures.
+The agents random, forward and stop are lower bounds that any other agent should exceed. The agents
+oracle and shortest show what can be achieved with full knowledge of the scene. None of them uses
+images.
 """
 
 import random
@@ -17,12 +18,12 @@ NEAR_M = 0.25  # Here ``shortest`` stops: half of the least radius of success.
 
 
 class StopAgent:
-    """Stops at once. In small rooms that alone is near enough surprisingly often."""
+    """An agent that stops at once, which succeeds surprisingly often in small rooms."""
 
     name, is_privileged, is_blind = "stop", False, True
 
     def begin(self, task: Task) -> None:
-        """Take a task."""
+        """Accept a task. This agent ignores it."""
 
     def decide(self, sight: Observation) -> Decision:
         """Return STOP."""
@@ -30,7 +31,10 @@ class StopAgent:
 
 
 class RandomAgent:
-    """Draws moves by their shares in VLN-CE, the same ones for the same seed."""
+    """An agent that samples random moves with the move frequencies of VLN-CE's training split.
+
+    The same task seed gives the same moves.
+    """
 
     name, is_privileged, is_blind = "random", False, True
 
@@ -38,21 +42,21 @@ class RandomAgent:
         self._random = random.Random(0)
 
     def begin(self, task: Task) -> None:
-        """Reset the generator to the seed of the task."""
+        """Reset the random generator to the seed of the task."""
         self._random = random.Random(task.seed)
 
     def decide(self, sight: Observation) -> Decision:
-        """Return one move."""
+        """Return one random move."""
         return Decision((self._random.choices(list(MOVE_SHARES), list(MOVE_SHARES.values()))[0],))
 
 
 class ForwardAgent:
-    """Walks on until something is in the way, and stops there."""
+    """An agent that walks forward until it collides, and then stops."""
 
     name, is_privileged, is_blind = "forward", False, True
 
     def begin(self, task: Task) -> None:
-        """Take a task."""
+        """Accept a task. This agent ignores it."""
 
     def decide(self, sight: Observation) -> Decision:
         """Return FORWARD, or STOP after a collision."""
@@ -61,7 +65,7 @@ class ForwardAgent:
 
 
 class OracleAgent:
-    """Does what the oracle would do from where it stands."""
+    """An agent that follows the expert path from its current position."""
 
     name, is_privileged, is_blind = "oracle", True, True
 
@@ -70,11 +74,15 @@ class OracleAgent:
         self._left: tuple[Move, ...] = ()
 
     def begin(self, task: Task) -> None:
-        """Take a task with a guide. Raises UsageError without one."""
+        """Start a task.
+
+        Raises:
+            UsageError: If the task has no guide.
+        """
         self._guide, self._left = _guide_of(task, self.name), ()
 
     def decide(self, sight: Observation) -> Decision:
-        """Return the next move of the plan; after a collision a new plan is made."""
+        """Return the next move of the expert path, which is planned again after a collision."""
         if self._guide is None:
             raise UsageError("call begin(task) before decide(sight)")
         if not self._left or any(collided for _, collided in sight.done):
@@ -84,9 +92,9 @@ class OracleAgent:
 
 
 class ShortestAgent:
-    """Takes the turn after which one step forward comes nearest on foot: no plan, one look ahead.
+    """A greedy agent that chooses the turn after which one forward step gets closest to the goal.
 
-    It falls into the traps of any greedy walk, which is what tells it from the oracle.
+    It looks one step ahead and does not plan, so unlike the oracle it can get stuck in dead ends.
     """
 
     name, is_privileged, is_blind = "shortest", True, True
@@ -96,12 +104,16 @@ class ShortestAgent:
         self._turns = 0
 
     def begin(self, task: Task) -> None:
-        """Take a task with a guide. Raises UsageError without one."""
+        """Start a task.
+
+        Raises:
+            UsageError: If the task has no guide.
+        """
         self._guide = _guide_of(task, self.name)
         self._turns = max(1, round(180 / task.move_set.turn_deg))
 
     def decide(self, sight: Observation) -> Decision:
-        """Return the first move of the best turn and step, STOP where none is nearer."""
+        """Return the turns and the forward step that get closest to the goal, or STOP."""
         guide = self._guide
         if guide is None:
             raise UsageError("call begin(task) before decide(sight)")
@@ -122,5 +134,7 @@ class ShortestAgent:
 
 def _guide_of(task: Task, name: str) -> Guide:
     if task.guide is None:
-        raise UsageError(f"the agent {name} knows the scene; its task needs a guide")
+        raise UsageError(
+            f"agent {name!r} requires knowledge of the scene; pass a Task with a guide"
+        )
     return task.guide

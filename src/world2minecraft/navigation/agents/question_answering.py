@@ -1,9 +1,9 @@
-"""Answer the items of a set: the reply format, its parser, and a model that answers.
+"""Multiple-choice question answering on the items of a set: reply format, parser and model client.
 
-``letter`` asks as supervised models were trained, ``think`` as models trained by reward were, and
-``json`` holds any model to a schema. All are parsed alike: a JSON field, a tagged answer, an
-``Answer:`` line, or a reply that is the letter or one option's words alone. A letter among prose
-is no answer.
+The style ``letter`` asks as for supervised fine-tuned models, ``think`` as for models trained with
+rewards, and ``json`` enforces a JSON schema. All replies are parsed alike: a JSON field, a tagged
+answer, an ``Answer:`` line, or a reply that consists of a letter or the text of one option. A
+letter within prose is not accepted as an answer.
 """
 
 import re
@@ -47,11 +47,11 @@ _MAGIC = {b"\xff\xd8\xff": "image/jpeg", b"\x89PNG": "image/png", b"RIFF": "imag
 
 
 def answer_form(options: Mapping[str, str], style: str) -> ReplyFormat[str]:
-    """Return the form of an answer.
+    """Return the reply format of a multiple-choice answer.
 
     Args:
-        options: the words of each option by its letter, empty where an option is a picture.
-        style: one of ``STYLES``.
+        options: The text of each option by its letter. Image options have an empty text.
+        style: One of ``STYLES``.
     """
     schema: dict[str, Any] = {
         "type": "object",
@@ -71,15 +71,15 @@ def answer_form(options: Mapping[str, str], style: str) -> ReplyFormat[str]:
 
 
 def answer_instruction(style: str) -> str:
-    """Return what a question of a style ends with."""
+    """Return the instruction that ends a question of the given style, or "" for ``json``."""
     return {"think": THINK, "letter": LETTER_ALONE}.get(style, "")
 
 
 def read_answer(text: str, options: Mapping[str, str]) -> str:
-    """Return the letter that a reply says.
+    """Parse a model reply into the letter of one option.
 
     Raises:
-        UnreadableError: it says none, more than one, or one that is no option.
+        UnreadableError: If the reply contains no answer, several answers or an unknown option.
 
     Example:
         >>> told = {"A": "turn left", "B": "stop"}
@@ -98,9 +98,9 @@ def read_answer(text: str, options: Mapping[str, str]) -> str:
 
 
 def _agreed_answer(reply_text: list[str], options: Mapping[str, str]) -> str:
-    """Return the last of several answers that agree."""
+    """Return the last of several answers, or raise UnreadableError if they differ."""
     if len({_option_of(one, options) for one in reply_text}) > 1:
-        raise UnreadableError("it gives several answers")
+        raise UnreadableError("the reply contains several different answers")
     return reply_text[-1]
 
 
@@ -114,12 +114,12 @@ def _option_of(reply_text: str, options: Mapping[str, str]) -> str:
             return same[0]
         letter = _lettered(reply_text, options)
     if letter is None or letter[1].upper() not in options:
-        raise UnreadableError(f"the answer is one letter of {', '.join(options)}")
+        raise UnreadableError(f"the answer must be one of the letters {', '.join(options)}")
     return letter[1].upper()
 
 
 def _lettered(reply_text: str, options: Mapping[str, str]) -> re.Match[str] | None:
-    """Return the match of a letter that its own option's words follow."""
+    """Match a letter that is followed by the text of the option with that letter."""
     found = _LETTERED.match(reply_text)
     if found is None or _plain(options.get(found[1].upper(), "")) != _plain(found[2]):
         return None
@@ -132,7 +132,7 @@ def _plain(text: str) -> str:
 
 @dataclass(frozen=True)
 class Answer:
-    """What was said to an item. ``letter`` is empty where ``outcome`` is invalid or failed."""
+    """The answer to an item. ``letter`` is empty if ``outcome`` is "invalid" or "failed"."""
 
     letter: str
     outcome: str  # "answered", "invalid" or "failed"
@@ -140,25 +140,25 @@ class Answer:
 
 
 class LetterAnswerer:
-    """Gives the letters that were found for items before, as baselines do."""
+    """An answerer that returns precomputed letters, as the baselines do."""
 
     def __init__(self, name: str, letters: Mapping[str, str]):
         self.name, self.letters = name, letters
 
     def answer(self, item: Item) -> Answer:
-        """Return the letter of an item, none where there is none."""
+        """Return the precomputed letter of an item, or an invalid answer if none is known."""
         letter = self.letters.get(item.item_id, "")
         return Answer(letter, "answered" if letter else "invalid", {})
 
 
 class VlmAnswerer:
-    """Asks a model each item by the words that exports for trainers use.
+    """An answerer that queries a vision-language model with the prompts of the trainer exports.
 
     Args:
-        model: whom to ask.
-        folder: of the set; images are read from it and held against their sums.
-        style: one of ``STYLES``.
-        max_px: pixels of a picture that it is shown; larger ones are made smaller.
+        model: The model to query.
+        folder: The folder of the set. Images are read from it and checked against their SHA-256.
+        style: One of ``STYLES``.
+        max_px: The maximum number of pixels of an image. Larger images are downscaled.
     """
 
     def __init__(
@@ -170,17 +170,18 @@ class VlmAnswerer:
         max_px: int = MAX_PX,
     ):
         if style not in STYLES:
-            raise UnknownNameError("style of question", style, STYLES)
+            raise UnknownNameError("question style", style, STYLES)
         check_max_px(max_px)
         self.name, self.model, self.folder, self.style = model.name, model, Path(folder), style
         self.max_px = max_px
 
     def answer(self, item: Item) -> Answer:
-        """Ask an item.
+        """Query the model for the answer to an item.
 
         Raises:
-            InputError: an image is missing or not the one of the set. BudgetError, ServerError:
-            the model cannot be asked at all.
+            InputError: If an image is missing or differs from the one recorded in the set.
+            BudgetError: If the limit on calls or cost is reached.
+            ServerError: If the model cannot be queried.
         """
         question = question_of(item)
         parts: list[str | Picture] = [
@@ -204,10 +205,14 @@ class VlmAnswerer:
         data = read_bytes(path, MAX_IMAGE_BYTES)
         kinds = [kind for magic, kind in _MAGIC.items() if data.startswith(magic)]
         if not kinds:
-            raise DamagedFileError(path, "is no JPEG, PNG or WebP")
+            raise DamagedFileError(path, "not a JPEG, PNG or WebP image")
         picture = Picture(data, kinds[0])
         if picture.sha256 != item.sha256.get(name):
-            raise DamagedFileError(path, f"is not the image that item {item.item_id} was made of")
+            raise DamagedFileError(
+                path,
+                f"the image's SHA-256 does not match the one recorded for item {item.item_id}; "
+                "build the set again",
+            )
         try:
             return downscale_picture(picture, self.max_px)
         except ValueError as error:

@@ -1,4 +1,4 @@
-"""Agents by name: the baselines, agents of other packages, and any model on a server."""
+"""The registry of agents by name: baselines, plug-ins and models behind a server."""
 
 from collections.abc import Callable
 
@@ -36,10 +36,12 @@ def make_agent(
     map_kind: MapKind = "none",
     max_px: int = MAX_PX,
 ) -> Agent:
-    """Return an agent by its name, or the model that ``chat`` opens for a server's.
+    """Return an agent by its name.
+
+    A model endpoint as the name gives a ``VlmAgent`` for the model that ``chat`` opens.
 
     Raises:
-        UnknownNameError: no agent, no server or no map is called so.
+        UnknownNameError: If the agent, endpoint or map kind is unknown.
     """
     if map_kind not in MAPS:
         raise UnknownNameError("map", map_kind, MAPS)

@@ -1,7 +1,8 @@
-"""What an agent is given, what it sees, and what it decides.
+"""The agent interface: tasks, observations, decisions and guides.
 
-An agent is a class with ``begin`` and ``decide``. Most see pictures alone; one that says
-``is_privileged`` is given a ``Guide`` to the whole scene besides, as baselines and experts need.
+An agent is a class with the methods ``begin`` and ``decide``. Most agents receive images only. An
+agent with ``is_privileged`` set also receives a ``Guide`` with full knowledge of the scene, which
+baselines and experts require.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,26 +17,35 @@ OUTCOMES = ("moves", "invalid", "failed")
 
 
 class Guide(Protocol):
-    """What the privileged know of an episode: all ways, and where they lead."""
+    """The privileged view of an episode: distances to the goal and the effects of moves."""
 
     def distance_m(self, stance: Stance) -> float:
-        """Return how far it is on foot to the nearest goal, metres of the room."""
+        """Return the walking distance to the nearest goal in metres of the room."""
         ...
 
     def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
-        """Return where a move would lead, and whether something would be in the way."""
+        """Return the stance after a move, and whether the move collides."""
         ...
 
     def expert(self, stance: Stance) -> tuple[Move, ...]:
-        """Return the moves of the oracle from here, STOP at their end."""
+        """Return the moves of the expert path from a stance, with STOP at the end."""
         ...
 
 
 @dataclass(frozen=True)
 class Task:
-    """What an agent is given before it starts. ``step_m`` is how far FORWARD goes.
+    """The task that an agent receives at the start of an episode.
 
-    ``plan`` draws the building from above with a way through it, uint8 [H, W, 3].
+    Attributes:
+        instruction: The instruction to follow.
+        move_set: The move set, which defines the turn angle.
+        step_m: The length of a FORWARD move in metres.
+        max_steps: The maximum number of moves.
+        metres_per_block: The scale of the scene.
+        seed: The random seed of the agent.
+        guide: Full knowledge of the scene, for privileged agents only.
+        plan: A function that draws a floor plan with a path as uint8 [H, W, 3], for agents that use
+            a map.
     """
 
     instruction: str
@@ -80,24 +90,28 @@ class Decision:
     def __post_init__(self):
         if self.outcome not in OUTCOMES or bool(self.moves) != (self.outcome == "moves"):
             raise ValueError(
-                f"{self.outcome!r} with {len(self.moves)} moves is no decision: there are moves "
-                "where the outcome is moves, and none where it is invalid or failed"
+                f"a decision with outcome {self.outcome!r} must not have {len(self.moves)} "
+                "moves: the outcome 'moves' requires at least one move, 'invalid' and "
+                "'failed' none"
             )
         if Move.STOP in self.moves[:-1]:
-            raise ValueError("nothing comes after STOP")
+            raise ValueError("STOP must be the last move of a decision")
 
 
 class Agent(Protocol):
-    """What walks episodes. One that ``is_blind`` looks at no picture, so none need be drawn."""
+    """The interface of agents that walk episodes.
+
+    No images are rendered for an agent with ``is_blind`` set.
+    """
 
     name: str
     is_privileged: bool
     is_blind: bool
 
     def begin(self, task: Task) -> None:
-        """Take a task; what was before is forgotten."""
+        """Start a task and discard the state of the previous one."""
         ...
 
     def decide(self, sight: Observation) -> Decision:
-        """Return what to do next."""
+        """Return the next moves for an observation."""
         ...

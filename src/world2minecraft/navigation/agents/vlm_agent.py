@@ -1,9 +1,9 @@
-"""The agent that is a vision-language model: it looks, replies with moves, and makes them.
+"""An agent that queries a vision-language model for its moves.
 
-A reply that cannot be read after two repairs is INVALID: a decision without moves, reported as
-such. A server that does not answer makes a failed one. Neither is ever replaced by a move of ours.
-The agent may be shown where it has been: in words that it could have counted itself (metres ahead
-of the start and to its side), which is what odometry knows, or as a plan of the building.
+A reply that is still invalid after two repair attempts gives an invalid decision without moves,
+and a server that does not answer gives a failed one. Neither is replaced by another move. The agent
+can show the model its past positions, as text with distances from the start that odometry provides,
+or as a floor plan of the building.
 """
 
 import math
@@ -40,7 +40,7 @@ MAX_PAST_MOVES = 16
 
 
 def relative_m(start: Stance, stance: Stance, metres_per_block: float) -> tuple[float, float]:
-    """Return how far a stance is ahead of the start and to its right, metres.
+    """Return how far a stance is ahead and to the right of the start, in metres.
 
     Example:
         >>> relative_m(Stance(0, 64, 0, 90), Stance(-4, 64, 0, 0), 0.25)  # Yaw 90 looks west.
@@ -57,7 +57,7 @@ def relative_m(start: Stance, stance: Stance, metres_per_block: float) -> tuple[
 
 
 def facing(start: Stance, stance: Stance) -> str:
-    """Return where one looks, by the direction of the start.
+    """Describe a stance's heading relative to the heading at the start.
 
     Example:
         >>> facing(Stance(0, 0, 0, 170), Stance(0, 0, 0, -100))
@@ -72,7 +72,7 @@ def facing(start: Stance, stance: Stance) -> str:
 
 
 def trail_text(stances: Sequence[Stance], metres_per_block: float) -> str:
-    """Return a map in words: the places that were visited, the last one where one stands."""
+    """Describe the visited positions and the current heading as text for the model."""
     start, here = stances[0], stances[-1]
     retained = [0]
     for number, stance in enumerate(stances):
@@ -104,15 +104,16 @@ def _place(ahead: float, right: float) -> str:
 
 
 class VlmAgent:
-    """Asks a language model at each step.
+    """An agent that queries a vision-language model at each step.
 
     Args:
-        model: whom to ask.
-        chunk: how many moves it may give at once, 1 to 4.
-        history: how many views of before it is shown, 0 to 8.
-        map_kind: ``text`` tells it in words where it was; ``plan`` shows it a plan of the building
-            with its way, which is more than its eyes know.
-        max_px: pixels of a picture that it is shown; larger ones are made smaller.
+        model: The model to query.
+        chunk: The maximum number of moves per reply, 1 to 4.
+        history: The number of previous views to show, 0 to 8.
+        map_kind: "none", "text" for a description of the visited positions, or "plan" for a floor
+            plan
+            of the building with the path so far, which contains more than the agent has seen.
+        max_px: The maximum number of pixels of an image. Larger images are downscaled.
     """
 
     is_privileged = is_blind = False
@@ -127,9 +128,9 @@ class VlmAgent:
         max_px: int = MAX_PX,
     ):
         if not 1 <= chunk <= MAX_MOVES:
-            raise UsageError(f"a model gives 1 to {MAX_MOVES} moves at once, not {chunk}")
+            raise UsageError(f"chunk must be 1 to {MAX_MOVES} moves, got {chunk}")
         if not 0 <= history <= MAX_HISTORY:
-            raise UsageError(f"a model is shown 0 to {MAX_HISTORY} views of before, not {history}")
+            raise UsageError(f"history must be 0 to {MAX_HISTORY} images, got {history}")
         if map_kind not in MAPS:
             raise UnknownNameError("map", map_kind, MAPS)
         check_max_px(max_px)
@@ -141,15 +142,16 @@ class VlmAgent:
         self._forget()
 
     def begin(self, task: Task) -> None:
-        """Take a task and forget the one before."""
+        """Start a task and discard the history of the previous one."""
         self._task = task
         self._forget()
 
     def decide(self, sight: Observation) -> Decision:
-        """Look, ask, and return what the model does.
+        """Query the model with the current view and return its decision.
 
         Raises:
-            BudgetError: a cap is reached. ServerError: the key or the address is wrong.
+            BudgetError: If the limit on calls or cost is reached.
+            ServerError: If the API key or the server address is wrong.
         """
         task = self._task
         if task is None:
@@ -179,7 +181,9 @@ class VlmAgent:
         plan = None
         if self.map_kind == "plan":
             if task.plan is None:
-                raise UsageError("no plan of this scene can be drawn; ask for another map")
+                raise UsageError(
+                    "a floor plan is not available for this scene; choose another map kind"
+                )
             plan = self._picture(task.plan(self._stances))
         return StepPrompt(
             sight.step, self._picture(sight.colour), tuple(self._views), tuple(self._done),
@@ -197,14 +201,14 @@ class VlmAgent:
 
 
 def encode_jpeg(colour: np.ndarray) -> bytes:
-    """Return a picture, uint8 [H, W, 3], as JPEG."""
+    """Encode an image, uint8 [H, W, 3], as JPEG."""
     stream = BytesIO()
     Image.fromarray(colour).save(stream, "JPEG", quality=JPEG_QUALITY)
     return stream.getvalue()
 
 
 def describe_try(tried: Attempt) -> dict[str, Any]:
-    """Return a try for the trace."""
+    """Return the trace record of one query attempt as JSON data."""
     reply = tried.reply
     details: dict[str, Any] = {"rung": tried.rung, "key": tried.key, "problem": tried.problem}
     if reply is not None:

@@ -1,4 +1,4 @@
-"""Prompts of a vision-language model: its role and its actions, then what it sees at each step."""
+"""Prompts for vision-language agents: the system prompt and the prompt of each step."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ PLAN_WORDS = (
 
 @dataclass(frozen=True)
 class StepPrompt:
-    """What is said at a step. ``before`` are pictures of before, oldest first."""
+    """The content of one step's prompt. ``before`` contains previous images, oldest first."""
 
     step: int
     view: Picture
@@ -38,7 +38,7 @@ class StepPrompt:
 
 
 def system_turn(task: Task, most: int) -> Turn:
-    """Return what stands before every step: the task and what each action does."""
+    """Return the system prompt, which describes the task and the actions."""
     turn = f"{task.move_set.turn_deg:g}"
     text = (
         "You walk through a building and follow an instruction. You see through your own eyes, "
@@ -54,7 +54,7 @@ def system_turn(task: Task, most: int) -> Turn:
 
 
 def step_turn(task: Task, moment: StepPrompt) -> Turn:
-    """Return what is said at a step."""
+    """Return the user prompt of one step."""
     lines = [
         f"Instruction: {' '.join(task.instruction.split())}",
         f"Moves so far: {moment.step} of at most {task.max_steps}.",

@@ -1,7 +1,6 @@
-"""What one scores without understanding: the least that any model must beat.
+"""Baseline scores that any model should exceed, and a check for questions solvable without images.
 
-A set that can be answered without looking is no test of looking: where a baseline that sees no
-picture is right more than ten points above chance, the set is flagged.
+A set is flagged if a baseline that sees no images is more than ten percentage points above chance.
 """
 
 from collections import Counter, defaultdict
@@ -27,9 +26,14 @@ BASELINES = ("uniform", "majority", "blind", "repeat", "nearest", "alike", "odd"
 
 @dataclass(frozen=True)
 class BaselineRow:
-    """A baseline's accuracy on a task; ``chance`` is that of guessing.
+    """The accuracy of a baseline on a task.
 
-    is_held: whether its items are kept from training; those of train where none is.
+    Attributes:
+        name: The name of the baseline.
+        task: The name of the task.
+        accuracy: The share of correct answers, with its confidence interval.
+        chance: The accuracy of random guessing.
+        is_held: Whether the scored items are held out. If False, they are training items.
     """
 
     name: str
@@ -40,7 +44,7 @@ class BaselineRow:
 
     @property
     def is_flagged(self) -> bool:
-        """Whether it needs no picture and is right too often to be luck."""
+        """Whether a baseline without images scores significantly above chance."""
         over = self.accuracy.share > self.chance + FLAG_POINTS
         return self.name in BLIND_BASELINES and over and self.accuracy.low > self.chance
 
@@ -49,20 +53,26 @@ Answers = list[str]
 
 
 def score_baselines(items: Sequence[Item], folder: str | Path) -> list[BaselineRow]:
-    """Return the rows of all baselines, on what is held out; on all items where nothing is.
+    """Score all baselines on the held-out items, or on all items if none is held out.
 
-    uniform draws a letter; majority takes the commonest letter, or action, of train; blind has
-    learned from the words of train which action they go with; repeat does the last action again;
-    nearest takes the picture most like the present one; odd and alike know the choices alone, and
-    take the picture least or most like the others; oracle is told. What nearest scores is told by
-    grade too, such as "nearest hard".
+    The baselines are:
+
+    - uniform: a random letter.
+    - majority: the most frequent correct letter, or action, of the training items.
+    - blind: the action that naive Bayes predicts from the instruction's words.
+    - repeat: the previous action.
+    - nearest: the option whose image is most similar to the current one.
+    - odd and alike: the option whose image is least or most similar to the other options.
+    - oracle: the correct answer.
+
+    The nearest baseline is also scored for each grade of difficulty, such as "nearest hard".
 
     Args:
-        items: of a set.
-        folder: of the set, for its pictures.
+        items: The items of a set.
+        folder: The folder of the set, which contains the images.
 
     Raises:
-        InputError: a picture cannot be read.
+        InputError: If an image cannot be read.
     """
     rows = []
     for task in TASKS:
@@ -95,16 +105,17 @@ def _row(
 def baseline_letters(
     name: str, items: Sequence[Item], questions: Sequence[Item], folder: str | Path
 ) -> dict[str, str]:
-    """Return the letter that a baseline gives to each item asked, by the item's id.
+    """Return the letters that a baseline chooses, by item ID.
 
     Args:
-        name: one of ``BASELINES``; some know one task alone, and the other's items are left out.
-        items: of the set; those of train are what it may learn from.
-        questions: the items to answer.
-        folder: of the set, for its pictures.
+        name: One of ``BASELINES``. Items of tasks that the baseline does not support are omitted.
+        items: The items of the set. The training items among them may be used for fitting.
+        questions: The items to answer.
+        folder: The folder of the set, which contains the images.
 
     Raises:
-        UnknownNameError: no baseline has this name. InputError: a picture cannot be read.
+        UnknownNameError: If the baseline is unknown.
+        InputError: If an image cannot be read.
     """
     if name not in BASELINES:
         raise UnknownNameError("baseline", name, BASELINES)
@@ -137,7 +148,7 @@ def _answers(
 
 
 def _majority(train: Sequence[Item], held_out: Sequence[Item]) -> Answers:
-    """Return the commonest right letter of train, or its commonest right action."""
+    """Answer with the most frequent correct action, or letter, of the training items."""
     texts = Counter(_text(item, item.answer) for item in train)
     letters = Counter(item.answer for item in train)
     if texts and set(texts) != {""}:
@@ -148,7 +159,7 @@ def _majority(train: Sequence[Item], held_out: Sequence[Item]) -> Answers:
 
 
 def _blind(train: Sequence[Item], held_out: Sequence[Item]) -> Answers:
-    """Return what a naive Bayes classifier takes the words of an instruction to ask for."""
+    """Answer with the action that naive Bayes predicts from the instruction's words."""
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     total: Counter[str] = Counter()
     for item in train:
@@ -179,7 +190,7 @@ def _text(item: Item, label: str) -> str:
 
 
 def _of_text(item: Item, text: str) -> str:
-    """Return the letter of an action; the first where it is not offered."""
+    """Return the letter of an action, or the first letter if the action is not an option."""
     return next((one.label for one in item.options if one.text == text), item.options[0].label)
 
 
@@ -198,7 +209,7 @@ def _to_others(item: Item, small: "_Thumbnails") -> np.ndarray:
 
 
 class _Thumbnails:
-    """Small grey pictures of a set, read when they are asked for."""
+    """A cache of small grey-scale versions of a set's images."""
 
     def __init__(self, folder: Path):
         self._folder = folder
@@ -214,10 +225,16 @@ def _small(path: Path) -> np.ndarray:
     try:
         with Image.open(path) as image:
             if image.width * image.height > MAX_PIXELS:
-                raise LimitError(path, f"has {image.width}x{image.height} pixels; too large")
+                raise LimitError(
+                    path,
+                    f"image of {image.width}x{image.height} pixels exceeds the limit of "
+                    f"{MAX_PIXELS:,}",
+                )
             grey = image.convert("L").resize(SMALL_PX, Image.Resampling.BOX)
     except FileNotFoundError as error:
-        raise InputError(path, "is not there, though an item shows it") from error
+        raise InputError(
+            path, "image not found, but an item refers to it; build the set again"
+        ) from error
     except (OSError, ValueError, Image.DecompressionBombError) as error:
-        raise DamagedFileError(path, f"is no picture ({error})") from error
+        raise DamagedFileError(path, f"not a readable image ({error})") from error
     return np.asarray(grey, np.float32)

@@ -1,14 +1,14 @@
-"""Wrong pictures of a Next-View question, rendered near its place.
+"""Incorrect options (distractors) of Next-View questions, rendered near the correct view.
 
-::
+There are four kinds::
 
-    turned      the next place with another heading
-    other_move  what another move would show
-    mirror      where the last moves lead with left and right exchanged
-    beside      some steps to a side, or back, from here or from the next place: no move leads there
+    turned      the next position with another heading
+    other_move  the view after a different move
+    mirror      the view after the last moves with left and right swapped
+    beside      a few steps to the side or back, from the current or the next position
 
-Every place is one that the world's physics leads to. As many pictures as wanted are more like the
-present one than the right one is.
+Every distractor is rendered from a position that the physics of the world can reach. The caller
+chooses how many distractors resemble the current view more than the correct option does.
 """
 
 from collections import Counter
@@ -43,29 +43,32 @@ MIRRORED_RUNS = 3  # As many as pictures are shown.
 
 
 class RankBalancer:
-    """Says how many wrong pictures are to be nearer than the right one, so that no rank leads.
+    """A sampler that balances how many distractors are more similar to the current view.
 
-    What came of a question is told to it: a rank that is seldom found is asked for more often.
+    It prefers the ranks of the correct option that have occurred least often, so that the rank does
+    not
+    reveal the answer.
     """
 
     def __init__(self, rng: np.random.Generator):
         self._rng, self._counts = rng, np.zeros(CHOICES, np.int64)
 
     def wanted(self) -> int:
-        """Return the rank that came least often so far; one of them by chance."""
+        """Return a random rank among those that have occurred least often."""
         least = np.flatnonzero(self._counts == self._counts.min())
         return int(self._rng.choice(least))
 
     def came(self, rank: int) -> None:
-        """Count what came of a question."""
+        """Record the rank of a finished question."""
         self._counts[rank] += 1
 
 
 @dataclass(frozen=True)
 class DistractorSlot:
-    """A wrong picture, or of what kind it is to be.
+    """A rendered distractor, or the kind that is still to be rendered.
 
-    ``nearer``: more like the present picture than the right one is.
+    ``nearer`` is True if the distractor resembles the current view more than the correct option
+    does.
     """
 
     kind: str
@@ -74,7 +77,7 @@ class DistractorSlot:
 
 
 class DistractorPicker:
-    """Takes the wrong pictures of one question."""
+    """A selector of the rendered distractors of one question."""
 
     def __init__(self, album: PictureStore, now: StoredPicture, right: StoredPicture):
         self._album, self._now, self._right = album, now, right
@@ -83,12 +86,12 @@ class DistractorPicker:
     def filled(
         self, plan: Sequence[DistractorSlot], places: Sequence[tuple[str, Stance]], most_far: int
     ) -> list[DistractorSlot]:
-        """Return slots with pictures, as far as there are such; a kind that has none comes first.
+        """Fill slots with suitable rendered images, preferring kinds that are not used yet.
 
         Args:
-            plan: what is wanted; a slot that is not filled stays as it is.
-            places: where pictures may be taken, with their kinds, in the order to try.
-            most_far: how many slots that are not nearer are filled.
+            plan: The requested slots. A slot without a suitable image is returned unchanged.
+            places: The candidate stances with their kinds, in order of preference.
+            most_far: The maximum number of slots with ``nearer`` False to fill.
         """
         looks = self._album.look([stance for _, stance in places])
         left: dict[bool, list[tuple[str, Stance]]] = {True: [], False: []}
@@ -105,7 +108,7 @@ class DistractorPicker:
     def _one(
         self, left: list[tuple[str, Stance]], slots: Sequence[DistractorSlot], near: bool
     ) -> DistractorSlot | None:
-        """Take a picture that differs from the others, and out of what is left; none at times."""
+        """Return a suitable distractor and remove the tried candidates, or return None."""
         kinds = Counter(slot.kind for slot in slots if slot.picture)
         left[:] = [one for one in left if kinds[one[0]] < MAX_OF_A_KIND]
         left.sort(key=lambda one: kinds[one[0]])
@@ -123,7 +126,7 @@ class DistractorPicker:
 def is_valid_choice(
     one: StoredPicture | EncodedPicture, now: StoredPicture, others: Sequence[StoredPicture]
 ) -> bool:
-    """Whether a picture is something to choose: not the present one, not one of the others."""
+    """Return whether an image has detail and differs from the current view and the others."""
     if not has_detail(one) or is_near_duplicate(one, now):
         return False
     return all(are_distinguishable(one, other) for other in others)
@@ -131,18 +134,18 @@ def is_valid_choice(
 
 @dataclass(frozen=True)
 class DistractorSampler:
-    """Who goes to such places. ``walker`` is the world's physics."""
+    """A generator of candidate stances for distractors. ``walker`` is the step function."""
 
     walker: StepFunction
     metres_per_block: float
 
     def places(self, kind: str, marks: Sequence[KeyframeMark], step: int) -> list[Stance]:
-        """Return where pictures of a kind may be taken, none of them the right one's stance.
+        """Return candidate stances for a kind of distractor, without the correct option's stance.
 
         Args:
-            kind: of ``RENDERED_KINDS``.
-            marks: the keyframes of a way.
-            step: which is the current one.
+            kind: One of ``RENDERED_KINDS``.
+            marks: The keyframes of a walk.
+            step: The index of the current keyframe.
         """
         right = marks[step + 1].stance
         found = {
@@ -184,7 +187,7 @@ class DistractorSampler:
         return found
 
     def _after(self, stance: Stance, moves: Sequence[Move]) -> Stance | None:
-        """Return where moves lead; None where something is in the way."""
+        """Return the stance after several moves, or None if a move collides."""
         for move in moves:
             stance, collided = self.walker(stance, move)
             if collided:
@@ -192,7 +195,7 @@ class DistractorSampler:
         return stance
 
     def _ahead(self, stance: Stance, length_m: float) -> Stance | None:
-        """Return where steps of about a length lead; None where not one can be made."""
+        """Return the stance about ``length_m`` metres ahead, or None if no step is possible."""
         begin, walked_m = stance, 0.0
         while walked_m < length_m - 1e-6:
             there, collided = self.walker(stance, Move.FORWARD)

@@ -1,9 +1,9 @@
-"""Scenes for those who have none: rooms that are generated, scanned and reconstructed, and houses.
+"""Generated scenes for navigation sets: rooms that are scanned and reconstructed, and houses.
 
-A room goes the whole way of a real capture: a virtual depth camera scans it, with that camera's
-faults, and ``w2m reconstruct`` makes a run of it, so that a set can hold real and generated rooms
-side by side. Where nothing is left to walk between, another room of the kind is made. What is there
-already is taken as it is.
+A generated room passes through the same pipeline as a real capture: a virtual depth camera with
+realistic errors scans it, and ``w2m reconstruct`` reconstructs it. A set can therefore combine real
+and generated rooms. If a reconstructed room has no walkable path between objects, another room of
+the same kind is generated. Finished scenes are reused.
 """
 
 import shutil
@@ -28,7 +28,7 @@ _FINISHED = {"room": "report.json", "house": "house.json"}  # What is written la
 
 @dataclass(frozen=True)
 class _Order:
-    """A room or a house to make, by its number from 1 in the series of a seed."""
+    """A room or house to generate, numbered from 1 within the series of a seed."""
 
     folder: str
     what: str
@@ -44,22 +44,27 @@ def make_scenes(
     workers: int = 1,
     progress: Progress = no_progress,
 ) -> list[Path]:
-    """Make runs of generated rooms, and houses; return their folders, rooms first.
+    """Generate rooms and houses, and return their folders, rooms first.
 
     Args:
-        folder: where; ``bed_01``, ``dining_02`` ... and ``house_01`` ... go below it, and with
-            another seed than 0 ``bed_01_s7`` and so on.
-        rooms: how many rooms, of the kinds in turn; a longer series begins with a shorter one.
-        houses: how many houses.
-        seed: another seed, other scenes.
-        workers: how many processes.
-        progress: told of each scene.
+        folder: The output folder. Scenes are written to subfolders such as ``bed_01`` and
+            ``house_01``, with a suffix such as ``_s7`` for seeds other than 0.
+        rooms: The number of rooms. The kinds of rooms alternate, and a longer series starts with
+            the
+            same rooms as a shorter one.
+        houses: The number of houses.
+        seed: The random seed.
+        workers: The number of worker processes.
+        progress: Called after each scene.
 
     Raises:
-        UsageError: a number cannot be. OutputError: the folder cannot be written.
+        UsageError: If a number is out of range.
+        OutputError: If the folder cannot be written.
     """
     if not (0 <= rooms <= MAX_SCENES and 0 <= houses <= MAX_SCENES):
-        raise UsageError(f"0 to {MAX_SCENES:,} rooms and houses can be made, not {rooms}, {houses}")
+        raise UsageError(
+            f"rooms and houses must each be 0 to {MAX_SCENES:,}, got {rooms} and {houses}"
+        )
     place, mark = Path(folder), f"_s{seed}" if seed else ""  # Seeds share no folder.
     names = [f"{BASE_KINDS[n % len(BASE_KINDS)]}_{n + 1:02d}{mark}" for n in range(rooms)]
     orders = [_Order(str(place / name), "room", n, seed) for n, name in enumerate(names, 1)]
@@ -76,7 +81,7 @@ def make_scenes(
 
 
 def _make(order: _Order, tick: Callable[[int], None]) -> None:
-    """Make a scene: what processes are sent to do."""
+    """Generate one scene in a worker process."""
     out = Path(order.folder)
     if order.what == "house":
         write_house(house_of(order.seed, order.number), out, name=out.name.replace("_", " "))

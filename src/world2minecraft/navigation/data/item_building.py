@@ -1,6 +1,6 @@
-"""Build the items of scenes: balanced letters, sizes as the paper's, wrong pictures of elsewhere.
+"""Building of the items of a set, with balanced letters and optional cuts to the paper's size.
 
-Wrong pictures come from the split of the question, never from another.
+Distractors from other places are taken from the same split as the question.
 """
 
 from collections.abc import Mapping, Sequence
@@ -33,25 +33,25 @@ TRIES = 60  # Pictures of elsewhere that are looked at for one that is as like a
 
 
 class LetterBalancer:
-    """Deals letters from shuffled packs of one each, so that no letter comes more often."""
+    """A shuffled deck of answer letters in which all letters occur equally often."""
 
     def __init__(self, rng: np.random.Generator, choices: int = 4):
         self._rng, self._letters = rng, LETTERS[:choices]
         self._pack: list[str] = []
 
     def deal(self) -> str:
-        """Return the next letter."""
+        """Return the next letter, reshuffling when all letters have been used."""
         if not self._pack:
             self._pack = [self._letters[n] for n in self._rng.permutation(len(self._letters))]
         return self._pack.pop()
 
 
 def cut_to_paper_size(items: Sequence[Item], splits_too: bool = False) -> list[Item]:
-    """Return as many items as the paper has of each task and composition.
+    """Reduce the items to the paper's number of items per task and composition.
 
     Args:
-        items: of a set.
-        splits_too: cut what trains and what is held out each to the paper's number.
+        items: The items of a set.
+        splits_too: Whether to apply the paper's numbers to training and held-out items separately.
     """
     if not splits_too:
         return cut_to_quotas(items, PAPER_SIZE)
@@ -63,13 +63,13 @@ def cut_to_paper_size(items: Sequence[Item], splits_too: bool = False) -> list[I
 
 
 def cut_to_quotas(items: Sequence[Item], quotas: Mapping[tuple[str, str], int]) -> list[Item]:
-    """Return items, no more of a task and composition than its quota, in their order.
+    """Reduce the items of each task and composition to a quota, in their original order.
 
-    They are taken from the trajectories of all scenes in turn, so that no scene is left out.
+    Trajectories of all scenes are used in turn, so that every scene remains represented.
 
     Args:
-        items: of a set, those of a trajectory beside each other.
-        quotas: how many, by task and composition; what is not named is kept whole.
+        items: The items of a set, grouped by trajectory.
+        quotas: The maximum number by task and composition. Combinations without a quota are kept.
     """
     retained: set[str] = set()
     for key in {(item.task, item.composition) for item in items}:
@@ -79,7 +79,7 @@ def cut_to_quotas(items: Sequence[Item], quotas: Mapping[tuple[str, str], int]) 
 
 
 def _in_turn(items: Sequence[Item]) -> list[Item]:
-    """Return items so that each scene's n-th trajectory comes before any scene's next one."""
+    """Sort items so that the n-th trajectory of every scene precedes any (n+1)-th one."""
     turns: dict[str, dict[str, int]] = {}
     for item in items:
         own = turns.setdefault(item.scene_id, {})
@@ -89,7 +89,7 @@ def _in_turn(items: Sequence[Item]) -> list[Item]:
 
 @dataclass(frozen=True)
 class _Pool:
-    """The pictures of a split, by scene; each with its trajectory."""
+    """The images of a split by scene, each with its trajectory ID."""
 
     by_scene: dict[str, list[tuple[str, StoredPicture]]]
 
@@ -114,11 +114,11 @@ def _drawn(pictures: Sequence[StoredPicture], rng: np.random.Generator) -> list[
 
 
 def build_items(works: Sequence[SceneItems], seed: int = 0) -> list[Item]:
-    """Return the items of scenes, those of a trajectory beside each other.
+    """Build the items of several scenes, grouped by trajectory.
 
     Args:
-        works: of ``build_scene_items``, one a scene.
-        seed: orders choices and letters.
+        works: The results of ``build_scene_items``, one per scene.
+        seed: The random seed for options and letters.
     """
     pools = {split: _pool(works, split) for split in _splits(works)}
     decks = {

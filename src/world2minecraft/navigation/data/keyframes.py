@@ -1,8 +1,8 @@
-"""Keyframes of a walk, and which walks are worth asking about.
+"""Keyframes of a walk, and the rules for valid trajectories.
 
-A keyframe stands after each run of equal moves; a run is one macro action, as the paper words
-them. Long runs are cut, so that what one picture shows is still seen in the next. A valid walk is
-neither too short nor too long and shows something.
+A keyframe follows each run of equal moves. A run is one macro action in the paper's terms. Long
+runs are split so that consecutive images overlap. A valid walk is neither too short nor too long,
+and its images show details.
 """
 
 from collections.abc import Sequence
@@ -40,17 +40,17 @@ class KeyframeMark:
 
     @property
     def action(self) -> str:
-        """The macro action that follows."""
+        """The macro action that follows the keyframe."""
         return ACTIONS[self.move]
 
 
 def find_keyframes(walk: DiscreteWalk, move_set: MoveSet, step_m: float) -> list[KeyframeMark]:
-    """Return the keyframes of a walk: its start, the end of each run, its end.
+    """Return the keyframes of a walk: its start, the end of each run, and its end.
 
     Args:
-        walk: of ``discretize_walk``, STOP last.
-        move_set: how far a turn goes.
-        step_m: how far a step goes.
+        walk: The result of ``discretize_walk``, which ends with STOP.
+        move_set: The move set, which defines the turn angle.
+        step_m: The length of a forward step in metres.
     """
     most = {
         Move.FORWARD: max(1, round(MAX_FORWARD_M / step_m)),
@@ -74,18 +74,18 @@ def _runs(moves: Sequence[Move]) -> list[tuple[Move, int]]:
 
 
 def _split_evenly(count: int, most: int) -> list[int]:
-    """Share a run into nearly equal ones of at most ``most``."""
+    """Split a run into nearly equal parts of at most ``most`` moves."""
     parts = -(-count // most)
     return [count // parts + (n < count % parts) for n in range(parts)]
 
 
 def is_turn_around(marks: Sequence[KeyframeMark], step: int, turn_deg: float) -> bool:
-    """Return whether a keyframe is a part of turning so far that either side would do.
+    """Return whether a keyframe belongs to a turn so wide that either direction would be correct.
 
     Args:
-        marks: of a way.
-        step: which.
-        turn_deg: how far a turn goes.
+        marks: The keyframes of a walk.
+        step: The index of the keyframe.
+        turn_deg: The angle of one turn in degrees.
     """
     move = marks[step].move
     if move not in (Move.LEFT, Move.RIGHT):
@@ -100,7 +100,19 @@ def is_turn_around(marks: Sequence[KeyframeMark], step: int, turn_deg: float) ->
 
 @dataclass(frozen=True)
 class ValidityRule:
-    """What a trajectory must be. Choices of ours; the paper says only "meaningful"."""
+    """The limits of a valid trajectory.
+
+    The paper only requires "meaningful" trajectories, so these limits are choices of this project.
+
+    Attributes:
+        min_keyframes: The minimum number of keyframes.
+        max_keyframes: The maximum number of keyframes.
+        min_path_m: The minimum path length in metres.
+        max_path_m: The maximum path length in metres.
+        min_distance_m: The minimum walking distance from start to end in metres.
+        min_mean: The minimum mean grey value of an image, 0 to 255. Darker images count as black.
+        min_hash_bits: The minimum number of bits, of 64, in which consecutive image hashes differ.
+    """
 
     min_keyframes: int = 4
     max_keyframes: int = 40
@@ -114,13 +126,13 @@ class ValidityRule:
 def path_fault(
     marks: Sequence[KeyframeMark], path_m: float, apart_m: float, rule: ValidityRule | None = None
 ) -> str:
-    """Return why a way is no trajectory; nothing where it is one.
+    """Return why a path is not a valid trajectory, or "" if it is valid.
 
     Args:
-        marks: its keyframes.
-        path_m: how long it is.
-        apart_m: from its start to its end, on foot.
-        rule: what a trajectory must be.
+        marks: The keyframes of the path.
+        path_m: The path length in metres.
+        apart_m: The walking distance from start to end in metres.
+        rule: The limits. None uses the defaults.
     """
     how = rule or ValidityRule()
     if not any(mark.move == Move.FORWARD for mark in marks):
@@ -137,12 +149,12 @@ def path_fault(
 def picture_fault(
     means: Sequence[float], hashes: Sequence[int], rule: ValidityRule | None = None
 ) -> str:
-    """Return why pictures make no trajectory; nothing where they do.
+    """Return why the images do not form a valid trajectory, or "" if they do.
 
     Args:
-        means: of each picture's grey, 0 to 255.
-        hashes: of each picture, as ``dhash`` gives them.
-        rule: what a trajectory must be.
+        means: The mean grey value of each image, 0 to 255.
+        hashes: The ``dhash`` of each image.
+        rule: The limits. None uses the defaults.
     """
     how = rule or ValidityRule()
     if min(means, default=0.0) < how.min_mean:
@@ -152,6 +164,6 @@ def picture_fault(
 
 
 def path_length_m(marks: Sequence[KeyframeMark], blocks_per_metre: float) -> float:
-    """Return how long the way along keyframes is, metres."""
+    """Return the length of the path through the keyframes in metres."""
     feet = np.array([mark.stance.feet for mark in marks]) / blocks_per_metre
     return float(np.linalg.norm(np.diff(feet, axis=0), axis=1).sum())

@@ -1,4 +1,4 @@
-"""The pictures of a set: encoded as JPEG, compared by hashes, each written once."""
+"""The images of a set: encoded as JPEG, compared by perceptual hash, and written once."""
 
 import hashlib
 import io
@@ -25,7 +25,7 @@ MIN_HASH_BITS = 6  # Bits of 64 by which a wrong choice differs from the right o
 
 
 def vln_camera(width_px: int = SIZE[0], height_px: int = SIZE[1]) -> Camera:
-    """Return the camera of a set: the game's vertical FOV of 70 degrees."""
+    """Return the camera of a set, with the game's vertical field of view of 70 degrees."""
     return camera_of(width_px, height_px, vertical_fov_deg=FOV_DEG)
 
 
@@ -42,7 +42,7 @@ class EncodedPicture:
 
 
 def encode_picture(colour: np.ndarray) -> EncodedPicture:
-    """Return a picture, uint8 [H, W, 3], as JPEG with its sum, mean and hash."""
+    """Encode an image, uint8 [H, W, 3], as JPEG, and compute its features."""
     image = Image.fromarray(colour)
     buffer = io.BytesIO()
     image.save(buffer, "JPEG", quality=QUALITY)
@@ -55,7 +55,7 @@ def encode_picture(colour: np.ndarray) -> EncodedPicture:
 
 
 def dhash(image: Image.Image) -> int:
-    """Return the difference hash of a picture, 64 bits: where it grows brighter to the right.
+    """Return the 64-bit difference hash: a bit is set where brightness increases to the right.
 
     Example:
         >>> ramp = Image.fromarray(np.tile(np.arange(90, dtype=np.uint8), (80, 1)))
@@ -68,7 +68,7 @@ def dhash(image: Image.Image) -> int:
 
 
 def hash_distance(one: int, other: int) -> int:
-    """Return by how many of 64 bits two hashes differ."""
+    """Return the number of bits, of 64, in which two hashes differ."""
     return (one ^ other).bit_count()
 
 
@@ -88,22 +88,26 @@ class StoredPicture:
 
 
 class PictureStore:
-    """Takes pictures and writes them under a folder.
+    """A renderer of images that writes them to a folder.
 
-    ``take`` takes them as they are kept; ``look`` as small as will do to tell how like they are.
+    ``take`` renders images in full size, and ``look`` renders small previews for comparison.
     """
 
     def __init__(self, folder: Path, take: RenderViews, look: RenderViews):
         self._folder, self.take, self.look = folder, take, look
 
     def write(self, name: str, stance: Stance, shot: EncodedPicture) -> StoredPicture:
-        """Write a picture. Raises OutputError."""
+        """Write a rendered image to the folder.
+
+        Raises:
+            OutputError: If the image cannot be written.
+        """
         write_bytes(self._folder / name, shot.jpeg)
         return StoredPicture(name, stance, shot.sha256, shot.dhash, shot.detail, shot.small)
 
 
 def show_different_views(one: Stance, other: Stance, metres_per_block: float) -> bool:
-    """Return whether two stances of a scene show different things."""
+    """Return whether two stances differ enough in position or heading to show different views."""
     away_m = ((one.x - other.x) ** 2 + (one.y - other.y) ** 2 + (one.z - other.z) ** 2) ** 0.5
     turn_deg = abs(float(wrap_deg(one.yaw_deg - other.yaw_deg)))
     return away_m * metres_per_block >= NEAR_M or turn_deg >= NEAR_DEG
@@ -112,25 +116,25 @@ def show_different_views(one: Stance, other: Stance, metres_per_block: float) ->
 def are_distinguishable(
     one: StoredPicture | EncodedPicture, other: StoredPicture | EncodedPicture
 ) -> bool:
-    """Return whether two pictures differ enough to choose between them."""
+    """Return whether two images differ enough to serve as options of one question."""
     return hash_distance(one.dhash, other.dhash) >= MIN_HASH_BITS
 
 
 def is_near_duplicate(
     one: StoredPicture | EncodedPicture, other: StoredPicture | EncodedPicture
 ) -> bool:
-    """Return whether two pictures are nearly the same."""
+    """Return whether two images are nearly identical."""
     return hash_distance(one.dhash, other.dhash) < DUPLICATE_HASH_BITS
 
 
 def picture_difference(
     one: StoredPicture | EncodedPicture, other: StoredPicture | EncodedPicture
 ) -> float:
-    """Return how far two pictures are apart, seen so small that only things count."""
+    """Return the mean squared difference of two images, downscaled to suppress textures."""
     pair = [np.frombuffer(picture.small, np.uint8).astype(np.float32) for picture in (one, other)]
     return float(((pair[0] - pair[1]) ** 2).mean())
 
 
 def has_detail(one: StoredPicture | EncodedPicture) -> bool:
-    """Return whether a picture is more than a bare wall."""
+    """Return whether an image shows more than a bare wall."""
     return one.detail >= MIN_DETAIL

@@ -1,7 +1,8 @@
-"""Our own streams: someone walks through a scene from one landmark to the next and looks at each.
+"""Planned walks: simulated tours that visit one landmark after another.
 
-The way is a shortest one that keeps from walls where there is room. At each stop the walker faces
-the thing for a while, so that the stream is cut there as a recorded one would be.
+The path between landmarks is the shortest one that keeps a distance from walls where possible. The
+walker pauses at each landmark and faces it, so that the stream can be cut there like a recorded
+one.
 """
 
 from dataclasses import dataclass
@@ -33,19 +34,19 @@ PULL_M = 0.2  # A way is straightened where that leaves so much room.
 
 @dataclass(frozen=True)
 class Tour:
-    """A walk and the names of the landmarks that it goes to, by the time of the stop."""
+    """The frames of a tour, and the name of each visited landmark by the time of the stop."""
 
     frames: tuple[StreamFrame, ...]
     targets: dict[float, str]
 
     def target_at(self, t_s: float) -> str:
-        """Return the landmark that was being gone to at a time; "" after the last."""
+        """Return the landmark that is being approached at a time, or "" after the last stop."""
         later = [stop_s for stop_s in self.targets if stop_s >= t_s - 1e-9]
         return self.targets[min(later)] if later else ""
 
 
 class TourPlanner:
-    """Someone who knows a scene; makes tour after tour."""
+    """A planner of random tours through a scene."""
 
     def __init__(self, scene: VlnScene):
         self._scene, self._graph = scene, scene.graph
@@ -56,11 +57,11 @@ class TourPlanner:
 
     @property
     def has_goals(self) -> bool:
-        """Whether there are two things to walk between."""
+        """Whether the scene has at least two reachable landmarks to walk between."""
         return len(self._goals) >= 2
 
     def tour(self, tour_id: str, rng: np.random.Generator) -> Tour:
-        """Return a tour of some stops; the same for the same generator."""
+        """Return a tour with up to ``STOPS`` stops, which depends only on the random generator."""
         here = int(rng.choice(self._scene.main_places))
         frames = [self._frame(0.0, self._graph.feet[here], float(rng.uniform(-180, 180)), tour_id)]
         targets: dict[float, str] = {}
@@ -82,9 +83,9 @@ class TourPlanner:
     def _look_aside(
         self, frames: list[StreamFrame], way: np.ndarray, facing: float, rng: np.random.Generator
     ) -> None:
-        """Turn beside the way before leaving, so that legs begin with a turn, and turn both ways.
+        """Turn away from the path and pause before a leg, so that each leg starts with a turn.
 
-        To the side from which one starts by the turn that the end does not have.
+        The direction is chosen so that the first turn is opposite to the last turn of the leg.
         """
         ahead = _yaw_of(way[1] - way[0])
         last = float(wrap_deg(facing - _yaw_of(way[-1] - way[-2])))
@@ -94,7 +95,7 @@ class TourPlanner:
         self._pause(frames)
 
     def _walk(self, frames: list[StreamFrame], corners: np.ndarray, facing: float) -> None:
-        """Add the frames of a way and of turning to the thing at its end."""
+        """Add the frames of a walk along corners, and of the final turn to the landmark."""
         way = _sampled(corners, SPEED_M_S * EVERY_S * self._graph.blocks_per_metre)
         ahead = max(1, round(AHEAD_M / (SPEED_M_S * EVERY_S)))
         for n in range(1, len(way)):
@@ -105,14 +106,14 @@ class TourPlanner:
         self._turn(frames, facing)
 
     def _facing(self, feet: np.ndarray, landmark: Landmark) -> float:
-        """Return the yaw of one who looks at a thing from a place."""
+        """Return the yaw at which a person at a position faces a landmark."""
         near = np.clip(self._scene.to_room_m(feet), landmark.low_m, landmark.high_m)
         room_to_block = invert(self._scene.volume.block_to_room)
         point = apply(room_to_block, (near + landmark.center_m)[None] / 2)[0]
         return _yaw_of(point - feet)
 
     def _straightened(self, feet: np.ndarray) -> np.ndarray:
-        """Return the corners of a way that is straight wherever there is room for that."""
+        """Return the corners of a path, straightened where there is enough free space."""
         retained, n = [0], 0
         while n < len(feet) - 1:
             n = next(m for m in range(len(feet) - 1, n, -1) if m == n + 1 or self._free(feet, n, m))
@@ -120,7 +121,7 @@ class TourPlanner:
         return feet[retained]
 
     def _free(self, feet: np.ndarray, first: int, last: int) -> bool:
-        """Whether one may walk straight between two places of a way."""
+        """Return whether a person can walk straight between two points of a path."""
         begin, end = feet[first], feet[last]
         count = int(np.linalg.norm(end - begin) / self._graph.spacing * 2) + 2
         line = begin + np.linspace(0, 1, count)[:, None] * (end - begin)
@@ -131,7 +132,7 @@ class TourPlanner:
         return bool(self._elbow[near].min() >= min(PULL_M, self._elbow[own].min()))
 
     def _turn(self, frames: list[StreamFrame], yaw_deg: float) -> None:
-        """Add the frames of turning on the spot."""
+        """Add the frames of a turn on the spot."""
         last = frames[-1].stance
         off = float(wrap_deg(yaw_deg - last.yaw_deg))
         count = int(np.ceil(abs(off) / (TURN_DEG_S * EVERY_S)))
@@ -158,7 +159,7 @@ def _yaw_of(direction: np.ndarray) -> float:
 
 
 def _goals(scene: VlnScene) -> list[tuple[Landmark, list[int]]]:
-    """Return what one can go to, with the places before each that ways lead to."""
+    """Return the reachable landmarks, each with the reachable positions in front of it."""
     main = set(scene.main_places.tolist())
     found = []
     for landmark in floor_landmarks(scene):
@@ -171,7 +172,7 @@ def _goals(scene: VlnScene) -> list[tuple[Landmark, list[int]]]:
 
 
 def floor_landmarks(scene: VlnScene) -> list[Landmark]:
-    """Return the landmarks that a person would find the way by: plain in name, not hung up high."""
+    """Return landmarks suitable for directions: clearly named and not mounted high up."""
     floor = scene.to_room_m(scene.graph.feet[scene.main_places])
     found = []
     for one in unambiguous_landmarks(scene.landmarks):
@@ -185,7 +186,7 @@ def floor_landmarks(scene: VlnScene) -> list[Landmark]:
 
 
 def _sampled(feet: np.ndarray, step: float) -> np.ndarray:
-    """Return points every ``step`` along a way, its end among them, float64 [N, 3]."""
+    """Return points every ``step`` along a path, with its end, as float64 [N, 3]."""
     lengths = np.linalg.norm(np.diff(feet, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(lengths)])
     at = np.append(np.arange(0.0, along[-1], step), along[-1])

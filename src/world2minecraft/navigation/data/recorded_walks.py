@@ -1,7 +1,7 @@
-"""Walks that were recorded: tour files, ours or of the game, and what agents and people walked.
+"""Recorded walks: tour files, recordings from the game, and walks of agents and people.
 
-What came from outside is put on the scene's own floor, since an eye's height says little where
-feet stood, and is called by names of ours: those of a file could lead anywhere.
+Positions are snapped to the floor of the scene, because a camera height alone does not define
+where the feet were. Tours receive generated names, because names from files could contain paths.
 """
 
 from collections.abc import Sequence
@@ -26,16 +26,22 @@ ASIDE_M, HIGH_M = 0.4, 0.75  # A place of the floor is so near to where feet wer
 
 
 def parse_at(text: str) -> At:
-    """Return ``feet`` or ``eye``. Raises UsageError: it is neither."""
+    """Validate the option ``--at``.
+
+    Raises:
+        UsageError: If the text is neither "feet" nor "eye".
+    """
     if text not in ("feet", "eye"):
-        raise UsageError(f"--at is feet or eye, not {text!r}")
+        raise UsageError(f"--at must be 'feet' or 'eye', got {text!r}")
     return "feet" if text == "feet" else "eye"
 
 
 def scene_ids_of(path: str | Path) -> set[str]:
-    """Return the scenes that a stream tells of; "" is one that it does not name.
+    """Return the scene IDs that a stream refers to, with "" for an unnamed scene.
 
-    Raises: as ``recorded_tours``.
+    Raises:
+        InputError: If the file cannot be read.
+        DamagedFileError: If a line is not a valid pose.
     """
     if traces := _traces(path):
         return {str(read_trace(place)[0].get("scene", "")) for place in traces}
@@ -45,16 +51,17 @@ def scene_ids_of(path: str | Path) -> set[str]:
 def recorded_tours(
     scene: VlnScene, paths: Sequence[str | Path], at: At = "eye"
 ) -> list[list[StreamFrame]]:
-    """Return the tours of streams in a scene, each in time's order, on the scene's floor.
+    """Return the recorded tours in a scene, each sorted by time and snapped to the floor.
 
     Args:
-        scene: where they were recorded; lines of other scenes are left out.
-        paths: tour files, JSONL or CSV, and folders of ``w2m vln run``, of one walk or of many.
-        at: what x, y, z is in lines that do not say it.
+        scene: The scene of the recordings. Lines that refer to other scenes are ignored.
+        paths: Tour files (JSONL or CSV) and folders of ``w2m vln run``.
+        at: Whether x, y, z are the feet or the eye position in lines that do not state it.
 
     Raises:
-        InputError: a file cannot be read. DamagedFileError: a line is no pose. LimitError: it is
-            too large.
+        InputError: If a file cannot be read.
+        DamagedFileError: If a line is not a valid pose.
+        LimitError: If a file is too large.
     """
     tours = []
     for frames in (some for path in paths for some in _streams(path, scene, at)):
@@ -69,9 +76,9 @@ def recorded_tours(
 
 
 def snap_to_floor(scene: VlnScene, frames: Sequence[StreamFrame]) -> list[StreamFrame]:
-    """Return the frames whose feet are at a place where one can stand, set upon it.
+    """Move frames to the nearest standing position, and drop those that are too far from the floor.
 
-    Who flies, swims or stands on a table is left out.
+    Frames of players who fly, swim or stand on furniture are dropped.
     """
     if not frames:
         return []
@@ -86,22 +93,25 @@ def snap_to_floor(scene: VlnScene, frames: Sequence[StreamFrame]) -> list[Stream
 
 
 def assign_streams(paths: Sequence[str], scene_ids: Sequence[str]) -> dict[str, tuple[str, ...]]:
-    """Return the streams of each scene that has some.
+    """Group stream files by the scene that they refer to.
 
     Raises:
-        UsageError: a stream is of no scene of these, or does not say of which of several.
+        UsageError: If a stream belongs to an unknown scene, or does not state which of several.
     """
     found: dict[str, list[str]] = {}
     for path in paths:
         for name in sorted(scene_ids_of(path)):
             if not name and len(scene_ids) > 1:
                 raise UsageError(
-                    f"{path} does not say of which scene it is; name one scene, or add scene_id"
+                    f"{path} does not state its scene; give a single scene, or add the "
+                    "field scene_id"
                 )
             known = name or scene_ids[0]
             if known not in scene_ids:
                 some = ", ".join(scene_ids[:6])
-                raise UsageError(f"{path} is of scene {known[:80]!r}, which is not among {some}")
+                raise UsageError(
+                    f"{path} belongs to scene {known[:80]!r}, which is not one of {some}"
+                )
             found.setdefault(known, []).append(path)
     return {name: tuple(dict.fromkeys(own)) for name, own in found.items()}
 
@@ -115,14 +125,14 @@ def _streams(path: str | Path, scene: VlnScene, at: At) -> list[list[StreamFrame
 
 
 def _in_time(frames: list[StreamFrame]) -> list[StreamFrame]:
-    """Put frames in order; those that say no time keep theirs."""
+    """Sort frames by time, or assign regular times if they have none."""
     if len({one.t_s for one in frames}) == 1:
         return assign_even_times(frames, EVERY_S)
     return sorted(frames, key=lambda one: one.t_s)
 
 
 def _traces(path: str | Path) -> list[Path]:
-    """Return the traces of a run, one a walk; none where the path is a tour file."""
+    """Return the trace files of a run, or an empty list for a tour file."""
     place = Path(path)
     if place.is_dir():
         return traces_in(place)

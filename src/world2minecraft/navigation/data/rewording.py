@@ -1,8 +1,8 @@
-"""A set in other words: what people wrote of its walks, and what a language model made of its own.
+"""Alternative instructions for a set, written by people or by a language model.
 
-Words are added to a walk, and none takes another's place: the items of a walk ask in a person's
-words where there are any, else in a model's, else in the program's. Where only the goal is told
-many ways lead there; so an item that tells the way goes on telling it, and keeps its level.
+Instructions are added to a trajectory without replacing others. Items use a human instruction if
+one exists, otherwise one from a model, otherwise the generated one. An item keeps its instruction
+level, because an instruction that states only the goal permits many paths.
 """
 
 from collections import Counter
@@ -50,7 +50,11 @@ class NavigationSet:
 
 
 def read_set(folder: str | Path) -> NavigationSet:
-    """Read a set of ``w2m vln build``. Raises InputError and its kinds."""
+    """Read a set that was written by ``w2m vln build``.
+
+    Raises:
+        InputError: If a file is missing or invalid.
+    """
     place = Path(folder)
     walks = read_trajectories(place)
     return NavigationSet(
@@ -59,7 +63,11 @@ def read_set(folder: str | Path) -> NavigationSet:
 
 
 def write_set(folder: str | Path, navigation_set: NavigationSet) -> None:
-    """Write the records of a set; its pictures are as they were. Raises OutputError."""
+    """Write the records of a set without changing its images.
+
+    Raises:
+        OutputError: If a file cannot be written.
+    """
     place = Path(folder)
     write_trajectories(place / TRAJECTORIES, navigation_set.trajectories)
     write_episodes(place / EPISODES, navigation_set.episodes)
@@ -69,13 +77,14 @@ def write_set(folder: str | Path, navigation_set: NavigationSet) -> None:
 def select_instructions(
     navigation_set: NavigationSet, order: Sequence[str] = ORDER
 ) -> NavigationSet:
-    """Return a set whose items and episodes use the words of the first source that has some.
+    """Return a set whose items and episodes use instructions of the preferred source.
 
-    The items of a walk use the words of several people in turn.
+    If several people described a trajectory, its items use their instructions in turn.
 
     Args:
-        navigation_set: the set.
-        order: of ``INSTRUCTION_SOURCES``; what is not named is not used.
+        navigation_set: The set.
+        order: Names from ``INSTRUCTION_SOURCES`` in order of preference. Other sources are not
+            used.
     """
     words = {one.trajectory_id: one.instructions for one in navigation_set.trajectories}
     turns: Counter[str] = Counter()
@@ -96,9 +105,11 @@ def select_instructions(
 
 
 def add_annotations(navigation_set: NavigationSet, file: str | Path) -> NavigationSet:
-    """Return a set whose walks have what people wrote of them too, and the things it names.
+    """Return a set whose trajectories include the human instructions of a file.
 
-    Raises: as ``read_annotations`` and ``with_annotations``.
+    Raises:
+        InputError: If the file cannot be read, or refers to an unknown trajectory.
+        DamagedFileError: If a line is invalid.
     """
     scene_of, annotated = (
         {one.trajectory_id: one.scene_id for one in navigation_set.trajectories},
@@ -116,7 +127,11 @@ def add_annotations(navigation_set: NavigationSet, file: str | Path) -> Navigati
 
 
 def annotate_set(folder: str | Path, file: str | Path) -> None:
-    """Add what people wrote to a set on disk, and ask by it. Raises as ``add_annotations``."""
+    """Add the human instructions of a file to a set on disk, and use them in its items.
+
+    Raises:
+        InputError: If a file cannot be read, or refers to an unknown trajectory.
+    """
     write_set(folder, select_instructions(add_annotations(read_set(folder), file)))
 
 
@@ -127,21 +142,20 @@ def reword_set(
     jobs: int = 1,
     progress: Progress = no_progress,
 ) -> tuple[NavigationSet, Counter[str]]:
-    """Return a set with the program's words, as items use them, said again by a model.
+    """Return a set with model-written paraphrases of the generated instructions that items use.
 
     Args:
-        navigation_set: the set; walks that have the words of the model of a level are not asked
-            about again.
-        ask: the model; several threads may call it.
-        model: what it is called.
-        jobs: questions at a time.
-        progress: told of each.
+        navigation_set: The set. Trajectories with a paraphrase of the same level are skipped.
+        ask: A thread-safe function that queries the model.
+        model: The name of the model.
+        jobs: The number of concurrent queries.
+        progress: Called after each query.
 
     Returns:
-        The set, and how often words were taken ("") or refused, by the reason.
+        The set, and the number of replies by reason of rejection, with "" for accepted replies.
 
     Raises:
-        ServerError: there is not one reply.
+        ServerError: If no query was answered.
     """
     levels = _levels_in_use(navigation_set)
     pending = [
@@ -195,7 +209,7 @@ def _levels_in_use(navigation_set: NavigationSet) -> dict[str, set[str]]:
 def _choose(
     words: Sequence[Instruction], now: Instruction, order: Sequence[str], turn: int
 ) -> Instruction:
-    """Return the words to use in place of those of now: of their level where there are such."""
+    """Return the replacement for an instruction, of the same level if available."""
     for source in order:
         own = [one for one in words if one.source == source]
         fit = [one for one in own if one.level == now.level] or [
@@ -207,7 +221,7 @@ def _choose(
 
 
 def _names(path: Path, walks: Sequence[Trajectory]) -> dict[str, tuple[str, ...]]:
-    """Return what things are called in each scene: as the set tells, and as its words do."""
+    """Return the object names of each scene, from the set's description and its instructions."""
     names: dict[str, set[str]] = {}
     for walk in walks:
         for words in walk.instructions:

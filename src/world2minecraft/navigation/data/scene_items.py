@@ -1,4 +1,4 @@
-"""What one scene gives a set: trajectories with pictures, questions about them, episodes."""
+"""Trajectories, questions and episodes of a single scene."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -51,7 +51,7 @@ from world2minecraft.navigation.walk_discretization import (
 from world2minecraft.navigation.walk_stream import StreamFrame
 
 WalkCallback = Callable[[int], None]
-"""Told how many walks more there are."""
+"""Called with the number of additional walks."""
 
 WALK_VERSION = f"{DISCRETIZATION_VERSION}+{ORACLE_VERSION}"
 PREVIEW_PX = (64, 36)  # Of pictures that are only to tell how like they are.
@@ -91,12 +91,12 @@ class SceneItems:
 
 
 def scene_step_function(scene: VlnScene, move_set: MoveSet) -> StepFunction:
-    """Return the physics of a scene as discretising wants it."""
+    """Return a function that applies moves with the physics of a scene."""
     return partial(apply_move, scene, move_set=move_set)
 
 
 def scene_path_planner(scene: VlnScene, move_set: MoveSet) -> PathPlanner:
-    """Return the oracle as discretising wants it."""
+    """Return a function that plans expert paths in a scene."""
 
     def moves(stance: Stance, end: tuple[float, float, float]) -> tuple[Move, ...]:
         way = plan_expert_path(scene, stance, (end,), move_set)
@@ -114,19 +114,19 @@ def build_scene_items(
     tick: WalkCallback = lambda _: None,
     recorded: Sequence[Sequence[StreamFrame]] = (),
 ) -> SceneItems:
-    """Walk a scene until it has given as many trajectories as the rule asks for.
+    """Walk through a scene until it has the requested number of trajectories.
 
     Args:
-        scene: the world.
-        folder: of the set; pictures go below it.
-        composition: base or extend.
-        scene_split: train or val_unseen.
-        rule: how much, and how.
-        tick: told of each walk.
-        recorded: tours that were recorded there: all walks of these are taken, and no others.
+        scene: The scene.
+        folder: The folder of the set. Images are written below it.
+        composition: "base" or "extend".
+        scene_split: "train" or "val_unseen".
+        rule: The options, such as the number of trajectories.
+        tick: Called with the number of new walks.
+        recorded: Recorded tours. If given, all their walks are used and no tours are planned.
 
     Raises:
-        OutputError: a picture cannot be written.
+        OutputError: If an image cannot be written.
     """
     move_set = MOVE_SETS[rule.move_set]
     walker = scene_step_function(scene, move_set)
@@ -150,11 +150,11 @@ def build_scene_items(
 
 
 TourInput = tuple[Sequence[StreamFrame], Callable[[float], str] | None, np.random.Generator]
-"""Frames, what was being gone to at a time, and the tour's chances."""
+"""The frames of a tour, a function from time to the approached landmark, and a random generator."""
 
 
 def _tours(scene: VlnScene, rule: SceneRule) -> Iterator[TourInput]:
-    """Tour a scene again and again."""
+    """Yield planned tours of a scene."""
     tourist = TourPlanner(scene)
     for number in range(MAX_TOURS if tourist.has_goals else 0):
         tour_id = f"{scene.scene_id}_t{number:02d}"
@@ -170,7 +170,7 @@ def _recorded(tours: Sequence[Sequence[StreamFrame]], rule: SceneRule) -> Iterat
 
 
 class _TrajectoryRecorder:
-    """Takes the pictures of candidates and makes trajectories of those that show something."""
+    """A recorder that renders candidates and keeps those whose images show enough detail."""
 
     def __init__(
         self,
@@ -190,7 +190,11 @@ class _TrajectoryRecorder:
         self._scout = DistractorSampler(walker, scene.metres_per_block)
 
     def take_in(self, candidate: Candidate, rng: np.random.Generator) -> int:
-        """Add a candidate with its questions, or count why it is none; return how many it is."""
+        """Add a candidate with its questions, or count the reason for its rejection.
+
+        Returns:
+            The number of trajectories added, 0 or 1.
+        """
         shots = self._album.take([mark.stance for mark in candidate.marks])
         fault = picture_fault([one.mean for one in shots], [one.dhash for one in shots])
         if fault:
@@ -225,7 +229,7 @@ class _TrajectoryRecorder:
         spoken: Instruction,
         rng: np.random.Generator,
     ) -> list[ViewQuestion]:
-        """Return questions; no hard ones where only the goal is told, as many ways lead there."""
+        """Return Next-View questions, without hard ones if the instruction states only the goal."""
         steps = view_steps(candidate.clear, pictures)
         chosen = sorted(rng.permutation(len(steps))[: self._rule.views])
         grades, shares = list(GRADES), np.array(GRADE_SHARES)
@@ -265,7 +269,7 @@ def _choose_instruction(
     levels: tuple[float, float, float],
     rng: np.random.Generator,
 ) -> Instruction:
-    """Return the instruction that a trajectory's items ask by: of a level drawn by its share."""
+    """Return the instruction for a trajectory's items, sampled by the shares of the levels."""
     weights = np.array([levels[LEVELS.index(one.level)] for one in instructions]) + 1e-9
     return instructions[int(rng.choice(len(instructions), p=weights / weights.sum()))]
 
@@ -273,7 +277,12 @@ def _choose_instruction(
 def _episode(
     scene: VlnScene, candidate: Candidate, spoken: Instruction, split: str, rule: SceneRule
 ) -> Episode:
-    """Return the episode: to the end of the way, or anywhere before what alone is named."""
+    """Return the episode of a candidate.
+
+    A goal-level instruction accepts any position in front of the landmark, others only the end of
+    the
+    walk.
+    """
     end = candidate.walk.stances[-1].feet
     goals, name = (end,), candidate.way.stop
     if spoken.level == "goal":

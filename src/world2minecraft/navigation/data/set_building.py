@@ -1,14 +1,14 @@
-"""Build a navigation set of many scenes: walk them, ask about the walks, write the records.
+"""Building of a navigation set from several scenes.
 
-::
+The output folder contains::
 
-    OUT/dataset.json      what it was made of, and how
+    OUT/dataset.json      the scenes and options of the set
     OUT/items.jsonl       questions
     OUT/trajectories.jsonl, OUT/episodes.jsonl
     OUT/images/SCENE/TRAJECTORY/NNN.jpg
 
-Scenes are worked by one process or by several, with the same result: the random numbers of each
-come from its own name, and results are put in the order in which the scenes were named.
+The result does not depend on the number of worker processes: the random seeds derive from the names
+of the scenes, and results are kept in the order in which the scenes were given.
 """
 
 from collections import Counter
@@ -64,7 +64,17 @@ RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.
 
 @dataclass(frozen=True)
 class SceneJob:
-    """A scene to work. ``split`` is train or val_unseen; ``streams`` were recorded there."""
+    """A scene to process for a set.
+
+    Attributes:
+        path: The path of the scene.
+        folder: The folder of the set.
+        composition: "base" or "extend".
+        split: "train" or "val_unseen".
+        rule: The options.
+        streams: Files with walks that were recorded in the scene.
+        at: Whether recorded positions are feet or eye positions if the lines do not state it.
+    """
 
     path: str
     folder: str  # of the set
@@ -78,16 +88,18 @@ class SceneJob:
 def run_scene_jobs(
     jobs: Sequence[SceneJob], workers: int = 1, progress: Progress = no_progress
 ) -> list[SceneItems]:
-    """Return what comes of scenes, in their order. The largest ones are begun first.
+    """Process scenes, the largest ones first, and return the results in the order of the jobs.
 
     Args:
-        jobs: the scenes.
-        workers: how many processes; with one it is this one.
-        progress: told of the walks.
+        jobs: The scenes to process.
+        workers: The number of processes. With 1, the current process does the work.
+        progress: Called after each walk.
 
     Raises:
-        InputError: a scene cannot be read. OutputError: the folder cannot be written.
-        WorkerError: a process died again and again. UsageError: a number of workers that cannot be.
+        InputError: If a scene cannot be read.
+        OutputError: If the folder cannot be written.
+        WorkerError: If a worker process keeps failing.
+        UsageError: If the number of workers is out of range.
     """
     first = sorted(range(len(jobs)), key=lambda n: (-jobs[n].rule.trajectories, n))
     wanted = sum(job.rule.trajectories for job in jobs)
@@ -101,7 +113,7 @@ def run_scene_jobs(
 
 
 def _run_job(job: SceneJob, tick: WalkCallback) -> SceneItems:
-    """Work a scene: what processes are sent to do."""
+    """Process one scene in a worker process."""
     scene = open_scene(job.path)
     recorded = recorded_tours(scene, job.streams, job.at)
     return build_scene_items(
@@ -110,7 +122,7 @@ def _run_job(job: SceneJob, tick: WalkCallback) -> SceneItems:
 
 
 class _WalkCounter:
-    """How many walks there are; what a scene could not give is counted when it is done."""
+    """A progress counter of walks, which counts missing walks when their scene is finished."""
 
     def __init__(self, wanted: int, scenes: int, progress: Progress):
         self._done, self._wanted, self._left = 0, wanted, scenes
@@ -118,12 +130,12 @@ class _WalkCounter:
         self._told(0, wanted)
 
     def add(self, count: int) -> None:
-        """Count walks; the last is told with its scene."""
+        """Count walks. The last one is reported when its scene is finished."""
         self._done = min(self._done + count, self._wanted - 1)
         self._told(self._done, self._wanted)
 
     def scene_done(self, name: str, given: int, requested: int) -> None:
-        """Count what a scene did not give."""
+        """Count the walks that a finished scene could not provide."""
         self._left -= 1
         self.add(max(0, requested - given))
         done = self._done if self._left else self._wanted
@@ -132,12 +144,17 @@ class _WalkCounter:
 
 @dataclass(frozen=True)
 class BuildRule:
-    """How a set is made. ``trajectories`` of each scene; None takes ``WALKS_PER_SCENE``.
+    """The options for building a set.
 
-    ``paper_size`` cuts to the paper's counts, and asks each scene for its share of them.
-    ``paper_split`` holds out walks of the same scenes, as the paper does; ``unseen_share`` of the
-    scenes are held out otherwise. ``streams`` are recorded walks: scenes that have some give those
-    alone; ``at`` is what x, y, z is in lines that do not say it.
+    Attributes:
+        composition: "base" for reconstructed rooms, "extend" for other worlds, or "combined".
+        trajectories: The number of trajectories per scene. None uses ``WALKS_PER_SCENE``.
+        paper_size: Whether to reduce the set to the paper's number of items.
+        paper_split: Whether to hold out walks of the same scenes, as the paper does.
+        unseen_share: The share of scenes to hold out otherwise.
+        streams: Files with recorded walks. Scenes with recorded walks use only those.
+        at: Whether recorded positions are feet or eye positions if the lines do not state it.
+        work: The options for each scene.
     """
 
     composition: str = "combined"
@@ -151,14 +168,20 @@ class BuildRule:
 
     def __post_init__(self):
         if self.composition not in COMPOSITIONS:
-            raise UsageError(f"a composition is base, extend or combined, not {self.composition!r}")
+            raise UsageError(
+                f"--composition must be base, extend or combined, got {self.composition!r}"
+            )
         if self.trajectories is not None and self.trajectories < 1:
-            raise UsageError(f"--trajectories must be 1 or more, not {self.trajectories}")
+            raise UsageError(f"--trajectories must be 1 or more, got {self.trajectories}")
         if self.paper_split and self.unseen_share not in (0, UNSEEN_SHARE):
-            raise UsageError("the paper's split holds out no scene; leave out --unseen-share")
+            raise UsageError("the paper's split does not hold out any scenes; omit --unseen-share")
 
     def walks_of(self, kinds: Mapping[str, str]) -> dict[str, int]:
-        """Return how many walks each scene is asked for, by the scenes' compositions."""
+        """Return the number of walks to request from each scene.
+
+        Args:
+            kinds: The composition of each scene by its name.
+        """
         scenes = Counter(kinds.values())
         share = {kind: -(-PAPER_WALKS[kind] // scenes[kind]) for kind in scenes}
         usual = share if self.paper_size else WALKS_PER_SCENE
@@ -167,7 +190,14 @@ class BuildRule:
 
 @dataclass(frozen=True)
 class BuiltSet:
-    """What came of building."""
+    """The result of building a set.
+
+    Attributes:
+        items: The questions.
+        works: The results by scene.
+        leaks: The overlap between training and held-out items.
+        left_out: The scenes that do not belong to the requested composition.
+    """
 
     items: list[Item]
     works: list[SceneItems]
@@ -176,7 +206,7 @@ class BuiltSet:
 
 
 def composition_of(path: str | Path) -> str:
-    """Return base for a reconstruction's run folder, extend for every other world."""
+    """Return "base" for the folder of a reconstruction run, and "extend" for any other world."""
     folder = Path(path)
     places = (folder, folder.parent, folder.parent.parent)
     found = any(all((place / name).is_file() for name in RECONSTRUCTED) for place in places)
@@ -190,26 +220,28 @@ def build_navigation_set(
     progress: Progress = no_progress,
     workers: int = 1,
 ) -> BuiltSet:
-    """Make a set of scenes.
+    """Build a navigation set from scenes.
 
     Args:
-        paths: of the scenes, as ``open_scene`` takes them.
-        out: the folder to write; the same words and seed give the same bytes.
-        rule: what is made.
-        progress: told of the walks.
-        workers: how many processes walk; the bytes are the same for any number.
+        paths: The scenes, as accepted by ``open_scene``.
+        out: The output folder. The same options and seed give identical files.
+        rule: The options. None uses the defaults.
+        progress: Called after each walk.
+        workers: The number of processes, which does not affect the result.
 
     Raises:
-        UsageError: no scene is of the composition, two have one name, or none gives a trajectory.
-        InputError: a scene cannot be read. OutputError: the folder cannot be written.
+        UsageError: If no scene has the composition, two scenes have the same name, or no items
+            result.
+        InputError: If a scene cannot be read.
+        OutputError: If the folder cannot be written.
     """
     how = rule or BuildRule()
     kinds = {str(path): composition_of(path) for path in paths}
     wanted = {path: kind for path, kind in kinds.items() if how.composition in ("combined", kind)}
     if not wanted:
         raise UsageError(
-            f"none of the {len(kinds)} scenes is of composition {how.composition}: base are runs "
-            "of w2m reconstruct, extend all other worlds"
+            f"none of the {len(kinds)} scenes has the composition {how.composition!r}: "
+            "'base' means runs of w2m reconstruct, 'extend' all other worlds"
         )
     scene_of = _names(list(wanted))
     unseen = 0.0 if how.paper_split else how.unseen_share
@@ -231,15 +263,15 @@ def build_navigation_set(
     items = cut_to_paper_size(items, how.paper_split) if how.paper_size else items
     if not items:
         raise UsageError(
-            "no scene gave an item: they lack objects to go to, or floor to walk on; choose "
-            "furnished ones, or generate some with --rooms 3"
+            "no items could be built: the scenes lack landmarks or walkable floor; choose "
+            "furnished scenes, or generate some with --rooms 3"
         )
     _write(Path(out), how, works, items, splits, {scene_of[path]: path for path in wanted})
     return BuiltSet(items, works, find_leaks(items), [path for path in kinds if path not in wanted])
 
 
 def _split_as_the_paper(works: Sequence[SceneItems], seed: int) -> None:
-    """Put walks and episodes of each composition into the paper's splits."""
+    """Assign the trajectories and episodes of each composition to the paper's splits."""
     for kind in {work.composition for work in works}:
         own = [work for work in works if work.composition == kind]
         splits = paper_splits([one for work in own for one in work.trajectories], seed)
@@ -254,9 +286,7 @@ def _names(paths: Sequence[str]) -> dict[str, str]:
     names = {path: scene_id_of(Path(path)) for path in paths}
     twice = [name for name in names.values() if list(names.values()).count(name) > 1]
     if twice:
-        raise UsageError(
-            f"two scenes are called {twice[0]!r}: folders must have names of their own"
-        )
+        raise UsageError(f"two scene folders have the same name {twice[0]!r}; rename one of them")
     return names
 
 

@@ -1,8 +1,8 @@
-"""Which scenes and walks are for training, and whether anything leaks from there.
+"""Splits into training and held-out scenes and walks, and the check for leaks between them.
 
-Scenes and walks are ordered by hashes of their names, so that their order does not matter. Whole
-scenes are kept unseen (``val_unseen``), and of the others whole tours (``val_seen``). What is asked
-of a walk is always in one split.
+Scenes and walks are sorted by hashes of their names, so their order does not matter. Whole scenes
+are held out as ``val_unseen``, and whole tours of the other scenes as ``val_seen``. All questions
+about a walk belong to one split.
 """
 
 import hashlib
@@ -21,22 +21,23 @@ PAPER_SHARE = 0.23  # Of the walks: of its items the paper holds out 14 to 23 %,
 def scene_splits(
     compositions: Mapping[str, str], seed: int = 0, unseen_share: float = UNSEEN_SHARE
 ) -> dict[str, str]:
-    """Return train or val_unseen for each scene.
+    """Assign each scene to the split train or val_unseen.
 
-    The scenes of each composition are put in the order of a sum of seed and name, and the first
-    are kept unseen: their share, rounded, and at least one of three or more.
+    The scenes of each composition are sorted by a hash of seed and name. The first ones, rounded to
+    the
+    share but at least one of three or more, are held out.
 
     Args:
-        compositions: base or extend, by the scene's name.
-        seed: another seed, another choice.
-        unseen_share: from 0 up to 1.
+        compositions: "base" or "extend" by the name of the scene.
+        seed: The seed of the hash.
+        unseen_share: The share of scenes to hold out, 0 to 1.
 
     Example:
         >>> scene_splits({"a": "base", "b": "base", "c": "base"})
         {'a': 'train', 'b': 'val_unseen', 'c': 'train'}
     """
     if not 0 <= unseen_share <= 1:
-        raise UsageError(f"the share of unseen scenes is 0 to 1, not {unseen_share:g}")
+        raise UsageError(f"--unseen-share must be 0 to 1, got {unseen_share:g}")
     splits = {}
     for kind in sorted(set(compositions.values())):
         names = sorted(
@@ -52,21 +53,24 @@ def scene_splits(
 def split_of_tour(
     tour_id: str, scene_split: str, seed: int = 0, seen_share: float = SEEN_SHARE
 ) -> str:
-    """Return the split of a tour: its scene's, or val_seen for a few of those that train."""
+    """Return a tour's split: that of its scene, or val_seen for some training tours."""
     if scene_split != "train":
         return scene_split
     return "val_seen" if _sum(seed, f"tour {tour_id}") / 2**64 < seen_share else "train"
 
 
 def paper_splits(trajectories: Sequence[Trajectory], seed: int = 0) -> dict[str, str]:
-    """Return the split of each trajectory as the paper splits: walks of the same scenes.
+    """Split trajectories as the paper does, into training and held-out walks of the same scenes.
 
-    Whole tours, in the order of a sum of seed and name, are ``val_seen`` until they have
-    ``PAPER_SHARE`` of the walks; all others are for training. No scene is unseen.
+    Whole tours, sorted by a hash of seed and name, become ``val_seen`` until ``PAPER_SHARE`` of the
+    walks are held out. No scene is unseen.
 
     Args:
-        trajectories: of one composition.
-        seed: another seed, another choice.
+        trajectories: The trajectories of one composition.
+        seed: The seed of the hash.
+
+    Returns:
+        The split of each trajectory by its ID.
     """
     walks = Counter(tour_of(one.trajectory_id) for one in trajectories)
     held, left = set[str](), PAPER_SHARE * len(trajectories)
@@ -82,7 +86,7 @@ def paper_splits(trajectories: Sequence[Trajectory], seed: int = 0) -> dict[str,
 
 
 def tour_of(trajectory_id: str) -> str:
-    """Return the tour that a trajectory is a part of.
+    """Return the ID of the tour that a trajectory belongs to.
 
     Example:
         >>> tour_of("kitchen_t03_002")
@@ -97,7 +101,17 @@ def _sum(seed: int, name: str) -> int:
 
 @dataclass(frozen=True)
 class Leaks:
-    """What train shares with the other splits: instructions may, such as one to go to the bed."""
+    """The overlap between the training split and the held-out splits.
+
+    Instructions may be shared, because an instruction such as "go to the bed" occurs in many
+    scenes.
+
+    Attributes:
+        images: The SHA-256 of shared images.
+        scenes: The scenes shared with val_unseen.
+        trajectories: The IDs of shared trajectories.
+        instructions: The shared instruction texts.
+    """
 
     images: tuple[str, ...]  # sums
     scenes: tuple[str, ...]  # with val_unseen
@@ -106,12 +120,12 @@ class Leaks:
 
     @property
     def is_clean(self) -> bool:
-        """Whether no picture, scene or walk is on both sides."""
+        """Whether no image, scene or trajectory is shared."""
         return not (self.images or self.scenes or self.trajectories)
 
 
 def find_leaks(items: Sequence[Item]) -> Leaks:
-    """Return what the items of train share with those that are scored on."""
+    """Return what the training items share with the held-out items."""
     train = [item for item in items if item.split == "train"]
     held = [item for item in items if item.split != "train"]
     unseen = [item for item in held if item.split == "val_unseen"]
@@ -124,9 +138,9 @@ def find_leaks(items: Sequence[Item]) -> Leaks:
 
 
 def without_shared_pictures(items: Sequence[Item]) -> list[Item]:
-    """Return items but for those to be scored on that show a picture of train.
+    """Return the items without held-out ones that show a training image.
 
-    Two tours of one scene may come to the very same place.
+    Two tours of one scene can pass through exactly the same position.
     """
     train = _sums([item for item in items if item.split == "train"])
     return [item for item in items if item.split == "train" or not train & _sums([item])]

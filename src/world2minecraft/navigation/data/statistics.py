@@ -1,8 +1,8 @@
-"""Statistics of a set: instruction lengths as the paper's table, answers, wrong choices; a plot.
+"""Statistics of a set: instruction lengths, splits, answers and distractors, and a histogram plot.
 
-Lengths are counted by items, in characters and in words; ``std`` is that of a sample (ddof 1), as
-pandas' ``describe`` gives it, which the paper's table looks made by. The plot has the lengths as
-the paper's figure: two tasks, three parts.
+Lengths are measured per item, in characters and in words. The standard deviation is that of a
+sample (ddof 1), as in pandas' ``describe``, which the paper's table appears to use. The plot shows
+the lengths for two tasks and three compositions, like the paper's figure.
 """
 
 import io
@@ -38,7 +38,7 @@ COLOUR = "#5684b4"
 
 @dataclass(frozen=True)
 class Lengths:
-    """How long instructions are."""
+    """Summary statistics of instruction lengths."""
 
     count: int
     mean: float
@@ -51,7 +51,7 @@ class Lengths:
 
 
 def lengths_of(values: Sequence[int]) -> Lengths:
-    """Return the summary of lengths; zeros where there are none.
+    """Return the summary of lengths, with zeros for an empty sequence.
 
     Example:
         >>> lengths_of([10, 20, 30])
@@ -67,7 +67,7 @@ def lengths_of(values: Sequence[int]) -> Lengths:
 
 @dataclass(frozen=True)
 class SetStatistics:
-    """The figures of a set. Keys are task and part: base, extend, combined."""
+    """The statistics of a set, keyed by task and part: base, extend or combined."""
 
     characters: dict[tuple[str, str], Lengths]
     words: dict[tuple[str, str], Lengths]
@@ -83,7 +83,7 @@ class SetStatistics:
 
 
 def compute_statistics(items: Sequence[Item]) -> SetStatistics:
-    """Return the figures of items."""
+    """Compute the statistics of items."""
     characters, words, splits = {}, {}, {}
     for task in TASKS:
         for part in PARTS:
@@ -111,7 +111,7 @@ def _is_of(item: Item, part: str) -> bool:
 
 
 def _evenness(items: Sequence[Item], task: str) -> float:
-    """Return the p of Pearson's test that every letter is as likely."""
+    """Return the p-value of Pearson's chi-squared test for uniformly distributed letters."""
     own = [item for item in items if item.task == task and len(item.options) == 4]
     if not own:
         return 1.0
@@ -120,14 +120,14 @@ def _evenness(items: Sequence[Item], task: str) -> float:
 
 
 def statistics_text(statistics: SetStatistics, leaks: Leaks) -> str:
-    """Return the table of lengths beside the paper's, the splits, the balance and the leaks."""
+    """Format the statistics: lengths beside those of the paper, splits, balance and leaks."""
     head = ("count", "mean", "std", "min", "25%", "50%", "75%", "max")
     lines = [f"{'characters, by item':28}" + "".join(f"{word:>7}" for word in head)]
     for task in TASKS[::-1]:
         for part in PARTS:
             own = tuple(asdict(statistics.characters[task, part]).values())
             lines.append(_row(f"{_TITLES[task]} {part}", own))
-            lines.append(_row("    the paper's", PAPER_LENGTHS[task, part]))
+            lines.append(_row("    paper", PAPER_LENGTHS[task, part]))
     lines += ["", *_splits(statistics), "", *_balance(statistics), "", *_leaks(leaks)]
     return "\n".join(lines)
 
@@ -180,7 +180,7 @@ def _leaks(leaks: Leaks) -> list[str]:
 def statistics_json(
     statistics: SetStatistics, leaks: Leaks, rows: Sequence[BaselineRow]
 ) -> dict[str, Any]:
-    """Return every figure as JSON has it."""
+    """Return all statistics as JSON data."""
     named = {
         name: {f"{task} {part}": asdict(own) for (task, part), own in table.items()}
         for name, table in (("characters", statistics.characters), ("words", statistics.words))
@@ -215,18 +215,19 @@ def statistics_json(
 
 
 def write_histograms(items: Sequence[Item], path: str | Path) -> None:
-    """Draw the lengths of instructions, in characters by item, as a PNG.
+    """Plot histograms of the instruction lengths in characters as a PNG.
 
-    Settings of matplotlib on this machine are left out: the same items give the same bytes.
+    The user's matplotlib settings are ignored, so that the same items give an identical file.
 
     Raises:
-        MissingExtraError: matplotlib is not installed. OutputError: it cannot be written.
+        MissingExtraError: If matplotlib is not installed.
+        OutputError: If the file cannot be written.
     """
     try:
         import matplotlib.style  # noqa: PLC0415  # An extra, and slow to import.
         from matplotlib.figure import Figure  # noqa: PLC0415
     except ImportError as error:
-        raise MissingExtraError("drawing histograms", "vln") from error
+        raise MissingExtraError("plotting histograms", "vln") from error
     longest = max((len(item.instruction.text) for item in items), default=1)
     edges = np.arange(0, longest + BIN, BIN)
     stream = io.BytesIO()
@@ -245,7 +246,7 @@ def write_histograms(items: Sequence[Item], path: str | Path) -> None:
 
 
 def _lengths(items: Sequence[Item], task: str, part: str) -> list[int]:
-    """Return the lengths of the instructions of a task, of all items or a part of them."""
+    """Return the instruction lengths of a task and a part of the items."""
     return [
         len(item.instruction.text)
         for item in items

@@ -1,7 +1,7 @@
-"""A stream cut into walks: at jumps, at gaps in time, where one stood still or looked around.
+"""Splitting of a stream into walks at jumps, time gaps, pauses and places of looking around.
 
-What a person did between two such places is one segment, a candidate for a trajectory. The limits
-are those of reference points in the game at a player's size, in metres of the room.
+The part between two such places is one segment, a candidate for a trajectory. The limits are those
+of reference points in the game at player size, in metres of the room.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,21 @@ from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrap_deg
 
 @dataclass(frozen=True)
 class SegmentationRule:
-    """When a walk ends. Guesses, checked on walks of ours: a sprint is 5.6 m/s, a blink 0.1 s."""
+    """The limits at which a walk ends.
+
+    The values are estimates that were checked on simulated walks: a sprint is 5.6 m/s.
+
+    Attributes:
+        gap_s: The maximum time between frames. A longer gap means missing frames.
+        fastest_m_s: The maximum speed. A higher one means flying.
+        jump_m: The maximum distance between frames. A longer one means teleporting.
+        pause_s: The minimum duration of a pause that ends a walk.
+        still_m: The maximum movement during a pause, in metres.
+        still_deg: The maximum rotation during a pause, in degrees.
+        look_deg: The minimum rotation of looking around, which ends a walk.
+        look_m: The maximum movement while looking around, in metres.
+        pitch_deg: The maximum pitch up or down. Frames beyond it are dropped.
+    """
 
     gap_s: float = 1.0  # Longer between two frames, and something is missing,
     fastest_m_s: float = 8.0  # faster, and one flew,
@@ -30,12 +44,12 @@ class SegmentationRule:
 def split_into_walks(
     frames: Sequence[StreamFrame], blocks_per_metre: float, rule: SegmentationRule | None = None
 ) -> list[list[StreamFrame]]:
-    """Return the walks of a stream, in its order; frames that look up or down are dropped.
+    """Split a stream into walks, dropping frames that look steeply up or down.
 
     Args:
-        frames: in time's order, tour after tour.
-        blocks_per_metre: of the world.
-        rule: when a walk ends.
+        frames: The frames sorted by time, one tour after another.
+        blocks_per_metre: The scale of the world.
+        rule: The limits. None uses the defaults.
     """
     how = rule or SegmentationRule()
     level = [frame for frame in frames if abs(frame.stance.pitch_deg) <= how.pitch_deg]
@@ -48,7 +62,7 @@ def split_into_walks(
 def _unbroken(
     frames: Sequence[StreamFrame], blocks_per_metre: float, rule: SegmentationRule
 ) -> list[list[StreamFrame]]:
-    """Cut where the place, the time, the tour or the scene jumps."""
+    """Split where the position, time, tour or scene jumps."""
     if not frames:
         return []
     away_m = np.linalg.norm(np.diff(feet_m(frames, blocks_per_metre)[:, [0, 2]], axis=0), axis=1)
@@ -71,7 +85,7 @@ def _unbroken(
 def _between_stops(
     run: list[StreamFrame], blocks_per_metre: float, rule: SegmentationRule
 ) -> list[list[StreamFrame]]:
-    """Cut where one stood still or looked around: a walk ends as that begins."""
+    """Split at pauses and at places of looking around. A walk ends when such a stop begins."""
     places = feet_m(run, blocks_per_metre)[:, [0, 2]]
     times = np.array([frame.t_s for frame in run])
     yaws = np.array([frame.stance.yaw_deg for frame in run])
@@ -92,7 +106,7 @@ def _between_stops(
 def _stop_from(
     first: int, places: np.ndarray, times: np.ndarray, turned: np.ndarray, rule: SegmentationRule
 ) -> int | None:
-    """Return the last frame of the stop that begins at a frame; None where none does."""
+    """Return the last frame of a stop that begins at a frame, or None."""
     still = _stay(first, places, rule.still_m)
     calm_deg = turned[first] + rule.still_deg
     steady = first + int(np.searchsorted(turned[first : still + 1], calm_deg, "right"))
@@ -103,7 +117,7 @@ def _stop_from(
 
 
 def _stay(first: int, places: np.ndarray, radius_m: float) -> int:
-    """Return the last frame in a row within a radius of a frame."""
+    """Return the last of the consecutive frames within a radius of the first frame."""
     last = first
     while last + 1 < len(places) and np.linalg.norm(places[last + 1] - places[first]) <= radius_m:
         last += 1

@@ -1,21 +1,20 @@
-"""The two tasks of a set: Next-Action and Next-View.
+"""The two tasks of a set, Next-Action and Next-View.
 
-Next-Action: what does one do next? Four actions, one right. In each walk one picture of each action
-is asked about, so no answer is likelier than another, even to someone who knows the instruction: a
-model that sees nothing is right one time in four.
+Next-Action asks which of four actions comes next. Each walk contributes one image per action, so
+all answers are equally likely, even given the instruction. A model that ignores the images scores
+25 percent.
 
-Next-View: which of four pictures comes next? With wrong ones of three grades::
+Next-View asks which of four images comes next. Its distractors have three grades of difficulty::
 
-    easy    two views of elsewhere in the scene, one of another scene
-    medium  elsewhere, another time of the same walk, the next place with another heading, a step
-            beside
-    hard    also what another move would show, and where the mirrored walk leads
+    easy    two views from elsewhere in the scene, one from another scene
+    medium  elsewhere, another time of the same walk, the next position with another heading, a step
+            to the side
+    hard    also views after a different move, and after the mirrored walk
 
-Who walks on sees much of what was there before. So that the picture most like the present one is
-not mostly the right one, it is drawn how many of the wrong ones are more like it than the right
-one: none to three, each as often, as far as such pictures are found. A wrong picture is never one
-that could pass for the right one: from nearly the same stance, or with nearly the same hash. Nor is
-it one that was shown before.
+The correct view often resembles the current view more than random distractors do. To avoid this
+shortcut, a random number of distractors, from zero to three, resemble the current view more than
+the correct option does, as far as suitable images exist. A distractor never has nearly the same
+stance or image hash as the correct option, and never repeats an image of the question.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -66,13 +65,15 @@ def action_steps(
     rng: np.random.Generator,
     balanced: bool = True,
 ) -> list[int]:
-    """Return the keyframes to ask about, rising.
+    """Return the keyframes to ask about, in ascending order.
 
     Args:
-        marks: of the way.
-        clear: those whose next action the instruction tells.
-        rng: chooses.
-        balanced: one of each action, and none at all where one is missing; else all that are clear.
+        marks: The keyframes of the walk.
+        clear: The keyframes whose next action follows from the instruction.
+        rng: The random generator.
+        balanced: Whether to return one keyframe per action, or none if an action is missing. If
+            False,
+            all clear keyframes are returned.
     """
     if not balanced:
         return list(clear)
@@ -93,17 +94,17 @@ def action_item(
     composition: str,
     oracle_version: str,
 ) -> Item:
-    """Return the item of a keyframe.
+    """Return the Next-Action item of a keyframe.
 
     Args:
-        trajectory: the way.
-        instruction: what is told.
-        pictures: of its keyframes.
-        step: which one.
-        letter: of the right action.
-        rng: orders the wrong ones.
-        composition: base or extend.
-        oracle_version: of what made the moves.
+        trajectory: The trajectory.
+        instruction: The instruction of the item.
+        pictures: The images of all keyframes.
+        step: The index of the keyframe.
+        letter: The letter of the correct action.
+        rng: The random generator for the order of the other actions.
+        composition: "base" or "extend".
+        oracle_version: The version of the code that planned the moves.
     """
     frame = trajectory.keyframes[step]
     wrong = [action for action in ACTIONS.values() if action != frame.move]
@@ -130,7 +131,7 @@ def action_item(
 
 @dataclass(frozen=True)
 class ViewQuestion:
-    """A question before its wrong pictures of elsewhere are drawn."""
+    """A Next-View question before its distractors from elsewhere are chosen."""
 
     trajectory_id: str
     step: int
@@ -139,13 +140,13 @@ class ViewQuestion:
 
 
 def view_steps(clear: Sequence[int], pictures: Sequence[StoredPicture]) -> list[int]:
-    """Return the steps that have three pictures up to them and one after, of those that are clear.
+    """Return the clear steps that have enough previous images and a next image.
 
-    Where one looks at a bare wall, or would next, nothing is asked.
+    Steps at which the current or the next view shows little more than a bare wall are omitted.
 
     Args:
-        clear: keyframes whose next action an instruction tells.
-        pictures: of the keyframes.
+        clear: The keyframes whose next action follows from the instruction.
+        pictures: The images of all keyframes.
     """
     fit = [step for step in clear if HISTORY - 1 <= step < len(pictures) - 1]
     return [step for step in fit if all(map(has_detail, pictures[step : step + 2]))]
@@ -162,18 +163,18 @@ def view_question(
     ranks: RankBalancer,
     rng: np.random.Generator,
 ) -> ViewQuestion:
-    """Return a question with the wrong pictures that must be taken for it.
+    """Return a Next-View question with its rendered distractors.
 
     Args:
-        trajectory_id: of the way.
-        marks: its keyframes.
-        pictures: theirs.
-        step: which is the current one.
-        grade: of ``GRADES``.
-        album: where pictures go.
-        scout: says where they may be taken.
-        ranks: says how many of them are to be more like the present picture than the right one.
-        rng: chooses.
+        trajectory_id: The ID of the trajectory.
+        marks: The keyframes of the walk.
+        pictures: The images of the keyframes.
+        step: The index of the current keyframe.
+        grade: One of ``GRADES``.
+        album: The store in which distractors are rendered.
+        scout: The sampler of stances for distractors.
+        ranks: The balancer of the number of distractors that resemble the current view most.
+        rng: The random generator.
     """
     count, right = ranks.wanted(), pictures[step + 1]
     places = [
@@ -204,19 +205,19 @@ def view_item(
     composition: str,
     oracle_version: str,
 ) -> Item | None:
-    """Return the item of a question; None where too few wrong pictures differ from the right one.
+    """Return the item of a Next-View question, or None if too few distractors are available.
 
     Args:
-        question: of ``view_question``.
-        trajectory: its way.
-        instruction: what is told.
-        pictures: of the way's keyframes.
-        elsewhere: pictures of other ways in the scene, of the same split, in the order to try.
-        other_scene: the same of other scenes.
-        letter: of the right picture.
-        rng: orders the wrong ones.
-        composition: base or extend.
-        oracle_version: of what made the moves.
+        question: The result of ``view_question``.
+        trajectory: The trajectory of the question.
+        instruction: The instruction of the item.
+        pictures: The images of all keyframes.
+        elsewhere: Images of other trajectories in the scene and split, in order of preference.
+        other_scene: Images of another scene of the split, in order of preference.
+        letter: The letter of the correct image.
+        rng: The random generator for the order of the distractors.
+        composition: "base" or "extend".
+        oracle_version: The version of the code that planned the moves.
     """
     step, now, right = question.step, pictures[question.step], pictures[question.step + 1]
     near = [n for n in (step + away for away in TEMPORAL_OFFSETS) if 0 <= n < len(pictures)]
@@ -258,7 +259,7 @@ def _choose_wrong(
     right: StoredPicture,
     metres_per_block: float,
 ) -> list[tuple[str, StoredPicture]]:
-    """Return a picture of each kind; where one has none left, one of an easier kind."""
+    """Choose a distractor for each slot, falling back to easier kinds."""
     chosen: list[tuple[str, StoredPicture]] = []
     limit = picture_difference(now, right)
     for slot in question.slots:

@@ -1,4 +1,4 @@
-"""A stream in a scene becomes trajectories: moves, keyframes and what is told of each."""
+"""Conversion of pose streams into trajectories with moves, keyframes and instructions."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -37,7 +37,7 @@ MAX_TARGET_M = 1.0  # On foot: what a text names at its end is no farther from t
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A way that may become a trajectory, before its pictures."""
+    """A candidate for a trajectory, before its images are rendered."""
 
     trajectory_id: str
     tour_id: str
@@ -50,7 +50,7 @@ class Candidate:
 
 
 class TrajectoryBuilder:
-    """Makes candidates of the streams of one scene."""
+    """A builder of candidate trajectories from the streams of one scene."""
 
     def __init__(
         self,
@@ -69,11 +69,11 @@ class TrajectoryBuilder:
     def candidates(
         self, frames: Sequence[StreamFrame], target_at: Callable[[float], str] | None = None
     ) -> list[Candidate]:
-        """Return the trajectories of one tour.
+        """Return the candidate trajectories of one tour, and count the rejected ones.
 
         Args:
-            frames: in time's order.
-            target_at: the landmark that was being gone to at a time, where that is known.
+            frames: The frames sorted by time.
+            target_at: A function from a time to the approached landmark, if known.
         """
         segments = split_into_walks(frames, self._scene.blocks_per_metre)
         made = []
@@ -112,7 +112,7 @@ class TrajectoryBuilder:
         return Candidate(name, tour_id, walk, tuple(marks), way, instructions, length, clear)
 
     def _is_clear(self, marks: Sequence[KeyframeMark], step: int, way: Route) -> bool:
-        """Whether what follows a keyframe is told: no correction, no turn that has two sides."""
+        """Return whether the instruction determines the next action, which is no unclear turn."""
         mark, turn_deg = marks[step], self._move_set.turn_deg
         if mark.move in (Move.FORWARD, Move.STOP):
             return True
@@ -123,7 +123,7 @@ class TrajectoryBuilder:
         return is_large and is_plain and way.tells_turn(place_m, side)
 
     def _leads(self, name: str, end: Stance) -> bool:
-        """Whether one who knows only the name would come to this end."""
+        """Return whether the name of the landmark alone would lead to this end position."""
         goals = self._scene.goals_at(self._scene.landmark(name))
         return bool(goals) and self._scene.distance_m(end.feet, goals) <= MAX_TARGET_M
 
@@ -146,7 +146,7 @@ class TrajectoryBuilder:
 
 
 def _settled(rooms: Sequence[str]) -> list[str]:
-    """Return the rooms' names with places of no room taken for the one before."""
+    """Return the room names, with gaps outside rooms filled by the previous room."""
     settled, last = [], next((room for room in rooms if room), "")
     for room in rooms:
         last = room or last

@@ -1,4 +1,4 @@
-"""How an agent acts: discrete moves, runs of moves, or the keys and the mouse of the game."""
+"""The action spaces: discrete moves, runs of moves, or the keyboard and mouse input of the game."""
 
 from typing import Any, Protocol
 
@@ -17,26 +17,33 @@ MAX_TURN_DEG = 45.0  # Of the mouse in a tick.
 
 
 class ActionController(Protocol):
-    """Takes actions of a space and keeps where the agent stands."""
+    """The interface of controllers that apply actions and track the agent's stance."""
 
     stance: Stance
 
     @property
     def space(self) -> spaces.Space:
-        """The space of the actions."""
+        """The Gymnasium space of the actions."""
         ...
 
     def begin(self, stance: Stance) -> None:
-        """Stand somewhere."""
+        """Place the agent at a stance."""
         ...
 
     def act(self, action: Any) -> tuple[bool, list[Stance], bool]:
-        """Return whether it was STOP, where it went, and whether something was in the way."""
+        """Apply an action.
+
+        Returns:
+            Whether the action was STOP, the stances reached, and whether the agent collided.
+        """
         ...
 
 
 class DiscreteActions:
-    """One move an action, by Habitat's numbers; a run of equal moves where the set is a macro."""
+    """A controller for single moves, or for runs of equal moves with a macro move set.
+
+    The moves have Habitat's numbers.
+    """
 
     def __init__(self, scene: VlnScene, move_set: MoveSet, sliding: bool):
         self.scene, self.move_set, self.sliding = scene, move_set, sliding
@@ -45,16 +52,20 @@ class DiscreteActions:
         self.stance = Stance(0.0, 0.0, 0.0)
 
     def begin(self, stance: Stance) -> None:
-        """Stand somewhere."""
+        """Place the agent at a stance."""
         self.stance = stance
 
     def act(self, action: Any) -> tuple[bool, list[Stance], bool]:
-        """Make a move; of a run ``(move, count - 1)``, moves until one meets something."""
+        """Make a move, or a run of moves ``(move, count - 1)`` that ends at the first collision.
+
+        Raises:
+            UsageError: If the action is not in the space.
+        """
         if not self.space.contains(action):
             moves = ", ".join(f"{int(move)} {move.name.lower()}" for move in Move)
             runs = f", then 0 to {MAX_RUN - 1} for moves beyond the first"
             more = runs if self.move_set.is_macro else ""
-            raise UsageError(f"an action is one of {self.space}, not {action!r}: {moves}{more}")
+            raise UsageError(f"action must be in {self.space}, got {action!r}: {moves}{more}")
         values = np.atleast_1d(np.asarray(action, np.int64)).tolist()
         move, count = Move(values[0]), values[1] + 1 if len(values) > 1 else 1
         if move == Move.STOP:
@@ -68,12 +79,12 @@ class DiscreteActions:
         return False, gone, False
 
     def apply(self, move: Move) -> tuple[Stance, bool]:
-        """Return where a move that is no STOP leads, and whether something was in the way."""
+        """Return the stance after a move other than STOP, and whether the move collides."""
         return apply_move(self.scene, self.stance, move, self.move_set, sliding=self.sliding)
 
 
 class ContinuousActions:
-    """A twentieth of a second of the game an action: keys held, the mouse moved, or STOP said."""
+    """A controller for game input: each action is one tick (1/20 s) of keys and mouse, or STOP."""
 
     def __init__(self, scene: VlnScene):
         self.scene = scene
@@ -89,15 +100,20 @@ class ContinuousActions:
         self.body = Body((0.0, 0.0, 0.0))
 
     def begin(self, stance: Stance) -> None:
-        """Stand somewhere, at rest."""
+        """Place the agent at rest at a stance."""
         self.stance, self.body = stance, Body(stance.feet, on_ground=True)
 
     def act(self, action: Any) -> tuple[bool, list[Stance], bool]:
-        """Turn by the mouse, yaw and pitch, then hold the keys for a tick."""
+        """Turn by the mouse input, then hold the keys for one tick.
+
+        Raises:
+            UsageError: If the action is not in the space.
+        """
         if not self.space.contains(action):
             raise UsageError(
-                f"an action has keys (0 or 1 of {', '.join(KEYS)}), camera (yaw and pitch, float32 "
-                f"from -1 to 1, times {MAX_TURN_DEG:g} degrees) and stop (0 or 1), not {action!r}"
+                f"an action must have the keys {', '.join(KEYS)} (0 or 1), camera (yaw and "
+                f"pitch as float32 from -1 to 1, in units of {MAX_TURN_DEG:g} degrees) and "
+                f"stop (0 or 1), got {action!r}"
             )
         if action["stop"]:
             return True, [], False
@@ -111,5 +127,5 @@ class ContinuousActions:
         return False, [self.stance], self.body.hit_wall
 
     def tick(self, keys: Keys, pitch_deg: float) -> Body:
-        """Return the body after a tick of keys; where it looks up or down does not matter to it."""
+        """Return the body after one tick of key input. The pitch does not affect the body."""
         return step(self.world, self.body, keys, self.scene.scale)

@@ -1,4 +1,4 @@
-"""``world2minecraft/MinecraftVLN-v0``: walk through a world as instructed and STOP at the goal."""
+"""The environment ``world2minecraft/MinecraftVLN-v0`` for following instructions to a goal."""
 
 import warnings
 from collections.abc import Collection, Sequence
@@ -36,30 +36,37 @@ SUCCESS_REWARD, STEP_REWARD = 2.5, -0.01  # As in Habitat's navigation; and each
 
 
 class VlnEnv(gymnasium.Env):
-    """An agent in a world, with an instruction.
+    """A Gymnasium environment in which an agent follows an instruction through a world.
+
+    ``reset(options={"goal": "piano"})`` samples an episode to a landmark, and
+    ``reset(options={"episode": 3})`` selects an episode of the file by its index or ``episode_id``.
 
     Args:
-        scene: the path of any world, as ``open_scene`` takes it, or an open scene.
-        episodes: of this scene: a JSONL file, a set's folder, or values, taken in their order;
-            None draws new ones by the seed of ``reset``.
-        split: of the episodes, those of one split alone.
-        actions: "discrete", or "continuous" for the game's keys and mouse at 20 ticks a second.
-        move_set: of discrete actions: "vlnce", "rxr", "block", or "macro" for runs of moves.
-        sliding: whether one goes on along what is in the way.
-        observations: some of rgb, depth, semantic, instance, pose, instruction; rgb and pose by
-            default, which every trainer reads. ``info["instruction"]`` holds the instruction.
-        eyes: size and field of view of the pictures, the light, and threads to draw with.
-        max_steps: then the episode is truncated; 500 moves or 5,000 ticks where None.
-        success_m: STOP nearer to the goal, on foot, is a success: of the reward and of SPL.
-        span_m: the shortest and the longest way of drawn episodes.
-        render_mode: "rgb_array", or "human": each step is shown at ``window.link`` in the browser.
-        body: as ``open_scene`` takes it, ``box`` and ``blocks_per_metre`` too.
-
-    ``reset(options={"goal": "piano"})`` draws an episode to a thing; ``{"episode": 3}``, a number
-    or an ``episode_id``, takes one of the file.
+        scene: The path of a world, as accepted by ``open_scene``, or an open scene.
+        episodes: Episodes of this scene in order: a JSONL file, the folder of a set, or a sequence.
+            None samples new episodes from the seed of ``reset``.
+        split: The split of the episodes to use. None uses all.
+        actions: "discrete", or "continuous" for the game's keys and mouse at 20 ticks per second.
+        move_set: The discrete move set: "vlnce", "rxr", "block", or "macro" for runs of moves.
+        sliding: Whether the agent slides along obstacles instead of stopping.
+        observations: Some of rgb, depth, semantic, instance, pose and instruction. The default is
+            rgb
+            and pose, which every trainer supports. ``info["instruction"]`` contains the
+            instruction.
+        eyes: The size, field of view and lighting of the images, and the number of rendering
+            threads.
+        max_steps: The step limit after which an episode is truncated. None means 500 moves or 5,000
+            ticks.
+        success_m: The maximum walking distance from STOP to the goal for success, in metres.
+        span_m: The shortest and longest path length of sampled episodes, in metres.
+        render_mode: "rgb_array", or "human" to show each step in the browser at ``window.link``.
+        body: The body size, as accepted by ``open_scene``.
+        box: The block range to load, as accepted by ``open_scene``.
+        blocks_per_metre: The scale, as accepted by ``open_scene``.
 
     Raises:
-        UsageError: an option cannot be. InputError: the world cannot be read.
+        UsageError: If an option is invalid.
+        InputError: If the world cannot be read.
     """
 
     metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 8}  # noqa: RUF012
@@ -84,13 +91,13 @@ class VlnEnv(gymnasium.Env):
         blocks_per_metre: float | None = None,
     ):
         if actions not in ACTIONS:
-            raise UnknownNameError("kind of actions", actions, ACTIONS)
+            raise UnknownNameError("action space", actions, ACTIONS)
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise UnknownNameError("render mode", str(render_mode), self.metadata["render_modes"])
         if max_steps is not None and max_steps < 1:
-            raise UsageError(f"max_steps is 1 or more, not {max_steps}")
+            raise UsageError(f"max_steps must be 1 or more, got {max_steps}")
         if not success_m > 0:
-            raise UsageError(f"success_m is a length above 0, in metres, not {success_m:g}")
+            raise UsageError(f"success_m must be a positive distance in metres, got {success_m:g}")
         self.scene = _opened(scene, body, box, blocks_per_metre)
         self.sampler = EpisodeSampler(
             self.scene, episodes, split, get_move_set(move_set).name, span_m
@@ -113,14 +120,15 @@ class VlnEnv(gymnasium.Env):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Begin an episode, see the class for the options.
+        """Start an episode. The class describes the options.
 
-        The same seed draws the same new episode; of given ones seed N goes on from the N-th, so
-        that environments side by side play different ones.
+        The same seed samples the same new episode. With given episodes, seed N continues from the
+        N-th
+        one, so that parallel environments play different episodes.
 
         Raises:
-            UsageError: an option is not known, or no such episode can be drawn.
-            InputError: no way leads from the start of a given episode to its goal.
+            UsageError: If an option is unknown, or no such episode can be sampled.
+            InputError: If no path leads from the start of a given episode to its goal.
         """
         super().reset(seed=seed)
         if seed is not None:
@@ -135,11 +143,11 @@ class VlnEnv(gymnasium.Env):
         return self._look(), self._info(collided=False)
 
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
-        """Act; see the class.
+        """Apply an action and return the observation, reward, termination, truncation and info.
 
         Raises:
-            UsageError: the action is not one of the space.
-            gymnasium.error.ResetNeeded: the episode is over.
+            UsageError: If the action is not in the action space.
+            gymnasium.error.ResetNeeded: If the episode is over.
         """
         if self._is_over:
             raise gymnasium.error.ResetNeeded("the episode is over; call reset() before step()")
@@ -159,10 +167,15 @@ class VlnEnv(gymnasium.Env):
         return self._look(), reward, stopped, truncated, info
 
     def render(self) -> np.ndarray | None:
-        """Return what the agent sees, uint8 [H, W, 3]; None where it is shown, or not asked for.
+        """Render the agent's view.
+
+        Returns:
+            The image as uint8 [H, W, 3] for "rgb_array". None if the view is shown in the browser,
+            or if
+            rendering is disabled.
 
         Raises:
-            gymnasium.error.ResetNeeded: no episode has begun.
+            gymnasium.error.ResetNeeded: If no episode has started.
         """
         if self.render_mode is None or not self._playing:
             return None
@@ -174,19 +187,19 @@ class VlnEnv(gymnasium.Env):
         return None
 
     def close(self) -> None:
-        """Close the window, where there is one."""
+        """Close the browser page, if it is open."""
         if self.window:
             self.window.close()
             self.window = None
 
     def _make_controller(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> ActionController:
-        """Return what takes the actions; a body elsewhere has its own."""
+        """Return the action controller. Subclasses may provide another one."""
         if by_keys:
             return ContinuousActions(self.scene)
         return DiscreteActions(self.scene, move_set, sliding)
 
     def _told(self) -> str:
-        """Return what is said beside the frame."""
+        """Return the text that is shown beside the frame."""
         lines = [self._playing.instruction.text, f"Move {self.steps} of at most {self.max_steps}."]
         if self._is_over:
             lines.append(f"This walk is over, {self._distance_m:.2f} m from the goal.")
@@ -195,7 +208,7 @@ class VlnEnv(gymnasium.Env):
     @property
     def _playing(self) -> Episode:
         if self.episode is None:
-            raise gymnasium.error.ResetNeeded("no episode has begun; call reset() first")
+            raise gymnasium.error.ResetNeeded("no episode is running; call reset() first")
         return self.episode
 
     def _look(self) -> dict[str, Any]:
@@ -232,9 +245,9 @@ class FormerIdEnv(VlnEnv):
 
 
 def warn_of_former_id(former: str, current: str) -> None:
-    """Warn whoever calls ``gymnasium.make`` with a former id."""
+    """Emit a DeprecationWarning for a former environment ID."""
     warnings.warn(
-        f"the environment id {former} is deprecated; use {current}",
+        f"the environment ID {former} is deprecated; use {current}",
         DeprecationWarning,
         stacklevel=4,  # This function, __init__, gymnasium.make, and who called it.
     )
@@ -249,5 +262,8 @@ def _opened(
     if not isinstance(scene, VlnScene):
         return open_scene(scene, body=body, box=box, blocks_per_metre=blocks_per_metre)
     if not body is box is blocks_per_metre is None:
-        raise UsageError("an open scene has its body, box and scale; leave them out")
+        raise UsageError(
+            "body, box and blocks_per_metre cannot be changed for a scene that is already "
+            "open; omit them"
+        )
     return scene

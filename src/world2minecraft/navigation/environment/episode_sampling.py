@@ -1,4 +1,4 @@
-"""Which episode comes next: of a file in its order, to a thing that was asked for, or any."""
+"""Selection of the next episode: from a file, to a requested goal, or random."""
 
 import operator
 from collections.abc import Mapping, Sequence
@@ -17,17 +17,17 @@ OPTIONS = ("episode", "goal")
 
 
 class EpisodeSampler:
-    """The episodes of a scene that an environment plays.
+    """The sequence of episodes that an environment plays in a scene.
 
     Args:
-        scene: where they are.
-        episodes: a file, a folder, values, or None for new ones.
-        split: of the given ones, those of one split.
-        move_set: of new ones.
-        span_m: of new ones, the shortest and the longest way.
+        scene: The scene.
+        episodes: A file, a folder or a sequence of episodes. None samples new episodes.
+        split: The split of the given episodes to use. None uses all.
+        move_set: The move set of new episodes.
+        span_m: The shortest and longest path length of new episodes, in metres.
 
     Raises:
-        UsageError: none of them is of the scene, or the ways cannot be.
+        UsageError: If no episode belongs to the scene, or ``span_m`` is invalid.
     """
 
     def __init__(
@@ -39,7 +39,9 @@ class EpisodeSampler:
         span_m: tuple[float, float],
     ):
         if not 0 <= span_m[0] < span_m[1]:
-            raise UsageError(f"span_m is the shortest and the longest way in metres, not {span_m}")
+            raise UsageError(
+                f"span_m must be the shortest and longest path length in metres, got {span_m}"
+            )
         self.scene, self.move_set, self.span_m = scene, move_set, span_m
         self.given = None if episodes is None else _of_scene(scene, episodes, split)
         self._next = 0
@@ -47,24 +49,24 @@ class EpisodeSampler:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The instructions of the given episodes, and all names that new ones may have."""
+        """The instructions of the given episodes, and all names that may occur in new ones."""
         given = [episode.instruction.text for episode in self.given or ()]
         things = [one.name for one in (*self.scene.landmarks, *self.scene.rooms)]
         return (*given, *things)
 
     def rewind(self, seed: int) -> None:
-        """Go on from the given episode of a number, counted round."""
+        """Continue with the given episode whose index is the seed modulo their number."""
         self._next = seed % len(self.given) if self.given else 0
 
     def sample(self, rng: np.random.Generator, options: Mapping[str, Any]) -> Episode:
         """Return the next episode.
 
         Raises:
-            UsageError: an option is not known, or no such episode is.
+            UsageError: If an option is unknown, or no such episode exists.
         """
         for name in options:
             if name not in OPTIONS:
-                raise UnknownNameError("option of reset", str(name), OPTIONS)
+                raise UnknownNameError("reset option", str(name), OPTIONS)
         if "goal" in options:
             return self._new(rng, [self._target(str(options["goal"]))])
         if "episode" in options:
@@ -77,7 +79,7 @@ class EpisodeSampler:
 
     @property
     def targets(self) -> tuple[Target, ...]:
-        """What one can be sent to."""
+        """The possible goals of new episodes."""
         if self._targets is None:
             self._targets = targets_of(self.scene)
         return self._targets
@@ -92,13 +94,16 @@ class EpisodeSampler:
         landmark = self.scene.landmark(name)
         goals = self.scene.goals_at(landmark)
         if not goals:
-            raise UsageError(f"no floor is before the {landmark.name}; name another goal")
+            raise UsageError(
+                f"the {landmark.name} has no walkable floor in front of it; choose another goal"
+            )
         return target_of(self.scene, landmark, goals)
 
     def _asked(self, wanted: Any) -> Episode:
         if self.given is None:
             raise UsageError(
-                "the option 'episode' needs episodes; make the environment with episodes=FILE"
+                "the reset option 'episode' requires an episode file; create the "
+                "environment with episodes=FILE"
             )
         if isinstance(wanted, str):
             names = {episode.episode_id: episode for episode in self.given}
@@ -111,7 +116,10 @@ class EpisodeSampler:
             number = -1
         if not 0 <= number < len(self.given):
             most = len(self.given) - 1
-            raise UsageError(f"an episode is 0 to {most}, or an episode_id, not {wanted!r}")
+            raise UsageError(
+                f"the reset option 'episode' must be an index from 0 to {most} or an episode "
+                f"ID, got {wanted!r}"
+            )
         self._next = number + 1
         return self.given[number]
 
@@ -125,7 +133,7 @@ def _of_scene(
         scenes = ", ".join(sorted({one.scene_id for one in every})) or "nothing"
         which = f"of split {split!r} " if split else ""
         raise UsageError(
-            f"none of {len(every)} episodes {which}is of the scene {scene.scene_id!r}; "
-            f"they are of {scenes}"
+            f"none of the {len(every)} episodes {which}belongs to scene "
+            f"{scene.scene_id!r}; they belong to {scenes}"
         )
     return own

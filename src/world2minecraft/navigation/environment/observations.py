@@ -1,4 +1,4 @@
-"""What an agent in the environment perceives: the senses, their spaces and their values."""
+"""The observations of the environment: sensors, their spaces and their values."""
 
 import string
 from collections.abc import Collection, Iterable
@@ -26,7 +26,15 @@ _RENDERED = {"rgb": "colour", "depth": "depth", "semantic": "semantic", "instanc
 
 @dataclass(frozen=True)
 class Eyes:
-    """How the agent sees. ``hfov_deg`` is horizontal, as Habitat has it; pixels are square."""
+    """The camera settings of an agent.
+
+    Attributes:
+        width_px: The image width in pixels.
+        height_px: The image height in pixels.
+        hfov_deg: The horizontal field of view in degrees, as in Habitat. Pixels are square.
+        light: The lighting.
+        threads: The number of rendering threads.
+    """
 
     width_px: int = 224
     height_px: int = 224
@@ -37,15 +45,15 @@ class Eyes:
     def __post_init__(self):
         if not (1 <= self.width_px <= MAX_SIDE_PX and 1 <= self.height_px <= MAX_SIDE_PX):
             raise UsageError(
-                f"a picture has 1 to {MAX_SIDE_PX} pixels a side, "
-                f"not {self.width_px}x{self.height_px}"
+                f"image width and height must be 1 to {MAX_SIDE_PX} pixels, got "
+                f"{self.width_px}x{self.height_px}"
             )
         if not 10 <= self.hfov_deg <= 150:
-            raise UsageError(f"hfov_deg is 10 to 150 degrees, not {self.hfov_deg:g}")
+            raise UsageError(f"hfov_deg must be 10 to 150 degrees, got {self.hfov_deg:g}")
 
 
 class SensorSuite:
-    """The senses that were asked for, over one scene."""
+    """The requested sensors over one scene."""
 
     def __init__(
         self, scene: VlnScene, names: Collection[str], eyes: Eyes, texts: Iterable[str] = ()
@@ -54,7 +62,9 @@ class SensorSuite:
             if name not in SENSORS:
                 raise UnknownNameError("observation", name, SENSORS)
         if not names:
-            raise UsageError(f"observations are one or more of {', '.join(SENSORS)}")
+            raise UsageError(
+                f"at least one observation is required; choose from {', '.join(SENSORS)}"
+            )
         self.scene, self.eyes = scene, eyes
         self.names = tuple(name for name in SENSORS if name in names)
         self.camera = camera_of(eyes.width_px, eyes.height_px, eyes.hfov_deg)
@@ -63,11 +73,11 @@ class SensorSuite:
 
     @property
     def space(self) -> spaces.Dict:
-        """The space of what ``look`` returns."""
+        """The space of the observations that ``look`` returns."""
         return spaces.Dict({name: self._space(name) for name in self.names})
 
     def look(self, stance: Stance, instruction: str) -> dict[str, Any]:
-        """Return what one perceives who stands so."""
+        """Return the observation at a stance."""
         seen = self._seen(stance, self._outputs) if self._outputs else {}
         if "pose" in self.names:
             seen["pose"] = self.pose(stance)
@@ -76,11 +86,11 @@ class SensorSuite:
         return {name: seen[name] for name in self.names}
 
     def rgb(self, stance: Stance) -> np.ndarray:
-        """Return the picture alone, uint8 [H, W, 3]."""
+        """Return the colour image at a stance as uint8 [H, W, 3]."""
         return self._seen(stance, ("colour",))["rgb"]
 
     def pose(self, stance: Stance) -> np.ndarray:
-        """Return the feet in metres of the room, the game's yaw and pitch: float32 [5]."""
+        """Return the pose as float32 [5]: feet in metres of the room, yaw and pitch."""
         x, y, z = self.scene.to_room_m(stance.feet)
         values = (x, y, z, wrap_yaw(stance.yaw_deg), stance.pitch_deg)
         return np.array(values, np.float32)
@@ -117,7 +127,7 @@ class SensorSuite:
         }[name]
 
     def _pose_space(self) -> spaces.Box:
-        """Return the box of the build in metres and a metre around, and of the angles."""
+        """Return the bounds of the pose: the build plus one metre, and all angles."""
         volume = self.scene.volume
         corners = np.array([volume.corner, np.add(volume.corner, volume.states.shape)], float)
         ends = self.scene.to_room_m(corners)

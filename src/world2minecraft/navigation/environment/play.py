@@ -1,4 +1,4 @@
-"""A person plays an episode in the browser, by the keyboard, and is scored like any agent."""
+"""Manual play of an episode in the browser, scored like any agent."""
 
 import webbrowser
 from typing import Any
@@ -11,21 +11,21 @@ from world2minecraft.navigation.environment.env import VlnEnv
 def play(
     env: VlnEnv, *, open_browser: bool = True, patience_s: float = PATIENCE_S
 ) -> dict[str, Any]:
-    """Let a person play the episode that was begun, and return the last ``info`` with its score.
+    """Let a person play the current episode, and return the last ``info`` with its score.
 
     Args:
-        env: with discrete actions and ``render_mode="human"``, after ``reset``.
-        open_browser: whether to open ``env.window.link``; else somebody else does.
-        patience_s: how long to wait for a key.
+        env: An environment with discrete actions and ``render_mode="human"``, after ``reset``.
+        open_browser: Whether to open ``env.window.link`` in the browser.
+        patience_s: Seconds to wait for each key press.
 
     Raises:
-        UsageError: the environment cannot be played so, or nobody pressed a key for that long.
+        UsageError: If the environment does not support manual play, or no key is pressed in time.
     """
     window = env.window
     if window is None or env.action_space.shape != ():
         raise UsageError(
-            'a person plays an environment made with render_mode="human" and single discrete '
-            "moves, after reset()"
+            "manual play requires an environment that was created with "
+            'render_mode="human" and the discrete action space, after reset()'
         )
     if open_browser:
         webbrowser.open(window.link)

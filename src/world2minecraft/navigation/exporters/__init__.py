@@ -1,8 +1,8 @@
-"""Exports of a set for trainers and simulators, in the formats that they read.
+"""Exports of a set in the formats of trainers and simulators.
 
-``set_export`` does it; ``llamafactory``, ``easyr1``, ``trl``, ``vlnce`` and ``r2r`` are the
-formats; ``options`` groups the rows, ``pictures`` checks and copies images, ``training_costs`` says
-what a recipe will take before it runs, ``loader_checks`` holds the loaders' rules.
+``set_export`` is the entry point. ``llamafactory``, ``easyr1``, ``trl``, ``vlnce`` and ``r2r``
+implement the formats. ``options`` groups the rows, ``pictures`` checks and copies images,
+``training_costs`` estimates the cost of a recipe, and ``loader_checks`` applies the loaders' rules.
 """
 
 from world2minecraft.navigation.exporters.options import ExportOptions

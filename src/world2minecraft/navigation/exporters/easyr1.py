@@ -1,15 +1,16 @@
-"""EasyR1: parquet rows, the format prompt, the reward, and the paper's GRPO recipe for each set.
+"""Export to EasyR1: Parquet rows, the format prompt, the reward, and the paper's GRPO recipe.
 
-::
+The output folder contains::
 
     mcvln_TASK_COMPOSITION_SPLIT.parquet   content, answer, images, id
     TASK_COMPOSITION_grpo.yaml             python3 -m verl.trainer.main config=THIS
-    mc.jinja                               what a prompt is set in; its blank is ``content``
+    mc.jinja                               the prompt template, which inserts ``content``
     reward.py                              compute_score
-    images/...                             where ``images`` are paths
+    images/...                             if ``images`` are paths
 
-Its loader splits a rendered prompt at ``<image>``, joins paths to ``image_dir``, drops prompts that
-are too long without a word, and drops the last batch that is not full.
+EasyR1's loader splits a rendered prompt at ``<image>``, joins paths to ``image_dir``, silently
+drops
+prompts that are too long, and drops the last incomplete batch.
 """
 
 import io
@@ -47,13 +48,14 @@ ROWS_A_GROUP = 256  # Of parquet: embedded pictures of so many rows are in memor
 
 
 def max_prompt_tokens(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> int:
-    """Return the most tokens that a prompt of a part can take.
+    """Return the maximum number of prompt tokens of a group.
 
     Raises:
-        MissingExtraError: pyarrow is not installed. UsageError: a row does not fit the recipe.
-        InputError: a picture is not as it was.
+        MissingExtraError: If pyarrow is not installed.
+        UsageError: If a row exceeds the limit of the recipe.
+        InputError: If an image is missing or has changed.
     """
-    parquet_modules("writing parquet")
+    parquet_modules("writing Parquet")
     form = read_recipe("mc.jinja")
     lengths = (
         (item, row_tokens(item, question_of(item), pictures, rule.max_pixels, form))
@@ -69,9 +71,17 @@ def write_easyr1(
     rule: ExportOptions,
     tokens: Sequence[int],
 ) -> list[ExportedFile]:
-    """Write the parts for EasyR1 and return what was written.
+    """Write the groups for EasyR1, and return the written files.
 
-    ``tokens`` are those of ``max_prompt_tokens``, by part. Raises OutputError.
+    Args:
+        root: The output folder.
+        parts: The groups of items.
+        pictures: The images of the set.
+        rule: The export options.
+        tokens: The results of ``max_prompt_tokens`` by group.
+
+    Raises:
+        OutputError: If a file cannot be written.
     """
     written = []
     for part, most in zip(parts, tokens, strict=True):
@@ -92,7 +102,7 @@ def write_easyr1(
 
 
 def _parquet(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> bytes:
-    pa, pq = parquet_modules("writing parquet")
+    pa, pq = parquet_modules("writing Parquet")
     embedded = rule.image_style == "embedded"
     kind = pa.struct({"bytes": pa.binary(), "path": pa.string()}) if embedded else pa.string()
     schema = pa.schema(
@@ -130,7 +140,7 @@ def _write_recipe(
         plan = grpo_plan(rows, gpus)
     except UsageError as error:  # The other parts may well do.
         return ExportedFile(
-            part.name, rows, notes=(f"{part.name}: has no recipe, because {error}",)
+            part.name, rows, notes=(f"{part.name}: no recipe was written, because {error}",)
         )
     text = render_recipe(
         "easyr1_grpo.yaml",
@@ -162,16 +172,17 @@ def _notes(part: ItemGroup, val: ItemGroup | None, plan: GrpoPlan) -> tuple[str,
     notes = []
     if plan.batch < GRPO_BATCH:
         notes.append(
-            f"{part.name}: {len(part.items)} rows do not fill the paper's batch of {GRPO_BATCH}; "
-            f"the recipe says {plan.batch}"
+            f"{part.name}: {len(part.items)} rows are fewer than the paper's batch size of "
+            f"{GRPO_BATCH}; the recipe uses a batch size of {plan.batch}"
         )
     if plan.left_out:
         notes.append(
-            f"{part.name}: the loader drops what fills no batch, {plan.left_out} of "
-            f"{len(part.items)} rows an epoch, others each time"
+            f"{part.name}: the loader drops the incomplete last batch, which is "
+            f"{plan.left_out} of {len(part.items)} rows in each epoch (different rows each "
+            "time)"
         )
     if val is None:
-        notes.append(f"{part.name}: the set holds nothing out; the recipe does not validate")
+        notes.append(f"{part.name}: the set has no held-out items, so the recipe does not validate")
     return tuple(notes)
 
 

@@ -1,15 +1,15 @@
-"""LLaMA-Factory: sharegpt rows, ``dataset_info.json``, and the paper's SFT recipe for each set.
+"""Export to LLaMA-Factory: sharegpt rows, ``dataset_info.json`` and the paper's SFT recipe.
 
-::
+The output folder contains::
 
-    dataset_info.json          names the sets, one for each task, composition and split
+    dataset_info.json          the names of the data sets, one per task, composition and split
     mcvln_TASK_COMPOSITION_SPLIT.json
     TASK_COMPOSITION_sft.yaml  llamafactory-cli train THIS
     ds_z3.json                 DeepSpeed ZeRO 3
     images/...
 
-Its converter drops a row whose turns do not alternate, and fails late where marks and pictures
-differ in number; relative pictures are looked for beside ``dataset_info.json``.
+LLaMA-Factory's converter drops rows whose turns do not alternate, and fails late if the numbers of
+placeholders and images differ. Relative image paths are resolved beside ``dataset_info.json``.
 """
 
 import json
@@ -50,10 +50,11 @@ TAGS = {
 
 
 def max_row_tokens(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> int:
-    """Return the most tokens that a row of a part can take.
+    """Return the maximum number of tokens of a group's rows.
 
     Raises:
-        UsageError: a row does not fit the recipe. InputError: a picture is not as it was.
+        UsageError: If a row exceeds the limit of the recipe.
+        InputError: If an image is missing or has changed.
     """
     lengths = (
         (item, row_tokens(item, question_of(item), pictures, rule.max_pixels, LETTER_ALONE))
@@ -69,9 +70,17 @@ def write_llamafactory(
     rule: ExportOptions,
     tokens: Sequence[int],
 ) -> list[ExportedFile]:
-    """Write the parts for LLaMA-Factory and return what was written.
+    """Write the groups for LLaMA-Factory, and return the written files.
 
-    ``tokens`` are those of ``max_row_tokens``, by part. Raises OutputError.
+    Args:
+        root: The output folder.
+        parts: The groups of items.
+        pictures: The images of the set.
+        rule: The export options.
+        tokens: The results of ``max_row_tokens`` by group.
+
+    Raises:
+        OutputError: If a file cannot be written.
     """
     written = []
     for part, most in zip(parts, tokens, strict=True):
@@ -91,7 +100,7 @@ def write_llamafactory(
 
 
 def row_of(item: Item) -> dict[str, Any]:
-    """Return the row of an item."""
+    """Return the sharegpt row of an item."""
     question = question_of(item)
     return {
         "messages": [
@@ -104,13 +113,15 @@ def row_of(item: Item) -> dict[str, Any]:
 
 
 def rows_left_out(part: ItemGroup, rule: ExportOptions) -> tuple[str, ...]:
-    """Return a note where ``max_samples`` leaves rows of a part out."""
+    """Return a note about the rows that ``max_samples`` omits, if any."""
     left_out = len(part.items) - rule.max_samples
     if not rule.max_samples or left_out <= 0:
         return ()
     return (
-        f"{part.name}: max_samples {rule.max_samples} leaves {left_out} rows out, the same in "
-        "every epoch, as in the paper; --max-samples 0 takes all",
+        (
+            f"{part.name}: --max-samples {rule.max_samples} omits the same {left_out} rows in "
+            "every epoch, as in the paper; use --max-samples 0 for all rows"
+        ),
     )
 
 

@@ -1,7 +1,7 @@
-"""The options of an export, the groups of items that it writes, and the report of each file.
+"""Export options, item groups and the report of each exported file.
 
-LLaMA-Factory takes the *first* ``max_samples`` rows of a file, so the order must not matter: it is
-that of a hash of the seed and the item's id, the same whatever order the items came in.
+LLaMA-Factory uses the *first* ``max_samples`` rows of a file, so rows are sorted by a hash of the
+seed and the item ID. The order of the input items does not matter.
 """
 
 import hashlib
@@ -19,13 +19,17 @@ TRAIN_SPLIT, VALIDATION_SPLITS = "train", ("val_unseen", "val_seen")
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """The choices of an export.
+    """The options of an export.
 
-    tasks, compositions: those wanted; what a set does not hold is passed over. model: a name on
-    the hub or a path. max_samples: rows of one SFT run, the paper's 1,000; 0 for all. gpus: that
-    the recipe is written for; 1 for SFT, whose batch of 2 the paper's is, and 8 for EasyR1 where
-    left out. max_pixels: of a picture, by LLaMA-Factory's examples. image_style: of EasyR1's
-    parquet, ``paths`` beside ``images/`` or ``embedded`` in it. seed: of the order of rows.
+    Attributes:
+        tasks: The tasks to export. Tasks that a set does not contain are skipped.
+        compositions: The compositions to export. Missing ones are skipped.
+        model: The model's name on the Hugging Face Hub, or a folder.
+        max_samples: The number of rows of one SFT run, 1,000 in the paper. 0 means all rows.
+        gpus: The number of GPUs of the recipe. None means 1 for SFT and 8 for EasyR1.
+        max_pixels: The maximum number of pixels of an image, as in LLaMA-Factory's examples.
+        image_style: "paths" for image files, or "embedded" for images within EasyR1's Parquet file.
+        seed: The seed of the row order.
     """
 
     tasks: tuple[str, ...] = TASKS
@@ -47,25 +51,32 @@ class ExportOptions:
                 if name not in known:
                     raise UnknownNameError(kind, name, known)
         if not 28 * 28 <= self.max_pixels <= 1 << 24:
-            raise UsageError(f"max_pixels is 784 to 16777216, not {self.max_pixels}")
+            raise UsageError(f"--max-pixels must be 784 to 16777216, got {self.max_pixels}")
         if self.gpus is not None and not 1 <= self.gpus <= 4096:
-            raise UsageError(f"gpus is 1 to 4096, not {self.gpus}")
+            raise UsageError(f"--gpus must be 1 to 4096, got {self.gpus}")
         if self.max_samples < 0:
-            raise UsageError(f"max_samples is 0 (all rows) or more, not {self.max_samples}")
+            raise UsageError(f"--max-samples must be 0 (all rows) or more, got {self.max_samples}")
         if not self.model.strip() or not self.model.isprintable():
-            raise UsageError("model is a name such as Qwen/Qwen2.5-VL-3B-Instruct, or a path")
+            raise UsageError(
+                "--model must be a model name such as Qwen/Qwen2.5-VL-3B-Instruct, or a folder"
+            )
 
     def as_data(self) -> dict[str, Any]:
-        """Return the choices as JSON has them."""
+        """Return the options as JSON data."""
         return {key: list(v) if isinstance(v, tuple) else v for key, v in asdict(self).items()}
 
 
 @dataclass(frozen=True)
 class ExportedFile:
-    """One file of rows, and what the recipe beside it will do with them.
+    """A file of exported rows, with the cost of training on it.
 
-    ``tokens`` are the most that a row can take; ``steps`` of the optimizer, 0 where nothing
-    trains; ``notes`` say what a user would not expect.
+    Attributes:
+        name: The name of the data set.
+        rows: The number of rows.
+        command: The training command, or "".
+        steps: The number of optimizer steps, 0 if the file is not for training.
+        tokens: The maximum number of tokens of a row.
+        notes: Remarks that the user should know.
     """
 
     name: str
@@ -78,7 +89,7 @@ class ExportedFile:
 
 @dataclass(frozen=True)
 class ItemGroup:
-    """The items of one task, composition and split, in the order of the rows."""
+    """The items of one task, composition and split, in row order."""
 
     task: str
     composition: str
@@ -87,20 +98,22 @@ class ItemGroup:
 
     @property
     def stem(self) -> str:
-        """What it shares with the other splits of its task and composition."""
+        """The part of the name shared by all splits of the task and composition."""
         return f"{self.task}_{self.composition}"
 
     @property
     def name(self) -> str:
-        """What its file and its data set are called."""
+        """The name of the data set and of its file."""
         return f"mcvln_{self.stem}_{self.split}"
 
 
 def group_items(items: Iterable[Item], rule: ExportOptions) -> list[ItemGroup]:
-    """Return the parts that hold an item; ``combined`` only where there are both others.
+    """Group items by task, composition and split, omitting empty groups.
+
+    The composition ``combined`` is included only if the set contains both others.
 
     Raises:
-        UsageError: none of the items is of a task and composition that are wanted.
+        UsageError: If no item has a requested task and composition.
     """
     every = list(items)
     both = {item.composition for item in every} >= {"base", "extend"}
@@ -124,20 +137,21 @@ def group_items(items: Iterable[Item], rule: ExportOptions) -> list[ItemGroup]:
     if not parts:
         held = sorted({f"{item.composition} {item.task}" for item in every})
         raise UsageError(
-            f"the set has no item of {' or '.join(rule.tasks)} that is "
-            f"{' or '.join(rule.compositions)}; it has {', '.join(held) or 'none at all'}"
+            f"the set has no {' or '.join(rule.tasks)} items of composition "
+            f"{' or '.join(rule.compositions)}; it contains "
+            f"{', '.join(held) or 'no items'}"
         )
     return parts
 
 
 def validation_group(parts: Sequence[ItemGroup], train: ItemGroup) -> ItemGroup | None:
-    """Return what a training part is to be validated on: scenes not seen, else ways not seen."""
+    """Return the validation group of a training group: val_unseen, else val_seen, else None."""
     beside = {part.split: part for part in parts if part.stem == train.stem}
     return next((beside[split] for split in VALIDATION_SPLITS if split in beside), None)
 
 
 def shuffle_items(items: Iterable[Item], seed: int) -> tuple[Item, ...]:
-    """Return items in an order that depends on the seed and their ids alone."""
+    """Return items in an order that depends only on the seed and the item IDs."""
 
     def key(item: Item) -> bytes:
         return hashlib.sha256(f"{seed}:{item.item_id}".encode()).digest()

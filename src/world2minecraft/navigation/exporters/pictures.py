@@ -1,6 +1,6 @@
-"""The pictures of a set: each is checked once, before a trainer would stumble over it.
+"""The images of a set, each verified once before it is exported.
 
-Trainers only warn of a missing file, and fail hours later over a damaged one.
+Trainers only warn about missing images, and fail hours later on damaged ones.
 """
 
 import hashlib
@@ -19,7 +19,7 @@ FORMATS = ("JPEG", "PNG", "WEBP")
 
 
 class SetPictures:
-    """The pictures under the folder of a set."""
+    """The images in the folder of a set."""
 
     def __init__(self, folder: Path):
         self.folder = folder
@@ -27,23 +27,34 @@ class SetPictures:
         self._copied: set[str] = set()
 
     def size(self, name: str, sha256: str) -> tuple[int, int]:
-        """Return the width and height in pixels of a picture, once it was found to be whole.
+        """Return the width and height of an image in pixels, after verifying the file.
 
         Raises:
-            InputError: it is not there. DamagedFileError: its sum is another, or it cannot be
-                decoded. LimitError: it is too large.
+            InputError: If the file is missing.
+            DamagedFileError: If its SHA-256 differs, or it cannot be decoded.
+            LimitError: If it is too large.
         """
         if name not in self._sizes:
             self._sizes[name] = _checked_size(self.folder / name, self.read(name), sha256)
         return self._sizes[name]
 
     def read(self, name: str) -> bytes:
-        """Return the bytes of a picture. Raises InputError, LimitError."""
+        """Return the bytes of an image.
+
+        Raises:
+            InputError: If the file cannot be read.
+            LimitError: If the file is too large.
+        """
         check_image_name(name)
         return read_bytes(self.folder / name, MAX_BYTES)
 
     def copy(self, name: str, root: Path) -> None:
-        """Copy a picture under its name to another folder, once. Raises OutputError too."""
+        """Copy an image to another folder under the same name, unless it was already copied.
+
+        Raises:
+            InputError: If the image cannot be read.
+            OutputError: If the copy cannot be written.
+        """
         if name not in self._copied:
             data, target = self.read(name), root / name
             if not target.is_file() or target.read_bytes() != data:
@@ -53,12 +64,17 @@ class SetPictures:
 
 def _checked_size(path: Path, data: bytes, sha256: str) -> tuple[int, int]:
     if hashlib.sha256(data).hexdigest() != sha256:
-        raise DamagedFileError(path, "is not the picture that the items were made of (its sha256)")
+        raise DamagedFileError(
+            path,
+            "the image's SHA-256 does not match the one recorded in the items; build the set again",
+        )
     try:
         with Image.open(io.BytesIO(data), formats=FORMATS) as image:
             if image.width * image.height > MAX_PIXELS:
-                raise LimitError(path, f"has {image.width} x {image.height} pixels; too many")
+                raise LimitError(
+                    path, f"image of {image.width} x {image.height} pixels exceeds the size limit"
+                )
             image.load()
             return image.size
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise DamagedFileError(path, f"is no picture that trainers read ({error})") from error
+        raise DamagedFileError(path, f"not an image that trainers can read ({error})") from error

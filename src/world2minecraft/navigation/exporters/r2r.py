@@ -1,14 +1,15 @@
-"""R2R-like JSON: paths over named viewpoints, and the graph that they make of each scene.
+"""Export to R2R-style JSON: paths over named viewpoints, and the navigation graph of each scene.
 
-::
+The output folder contains::
 
     R2R_SPLIT.json         [{distance, scan, path_id, path, heading, instructions, ...}]
-    connectivity/SCENE_connectivity.json   viewpoints, poses, neighbours: what R2R's scripts read
-    viewpoints.json        of each viewpoint its place and the pictures taken there
+    connectivity/SCENE_connectivity.json   viewpoints, poses and neighbours, for R2R's scripts
+    viewpoints.json        the position and the images of each viewpoint
 
-A viewpoint is a place where a picture was taken; turns on the spot share one. Headings are R2R's:
-0 looks north, clockwise, radians. Places are metres from the world's origin, z up: x is east and y
-north.
+A viewpoint is a position where an image was taken. Turns on the spot share one viewpoint. As in
+R2R,
+heading 0 is north, and headings increase clockwise in radians. Positions are in metres from the
+world's origin, with x east, y north and z up.
 """
 
 import math
@@ -28,10 +29,10 @@ _Place = tuple[float, float, float]
 
 
 def write_r2r(root: Path, trajectories: Sequence[Trajectory]) -> list[ExportedFile]:
-    """Write trajectories as R2R writes its paths and return what was written.
+    """Write trajectories as R2R paths, and return the written files.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the folder cannot be written.
     """
     graph = _Graph()
     entries: dict[str, list[dict[str, Any]]] = {split: [] for split in SPLITS}
@@ -51,7 +52,7 @@ def write_r2r(root: Path, trajectories: Sequence[Trajectory]) -> list[ExportedFi
 
 
 def heading(yaw_deg: float) -> float:
-    """Return the game's yaw as R2R's heading, 0 to 2 pi.
+    """Convert the game's yaw in degrees to R2R's heading in radians, 0 to 2 pi.
 
     Example:
         >>> heading(180.0), round(heading(-90.0), 4)  # North, east.
@@ -73,14 +74,14 @@ def _entry(one: Trajectory, number: int, path: list[str]) -> dict[str, Any]:
 
 
 class _Graph:
-    """Viewpoints by scene and place, and which were walked between."""
+    """A navigation graph of viewpoints by scene and position."""
 
     def __init__(self):
         self.scenes: dict[str, dict[_Place, dict[str, Any]]] = {}
         self._edges: dict[str, set[tuple[int, int]]] = {}
 
     def add(self, one: Trajectory) -> list[str]:
-        """Take a trajectory's viewpoints in and return their ids in its order."""
+        """Add the viewpoints of a trajectory, and return their IDs in order."""
         views = self.scenes.setdefault(one.scene_id, {})
         edges = self._edges.setdefault(one.scene_id, set())
         way: list[int] = []
@@ -104,7 +105,7 @@ class _Graph:
         return views.setdefault((x, y, z), fresh)
 
     def connectivity(self, scene: str) -> list[dict[str, Any]]:
-        """Return a scene's graph as R2R's ``*_connectivity.json`` has it."""
+        """Return a scene's graph in the format of R2R's ``*_connectivity.json``."""
         views, edges = list(self.scenes[scene].values()), self._edges[scene]
         rows = []
         for view in views:
@@ -125,7 +126,7 @@ class _Graph:
         return rows
 
     def viewpoints(self) -> dict[str, dict[str, Any]]:
-        """Return each viewpoint's place and pictures, by its id."""
+        """Return the position and images of each viewpoint by its ID."""
         return {
             view["id"]: {"scan": scene, "position": view["position"], "images": view["images"]}
             for scene, views in self.scenes.items()

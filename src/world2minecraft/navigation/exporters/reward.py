@@ -1,6 +1,6 @@
-"""The reward of an answer, by EasyR1's rules and for TRL: nine parts right, one part form.
+"""The reward of an answer for EasyR1 and TRL: 90 percent accuracy and 10 percent format.
 
-This file stands alone: exports put it beside the data, and trainers import it from there.
+This file is self-contained. Exports copy it beside the data, and trainers import it from there.
 """
 
 import re
@@ -15,7 +15,7 @@ _LETTER = re.compile(r"\(?([A-Ha-h])\)?(?:[.:)]|\s|$)")
 
 
 def answered(response: str) -> str:
-    """Return the letter that a response ends with in ``<answer>``, or nothing."""
+    """Return the letter within the last ``<answer>`` tag of a response, or ""."""
     end = response.rfind("</answer>")
     start = response.rfind("<answer>", 0, max(end, 0))
     letter = _LETTER.match(response[start + len("<answer>") : end].strip()) if start >= 0 else None
@@ -25,7 +25,7 @@ def answered(response: str) -> str:
 def score(
     response: str, ground_truth: str, format_weight: float = FORMAT_WEIGHT
 ) -> dict[str, float]:
-    """Return ``overall``, which trains, with ``format`` and ``accuracy``, each 0 to 1."""
+    """Return the reward ``overall`` with its parts ``format`` and ``accuracy``, each 0 to 1."""
     accuracy = float(answered(response) == ground_truth.strip().upper())
     form = float(_FORM.fullmatch(response) is not None)
     overall = (1 - format_weight) * accuracy + format_weight * form
@@ -33,11 +33,11 @@ def score(
 
 
 def compute_score(reward_inputs: Any, format_weight: float = FORMAT_WEIGHT) -> Any:
-    """Score a batch, or the one response that an older EasyR1 gives at a time.
+    """Compute the rewards of a batch, or of a single response for older versions of EasyR1.
 
     Args:
-        reward_inputs: a list of {"response", "response_length", "ground_truth"}, or one of them.
-        format_weight: the share of the form.
+        reward_inputs: A list of {"response", "response_length", "ground_truth"}, or one such entry.
+        format_weight: The weight of the format reward.
     """
     if isinstance(reward_inputs, dict):
         return compute_score([reward_inputs], format_weight)[0]

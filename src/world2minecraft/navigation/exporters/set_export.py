@@ -1,4 +1,4 @@
-"""From a set's folder to a folder that a trainer or simulator takes as it is."""
+"""Export of a set into a folder for a trainer or simulator."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -31,13 +31,13 @@ TITLES = {
     "easyr1": "MinecraftVLN for EasyR1",
     "trl": "MinecraftVLN for TRL",
     "vlnce": "MinecraftVLN as VLN-CE episodes",
-    "r2r": "MinecraftVLN as R2R writes its paths",
+    "r2r": "MinecraftVLN as R2R paths",
 }
 
 
 @dataclass(frozen=True)
 class ExportResult:
-    """What an export wrote."""
+    """The files written by an export."""
 
     out: Path
     format: str
@@ -45,7 +45,7 @@ class ExportResult:
 
     @property
     def notes(self) -> list[str]:
-        """What a user would not expect, in sentences."""
+        """The notes of all files."""
         return [note for one in self.written for note in one.notes]
 
 
@@ -57,22 +57,25 @@ def export_set(
     *,
     progress: Progress = no_progress,
 ) -> ExportResult:
-    """Write a set in one of ``FORMATS``. The same set and choices give the same bytes.
+    """Export a set in one of ``FORMATS``. The same set and options give identical files.
 
-    All is read and checked before the first file is written.
+    The whole set is read and checked before the first file is written.
 
     Args:
-        folder: of the set: ``items.jsonl`` and ``images/``; ``episodes.jsonl`` for vlnce,
-            ``trajectories.jsonl`` for r2r.
-        format: llamafactory, easyr1, trl, vlnce or r2r.
-        out: the folder to write; new, empty, or of an export by the same choices.
-        rule: the choices that the format leaves open.
-        progress: told when a part of the work is done.
+        folder: The folder of the set with ``items.jsonl`` and ``images/``, and ``episodes.jsonl``
+            for
+            vlnce or ``trajectories.jsonl`` for r2r.
+        format: "llamafactory", "easyr1", "trl", "vlnce" or "r2r".
+        out: The output folder, which must be new, empty, or an export with the same options.
+        rule: The options. None uses the defaults.
+        progress: Called after each part of the work.
 
     Raises:
-        UnknownNameError: there is no such format. ConflictError: the folder holds something else.
-        UsageError: there is nothing to export, or it does not fit the recipe.
-        InputError: the set cannot be read. OutputError: the folder cannot be written.
+        UnknownNameError: If the format is unknown.
+        ConflictError: If the folder contains other files.
+        UsageError: If there is nothing to export, or a row exceeds the limits of the recipe.
+        InputError: If the set cannot be read.
+        OutputError: If the folder cannot be written.
     """
     source, root, chosen = Path(folder), Path(out), rule or ExportOptions()
     if format not in FORMATS:
@@ -92,7 +95,7 @@ def export_set(
 def _plan_export(
     source: Path, format: str, rule: ExportOptions
 ) -> Callable[[Path], list[ExportedFile]]:
-    """Read and check a set, and return what writes it to a folder."""
+    """Read and check a set, and return the function that writes it to a folder."""
     if format in TRAINERS:
         most_tokens, write = TRAINERS[format]
         parts, pictures = group_items(read_items(source), rule), SetPictures(source)
@@ -106,14 +109,15 @@ def _plan_export(
     walks = read_trajectories(source) if format == "r2r" else []
     if any(one.instructions for one in walks):
         return lambda root: write_r2r(root, walks)
-    missing = "episodes" if format == "vlnce" else "walks with instructions"
+    missing = "any episodes" if format == "vlnce" else "any walks with instructions"
     raise UsageError(
-        f"{source} holds no {missing}, which {format} tells of; w2m vln build makes them"
+        f"{source} does not contain {missing}, which the format {format} requires; build "
+        "it with w2m vln build"
     )
 
 
 def _check_folder(root: Path, choices: dict[str, Any]) -> None:
-    """Refuse a folder that holds something other than this very export."""
+    """Check that a folder is empty or contains an export with the same options."""
     record = root / RECORD
     if record.is_file():
         data = read_json(record)
@@ -126,10 +130,14 @@ def _check_folder(root: Path, choices: dict[str, Any]) -> None:
                 if existing.get(k) != v
             ]
             raise ConflictError(
-                root, f"holds an export by other choices ({', '.join(other)}); name another folder"
+                root,
+                f"the folder contains an export with other options ({', '.join(other)}); "
+                "choose another folder",
             )
     elif root.is_dir() and any(root.iterdir()):
-        raise ConflictError(root, "is not empty and no export; name another folder")
+        raise ConflictError(
+            root, "the folder is not empty and does not contain an export; choose another folder"
+        )
 
 
 def _readme(format: str, written: list[ExportedFile]) -> str:
@@ -149,25 +157,27 @@ def _readme(format: str, written: list[ExportedFile]) -> str:
 
 _MORE = {
     "llamafactory": (
-        "Rows are shuffled, because `max_samples` takes the first ones of a file. One `<image>` "
-        "stands for each picture. To train on several sets at once, use a `combined` file: a list "
-        "of names would take `max_samples` of each."
+        "Rows are shuffled, because `max_samples` selects the first rows of a file. Each "
+        "`<image>` is the placeholder of one image. To train on several sets at once, use "
+        "a `combined` file, because a list of names would use `max_samples` rows of each "
+        "set."
     ),
     "easyr1": (
-        "Run EasyR1 from this folder: paths in the recipe begin here. The reward is nine parts "
-        "the right letter and one part the form that `mc.jinja` asks for."
+        "Run EasyR1 from this folder, because paths in the recipe are relative to it. The "
+        "reward is 90 percent for the correct letter and 10 percent for the format that "
+        "`mc.jinja` requests."
     ),
     "trl": (
-        "`sft.py` and `grpo.py` are whole: read them, change them. `--cpu --max-steps 3` tries "
-        "them out without a GPU."
+        "`sft.py` and `grpo.py` are complete scripts that you can read and modify. Use "
+        "`--cpu --max-steps 3` to try them without a GPU."
     ),
     "vlnce": (
-        "Stages are `SCENE/stages/SCENE.glb`: `w2m convert SCENE_PATH SCENE.habitat` writes them, "
-        "in the same metres. `names.json` tells which number is which episode. "
-        "`geodesic_distance` is the length of the expert's way."
+        "Stages are at `SCENE/stages/SCENE.glb`. Write them with `w2m convert SCENE_PATH "
+        "SCENE.habitat`, which uses the same coordinates in metres. `names.json` maps "
+        "numbers to episodes. `geodesic_distance` is the length of the expert path."
     ),
     "r2r": (
-        "`viewpoints.json` tells where each viewpoint is and which pictures were taken there; "
-        "`connectivity/` is the graph of each scene."
+        "`viewpoints.json` contains the position and images of each viewpoint, and "
+        "`connectivity/` the graph of each scene."
     ),
 }

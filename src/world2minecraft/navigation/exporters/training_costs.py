@@ -1,7 +1,8 @@
-"""What a training recipe costs: steps by the trainers' own loops, tokens a row for Qwen2.5-VL.
+"""Training costs: optimizer steps as in the trainers' own loops, and tokens per row for Qwen2.5-VL.
 
-One token stands for 28 x 28 pixels (14 a patch, two by two merged). A text has at most as many
-tokens as bytes, because the tokenizer's alphabet is the bytes: a row that fits by this bound fits.
+An image token represents 28 x 28 pixels (patches of 14 pixels, merged two by two). A text has at
+most as many tokens as bytes, because the tokenizer is byte-level, so a row that fits by this upper
+bound always fits.
 """
 
 import math
@@ -25,9 +26,17 @@ CHAT_TOKENS = 64  # A system prompt, roles and the ends of turns: 30 by the mode
 
 @dataclass(frozen=True)
 class GrpoPlan:
-    """``batch`` prompts a step, of which an epoch has ``steps_an_epoch``; ``left_out`` do not fit.
+    """The batch size and step counts of GRPO training.
 
-    Which rows are left out changes from epoch to epoch: the loader shuffles, then drops the rest.
+    The loader shuffles the rows in each epoch and drops the incomplete last batch, so the dropped
+    rows
+    change from epoch to epoch.
+
+    Attributes:
+        batch: The number of prompts per step.
+        steps_an_epoch: The number of steps per epoch.
+        steps: The total number of steps.
+        left_out: The number of rows dropped per epoch.
     """
 
     batch: int
@@ -37,7 +46,7 @@ class GrpoPlan:
 
 
 def sft_steps(rows: int, max_samples: int, gpus: int) -> int:
-    """Return the optimizer's steps of the SFT recipe.
+    """Return the number of optimizer steps of the SFT recipe.
 
     Example:
         >>> sft_steps(1151, 1000, 1), sft_steps(249, 1000, 8)
@@ -49,14 +58,15 @@ def sft_steps(rows: int, max_samples: int, gpus: int) -> int:
 
 
 def grpo_plan(rows: int, gpus: int) -> GrpoPlan:
-    """Return how EasyR1 goes through rows when a rollout batch is one batch of the paper.
+    """Return the batch size and steps of EasyR1's GRPO training.
 
-    Its loader drops what does not fill a batch, and its own default of 512 leaves a set of the
-    paper's Base without a single one; the batch is the paper's 128, or less where the rows are
-    fewer, always a multiple of the GPUs.
+    The loader drops incomplete batches, and EasyR1's default batch size of 512 would leave no batch
+    of
+    the paper's Base set. The batch size is therefore the paper's 128, or less for fewer rows, and a
+    multiple of the number of GPUs.
 
     Raises:
-        UsageError: there are fewer rows than GPUs.
+        UsageError: If there are fewer rows than GPUs.
 
     Example:
         >>> grpo_plan(249, 8)
@@ -65,19 +75,19 @@ def grpo_plan(rows: int, gpus: int) -> GrpoPlan:
     batch = min(GRPO_BATCH, rows) // gpus * gpus
     if batch == 0:
         raise UsageError(
-            f"{rows} rows do not fill one batch on {gpus} GPUs; say --gpus {rows or 1}"
+            f"{rows} rows do not fill one batch on {gpus} GPUs; set --gpus to {rows or 1} or fewer"
         )
     steps = rows // batch
     return GrpoPlan(batch, steps, steps * GRPO_EPOCHS, rows - steps * batch)
 
 
 def image_tokens(width_px: int, height_px: int, max_pixels: int) -> int:
-    """Return how many tokens a picture takes, the marks around it not counted.
+    """Return the number of tokens of an image, without the enclosing special tokens.
 
     Args:
-        width_px: its width.
-        height_px: its height.
-        max_pixels: the trainer shrinks what has more.
+        width_px: The image width in pixels.
+        height_px: The image height in pixels.
+        max_pixels: The number of pixels above which the trainer downscales an image.
 
     Example:
         >>> image_tokens(640, 360, 262_144), image_tokens(1280, 720, 262_144)
@@ -101,7 +111,11 @@ def image_tokens(width_px: int, height_px: int, max_pixels: int) -> int:
 def row_tokens(
     item: Item, question: Question, pictures: SetPictures, max_pixels: int, more_text: str = ""
 ) -> int:
-    """Return the most tokens that an item's row can take. Raises what ``Pictures.size`` raises."""
+    """Return an upper bound of the number of tokens of an item's row.
+
+    Raises:
+        InputError: If an image is missing or has changed.
+    """
     sizes = (pictures.size(name, item.sha256.get(name, "")) for name in question.images)
     shown = sum(image_tokens(*size, max_pixels) + 2 for size in sizes)
     text = unicodedata.normalize("NFC", question.text.replace(IMAGE, "") + more_text)
@@ -109,15 +123,17 @@ def row_tokens(
 
 
 def check_longest(lengths: Iterable[tuple[Item, int]], limit: int, what: str) -> int:
-    """Return the greatest length.
+    """Return the maximum row length in tokens.
+
+    Trainers silently truncate or drop rows that exceed the limit.
 
     Raises:
-        UsageError: it exceeds the limit; trainers would cut or drop such a row without a word.
+        UsageError: If a row exceeds the limit.
     """
     item, most = max(lengths, key=lambda pair: pair[1])
     if most > limit:
         raise UsageError(
-            f"item {item.item_id} takes up to {most:,} tokens, over the {limit:,} of {what}; "
-            "export with --max-pixels set lower"
+            f"item {item.item_id} needs up to {most:,} tokens, more than the {limit:,} of "
+            f"{what}; export with a smaller --max-pixels"
         )
     return most

@@ -1,13 +1,13 @@
-"""TRL: JSONL rows with typed content, and two plain scripts with the paper's two recipes.
+"""Export to TRL: JSONL rows with typed content, and scripts with the paper's two recipes.
 
-::
+The output folder contains::
 
     mcvln_TASK_COMPOSITION_SPLIT.jsonl   prompt, completion, images, answer, id
     sft.py, grpo.py                      python sft.py mcvln_TASK_COMPOSITION_train.jsonl
     reward.py
     images/...
 
-The words are those of the other exports, so SFT here and with LLaMA-Factory has the same losses.
+The texts equal those of the other exports, so SFT has the same losses as with LLaMA-Factory.
 """
 
 import json
@@ -47,10 +47,17 @@ def write_trl(
     rule: ExportOptions,
     tokens: Sequence[int],
 ) -> list[ExportedFile]:
-    """Write the parts for TRL and return what was written.
+    """Write the groups for TRL, and return the written files.
 
-    ``tokens`` are those of ``llamafactory.most_tokens``, by part: the rows say the same. Raises
-    OutputError.
+    Args:
+        root: The output folder.
+        parts: The groups of items.
+        pictures: The images of the set.
+        rule: The export options.
+        tokens: The results of ``llamafactory.max_row_tokens`` by group, which apply here as well.
+
+    Raises:
+        OutputError: If a file cannot be written.
     """
     written = []
     for part, most in zip(parts, tokens, strict=True):
@@ -69,7 +76,7 @@ def write_trl(
 
 
 def row_of(item: Item) -> dict[str, Any]:
-    """Return the row of an item: a prompt of typed parts, the letter, the pictures' paths."""
+    """Return the row of an item: a prompt with typed parts, the answer and the image paths."""
     question = question_of(item)
     content = [
         {"type": "text", "text": value} if kind == "text" else {"type": "image"}

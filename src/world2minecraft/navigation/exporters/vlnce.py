@@ -1,13 +1,13 @@
-"""VLN-CE: ``SPLIT/SPLIT.json.gz`` and ``SPLIT/SPLIT_gt.json.gz``, as VLN-CE-v1 reads them.
+"""Export to VLN-CE: ``SPLIT/SPLIT.json.gz`` and ``SPLIT/SPLIT_gt.json.gz`` in the format VLN-CE-v1.
 
-Its loader makes an object of each episode by its keys, so no other key may stand there; what is
-ours goes into ``info``. ``instruction_tokens`` are numbers of the one vocabulary of all splits,
-filled up with 0 to 200, and an instruction that is longer is cut, as in R2R's.
+VLN-CE's loader creates an object from the keys of each episode, so additional keys are only allowed
+in ``info``. ``instruction_tokens`` are indices into one vocabulary for all splits, padded with 0 or
+truncated to 200 tokens as in R2R.
 
-Positions are in Habitat's metres: y up, x east, z south, where our exported stages stand. A stage
-of ``w2m convert SCENE NAME.habitat`` stands by the scene's own ``block_to_room``, which is read
-from the ``scene.json`` beside its blocks. A place that has none is taken from its world's origin,
-by the length of a block.
+Positions are in Habitat's metres, with x east, y up and z south. They match the stages written by
+``w2m convert SCENE NAME.habitat``, which are placed by ``block_to_room`` from the scene's
+``scene.json``. Scenes without this file are placed at their world's origin and scaled by the block
+size.
 """
 
 import gzip
@@ -35,15 +35,15 @@ SPARSE_M = 2.0  # Between two points of a reference path, about as far apart as 
 
 
 def block_to_habitat(scene: str, set_folder: Path, metres_per_block: float) -> np.ndarray:
-    """Return the 4x4 from world blocks to a scene's stage in Habitat.
+    """Return the 4x4 transform from world blocks to a scene's stage in Habitat.
 
     Args:
-        scene: the path that an episode says, see ``resolve_scene_path``.
-        set_folder: of the set.
-        metres_per_block: of a scene without a ``scene.json``.
+        scene: The scene path of an episode, as accepted by ``resolve_scene_path``.
+        set_folder: The folder of the set.
+        metres_per_block: The scale of a scene without a ``scene.json``.
 
     Raises:
-        DamagedFileError: there is a ``scene.json``, and it says no transform.
+        DamagedFileError: If ``scene.json`` contains no valid transform.
     """
     place = resolve_scene_path(scene, set_folder)
     for folder in (place, place / "build", place.parent):
@@ -55,13 +55,13 @@ def block_to_habitat(scene: str, set_folder: Path, metres_per_block: float) -> n
 
 
 def positions(to_habitat: np.ndarray, feet: Iterable[tuple[float, float, float]]) -> list:
-    """Return places in Habitat's metres, to a tenth of a millimetre, as JSON has them."""
+    """Convert block positions to Habitat's metres, rounded to 0.1 mm, as nested lists."""
     points = np.array(list(feet), np.float64).reshape(-1, 3)
     return (np.round(apply(to_habitat, points), 4) + 0.0).tolist()
 
 
 def rotation(stance: Stance) -> list[float]:
-    """Return a heading as Habitat's quaternion x, y, z, w about y; unturned one looks to -z.
+    """Convert a heading to Habitat's quaternion x, y, z, w, whose identity looks along -z.
 
     Example:
         >>> rotation(Stance(0, 0, 0, yaw_deg=180.0))  # North.
@@ -75,26 +75,28 @@ def _block_to_room(path: Path) -> np.ndarray:
     try:
         transform = np.array(read_json(path)["block_to_room"], np.float64)
         if transform.shape != (4, 4) or not np.isfinite(transform).all():
-            raise ValueError(f"has shape {transform.shape}, or is not finite")
+            raise ValueError(f"block_to_room has shape {transform.shape} or is not finite")
     except (KeyError, TypeError, ValueError) as error:
-        raise DamagedFileError(path, f"block_to_room must be a 4 x 4 ({error})") from error
+        raise DamagedFileError(
+            path, f"block_to_room must be a finite 4 x 4 matrix ({error})"
+        ) from error
     return transform
 
 
 def write_vlnce(
     root: Path, episodes: Sequence[Episode], set_folder: Path, metres_per_block: dict[str, float]
 ) -> list[ExportedFile]:
-    """Write episodes for VLN-CE and return what was written.
+    """Write episodes for VLN-CE, and return the written files.
 
     Args:
-        root: the folder to write.
-        episodes: of all splits.
-        set_folder: where the paths of scenes may begin.
-        metres_per_block: of each scene, for those without a ``scene.json``.
+        root: The output folder.
+        episodes: The episodes of all splits.
+        set_folder: The folder of the set, to which scene paths may be relative.
+        metres_per_block: The scale by scene ID, for scenes without a ``scene.json``.
 
     Raises:
-        DamagedFileError: a scene's ``scene.json`` says no transform. OutputError: the folder
-            cannot be written.
+        DamagedFileError: If a scene's ``scene.json`` contains no valid transform.
+        OutputError: If the folder cannot be written.
     """
     words = vocabulary(episode.instruction.text for episode in episodes)
     numbers = {word: number for number, word in enumerate(words)}
@@ -125,12 +127,12 @@ def write_vlnce(
 
 
 def vocabulary(texts: Any) -> list[str]:
-    """Return the words of texts in their order, behind the marks of nothing and of the unknown."""
+    """Return the sorted vocabulary of texts, preceded by the padding and unknown tokens."""
     return [PAD, UNKNOWN, *sorted({word for text in texts for word in split_words(text)})]
 
 
 def split_words(text: str) -> list[str]:
-    """Return the words and signs of a sentence, in lower case, as Habitat's own splits it."""
+    """Split a sentence into lower-case words and punctuation marks, like Habitat's tokenizer."""
     return re.findall(r"[^\W_]+|[^\w\s]", text.lower())
 
 
@@ -174,7 +176,7 @@ def _truth(episode: Episode, frame: np.ndarray) -> dict[str, Any]:
 
 
 def subsample_path(way_m: list[list[float]]) -> list[list[float]]:
-    """Return points of a way about ``SPARSE_M`` apart, its first and its last among them."""
+    """Return points of a path about ``SPARSE_M`` metres apart, including its ends."""
     retained = [way_m[0]]
     for place in way_m[1:-1]:
         if np.linalg.norm(np.subtract(place, retained[-1])) >= SPARSE_M:
@@ -188,5 +190,5 @@ def _length_m(way_m: list[list[float]]) -> float:
 
 
 def _gzip(value: Any) -> bytes:
-    """Pack JSON so that the same value gives the same bytes."""
+    """Compress JSON data so that equal values give identical bytes."""
     return gzip.compress(json.dumps(value, allow_nan=False).encode(), mtime=0)

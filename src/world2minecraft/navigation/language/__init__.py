@@ -1,1 +1,1 @@
-"""What walkers are told: instructions written from what happens on a way, read back and checked."""
+"""Navigation instructions: generating, parsing, checking and rewriting them."""

@@ -1,7 +1,7 @@
-"""Instructions that people wrote, read from a table and added to trajectories.
+"""Human-written instructions, read from a table and added to trajectories.
 
-Columns: trajectory_id, instruction; where known annotator_id, language and level. A trajectory may
-have many; none takes another's place.
+The columns are trajectory_id and instruction, and optionally annotator_id, language and level. A
+trajectory can have any number of instructions.
 """
 
 import csv
@@ -22,45 +22,47 @@ MAX_ROWS = 1_000_000
 
 
 def read_annotations(path: str | Path) -> list[tuple[str, Instruction]]:
-    """Read annotations, each with the trajectory that it is of.
+    """Read instructions, each with the ID of its trajectory.
 
     Args:
-        path: CSV with a first line of names, or JSONL.
+        path: A CSV file with a header row, or a JSONL file.
 
     Raises:
-        InputError: it is not there. DamagedFileError: a line lacks what it needs; the message
-            names the line. LimitError: it is too large.
+        InputError: If the file is missing.
+        DamagedFileError: If a line is incomplete or invalid.
+        LimitError: If the file is too large.
     """
     source = Path(path)
     try:
         text = read_bytes(source, MAX_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise DamagedFileError(source, "is no text in UTF-8") from error
+        raise DamagedFileError(source, "not a UTF-8 text file") from error
     rows = _csv_rows(text) if source.suffix.lower() == ".csv" else parse_json_lines(text, source)
     if len(rows) > MAX_ROWS:
-        raise LimitError(source, f"has {len(rows):,} lines; at most {MAX_ROWS:,} are read")
+        raise LimitError(source, f"file has {len(rows):,} lines, the limit is {MAX_ROWS:,}")
     return [_annotation(row, number, source) for number, row in rows]
 
 
 def with_annotations(
     trajectories: Sequence[Trajectory], annotations: Iterable[tuple[str, Instruction]], source: str
 ) -> list[Trajectory]:
-    """Return trajectories with what people said of them added; what is there already is not again.
+    """Return trajectories with human instructions added, without duplicates.
 
     Args:
-        trajectories: of a set.
-        annotations: of ``read_annotations``.
-        source: what errors call their file.
+        trajectories: The trajectories of a set.
+        annotations: The result of ``read_annotations``.
+        source: The name of the file for error messages.
 
     Raises:
-        InputError: an annotation is of no trajectory.
+        InputError: If an instruction refers to an unknown trajectory.
     """
     of = {one.trajectory_id: one for one in trajectories}
     for trajectory_id, instruction in annotations:
         if trajectory_id not in of:
-            some = f"; one that is: {min(of)}" if of else ""
+            some = f"; an existing ID is {min(of)}" if of else ""
             raise InputError(
-                source, f"speaks of trajectory {trajectory_id!r}, which is not there{some}"
+                source,
+                f"refers to trajectory {trajectory_id!r}, which the set does not contain{some}",
             )
         one = of[trajectory_id]
         if instruction not in one.instructions:
@@ -73,16 +75,22 @@ def _annotation(row: Mapping[str, Any], number: int, source: Path) -> tuple[str,
     for key in ("trajectory_id", "instruction"):
         value = row.get(key)
         if not isinstance(value, str) or not value.strip() or len(value) > MAX_TEXT:
-            raise DamagedFileError(source, f"line {number}: {key} must be a text, up to {MAX_TEXT}")
+            raise DamagedFileError(
+                source, f"line {number}: {key} must be a string of at most {MAX_TEXT} characters"
+            )
         values[key] = value.strip()
     if mark := find_reserved_token(values["instruction"]):
-        raise DamagedFileError(source, f"line {number}: models take {mark!r} for more than words")
+        raise DamagedFileError(
+            source,
+            f"line {number}: text must not contain {mark!r}, which models interpret as a "
+            "special token",
+        )
     who, language = str(row.get("annotator_id") or ""), str(row.get("language") or "en")
     level = str(row.get("level") or "landmark")
     if level not in LEVELS:
         known = ", ".join(LEVELS)
         raise DamagedFileError(
-            source, f"line {number}: level must be one of {known}, not {level!r}"
+            source, f"line {number}: level must be one of {known}, got {level!r}"
         )
     text = " ".join(values["instruction"].split())
     return values["trajectory_id"], Instruction(

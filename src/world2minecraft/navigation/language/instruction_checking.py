@@ -1,8 +1,7 @@
-"""Is an instruction that a person wrote one that another could follow? Told while it is written.
+"""Checks of a human-written instruction while it is being written.
 
-What is certainly wrong refuses it: it is empty, too long, or does not name the goal, or names it by
-words that mean another thing too. What may be wrong is a hint: other turns than the walk makes, a
-length that no instruction of the paper has.
+An instruction is rejected if it is empty, too long, or does not clearly name the goal. A warning is
+given for possible errors, such as turns that differ from those of the walk, or an unusual length.
 """
 
 import re
@@ -17,21 +16,21 @@ PAPER_CHARACTERS = (15, 334)  # The shortest and the longest instruction of the 
 
 
 class Finding(NamedTuple):
-    """What is to be said of an instruction; ``is_wrong`` refuses it."""
+    """A remark about an instruction. ``is_wrong`` means that the instruction is rejected."""
 
     is_wrong: bool
     text: str
 
 
 class Mention(NamedTuple):
-    """What words of a text mean: one name, or the names of several things."""
+    """A phrase in a text, and the names of the landmarks that it can refer to."""
 
     phrase: str
     names: tuple[str, ...]
 
 
 def goal_name(trajectory: Trajectory) -> str:
-    """Return the name of what a walk ends at, as its instructions have it; empty for none."""
+    """Return the name of the landmark at the end of a walk, or "" if there is none."""
     for level in ("goal", "landmark"):
         for one in trajectory.instructions:
             if one.level == level and one.landmarks:
@@ -40,7 +39,7 @@ def goal_name(trajectory: Trajectory) -> str:
 
 
 def landmark_names_of(trajectories: Iterable[Trajectory], scene_id: str) -> tuple[str, ...]:
-    """Return what things of a scene are called in the instructions of its walks, sorted."""
+    """Return the sorted landmark names in the instructions of a scene's walks."""
     own = [one for one in trajectories if one.scene_id == scene_id]
     names = {name for one in own for words in one.instructions for name in words.landmarks}
     return tuple(sorted(names))
@@ -49,23 +48,27 @@ def landmark_names_of(trajectories: Iterable[Trajectory], scene_id: str) -> tupl
 def check_instruction(
     text: str, level: str, trajectory: Trajectory, names: Sequence[str]
 ) -> list[Finding]:
-    """Return what is to be said of an instruction, what is wrong first.
+    """Check an instruction, and return remarks with errors first.
 
     Args:
-        text: what was written.
-        level: goal, route or landmark.
-        trajectory: the walk, with what is told of it already.
-        names: what things of its scene are called, see ``landmark_names_of``.
+        text: The instruction.
+        level: "goal", "route" or "landmark".
+        trajectory: The walk, with its existing instructions.
+        names: The landmark names of the scene, as returned by ``landmark_names_of``.
 
     Raises:
-        UsageError: there is no such level.
+        UsageError: If the level is unknown.
     """
     Instruction(text.strip() or "-", "human", level)  # Checks the level.
     plain = " ".join(text.split())
     if not plain:
-        return [Finding(True, "write something: an instruction has words")]
+        return [Finding(True, "the instruction is empty")]
     if len(plain) > MAX_TEXT:
-        return [Finding(True, f"{len(plain):,} characters; at most {MAX_TEXT:,} are kept")]
+        return [
+            Finding(
+                True, f"the instruction has {len(plain):,} characters, the limit is {MAX_TEXT:,}"
+            )
+        ]
     spoken = find_mentions(plain, names)
     found = [] if level == "route" else _of_goal(spoken, goal_name(trajectory))
     found += _of_things(spoken, goal_name(trajectory), level)
@@ -74,9 +77,10 @@ def check_instruction(
 
 
 def find_mentions(text: str, names: Iterable[str]) -> list[Mention]:
-    """Return the things that a text speaks of, in its order; the longest phrase counts.
+    """Return the landmarks that a text mentions in order, preferring the longest phrase.
 
-    A thing may be called by its name or by the end of it: "piano" is an upright piano.
+    A landmark can be mentioned by its name or by the last words of it: "piano" matches "upright
+    piano".
 
     Example:
         >>> find_mentions("Pass the red chair, stop at the chair.", ["red chair", "blue chair"])
@@ -100,7 +104,7 @@ Mention(phrase='chair', names=('blue chair', 'red chair'))]
 def _of_goal(spoken: Sequence[Mention], goal: str) -> list[Finding]:
     if not goal or any(one.names == (goal,) for one in spoken):
         return []
-    return [Finding(True, f"it does not name where the walk ends: the {goal}")]
+    return [Finding(True, f"the instruction must name the goal: the {goal}")]
 
 
 def _of_things(spoken: Sequence[Mention], goal: str, level: str) -> list[Finding]:
@@ -108,14 +112,16 @@ def _of_things(spoken: Sequence[Mention], goal: str, level: str) -> list[Finding
     for one in dict.fromkeys(spoken):
         if len(one.names) > 1:
             some = ", ".join(one.names[:4])
-            text = f"{len(one.names)} things are called {one.phrase!r} here: say one of {some}"
+            text = f"{one.phrase!r} matches {len(one.names)} landmarks; use one of {some}"
             found.append(Finding(False, text))
     others = [one for one in spoken if one.names != (goal,)]
     if level == "landmark" and not others:
-        found.append(Finding(False, "it names no thing on the way, only where it ends"))
+        found.append(
+            Finding(False, "the instruction names only the goal, but no landmark on the way")
+        )
     if level == "route" and spoken:
-        found.append(Finding(False, f"a route is told by turns and distances; {spoken[0].phrase!r} "
-                             "is a thing"))  # fmt: skip
+        text = f"a route must use only turns and distances, but {spoken[0].phrase!r} is a landmark"
+        found.append(Finding(False, text))
     return found
 
 
@@ -127,7 +133,10 @@ def _of_turns(text: str, trajectory: Trajectory, names: Sequence[str]) -> list[F
     if walked == stated:
         return []
     return [
-        Finding(False, f"the walk turns {_turns_text(walked)}; this says {_turns_text(stated)}")
+        Finding(
+            False,
+            f"the walk turns {_turns_text(walked)}, but the instruction says {_turns_text(stated)}",
+        )
     ]
 
 
@@ -135,7 +144,13 @@ def _of_length(text: str) -> list[Finding]:
     least, most = PAPER_CHARACTERS
     if least <= len(text) <= most:
         return []
-    return [Finding(False, f"{len(text)} characters; the paper's have {least} to {most}")]
+    return [
+        Finding(
+            False,
+            f"the instruction has {len(text)} characters, but those of the paper have {least} to "
+            f"{most}",
+        )
+    ]
 
 
 def _turns_text(turns: Sequence[str]) -> str:

@@ -1,12 +1,14 @@
-"""Instructions from what happens on a way, on three levels: goal, route, landmark.
+"""Generation of instructions from route events on three levels: goal, route and landmark.
+
+Examples of the levels::
 
     goal      Go to the piano.
     route     Turn left and walk about three metres. Turn right, take a few steps and stop.
     landmark  Turn left and walk past the table on your right. Turn right at the sofa, walk to the
               piano and stop in front of it.
 
-What is varied is chosen by a generator of numbers; ``reading`` finds the same turns and landmarks
-in the text again.
+A random generator varies the wording. ``instruction_parsing`` recovers the same turns and landmarks
+from the text.
 """
 
 from collections.abc import Sequence
@@ -28,11 +30,11 @@ MAX_PASSED = 2
 
 
 def generate_instructions(way: Route, rng: np.random.Generator) -> list[Instruction]:
-    """Return what can be told of a way: a route always, the others where there are landmarks.
+    """Return the instructions of a route. Levels that require landmarks are omitted without them.
 
     Args:
-        way: what happens.
-        rng: chooses between wordings.
+        way: The route.
+        rng: The random generator for the wording.
     """
     made = [goal_text(way, rng), route_text(way, rng), landmark_text(way, rng)]
     return [
@@ -43,11 +45,11 @@ def generate_instructions(way: Route, rng: np.random.Generator) -> list[Instruct
 
 
 TextAndLandmarks = tuple[str, tuple[str, ...]]
-"""A text and the landmarks that it names, in order."""
+"""A text and the landmarks that it names in order."""
 
 
 def goal_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
-    """Return an instruction that names the end alone; empty where nothing stands there."""
+    """Return an instruction that names only the goal, or "" if there is no landmark at the end."""
     if not way.stop:
         return "", ()
     choices = [f"Go to the {way.stop}.", f"Walk to the {way.stop}."]
@@ -57,14 +59,14 @@ def goal_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
 
 
 def route_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
-    """Return an instruction of turns and distances alone."""
+    """Return an instruction with turns and distances only."""
     parts = [[*_turn(one.turn_deg), _distance(one.length_m, rng)] for one in way.stretches]
     parts[-1] += [*_turn(way.last_turn_deg), "stop"]
     return _sentences(parts, rng), ()
 
 
 def landmark_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
-    """Return a route that is told by what one sees; empty where nothing is told of."""
+    """Return a route description based on landmarks, or "" if it mentions none."""
     parts, names = [], []
     for number, one in enumerate(way.stretches):
         is_last = number == len(way.stretches) - 1
@@ -82,7 +84,7 @@ def landmark_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
 
 
 def _turn(turn_deg: float, at: str = "") -> list[str]:
-    """Return the words of a turn; none of one that is not spoken of."""
+    """Return the phrase for a turn, or an empty list for an insignificant turn."""
     if abs(turn_deg) < TURN_DEG:
         return []
     side = side_of_turn(turn_deg)
@@ -107,7 +109,7 @@ def _distance(length_m: float, rng: np.random.Generator) -> str:
 
 
 def _stretch(one: RouteSegment, stop: str, rng: np.random.Generator) -> tuple[list[str], list[str]]:
-    """Return the clauses of a stretch and the landmarks that they name."""
+    """Return the clauses of a route segment, and the landmarks that they name."""
     turn = _turn(one.turn_deg, one.at)
     names = [one.at] if one.at and turn else []
     passing = one.passing[:MAX_PASSED]
@@ -136,7 +138,7 @@ def _sides(passing: Sequence[tuple[str, str]]) -> str:
 
 
 def _room(name: str) -> str:
-    """Return the words for coming into a room; one with a number is nothing that people know."""
+    """Return the phrase for entering a room. Numbered rooms become "the next room"."""
     if not name:
         return ""
     plain = not name[-1].isdigit() and name != "room"
@@ -144,7 +146,7 @@ def _room(name: str) -> str:
 
 
 def _stop(way: Route, named: bool) -> list[str]:
-    """Return the clauses of the end; ``named``: the last words were of what one stops at."""
+    """Return the final clauses. With ``named``, the previous clause names the final landmark."""
     turn = _turn(way.last_turn_deg)
     thing = "it" if named else f"the {way.stop}"
     if not way.stop:
@@ -155,7 +157,7 @@ def _stop(way: Route, named: bool) -> list[str]:
 
 
 def _sentences(parts: Sequence[Sequence[str]], rng: np.random.Generator) -> str:
-    """Join clauses: a sentence a stretch, short ones two by two."""
+    """Join clauses into sentences, combining short segments."""
     sentences, begun = [], []
     for number, part in enumerate(parts):
         begun += part

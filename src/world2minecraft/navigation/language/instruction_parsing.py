@@ -1,8 +1,8 @@
-"""What an instruction says, found again in its words: turns and landmarks, in order.
+"""Parsing of instructions into turns and landmarks.
 
-It reads what ``generation`` writes and plain English of people and models: "take a left" is a turn,
-"on your left" is none. What it cannot be sure of it counts, so that a doubt refuses a text rather
-than lets a wrong one pass.
+The parser supports the texts of ``instruction_generation`` and plain English by people and models:
+"take a left" is a turn, "on your left" is not. Doubtful phrases count as turns, so that an unclear
+text is rejected rather than a wrong one accepted.
 """
 
 import re
@@ -25,18 +25,23 @@ _AROUND = re.compile(
 
 
 class ParsedInstruction(NamedTuple):
-    """What a text tells."""
+    """The turns and landmarks of an instruction, in order.
+
+    Attributes:
+        turns: Any of "left", "right" and "around".
+        landmarks: The landmark names, without immediate repetitions.
+    """
 
     turns: tuple[str, ...]  # left, right, around
     landmarks: tuple[str, ...]  # their names; the same twice in a row counts once
 
 
 def parse_instruction(text: str, names: Iterable[str]) -> ParsedInstruction:
-    """Return the turns and the landmarks of an instruction.
+    """Return the turns and landmarks of an instruction.
 
     Args:
-        text: the instruction.
-        names: all that landmarks of the scene are called; longer names are looked for first.
+        text: The instruction.
+        names: All landmark names of the scene. Longer names are matched first.
 
     Example:
         >>> parse_instruction("Take a left at the sofa, the bed is on your right.", ["bed", "sofa"])
@@ -47,7 +52,7 @@ def parse_instruction(text: str, names: Iterable[str]) -> ParsedInstruction:
 
 
 def _landmarks(text: str, names: Iterable[str]) -> tuple[tuple[str, ...], str]:
-    """Return the landmarks and the text without them: a name may hold the word "left"."""
+    """Return the landmarks and the text without them, because names may contain "left"."""
     ordered = sorted(set(names), key=lambda name: (-len(name), name))
     if not ordered:
         return (), text

@@ -1,4 +1,4 @@
-"""Whether a name means one thing to a person who hears it, not only to the program."""
+"""Checks whether a name identifies a single landmark for a human listener."""
 
 from collections.abc import Sequence
 
@@ -8,12 +8,12 @@ from world2minecraft.navigation.landmarks import BESIDE_M, Landmark
 
 
 def unambiguous_landmarks(landmarks: Sequence[Landmark]) -> list[Landmark]:
-    """Return the landmarks that a name is plain for: nothing else answers to it.
+    """Return the landmarks whose names match no other landmark.
 
-    "the table" is not plain where a coffee table stands too; "the coffee table" is.
+    For example, "the table" is ambiguous if the scene also contains a coffee table.
 
     Args:
-        landmarks: all of a scene.
+        landmarks: All landmarks of the scene.
     """
     return [
         one
@@ -23,11 +23,11 @@ def unambiguous_landmarks(landmarks: Sequence[Landmark]) -> list[Landmark]:
 
 
 def matching_landmarks(phrase: str, landmarks: Sequence[Landmark]) -> list[Landmark]:
-    """Return the landmarks that a phrase may mean: by their own name, colour or noun's end.
+    """Return the landmarks that a phrase can refer to, by name, colour and the end of the noun.
 
     Args:
-        phrase: as a person says it, without "the".
-        landmarks: all of a scene.
+        phrase: The phrase without "the".
+        landmarks: All landmarks of the scene.
     """
     phrase_words, _, anchor = phrase.partition(" beside the ")
     found = [

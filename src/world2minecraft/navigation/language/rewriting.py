@@ -1,7 +1,7 @@
-"""Instructions said in other words by a language model, and taken only where they say the same.
+"""Paraphrasing of instructions by a language model, with a check that the meaning is unchanged.
 
-The model is any function from a prompt to a reply. What it may not change, the turns, the
-landmarks and their order, is read from its words again; a text that differs is dropped.
+The model is any function from a prompt to a reply. The turns, the landmarks and their order are
+parsed from the reply, and a text in which they differ is rejected.
 """
 
 import json
@@ -13,7 +13,7 @@ from world2minecraft.navigation.language.instruction_parsing import parse_instru
 from world2minecraft.navigation.types import Instruction
 
 Ask = Callable[[str], str]
-"""A language model: the prompt in, its reply out."""
+"""A language model as a function from a prompt to a reply."""
 
 MAX_CHARACTERS = 600
 PROMPT = """\
@@ -28,7 +28,7 @@ Reply with the instruction alone, in one line.
 
 @dataclass(frozen=True)
 class Rewriting:
-    """What came of it: the new instruction, or why the reply was refused."""
+    """The result of a rewrite: the new instruction, or the reason why the reply was rejected."""
 
     instruction: Instruction | None
     refusal: str = ""
@@ -37,13 +37,13 @@ class Rewriting:
 def rewrite(
     instruction: Instruction, names: Iterable[str], ask: Ask, annotator: str = "model"
 ) -> Rewriting:
-    """Ask a model for an instruction in other words.
+    """Ask a model to paraphrase an instruction.
 
     Args:
-        instruction: of the grammar.
-        names: all that landmarks of the scene are called.
-        ask: the model. What it raises is not caught.
-        annotator: what the model is called; stays with the instruction.
+        instruction: The generated instruction.
+        names: All landmark names of the scene.
+        ask: The model. Its exceptions are propagated.
+        annotator: The name of the model, which is stored with the instruction.
 
     Example:
         >>> told = Instruction("Turn left at the sofa and stop.", landmarks=("sofa",))
@@ -73,7 +73,7 @@ def rewrite(
 
 
 def _plain(reply: str) -> str:
-    """Return a reply as one line without the quotes that models like to put around it."""
+    """Return a reply as one line, without enclosing quotes."""
     text = reply[: 4 * MAX_CHARACTERS].strip()
     if text.startswith('"'):
         try:

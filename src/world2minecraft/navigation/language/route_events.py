@@ -1,7 +1,8 @@
-"""What happens on a way, as a person would tell it: turns, stretches, things passed, where it ends.
+"""Route events of a walk as a person would describe them: turns, segments, passed objects, the end.
 
-Small corrections are no turns, and what was not seen is not spoken of. Places are metres of the
-room; a turn's angle is that of the game, clockwise from above: positive to the right.
+Small corrections do not count as turns, and objects that were not visible are not mentioned.
+Positions are in metres of the room frame. Turn angles are clockwise from above, positive to the
+right.
 """
 
 from collections.abc import Sequence
@@ -28,7 +29,16 @@ FRONT_DEG = 35.0  # and before one's eyes.
 
 @dataclass(frozen=True)
 class RouteSegment:
-    """A turn on the spot, then straight on. Names are those of landmarks; "" for none."""
+    """A turn on the spot followed by a straight path. Landmark names are "" if there is none.
+
+    Attributes:
+        turn_deg: The turn angle in degrees, positive to the right.
+        length_m: The length of the straight path in metres.
+        at: The landmark at the turn.
+        towards: The landmark ahead.
+        passing: The passed landmarks in order, each with its side.
+        into: The name of the room that is entered.
+    """
 
     turn_deg: float
     length_m: float
@@ -40,7 +50,15 @@ class RouteSegment:
 
 @dataclass(frozen=True)
 class Route:
-    """Stretches, a last turn, and the landmark that one stands before at the end."""
+    """The segments of a walk, the last turn, and the landmark at its end.
+
+    Attributes:
+        stretches: The segments in order.
+        last_turn_deg: The angle of the turn at the end, positive to the right.
+        stop: The landmark at the end.
+        stop_side: The side of that landmark, "front", "left" or "right".
+        corners_m: The position of each turn, including the last one.
+    """
 
     stretches: tuple[RouteSegment, ...]
     last_turn_deg: float
@@ -49,7 +67,7 @@ class Route:
     corners_m: tuple[tuple[float, float], ...] = ()  # where each turn is, the last one's too
 
     def tells_turn(self, place_m: np.ndarray, side: str) -> bool:
-        """Return whether a turn to a side, at a place [2] of the room, is one that is spoken of."""
+        """Return whether a turn to a side at a position [2] of the room is mentioned."""
         every = [one.turn_deg for one in self.stretches] + [self.last_turn_deg]
         return any(
             abs(turn) >= TURN_DEG
@@ -60,19 +78,26 @@ class Route:
 
     @property
     def turns(self) -> tuple[str, ...]:
-        """The turns that are spoken of: left, right or around."""
+        """The mentioned turns: left, right or around."""
         every = [one.turn_deg for one in self.stretches] + [self.last_turn_deg]
         return tuple(side_of_turn(turn) for turn in every if abs(turn) >= TURN_DEG)
 
     @property
     def length_m(self) -> float:
-        """How long the stretches are together."""
+        """The total length of the segments in metres."""
         return sum(one.length_m for one in self.stretches)
 
 
 @dataclass(frozen=True, eq=False)
 class ObservedWalk:
-    """A walk as its walker had it: N stances, and what was in the picture at some of them."""
+    """A walk of N stances with the landmarks visible at some of them.
+
+    Attributes:
+        places_m: The positions in metres of the room as float64 [N, 2].
+        yaws_deg: The game's yaws in degrees as float64 [N].
+        looks: The IDs of the visible landmarks, by the index of the stance.
+        rooms: The name of the room at each stance, or "" if unknown.
+    """
 
     places_m: np.ndarray  # float64 [N, 2], metres of the room
     yaws_deg: np.ndarray  # float64 [N], the game's
@@ -83,13 +108,14 @@ class ObservedWalk:
 
 
 def describe_route(walk: ObservedWalk, landmarks: Sequence[Landmark], target: str = "") -> Route:
-    """Return what happens on a walk.
+    """Return the route events of a walk.
 
     Args:
-        walk: where one was and what one saw.
-        landmarks: those with a name that means one thing; others are left out.
-        target: the landmark that the walk was made to, where that is known. It is the end if one
-            stands before it; else the nearest thing in sight is.
+        walk: The stances and the visible landmarks.
+        landmarks: The landmarks to mention, which should have unambiguous names.
+        target: The intended landmark, if known. It becomes the end if the walk stops in front of
+            it.
+            Otherwise the nearest visible landmark does.
     """
     corners = _merge_corners(walk.places_m, list(simplify_path(walk.places_m, CORNER_M)))
     yaws = np.unwrap(walk.yaws_deg, period=360.0)  # Who turns left by 190 degrees turns left.
@@ -111,7 +137,7 @@ def describe_route(walk: ObservedWalk, landmarks: Sequence[Landmark], target: st
 
 
 def side_of_turn(turn_deg: float) -> str:
-    """Return the word for a turn.
+    """Return the word for a turn angle.
 
     Example:
         >>> [side_of_turn(turn) for turn in (-90, 40, 170)]
@@ -127,7 +153,7 @@ def _pairs(corners: Sequence[int]) -> list[tuple[int, int]]:
 
 
 def _merge_corners(places: np.ndarray, corners: list[int]) -> list[int]:
-    """Leave out corners at which one hardly turns, or between which one hardly walks."""
+    """Remove corners with small turns, and corners of very short segments."""
     while len(corners) > 2:
         lengths = [float(np.linalg.norm(places[b] - places[a])) for a, b in _pairs(corners)]
         headings = [_heading(places[a], places[b]) for a, b in _pairs(corners)]
@@ -175,7 +201,7 @@ def _stretch(
 
 
 def _seen_between(walk: ObservedWalk, first: int, last: int) -> frozenset[int]:
-    """Return what was in the pictures of some stances, the last left out."""
+    """Return the landmarks visible at stances from ``first`` up to, but excluding, ``last``."""
     seen = [look for at, look in walk.looks.items() if first <= at < max(last, first + 1)]
     return frozenset().union(*seen)
 
@@ -186,7 +212,7 @@ def _turn_at(place: np.ndarray, seen: Sequence[Landmark], used: set[str]) -> str
 
 
 def _ahead(begin: np.ndarray, end: np.ndarray, seen: Sequence[Landmark]) -> str:
-    """Return what one walks towards: ahead, and not reached before the stretch ends."""
+    """Return the landmark straight ahead that is not reached before the segment ends, or ""."""
     found = []
     length = np.linalg.norm(end - begin)
     for one in seen:
@@ -200,7 +226,7 @@ def _ahead(begin: np.ndarray, end: np.ndarray, seen: Sequence[Landmark]) -> str:
 def _passed(
     begin: np.ndarray, end: np.ndarray, seen: Sequence[Landmark], left_out: set[str]
 ) -> list[tuple[str, str]]:
-    """Return what one passes: beside the middle of the line walked, and not across it."""
+    """Return the landmarks beside the middle part of a segment, each with its side."""
     along = (end - begin) / np.linalg.norm(end - begin)
     left = np.array([-along[1], along[0]])
     found = []
@@ -233,13 +259,13 @@ def _stop(walk: ObservedWalk, landmarks: Sequence[Landmark], target: str) -> tup
 
 
 def gap_m(place: np.ndarray, landmark: Landmark) -> float:
-    """Return how far a place [2] is from a landmark's box, seen from above, metres."""
+    """Return the horizontal distance in metres from a position [2] to a landmark's box."""
     low, high = landmark.low_m[:2], landmark.high_m[:2]
     return float(np.linalg.norm(np.maximum(0.0, np.maximum(low - place, place - high))))
 
 
 def _off_deg(place: np.ndarray, yaw_deg: float, landmark: Landmark) -> float:
-    """Return where the nearest part of a thing lies from straight ahead, positive to the right."""
+    """Return the angle from straight ahead to a landmark in degrees, positive to the right."""
     near = np.clip(place, landmark.low_m[:2], landmark.high_m[:2])
     point = (near + landmark.center_m[:2]) / 2
     return float(wrap_deg(_heading(place, point) - yaw_deg))

@@ -1,1 +1,1 @@
-"""Runs: episodes walked and items answered, with traces, films, scores and tables."""
+"""Running of agents: episodes, items, traces, videos, scores and result tables."""

@@ -1,7 +1,7 @@
-"""Many episodes walked by one agent, beside those that any result has to be held against.
+"""Evaluation of an agent on several episodes, together with the reference agents.
 
-``result.json`` has the scores of the agent, of Stop, Random and the oracle on the very same
-episodes, and each episode's own.
+``result.json`` contains the scores of the agent and those of Stop, Random and Oracle on the same
+episodes, as well as the score of each episode.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -28,11 +28,23 @@ def evaluate_agent(
     observers: Observers,
     seed: int = 0,
 ) -> tuple[list[EpisodeWalk], dict[str, list[EpisodeWalk]]]:
-    """Walk episodes, and return the agent's walks and those beside them by name.
+    """Walk episodes with an agent and with each reference agent.
+
+    Args:
+        episodes: The episodes to walk.
+        ground_of: A function that returns the simulator of an episode.
+        agent: The agent to evaluate.
+        observers: A function that returns the observers of a walk.
+        seed: The random seed of the agents.
+
+    Returns:
+        The walks of the agent, and the walks of the reference agents by name.
 
     Raises:
-        InputError: one of them cannot be walked; this is found before the first is.
-        What ``walk_episode`` raises.
+        InputError: If the goal of an episode cannot be reached. This is checked before the first
+            walk.
+        BudgetError: If the limit on calls or cost is reached.
+        ServerError: If a model cannot be queried.
     """
     walks: list[EpisodeWalk] = []
     beside: dict[str, list[EpisodeWalk]] = {name: [] for name in REFERENCE_AGENTS}
@@ -49,7 +61,7 @@ def evaluate_agent(
 
 
 def walks_summary(walks: Sequence[EpisodeWalk]) -> dict[str, Any]:
-    """Return the means of walks, with how many decisions could not be used."""
+    """Return the mean scores of walks, and the number of unusable decisions."""
     result = summarise([walk.score for walk in walks])
     return result | {
         "invalid": sum(walk.invalid for walk in walks),
@@ -65,7 +77,7 @@ def write_walks_result(
     beside: dict[str, list[EpisodeWalk]],
     facts: dict[str, Any],
 ) -> dict[str, Any]:
-    """Write ``result.json`` and return what it holds."""
+    """Write ``result.json``, and return its content."""
     result = {
         "kind": "walks",
         "agent": walks[0].agent,

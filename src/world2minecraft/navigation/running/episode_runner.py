@@ -1,8 +1,8 @@
-"""One episode: an agent sees, decides and moves until it stops, and is scored.
+"""Execution of an episode: the agent observes, decides and moves until it stops, and is scored.
 
-Moves of a decision are made in turn; after a collision the rest of them is dropped and the agent
-looks again. A decision without moves takes a step too, and after three of them in a row the walk
-ends, not stopped. Observers are told of all of it as it happens.
+The moves of a decision are made in order. After a collision the remaining moves are dropped and the
+agent observes again. A decision without moves also counts as a step, and three of them in a row end
+the walk without STOP. Observers are notified of all events.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,20 @@ _DARK = np.zeros((1, 1, 3), np.uint8)  # What the blind are shown.
 
 @dataclass(frozen=True, eq=False)
 class EpisodeWalk:
-    """What became of an episode. ``stances`` are T, one more than ``made``, STOP not included."""
+    """The course and the result of an episode.
+
+    Attributes:
+        episode: The episode.
+        agent: The name of the agent.
+        stances: The start and the stance after each move.
+        made: The moves except STOP, each with whether it collided.
+        end: One of ``ENDS``.
+        steps: The number of steps.
+        decisions: The number of decisions.
+        invalid: The number of decisions that could not be parsed.
+        failed: The number of decisions for which the server did not answer.
+        score: The score of the walk.
+    """
 
     episode: Episode
     agent: str
@@ -38,26 +51,26 @@ class EpisodeWalk:
 
 
 class Observer(Protocol):
-    """What is told of a walk while it goes on."""
+    """The interface of objects that are notified of the events of a walk."""
 
     def on_begin(self, episode: Episode, agent: str) -> None:
-        """Hear that an episode begins."""
+        """Handle the start of an episode."""
         ...
 
     def on_decision(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
     ) -> None:
-        """Hear what an agent saw and decided, and what was made of it."""
+        """Handle a decision, with the observation before it and the moves made after it."""
         ...
 
     def on_stance(
         self, stance: Stance, step: int, decision: Decision | None, move: Move | None
     ) -> None:
-        """Hear where the agent stands, after a move and at the start."""
+        """Handle the start stance or a new stance after a move."""
         ...
 
     def on_end(self, walk: EpisodeWalk) -> None:
-        """Hear how it went."""
+        """Handle the end of a walk."""
         ...
 
 
@@ -69,10 +82,19 @@ def walk_episode(
     observers: Sequence[Observer] = (),
     seed: int = 0,
 ) -> EpisodeWalk:
-    """Walk an episode and return what became of it.
+    """Walk an episode with an agent, and return the result.
+
+    Args:
+        ground: The simulator.
+        episode: The episode.
+        agent: The agent.
+        observers: The observers to notify.
+        seed: The random seed of the agent.
 
     Raises:
-        InputError: no way leads to the goal. BudgetError, ServerError: a model cannot be asked.
+        InputError: If no path leads to the goal.
+        BudgetError: If the limit on calls or cost is reached.
+        ServerError: If a model cannot be queried.
     """
     check_reachable(episode, ground.distance_m(episode.start, episode.goals))
     state = _State(ground, episode, agent, observers)
@@ -95,7 +117,7 @@ def walk_episode(
 
 
 class _State:
-    """A walk under way."""
+    """The state of a walk in progress."""
 
     def __init__(
         self, ground: Simulator, episode: Episode, agent: Agent, observers: Sequence[Observer]
@@ -174,7 +196,7 @@ class _State:
 
 
 def reference_m(ground: Simulator, episode: Episode) -> np.ndarray:
-    """Return the way to walk, float64 [M, 3] metres: the episode's own, or the oracle's."""
+    """Return the episode's reference path, or the oracle's path, in metres as float64 [M, 3]."""
     stances = list(episode.reference)
     if not stances:
         stances = [episode.start]

@@ -1,7 +1,7 @@
-"""The film of a walk: what the agent saw, the instruction, its thoughts, and a plan with its way.
+"""The video of a walk: the view, the instruction, the agent's thoughts and a map with the path.
 
-One frame a move. The instruction and the thoughts may come from anyone: what the font has no
-letter for is shown as a question mark, and what does not fit is cut.
+The video has one frame per move. Characters that the font does not contain are shown as question
+marks, and texts that do not fit are truncated.
 """
 
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ LINE_PX = 17
 
 
 class Film:
-    """Writes the film of one episode; an observer."""
+    """An observer that writes the video of an episode."""
 
     def __init__(self, path: Path, ground: Simulator, plan: PlanMap, rate_hz: float = RATE_HZ):
         self.path, self.ground, self.plan, self.rate_hz = path, ground, plan, rate_hz
@@ -42,7 +42,7 @@ class Film:
         self._last: Image.Image | None = None
 
     def on_begin(self, episode: Episode, agent: str) -> None:
-        """Open the film."""
+        """Open the video file."""
         self._episode, self._agent, self._stances = episode, agent, []
         self._stack = ExitStack()
         self._write = self._stack.enter_context(animation_writer(self.path, self.rate_hz))
@@ -50,12 +50,12 @@ class Film:
     def on_decision(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
     ) -> None:
-        """Draw nothing: moves are drawn as they are made."""
+        """Ignore the decision, because frames are drawn for each move."""
 
     def on_stance(
         self, stance: Stance, step: int, decision: Decision | None, move: Move | None
     ) -> None:
-        """Draw a frame."""
+        """Draw a frame for a stance."""
         if self._episode is None:
             return
         self._stances.append(stance)
@@ -69,16 +69,16 @@ class Film:
         self._send(frame, self.rate_hz * HOLD_S if decision is None else 1)
 
     def on_end(self, walk: EpisodeWalk) -> None:
-        """Say on the last frame how it went, and close the film."""
+        """Show the result of the walk on the last frame, and close the video."""
         if self._last is not None:
             self._send(with_end(self._last, end_text(walk)), self.rate_hz * HOLD_S)
         self._stack.close()
         self._write = None
 
     def drop(self) -> None:
-        """Close the film of a walk that broke off; nothing of it is kept."""
+        """Discard the video of an interrupted walk."""
         self._write = None
-        error = RuntimeError("the walk broke off")
+        error = RuntimeError("the walk was interrupted")
         self._stack.__exit__(RuntimeError, error, None)
 
     def _send(self, frame: Image.Image, times: float) -> None:
@@ -91,13 +91,13 @@ class Film:
 def compose(
     view: np.ndarray, plan: Image.Image, instruction: str, caption: Sequence[tuple[str, str]]
 ) -> Image.Image:
-    """Return a frame.
+    """Compose a video frame.
 
     Args:
-        view: uint8 [H, W, 3], what was seen.
-        plan: the plan, ``SIDE_PX`` wide and high.
-        instruction: what the agent was told.
-        caption: lines of a heading, which may be empty, and a text.
+        view: The view of the agent as uint8 [H, W, 3].
+        plan: The floor map, ``SIDE_PX`` wide and high.
+        instruction: The instruction of the episode.
+        caption: Lines with a heading, which may be empty, and a text.
     """
     frame = Image.new("RGB", SIZE_PX, PAPER)
     seen = Image.fromarray(view)
@@ -116,7 +116,7 @@ def compose(
 
 
 def with_end(frame: Image.Image, text: str) -> Image.Image:
-    """Return a frame with a line across the view's foot."""
+    """Return a frame with a line of text across the bottom of the view."""
     final = frame.copy()
     draw = ImageDraw.Draw(final)
     top = SIZE_PX[1] - 40
@@ -126,9 +126,9 @@ def with_end(frame: Image.Image, text: str) -> Image.Image:
 
 
 def end_text(walk: EpisodeWalk) -> str:
-    """Return how a walk went, in a line."""
+    """Return a one-line summary of a walk."""
     left = walk.score.ne_m
-    where = f"{left:.2f} m from the goal" if np.isfinite(left) else "where no way leads on"
+    where = f"{left:.2f} m from the goal" if np.isfinite(left) else "with no path to the goal"
     how = {"stopped": "Stopped", "out of steps": "Out of steps"}.get(walk.end, "Gave up")
     return f"{how} {where} after {walk.steps} steps, {walk.score.length_m:.1f} m walked"
 
@@ -136,7 +136,7 @@ def end_text(walk: EpisodeWalk) -> str:
 def wrap_text(
     text: str, font: "ImageFont.ImageFont | ImageFont.FreeTypeFont", width_px: float, most: int
 ) -> list[str]:
-    """Return a text in lines that fit, the last one cut where there are more than ``most``."""
+    """Wrap a text to a width, truncating it after ``most`` lines."""
     lines: list[str] = []
     line = ""
     for word in printable(text).split():
@@ -153,7 +153,7 @@ def wrap_text(
 
 
 def printable(text: str) -> str:
-    """Return a text in letters that the font has."""
+    """Collapse white space, and replace characters that the font lacks with question marks."""
     return "".join(mark if " " <= mark <= "ÿ" else "?" for mark in " ".join(text.split()))
 
 

@@ -1,4 +1,4 @@
-"""A plan of a scene with the way that was walked drawn into it, a storey at a time."""
+"""Floor maps of a scene with a walked path, one map per storey."""
 
 import math
 from collections.abc import Sequence
@@ -20,9 +20,9 @@ FINE = 2  # A plan is drawn so many times larger and then made small.
 
 
 def floor_plans(scene: VlnScene, size_px: int = SIDE_PX) -> "PlanMap":
-    """Return the plans of a scene, cut to the rooms that one can stand in and what is near them.
+    """Return the maps of a scene, cropped to the area around its walkable floor.
 
-    A garden as large as the house would leave half of the picture to the house.
+    Without cropping, a large garden would take up most of the map.
     """
     floor = scene.graph.feet[scene.main_places][:, [0, 2]]
     margin = MARGIN_M * scene.blocks_per_metre
@@ -31,7 +31,7 @@ def floor_plans(scene: VlnScene, size_px: int = SIDE_PX) -> "PlanMap":
 
 
 class PlanMap:
-    """Plans of the storeys of a volume, each drawn once."""
+    """Maps of the storeys of a volume, each rendered once."""
 
     def __init__(
         self,
@@ -39,7 +39,13 @@ class PlanMap:
         size_px: int,
         box: tuple[float, float, float, float] | None = None,
     ):
-        """Take a volume and the part to draw: least x and z, most x and z, world blocks."""
+        """Create the maps of a volume.
+
+        Args:
+            volume: The blocks.
+            size_px: The side length of a map in pixels.
+            box: The area to draw in world blocks: minimum x and z, maximum x and z. None draws all.
+        """
         self.size_px, self._box = size_px, box
         self._storeys = split_storeys(volume)
         self._drawn: dict[int, tuple[Image.Image, float, tuple[float, float]]] = {}
@@ -47,7 +53,7 @@ class PlanMap:
     def picture(
         self, stances: Sequence[Stance], goals: Sequence[tuple[float, float, float]]
     ) -> Image.Image:
-        """Return the plan of the storey of the last stance, with the way and the goals on it."""
+        """Return the map of the storey of the last stance, with the path and the goals."""
         here = stances[-1]
         storey = self._storey(here.y)
         plain, scale, (left, top) = self._plan(storey)
@@ -74,7 +80,7 @@ class PlanMap:
         return floors[-1] if floors else 0
 
     def _plan(self, storey: int) -> tuple[Image.Image, float, tuple[float, float]]:
-        """Return a square plan, its pixels a block, and the block at its corner."""
+        """Return a square map, its scale in pixels per block, and the block at its corner."""
         if storey not in self._drawn:
             volume = self._storeys[storey]
             side = self.size_px * FINE
@@ -99,7 +105,7 @@ class PlanMap:
         return self._drawn[storey]
 
     def _cut(self, volume: BlockVolume) -> tuple[int, int, int, int]:
-        """Return the columns of a storey to draw: from x, from z, to x, to z."""
+        """Return the columns of a storey to draw: minimum x and z, maximum x and z."""
         wide, _, deep = volume.states.shape
         if self._box is None:
             return 0, 0, wide, deep
@@ -123,7 +129,7 @@ def _dot(
 def _arrow(
     draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw_deg: float, length: float
 ) -> None:
-    """Draw where one stands and looks; on the plan x is right and z is down."""
+    """Draw an arrow at a position. On the map, x points right and z points down."""
     yaw = np.radians(yaw_deg)
     ahead = np.array([-np.sin(yaw), np.cos(yaw)])
     side = np.array([ahead[1], -ahead[0]])

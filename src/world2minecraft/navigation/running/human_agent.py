@@ -1,8 +1,8 @@
-"""The agent that is a person: at each step the view is shown in the browser and a key is awaited.
+"""An agent that a person controls with the keyboard in the browser.
 
-The person sees what any agent sees, the instruction and the pictures, and makes the same moves; so
-a trace, a film and scores come of it as of any other walk. It listens to its own walks, to tell how
-they went.
+The person sees the same instruction and images as other agents and makes the same moves, so the
+walk is traced, filmed and scored like any other. The agent also observes its own walks in order to
+display their results.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ VIEW_WIDTH_PX = 320  # Times the window's scale.
 
 
 class HumanAgent:
-    """Does what the keys say that are pressed in its window; ``window.link`` opens it."""
+    """An agent that makes the moves of the keys pressed in its page at ``window.link``."""
 
     name, is_privileged, is_blind = "human", False, False
 
@@ -31,14 +31,14 @@ class HumanAgent:
         self._before = ""
 
     def begin(self, task: Task) -> None:
-        """Take a task."""
+        """Start a task."""
         self._task = task
 
     def decide(self, sight: Observation) -> Decision:
-        """Show the view and return the move of the next key.
+        """Show the view and wait for a key, and return its move.
 
         Raises:
-            UsageError: nobody pressed a key for long.
+            UsageError: If no key is pressed in time, or no task was started.
         """
         if self._task is None:
             raise UsageError("call begin(task) before decide(sight)")
@@ -46,24 +46,24 @@ class HumanAgent:
         return Decision((wait_for_move(self.window, self.patience_s),))
 
     def close(self) -> None:
-        """Close the window."""
+        """Close the page."""
         self.window.close()
 
     def on_begin(self, episode: Episode, agent: str) -> None:
-        """Hear that an episode begins; ``begin`` told it already."""
+        """Do nothing, because ``begin`` already received the episode."""
 
     def on_decision(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
     ) -> None:
-        """Hear what the person did, who knows."""
+        """Do nothing, because the person made the decision."""
 
     def on_stance(
         self, stance: Stance, step: int, decision: Decision | None, move: Move | None
     ) -> None:
-        """Hear where one stands."""
+        """Do nothing, because the view is shown before each decision."""
 
     def on_end(self, walk: "EpisodeWalk") -> None:
-        """Say how the walk went, now and beside the next one."""
+        """Show the result of the walk now and beside the next one."""
         from world2minecraft.navigation.running.film import end_text  # noqa: PLC0415  # Imports agents.
 
         self._before = end_text(walk)
@@ -72,7 +72,7 @@ class HumanAgent:
     def _told(self, task: Task, sight: Observation) -> str:
         lines = [task.instruction, f"Move {sight.step} of at most {task.max_steps}."]
         if any(collided for _, collided in sight.done):
-            lines[1] += " Something is in the way: you did not get ahead."
+            lines[1] += " An obstacle is in the way, so you did not move."
         if self._before and sight.step == 0:
-            lines.append(f"The walk before: {self._before}.")
+            lines.append(f"Previous walk: {self._before}.")
         return "\n".join(lines)

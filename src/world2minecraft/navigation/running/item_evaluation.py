@@ -1,7 +1,7 @@
-"""Evaluate answers to items: select them, ask one by one, score by task and composition.
+"""Evaluation of answers to items: selection, queries, and scores by task and composition.
 
-Each reply is kept. An answer that cannot be read is wrong and counted as such; where a server
-fails several items in a row the run ends, for its score would measure the server alone.
+All replies are stored. An answer that cannot be parsed counts as wrong. If the server fails for
+several items in a row, the run ends, because the score would only reflect the server.
 """
 
 import hashlib
@@ -28,46 +28,46 @@ CHOICES = (*SPLITS, "test", "all")
 
 
 def json_line(value: dict[str, Any]) -> str:
-    """Return a value as one line of JSON, with its end."""
+    """Return a value as one line of JSON with a line break."""
     return json.dumps(value, allow_nan=False, sort_keys=True) + "\n"
 
 
 class Answerer(Protocol):
-    """What answers items; threads may share it."""
+    """The interface of objects that answer items. Implementations must be thread-safe."""
 
     name: str
 
     def answer(self, item: Item) -> Answer:
-        """Return what is said to an item."""
+        """Return the answer to an item."""
         ...
 
 
 @dataclass(frozen=True)
 class AnsweredItem:
-    """An item with what was said to it."""
+    """An item with its answer."""
 
     item: Item
     answer: Answer
 
     @property
     def is_right(self) -> bool:
-        """Whether the letter is the right one."""
+        """Whether the answer is correct."""
         return self.answer.letter == self.item.answer
 
 
 def evaluate(
     items: Sequence[Item], answerer: Answerer, *, jobs: int = 1, progress: Progress | None = None
 ) -> list[AnsweredItem]:
-    """Ask all items, ``jobs`` at a time, and return the answers in the order of the items.
+    """Answer all items, ``jobs`` at a time, and return the answers in the order of the items.
 
     Raises:
-        UsageError: there is no item. ServerError: the server failed several items in a row. What
-        the answerer raises.
+        UsageError: If there are no items, or ``jobs`` is less than 1.
+        ServerError: If the server fails for several items in a row.
     """
     if not items:
-        raise UsageError("there is no item to ask; is the split right?")
+        raise UsageError("no items to answer; check --split")
     if jobs < 1:
-        raise UsageError(f"--jobs is 1 or more, not {jobs}")
+        raise UsageError(f"--jobs must be 1 or more, got {jobs}")
     found: list[AnsweredItem] = []
     failed, right = 0, 0
     for item, answer in _ask_all(items, answerer.answer, jobs):
@@ -76,8 +76,9 @@ def evaluate(
         failed = failed + 1 if answer.outcome == "failed" else 0
         if failed >= MAX_FAILED:
             raise ServerError(
-                f"{failed} items in a row had no answer ({answer.details.get('problem', '')}); "
-                "the same command goes on from here"
+                f"{failed} items in a row were not answered "
+                f"({answer.details.get('problem', '')}); run the same command again to "
+                "continue"
             )
         if progress is not None:
             progress("ask", len(found), len(items), f"{right / len(found):.0%} right")
@@ -98,9 +99,10 @@ def _ask_all(
 
 
 def accuracy(found: Sequence[AnsweredItem]) -> dict[str, dict[str, Any]]:
-    """Return accuracy by task, then by composition: share, hits, total, Wilson interval, invalid.
+    """Return the accuracy by task, then by composition, omitting combinations without items.
 
-    Combined are the two together. What has no item is left out.
+    Each entry contains the share, the hits, the total, the Wilson interval and the invalid answers.
+    "combined" covers both compositions.
     """
     table: dict[str, dict[str, Any]] = {}
     for task in TASKS:
@@ -131,9 +133,12 @@ def _cell(own: Sequence[AnsweredItem]) -> dict[str, Any]:
 
 
 def write_result(folder: str | Path, found: Sequence[AnsweredItem], facts: dict[str, Any]) -> None:
-    """Write ``answers.jsonl``, a line an item, and ``result.json``.
+    """Write ``answers.jsonl``, with one line per item, and ``result.json``.
 
-    ``facts`` are added to the result: who answered, how it was trained, what it cost.
+    Args:
+        folder: The output folder.
+        found: The answered items.
+        facts: Additional values for the result, such as the model and its cost.
     """
     out = Path(folder)
     lines = [
@@ -173,18 +178,19 @@ def select_items(
     count: int | None = None,
     seed: int = 0,
 ) -> list[Item]:
-    """Return the items of a split, a task and a composition, in their order.
+    """Select the items of a split, a task and a composition, in their order.
 
     Args:
-        items: of a set.
-        split: one of ``SPLITS``, ``test`` for both of val, or ``all``.
-        task: one of ``TASKS``, or ``both``.
-        composition: ``base``, ``extend``, or ``combined`` for both.
-        count: at most so many, drawn evenly from all; the same for the same seed.
-        seed: of the draw.
+        items: The items of a set.
+        split: One of ``SPLITS``, "test" for both validation splits, or "all".
+        task: One of ``TASKS``, or "both".
+        composition: "base", "extend", or "combined" for both.
+        count: The maximum number of items, sampled uniformly. None selects all.
+        seed: The seed of the random sample.
 
     Raises:
-        UnknownNameError: a name is none of these. UsageError: no item is left.
+        UnknownNameError: If a split, task or composition is unknown.
+        UsageError: If no items match.
     """
     for kind, name, known in (
         ("split", split, CHOICES),
@@ -203,8 +209,8 @@ def select_items(
     ]
     if not found:
         raise UsageError(
-            f"none of {len(items):,} items is of split {split}, task {task} and composition "
-            f"{composition}; try --split all"
+            f"none of the {len(items):,} items has split {split}, task {task} and "
+            f"composition {composition}; try --split all"
         )
     if count is None or count >= len(found):
         return found

@@ -1,6 +1,6 @@
-"""Results of runs as tables of text: walks beside Stop, Random and Oracle; answers as the paper's.
+"""Text tables of run results: walks with reference agents, and answers as in the paper.
 
-Results may come from anyone: what a table needs of them is checked before it is used.
+Result files are not trusted. Their values are checked before use.
 """
 
 import math
@@ -20,8 +20,9 @@ from world2minecraft.navigation.types import TASKS
 MAX_RESULT_BYTES = 256 << 20
 _WALKED = ("ne_m", "spl", "soft_spl", "ndtw", "sdtw", "cls", "collisions", "steps")
 HEADS_NOTE = (
-    "NE: metres on foot still to go; SR: share that said STOP within so many metres; SPL and SDTW "
-    "at 3 m; docs/vln-scores.md has all heads"
+    "NE: remaining walking distance to the goal in metres; SR: share of episodes with "
+    "STOP within the given distance; SPL and SDTW at 3 m; docs/vln-scores.md explains all "
+    "columns"
 )
 _TITLES = {"next_view": "Next-View", "next_action": "Next-Action"}
 _HEADS = ("Base", "Extend", "Combined")
@@ -30,28 +31,37 @@ Table = list[list[str]]
 
 
 def read_result(path: str | Path) -> dict[str, Any]:
-    """Return the result of a run's folder or file.
+    """Read the result of a run from its folder or file.
 
     Raises:
-        InputError: it is missing. DamagedFileError: it is no result.
+        InputError: If the file is missing.
+        DamagedFileError: If the file is not a valid result.
     """
     place = Path(path)
     if place.is_dir():
         place = place / RESULT_FILE
         if not place.is_file():
-            raise InputError(place, "is not there; w2m vln run and w2m vln evaluate end with one")
+            raise InputError(
+                place,
+                "not found; w2m vln run and w2m vln evaluate write this file when they finish",
+            )
     data = read_json(place, MAX_RESULT_BYTES)
     if not isinstance(data, dict) or data.get("kind") not in ("walks", "answers"):
-        raise DamagedFileError(place, "is no result of w2m vln run or evaluate")
+        raise DamagedFileError(place, "not a result of w2m vln run or w2m vln evaluate")
     try:
         _check(data)
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
-        raise DamagedFileError(place, f"lacks what a table shows ({error})") from error
+        raise DamagedFileError(
+            place, f"not a complete result: a value for the table is missing ({error})"
+        ) from error
     return data
 
 
 def walks_table(results: Sequence[dict[str, Any]]) -> Table:
-    """Return a table of walks, a row an agent; the rows beside them once for the same episodes."""
+    """Return a table of walks with a row per agent.
+
+    Reference agents are listed once for each set of episodes.
+    """
     radii = [f"SR {radius:g} m" for radius in RADII_M]
     head = ["agent", "episodes", "NE m", *radii, "OSR 3 m", "SPL", "SoftSPL", "nDTW", "SDTW",
             "CLS", "collisions", "steps", "invalid"]  # fmt: skip
@@ -67,9 +77,9 @@ def walks_table(results: Sequence[dict[str, Any]]) -> Table:
 
 
 def answers_table(results: Sequence[dict[str, Any]]) -> Table:
-    """Return the paper's table: models by training, accuracy by task and composition.
+    """Return a table of accuracy by model, training, task and composition, as in the paper.
 
-    Cells have the share in percent and its interval (Wilson, 95 %).
+    Each cell contains the accuracy in percent and its 95 percent Wilson interval.
     """
     head = ["model", "training", *(f"{_TITLES[task]} {one}" for task in TASKS for one in _HEADS)]
     rows = [head]
@@ -84,7 +94,7 @@ def answers_table(results: Sequence[dict[str, Any]]) -> Table:
 
 
 def paired_table(results: Sequence[dict[str, Any]]) -> Table:
-    """Return how each pair of results differs on the items that both answered (McNemar)."""
+    """Compare each pair of results on their shared items with McNemar's test."""
     rows = [["one", "other", "items", "only one right", "only other right", "p"]]
     ordered = sorted(results, key=_place)
     for n, one in enumerate(ordered):
@@ -104,13 +114,13 @@ def paired_table(results: Sequence[dict[str, Any]]) -> Table:
 
 
 def format_text(table: Table) -> str:
-    """Return a table as text, columns under each other.
+    """Format a table as text with aligned columns.
 
     Raises:
-        UsageError: it has no row.
+        UsageError: If the table has no rows.
     """
     if not table:
-        raise UsageError("a table has rows")
+        raise UsageError("a table needs at least one row")
     widths = [max(len(row[n]) for row in table) for n in range(len(table[0]))]
     lines = [
         "  ".join(
@@ -123,7 +133,7 @@ def format_text(table: Table) -> str:
 
 
 def format_markdown(table: Table) -> str:
-    """Return a table as Markdown."""
+    """Format a table as Markdown."""
     safe = [[cell.replace("|", "\\|") for cell in row] for row in table]
     rule = ["---"] + ["---:"] * (len(table[0]) - 1)
     return "\n".join(f"| {' | '.join(row)} |" for row in (safe[0], rule, *safe[1:]))
@@ -133,15 +143,15 @@ def _check(data: dict[str, Any]) -> None:
     str(data["agent"])
     if data["kind"] == "walks":
         if not isinstance(data["episodes"], list):
-            raise TypeError("episodes is no list")
+            raise TypeError("episodes must be a list")
         for summary in (data["summary"], *data["beside"].values()):
             _walk_row("", summary)
         _ = [one["episode_id"] for one in data["episodes"]]
         return
     if data["training"] not in TRAININGS:
-        raise ValueError(f"training is none of {', '.join(TRAININGS)}")
+        raise ValueError(f"training must be one of {', '.join(TRAININGS)}")
     if not all(type(value) is bool for value in data["right"].values()):
-        raise TypeError("right is not true or false")
+        raise TypeError("right must be true or false")
     for task in TASKS:
         for one in COMPOSITIONS:
             _cell(data["accuracy"].get(task, {}).get(one))
@@ -171,7 +181,7 @@ def _cell(data: Any) -> str:
 
 
 def _place(result: dict[str, Any]) -> tuple[bool, str, int]:
-    """Baselines first, then each model's rows in the order of the paper."""
+    """Return a sort key: baselines first, then each model's rows in the order of the paper."""
     training = str(result["training"])
     return (training != "baseline", str(result["agent"]), TRAININGS.index(training))
 

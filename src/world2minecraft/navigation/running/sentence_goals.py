@@ -1,4 +1,4 @@
-"""An episode of a sentence: "Go to the piano", told in a scene, with the goal that it names."""
+"""Episodes for a single instruction, such as "Go to the piano", with the goal that it names."""
 
 import math
 import re
@@ -20,7 +20,15 @@ YAW_STEP_DEG = 15.0  # A turn of most sets of moves.
 
 @dataclass(frozen=True)
 class GoalRequest:
-    """What is wished: the sentence, and the goal where the sentence does not say it."""
+    """An instruction in a scene, with optional goal and start.
+
+    Attributes:
+        instruction: The instruction text.
+        goal: The goal landmark. If empty, it is taken from the instruction.
+        start: The start. None uses the scene's start.
+        move_set: The name of the move set.
+        max_steps: The maximum number of steps.
+    """
 
     instruction: str
     goal: str = ""
@@ -30,29 +38,32 @@ class GoalRequest:
 
 
 def episode_of_sentence(scene: VlnScene, wish: GoalRequest) -> Episode:
-    """Return the episode of a wish.
+    """Return the episode of an instruction.
 
     Raises:
-        UsageError: the sentence names no thing of the scene, or several things are called so.
-        InputError: nobody can stand before the goal, or no way leads there.
+        UsageError: If the instruction names no landmark of the scene, or an ambiguous one.
+        InputError: If the goal has no free floor in front of it, or cannot be reached.
     """
     if len(wish.instruction) > MAX_INSTRUCTION:
         count = len(wish.instruction)
         raise UsageError(
-            f"an instruction has at most {MAX_INSTRUCTION:,} characters, not {count:,}; shorten it"
+            f"an instruction must have at most {MAX_INSTRUCTION:,} characters, got "
+            f"{count:,}; shorten it"
         )
     target = find_named_landmark(scene, wish.goal or wish.instruction)
     goals = scene.goals_at(target)
     if not goals:
         raise InputError(
             scene.path,
-            f"nobody can stand before the {target.name}; name another thing, or make room there",
+            f"the {target.name} has no free floor in front of it; name another goal, or "
+            "clear space there",
         )
     start = _default_start(scene) if wish.start is None else _snap_start(scene, wish.start)
     if scene.distance_m(start.feet, goals) == float("inf"):
         raise InputError(
             scene.path,
-            f"no way leads from the start to the {target.name}; begin elsewhere: --start X,Y,Z",
+            f"no path leads from the start to the {target.name}; choose another start with "
+            "--start X,Y,Z",
         )
     return Episode(
         episode_id="wish",
@@ -70,12 +81,12 @@ def episode_of_sentence(scene: VlnScene, wish: GoalRequest) -> Episode:
 
 
 def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
-    """Return the thing of a scene that a sentence names last; that is where it ends.
+    """Return the landmark that a sentence names last, which is the goal.
 
-    The last word of what a thing is called will do, such as piano for an upright piano.
+    The last words of a noun suffice, such as "piano" for an upright piano.
 
     Raises:
-        UsageError: it names none, or what it names is several things.
+        UsageError: If the sentence names no landmark, or an ambiguous one.
     """
     text = " ".join(sentence.lower().split())
     named = _phrases(scene.landmarks)
@@ -86,18 +97,20 @@ def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
     ]
     if not spans:
         some = ", ".join(sorted(one.name for one in scene.landmarks)[:12]) or "nothing"
-        raise UsageError(f"nothing of {scene.scene_id} is named by {text[:60]!r}; it has {some}")
+        raise UsageError(
+            f"no object of {scene.scene_id} matches {text[:60]!r}; known objects: {some}"
+        )
     phrase = max(spans)[2]
     if len(named[phrase]) > 1:
         some = ", ".join(repr(one.name) for one in named[phrase][:6])
         raise UsageError(
-            f"{len(named[phrase])} things are called {phrase!r}; say one of {some}, or --goal NAME"
+            f"{phrase!r} matches {len(named[phrase])} objects; use one of {some}, or --goal NAME"
         )
     return named[phrase][0]
 
 
 def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
-    """Return what phrases mean: names before nouns, whole nouns before their last words."""
+    """Map phrases to landmarks, preferring full names to nouns and nouns to their last words."""
     names: dict[str, list[Landmark]] = {}
     nouns: dict[str, list[Landmark]] = {}
     ends: dict[str, list[Landmark]] = {}
@@ -111,7 +124,7 @@ def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
 
 
 def _default_start(scene: VlnScene) -> Stance:
-    """Return the scene's start, looking to the middle of the floor and not at the nearest wall."""
+    """Return the scene's start, facing the middle of the floor instead of the nearest wall."""
     start = scene.start
     x, _, z = scene.graph.feet[scene.main_places].mean(axis=0) - np.array(start.feet)
     yaw_deg = math.degrees(math.atan2(-x, z))
@@ -119,7 +132,7 @@ def _default_start(scene: VlnScene) -> Stance:
 
 
 def _snap_start(scene: VlnScene, wished: Stance) -> Stance:
-    """Return the place of the rooms' floor nearest to a wished one, looking the wished way."""
+    """Return the floor position nearest to the requested start, with the requested heading."""
     floor = scene.graph.feet[scene.main_places]
     away = ((floor - np.array(wished.feet)) ** 2).sum(axis=1)
     x, y, z = map(float, floor[away.argmin()])

@@ -1,4 +1,4 @@
-"""What episodes are walked on: a scene with one set of moves, one camera and the oracle's paths."""
+"""Simulators, which combine a scene with a move set, a camera and the oracle."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -18,26 +18,26 @@ VIEW_FOV_DEG = 79.0  # Horizontal: RxR's camera, of this size too.
 
 
 class Simulator(Protocol):
-    """What a walk needs of a scene. Feet are world blocks, lengths metres of the room."""
+    """The interface of simulators. Feet are in world blocks, lengths in metres of the room."""
 
     move_set: MoveSet
     metres_per_block: float
 
     @property
     def step_m(self) -> float:
-        """How far FORWARD goes."""
+        """The length of a FORWARD move in metres."""
         ...
 
     def view(self, stance: Stance) -> np.ndarray:
-        """Return what one who stands so sees, uint8 [H, W, 3]."""
+        """Return the view at a stance as uint8 [H, W, 3]."""
         ...
 
     def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
-        """Return where a move leads, and whether something was in the way."""
+        """Return the stance after a move, and whether the move collided."""
         ...
 
     def distance_m(self, stance: Stance, goals: Sequence[tuple[float, float, float]]) -> float:
-        """Return the way on foot to the nearest goal, inf where none leads."""
+        """Return the walking distance to the nearest goal in metres, or inf if unreachable."""
         ...
 
     def expert(
@@ -46,45 +46,45 @@ class Simulator(Protocol):
         goals: Sequence[tuple[float, float, float]],
         facing: tuple[float, float, float] | None = None,
     ) -> tuple[Move, ...]:
-        """Return the oracle's moves; they end by turning to ``facing``, and with STOP."""
+        """Return the oracle's moves, which end with turns toward ``facing`` and STOP."""
         ...
 
     def to_room_m(self, feet: np.ndarray) -> np.ndarray:
-        """Return places [N, 3] in metres of the room."""
+        """Convert block positions [N, 3] to metres of the room."""
         ...
 
     @property
     def offline(self) -> "Simulator":
-        """The same ground for moves that are only thought of; itself, where none is for real."""
+        """A simulator for planning, whose moves do not affect a game server."""
         ...
 
     def plan(self, stances: Sequence[Stance]) -> np.ndarray:
-        """Return a plan of the scene with the way that was walked, uint8 [H, W, 3]."""
+        """Return a floor map with the walked path as uint8 [H, W, 3]."""
         ...
 
 
 class SimulatorGuide:
-    """What the privileged know of an episode on a ground."""
+    """A guide with full knowledge of an episode in a simulator."""
 
     def __init__(self, ground: Simulator, episode: Episode):
         self._ground, self._goals = ground.offline, episode.goals
         self._facing = episode.facing
 
     def distance_m(self, stance: Stance) -> float:
-        """Return how far it is on foot to the nearest goal."""
+        """Return the walking distance to the nearest goal in metres."""
         return self._ground.distance_m(stance, self._goals)
 
     def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
-        """Return where a move would lead."""
+        """Return the stance after a move, and whether the move collides."""
         return self._ground.step(stance, move)
 
     def expert(self, stance: Stance) -> tuple[Move, ...]:
-        """Return the oracle's moves from here."""
+        """Return the oracle's moves from a stance."""
         return self._ground.expert(stance, self._goals, self._facing)
 
 
 class SceneSimulator:
-    """A scene, walked by one set of moves and seen through one camera."""
+    """A simulator of a scene with one move set and one camera."""
 
     def __init__(
         self, scene: VlnScene, move_set: str | MoveSet = "vlnce", camera: Camera | None = None
@@ -95,22 +95,22 @@ class SceneSimulator:
 
     @property
     def step_m(self) -> float:
-        """How far FORWARD goes, metres of the room."""
+        """The length of a FORWARD move in metres of the room."""
         return forward_blocks(self.scene, self.move_set) * self.metres_per_block
 
     def view(self, stance: Stance) -> np.ndarray:
-        """Return what one who stands so sees, uint8 [H, W, 3]."""
+        """Return the view at a stance as uint8 [H, W, 3]."""
         colour = self.scene.picture(stance, self.camera, outputs=("colour",)).colour
         if colour is None:
-            raise ValueError("the picture has no colour")
+            raise ValueError("the rendered view has no colour image")
         return colour
 
     def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
-        """Return where a move leads, and whether something was in the way."""
+        """Return the stance after a move, and whether the move collided."""
         return apply_move(self.scene, stance, move, self.move_set)
 
     def distance_m(self, stance: Stance, goals: Sequence[tuple[float, float, float]]) -> float:
-        """Return the way on foot to the nearest goal, inf where none leads."""
+        """Return the walking distance to the nearest goal in metres, or inf if unreachable."""
         return self.scene.distance_m(stance.feet, goals)
 
     def expert(
@@ -119,24 +119,24 @@ class SceneSimulator:
         goals: Sequence[tuple[float, float, float]],
         facing: tuple[float, float, float] | None = None,
     ) -> tuple[Move, ...]:
-        """Return the oracle's moves; STOP alone where it knows no way."""
+        """Return the oracle's moves, or STOP alone if no path is found."""
         way = plan_expert_path(self.scene, stance, goals, self.move_set, facing=facing)
         return (Move.STOP,) if way is None else way.moves
 
     def to_room_m(self, feet: np.ndarray) -> np.ndarray:
-        """Return places [N, 3] in metres of the room."""
+        """Convert block positions [N, 3] to metres of the room."""
         return self.scene.to_room_m(feet)
 
     @property
     def offline(self) -> Simulator:
-        """Itself: no move here is for real."""
+        """This simulator itself, because its moves affect no server."""
         return self
 
     @cached_property
     def plans(self) -> PlanMap:
-        """The plans of the scene's storeys, cut to its rooms."""
+        """The floor maps of the scene's storeys, cropped to its rooms."""
         return floor_plans(self.scene)
 
     def plan(self, stances: Sequence[Stance]) -> np.ndarray:
-        """Return a plan of the storey with the way that was walked, without goals."""
+        """Return a map of the current storey with the walked path, without goals."""
         return np.asarray(self.plans.picture(stances, ()))

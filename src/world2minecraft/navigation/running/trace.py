@@ -1,7 +1,7 @@
-"""The trace of a walk: a line a decision, with its view, the model's words and what came of it.
+"""The trace of a walk, with one line per decision: the view, the model's reply and the moves made.
 
-``trace.jsonl`` begins with the episode and ends with its score. Lines are added as they come, so
-that a run can be followed and what a crash leaves can be read.
+``trace.jsonl`` starts with the episode and ends with its score. Lines are appended during the walk,
+so a run can be followed, and the trace remains readable after a crash.
 """
 
 import hashlib
@@ -26,7 +26,7 @@ MAX_TRACE_BYTES = 256 << 20
 
 
 class TraceWriter:
-    """Writes the trace of one episode into a folder; an observer."""
+    """An observer that writes the trace of an episode into a folder."""
 
     def __init__(self, folder: Path):
         self.folder = folder
@@ -34,7 +34,11 @@ class TraceWriter:
         self._number = 0
 
     def on_begin(self, episode: Episode, agent: str) -> None:
-        """Begin the file anew, without the views of a walk before."""
+        """Start a new trace file, and delete the images of a previous walk.
+
+        Raises:
+            OutputError: If the folder cannot be written.
+        """
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             for old in (self.folder / VIEWS_FOLDER).glob("[0-9]*.jpg"):
@@ -42,7 +46,7 @@ class TraceWriter:
             self._stream = (self.folder / TRACE_FILE).open("w", encoding="utf-8")
         except OSError as error:
             raise OutputError(
-                self.folder, f"cannot be written: {error.strerror or error}"
+                self.folder, f"cannot be written ({error.strerror or error})"
             ) from error
         self._number = 0
         goals = [list(goal) for goal in episode.goals]
@@ -62,7 +66,7 @@ class TraceWriter:
     def on_decision(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
     ) -> None:
-        """Write a decision and the view that it was made from."""
+        """Write a decision, and the view on which it is based."""
         line: dict[str, Any] = {
             "decision": self._number,
             "step": sight.step,
@@ -85,10 +89,10 @@ class TraceWriter:
     def on_stance(
         self, stance: Stance, step: int, decision: Decision | None, move: Move | None
     ) -> None:
-        """Write nothing: decisions tell it."""
+        """Ignore the stance, because decisions contain it."""
 
     def on_end(self, walk: EpisodeWalk) -> None:
-        """Write the score and close the file."""
+        """Write the score, and close the file."""
         self._line(
             {
                 "end": walk.end,
@@ -110,12 +114,12 @@ class TraceWriter:
             self._stream.write(json.dumps(value, allow_nan=False) + "\n")
             self._stream.flush()
         except OSError as error:
-            reason = f"cannot be written: {error.strerror or error}"
+            reason = f"cannot be written ({error.strerror or error})"
             raise OutputError(self.folder / TRACE_FILE, reason) from error
 
 
 def score_json(walk: EpisodeWalk) -> dict[str, Any]:
-    """Return the score of a walk for JSON: an infinite error is null."""
+    """Return the score of a walk as JSON data, with infinite values as null."""
     fields = asdict(walk.score)
     return {
         name: None if isinstance(value, float) and value == float("inf") else value
@@ -124,7 +128,7 @@ def score_json(walk: EpisodeWalk) -> dict[str, Any]:
 
 
 def decision_text(decision: Decision, made: Sequence[tuple[Move, bool]]) -> str:
-    """Return what a decision did, in a few words."""
+    """Return a short description of a decision and its moves."""
     if decision.outcome != "moves":
         return f"{decision.outcome.upper()}: {decision.details.get('problem', '')}"
     words = [MOVE_NAMES[move] + (" (blocked)" if collided else "") for move, collided in made]
@@ -132,33 +136,37 @@ def decision_text(decision: Decision, made: Sequence[tuple[Move, bool]]) -> str:
 
 
 def read_trace(path: str | Path) -> list[dict[str, Any]]:
-    """Return the lines of a trace: the episode, its decisions, the score.
+    """Return the lines of a trace: the episode, the decisions and the score.
 
     Raises:
-        InputError: it is missing. DamagedFileError: it is empty, or a line is no object.
-        LimitError: too large.
+        InputError: If the file is missing.
+        DamagedFileError: If the file is empty, or a line is not a JSON object.
+        LimitError: If the file is too large.
     """
     data = read_bytes(path, MAX_TRACE_BYTES)
     try:
         lines = [row for _, row in parse_json_lines(data.decode(), Path(path))]
     except UnicodeDecodeError as error:
-        raise DamagedFileError(path, "is no text in UTF-8") from error
+        raise DamagedFileError(path, "not a UTF-8 text file") from error
     if not lines:
-        raise DamagedFileError(path, "is empty; it is no trace of w2m vln run")
+        raise DamagedFileError(path, "the file is empty; expected a trace of w2m vln run")
     return lines
 
 
 def traces_in(folder: Path) -> list[Path]:
-    """Return where the traces of a run are, one a walk; of one walk the one that has to be."""
+    """Return the trace files of a run, one per walk.
+
+    For a single walk, the path is returned even if the file does not exist.
+    """
     several = sorted(folder.glob(f"episodes/*/{TRACE_FILE}"))
     return several if several and not (folder / TRACE_FILE).is_file() else [folder / TRACE_FILE]
 
 
 def stances_of(lines: Sequence[Mapping[str, Any]], path: Path) -> list[Stance]:
-    """Return where a walker stood at each decision of a trace, and in the end.
+    """Return the stance at each decision of a trace and at its end.
 
     Raises:
-        DamagedFileError: a line's stance is none.
+        DamagedFileError: If a stance is invalid.
     """
     stances = []
     for number, line in enumerate(lines, 1):
@@ -168,7 +176,7 @@ def stances_of(lines: Sequence[Mapping[str, Any]], path: Path) -> list[Stance]:
             values = {key: float(value) for key, value in line["stance"].items()}
             stances.append(Stance(**values))
         except (AttributeError, TypeError, ValueError) as error:
-            raise DamagedFileError(path, f"line {number} has no stance ({error})") from error
+            raise DamagedFileError(path, f"line {number} has no valid stance ({error})") from error
         if not np.isfinite(list(values.values())).all():
             raise DamagedFileError(path, f"line {number} has a stance that is not finite")
     return stances

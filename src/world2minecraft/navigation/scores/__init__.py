@@ -1,7 +1,7 @@
-"""How well an agent walked and answered: pure functions over paths and answers.
+"""Scores of walks and answers, as pure functions.
 
 ``navigation`` scores episodes (NE, SR, OSR, SPL, SoftSPL, nDTW, SDTW, CLS), ``path_similarity``
-compares two paths, ``confidence`` says how sure a rate is and whether two agents differ.
+compares paths, and ``significance`` computes confidence intervals and compares agents.
 """
 
 from world2minecraft.navigation.scores.navigation import (

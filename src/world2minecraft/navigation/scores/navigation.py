@@ -1,9 +1,9 @@
-"""The scores of walked episodes, as R2R, RxR and VLN-CE define them.
+"""Scores of walked episodes as defined by R2R, RxR and VLN-CE.
 
-Distances to the goal are those on foot (geodesic), the way that was walked is a sum of straight
-lines, and success needs STOP and a distance *under* the radius, as in Habitat's code. The usual
-radius of 3 m is as large as many rooms: so success is told at four radii, and the rows of agents
-that stop at once or walk at random belong beside any other.
+Distances to the goal are walking (geodesic) distances, and path lengths are sums of straight lines.
+Success requires STOP at a distance *below* the radius, as in Habitat. The usual radius of 3 m is as
+large as many rooms, so success is reported at four radii, and results should be compared with those
+of agents that stop at once or walk randomly.
 """
 
 from collections.abc import Sequence
@@ -21,9 +21,15 @@ USUAL_M = 3.0  # The radius of OSR, SPL and SDTW in the papers.
 
 @dataclass(frozen=True, eq=False)
 class WalkedPath:
-    """What an agent did in an episode: T poses, the first where it began.
+    """The path of an agent in an episode, with T poses including the start.
 
-    ``distance_m`` is the way on foot from each pose to the goal, inf where none leads there.
+    Attributes:
+        positions_m: The positions in metres of the room as float64 [T, 3].
+        distance_m: The walking distance from each pose to the goal as float64 [T], inf if
+            unreachable.
+        stopped: Whether the agent ended the walk with STOP.
+        steps: The number of actions, including STOP.
+        collisions: The number of actions that collided.
     """
 
     positions_m: np.ndarray  # float64 [T, 3], metres of the room
@@ -36,9 +42,9 @@ class WalkedPath:
         positions = np.asarray(self.positions_m, np.float64)
         distance = np.asarray(self.distance_m, np.float64)
         if positions.ndim != 2 or positions.shape[1] != 3 or not len(positions):
-            raise ValueError(f"positions_m must be [T, 3], not {positions.shape}")
+            raise ValueError(f"positions_m must have shape [T, 3], got {positions.shape}")
         if distance.shape != (len(positions),) or np.isnan(distance).any() or distance.min() < 0:
-            raise ValueError(f"distance_m must be {len(positions)} numbers of 0 or more")
+            raise ValueError(f"distance_m must contain {len(positions)} non-negative numbers")
         if min(self.steps, self.collisions) < 0:
             raise ValueError("steps and collisions must be 0 or more")
         object.__setattr__(self, "positions_m", positions)
@@ -47,7 +53,23 @@ class WalkedPath:
 
 @dataclass(frozen=True)
 class EpisodeScore:
-    """The scores of one episode. ``success`` and ``oracle`` have an entry a radius of RADII_M."""
+    """The scores of one episode.
+
+    Attributes:
+        ne_m: The navigation error: the final walking distance to the goal in metres.
+        one_m: The oracle navigation error: the minimum distance during the walk.
+        success: Whether the walk succeeded, for each radius of ``RADII_M``.
+        oracle: Whether the walk came close enough at any time, for each radius of ``RADII_M``.
+        spl: Success weighted by path length.
+        soft_spl: Progress weighted by path length.
+        ndtw: Normalised dynamic time warping.
+        sdtw: Success weighted by nDTW.
+        cls: Coverage weighted by length score.
+        length_m: The length of the walked path in metres.
+        shortest_m: The length of the shortest path in metres.
+        collisions: The number of collisions.
+        steps: The number of steps.
+    """
 
     ne_m: float  # navigation error: how far the goal still was
     one_m: float  # the least that it ever was
@@ -70,16 +92,18 @@ def score_episode(
     """Score an episode.
 
     Args:
-        walked: what the agent did; its first ``distance_m`` is the shortest way.
-        reference_m: float64 [M, 3], the dense path that should have been walked.
-        radius_m: success in SPL and SDTW; papers take 3 m.
+        walked: The path of the agent. Its first ``distance_m`` is the length of the shortest path.
+        reference_m: The dense reference path as float64 [M, 3].
+        radius_m: The success radius for SPL and SDTW in metres. The papers use 3 m.
 
     Raises:
-        ValueError: no way leads from the start to the goal.
+        ValueError: If no path leads from the start to the goal.
     """
     shortest = float(walked.distance_m[0])
     if not np.isfinite(shortest):
-        raise ValueError("no way leads from the start to the goal; such an episode has no score")
+        raise ValueError(
+            "no path leads from the start to the goal, so the episode cannot be scored"
+        )
     left, least = float(walked.distance_m[-1]), float(walked.distance_m.min())
     length = path_length_m(walked.positions_m)
     success = walked.stopped and left < radius_m
@@ -104,16 +128,17 @@ def score_episode(
 
 
 def summarise(scores: Sequence[EpisodeScore]) -> dict[str, Any]:
-    """Return means over episodes by name, and success rates with their intervals.
+    """Return mean scores by name, and success rates with confidence intervals.
 
-    An episode whose end no way leads from has an infinite NE; the mean is over the others, and
-    ``unreachable_ends`` tells how many there were.
+    If the goal cannot be reached from an episode's end, its NE is infinite. Such episodes are
+    excluded
+    from the mean NE and counted in ``unreachable_ends``.
 
     Raises:
-        ValueError: there is no episode.
+        ValueError: If there are no episodes.
     """
     if not scores:
-        raise ValueError("scores of no episode have no mean")
+        raise ValueError("at least one episode score is required")
     result: dict[str, Any] = {"episodes": len(scores)}
     for entry in fields(EpisodeScore):
         values = [getattr(score, entry.name) for score in scores]

@@ -1,7 +1,7 @@
-"""Two paths compared: dynamic time warping and coverage, as VLN papers print them.
+"""Similarity of two paths: dynamic time warping and coverage, as reported in VLN papers.
 
-Paths are points float64 [N, 3] in metres of the room. Distances between their points are straight
-lines. nDTW is of Ilharco et al. (2019), CLS of Jain et al. (2019).
+Paths are float64 [N, 3] points in metres of the room, and distances between points are Euclidean.
+nDTW was defined by Ilharco et al. (2019) and CLS by Jain et al. (2019).
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ THRESHOLD_M = 3.0  # Of both scores, as they were published; a distance that cou
 
 
 def path_length_m(points_m: np.ndarray) -> float:
-    """Return the length of a path, the sum of straight lines between its points.
+    """Return the length of a path in metres.
 
     Example:
         >>> path_length_m(np.array([[0, 0, 0], [3, 4, 0], [3, 4, 1]], float))
@@ -22,35 +22,38 @@ def path_length_m(points_m: np.ndarray) -> float:
 
 
 def without_repeats(points_m: np.ndarray) -> np.ndarray:
-    """Return a path without points that equal the one before: turns on the spot are no way."""
+    """Return a path without consecutive duplicate points, which turns on the spot produce."""
     points = _checked(points_m)
     moved = np.any(points[1:] != points[:-1], axis=1)
     return points[np.concatenate([[True], moved])]
 
 
 def dtw_m(path_m: np.ndarray, reference_m: np.ndarray) -> float:
-    """Return the least sum of distances, in metres, by which two paths are laid on each other.
+    """Return the dynamic time warping distance of two paths in metres.
 
-    Exact: each point is matched, in order, first with first and last with last.
+    The result is exact. Points are matched in order, with the ends of the paths matched to each
+    other.
     """
     return float(_dtw(_checked(path_m), _checked(reference_m)))
 
 
 def ndtw(path_m: np.ndarray, reference_m: np.ndarray, threshold_m: float = THRESHOLD_M) -> float:
-    """Return normalised dynamic time warping, 0 to 1: 1 where the path is the reference.
+    """Return the normalised dynamic time warping score, 0 to 1, which is 1 for identical paths.
 
-    ``exp(-DTW / (|reference| threshold))``; ``reference_m`` is the dense path that was walked, not
-    its corners.
+    The score is ``exp(-DTW / (|reference| threshold))``. ``reference_m`` must be the dense path,
+    not
+    just its corners.
     """
     total = dtw_m(without_repeats(path_m), reference_m)
     return float(np.exp(-total / (len(reference_m) * threshold_m)))
 
 
 def cls(path_m: np.ndarray, reference_m: np.ndarray, threshold_m: float = THRESHOLD_M) -> float:
-    """Return coverage weighted by length score, 0 to 1: how much of the reference was walked.
+    """Return the coverage weighted by length score (CLS), 0 to 1.
 
-    Coverage of each reference point decays with its distance from the path; a path that is longer
-    or shorter than the reference that it covers loses.
+    The coverage of a reference point decays with its distance to the path. The score is reduced if
+    the
+    path is longer or shorter than the covered reference.
     """
     path, reference = _checked(path_m), _checked(reference_m)
     nearest = np.linalg.norm(reference[:, None] - path[None], axis=2).min(axis=1)
@@ -82,7 +85,9 @@ def _dtw(path, reference):
 def _checked(points_m: np.ndarray) -> np.ndarray:
     points = np.ascontiguousarray(points_m, np.float64)
     if points.ndim != 2 or points.shape[1] != 3 or not len(points):
-        raise ValueError(f"a path must be one point or more, [N, 3], not {points.shape}")
+        raise ValueError(
+            f"a path must have shape [N, 3] with at least one point, got {points.shape}"
+        )
     if not np.isfinite(points).all():
-        raise ValueError("a path must be finite")
+        raise ValueError("path coordinates must be finite")
     return points

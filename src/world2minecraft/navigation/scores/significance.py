@@ -1,4 +1,4 @@
-"""How sure a share of successes is, and whether two agents differ on the same items."""
+"""Confidence intervals of success rates, and significance tests between two agents."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,14 @@ CONFIDENCE = 0.95
 
 
 class Rate(NamedTuple):
-    """``hits`` of ``total``, and the interval (Wilson, 95 %) in which the true share lies."""
+    """A success rate with its 95 percent Wilson interval.
+
+    Attributes:
+        hits: The number of successes.
+        total: The number of trials.
+        low: The lower bound of the interval.
+        high: The upper bound of the interval.
+    """
 
     hits: int
     total: int
@@ -18,15 +25,15 @@ class Rate(NamedTuple):
 
     @property
     def share(self) -> float:
-        """The share of hits, 0 where nothing was counted."""
+        """The share of hits, or 0 without trials."""
         return self.hits / self.total if self.total else 0.0
 
 
 def rate(hits: int, count: int) -> Rate:
-    """Return a rate with its interval.
+    """Return a rate with its confidence interval.
 
     Raises:
-        ValueError: more hits than were counted.
+        ValueError: If there are more hits than trials.
 
     Example:
         >>> found = rate(23, 41)
@@ -34,7 +41,7 @@ def rate(hits: int, count: int) -> Rate:
         (0.41, 0.561, 0.7)
     """
     if not 0 <= hits <= count:
-        raise ValueError(f"hits must be 0 to {count}, not {hits}")
+        raise ValueError(f"hits must be 0 to {count}, got {hits}")
     if count == 0:
         return Rate(0, 0, 0.0, 1.0)
     interval = binomtest(hits, count).proportion_ci(CONFIDENCE, method="wilson")
@@ -42,14 +49,14 @@ def rate(hits: int, count: int) -> Rate:
 
 
 def paired_p(one: np.ndarray, other: np.ndarray) -> float:
-    """Return how likely it is that two agents differ so much by chance (McNemar's exact test).
+    """Return the p-value of McNemar's exact test for a difference between two agents.
 
     Args:
-        one: bool [N], whether the first agent was right on each item.
-        other: bool [N], the second agent on the same items.
+        one: Whether the first agent was correct on each item, as bool [N].
+        other: Whether the second agent was correct on the same items, as bool [N].
 
     Raises:
-        ValueError: the two did not answer the same number of items.
+        ValueError: If the arrays differ in length.
 
     Example:
         >>> paired_p(np.array([True] * 6), np.array([False] * 6))
@@ -57,7 +64,10 @@ def paired_p(one: np.ndarray, other: np.ndarray) -> float:
     """
     first, second = np.asarray(one, bool), np.asarray(other, bool)
     if first.shape != second.shape or first.ndim != 1:
-        raise ValueError(f"answers must be of the same items, not {first.shape}, {second.shape}")
+        raise ValueError(
+            f"both methods must be scored on the same items, got shapes {first.shape} and "
+            f"{second.shape}"
+        )
     better, worse = int((first & ~second).sum()), int((second & ~first).sum())
     if better + worse == 0:
         return 1.0

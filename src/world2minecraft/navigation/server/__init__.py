@@ -1,5 +1,5 @@
-"""A player on a running server as the body of the environment; its eyes are our renderer.
+"""The environment on a game server, where a player moves and this program renders its view.
 
-``body.mjs`` is the player's program, by mineflayer and Node; ``player`` talks to it by lines of
-JSON, and ``env`` is the environment.
+``body.mjs`` is the player program, which uses mineflayer and Node.js. ``player`` communicates with
+it in JSON lines, and ``env`` is the Gymnasium environment.
 """

@@ -1,7 +1,7 @@
-"""How an agent acts by a player on a server: moves made by keys, or the keys themselves.
+"""Actions of a player on a server: discrete moves by timed key presses, or keys directly.
 
-A tick of walking is worth 0.216 blocks and one of sneaking 0.065, coasting included: together they
-come to within 0.03 blocks of any length that is no shorter than a tick of sneaking.
+A tick of walking covers 0.216 blocks and a tick of sneaking 0.065, including coasting. Combined,
+they approximate any length of at least one sneaking tick to within 0.03 blocks.
 """
 
 from functools import lru_cache
@@ -23,7 +23,7 @@ MIN_STEP_SHARE = 0.9  # Of a step: who came less far met something.
 
 
 def forward_keys(length: float, yaw_deg: float) -> list[Keys]:
-    """Return the keys, a tick each, that lead so many blocks ahead and leave one at rest.
+    """Return the keys for each tick that move the player a number of blocks ahead and to rest.
 
     Example:
         >>> keys = forward_keys(1.0, 90.0)
@@ -38,7 +38,7 @@ def forward_keys(length: float, yaw_deg: float) -> list[Keys]:
 
 @lru_cache(maxsize=256)
 def _ticks(length: float) -> tuple[int, int]:
-    """Return ticks of walking and sneaking that come nearest to a length, few of the latter."""
+    """Return the numbers of walking and sneaking ticks that best match a length."""
     best, error = (0, 0), length
     for sneaking in range(MAX_SNEAKING_TICKS + 1):
         walking = 0
@@ -53,7 +53,7 @@ def _ticks(length: float) -> tuple[int, int]:
 
 @lru_cache(maxsize=4096)
 def _way(walking: int, sneaking: int) -> tuple[float, int]:
-    """Return how far ticks of walking and sneaking lead, blocks, and the ticks until rest."""
+    """Return the distance in blocks of walking and sneaking ticks, and the ticks until rest."""
     body = Body((0.0, 0.0, 0.0), on_ground=True)
     for keys in [_WALK] * walking + [_SNEAK] * sneaking:
         body = step(_FLAT, body, keys)
@@ -66,19 +66,22 @@ def _way(walking: int, sneaking: int) -> tuple[float, int]:
 
 
 class ServerDiscreteActions(DiscreteActions):
-    """One move an action. The game knows no whole steps: one goes as far as the way is free."""
+    """A controller for discrete moves on a server.
+
+    The game has no fixed steps, so a blocked step ends at the obstacle instead of failing.
+    """
 
     def __init__(self, scene: VlnScene, move_set: MoveSet, server: ServerPlayer):
         super().__init__(scene, move_set, sliding=True)
         self.server = server
 
     def begin(self, stance: Stance) -> None:
-        """Stand somewhere."""
+        """Place the player at a stance."""
         body = self.server.place(stance.feet, stance.yaw_deg)
         self.stance = Stance(*body.position, stance.yaw_deg, stance.pitch_deg)
 
     def apply(self, move: Move) -> tuple[Stance, bool]:
-        """Turn in a tick, or walk by holding keys until the step is done."""
+        """Turn in one tick, or walk a step by holding keys."""
         here, turn = self.stance, self.move_set.turn_deg
         if move == Move.FORWARD:
             length = forward_blocks(self.scene, self.move_set)
@@ -94,17 +97,17 @@ class ServerDiscreteActions(DiscreteActions):
 
 
 class ServerContinuousActions(ContinuousActions):
-    """A tick of the game an action: keys held and the mouse moved, or STOP said."""
+    """A controller for game input on a server, with one tick of keys and mouse per action."""
 
     def __init__(self, scene: VlnScene, server: ServerPlayer):
         super().__init__(scene)
         self.server = server
 
     def begin(self, stance: Stance) -> None:
-        """Stand somewhere, at rest."""
+        """Place the player at rest at a stance."""
         self.body = self.server.place(stance.feet, stance.yaw_deg)
         self.stance = Stance(*self.body.position, stance.yaw_deg, stance.pitch_deg)
 
     def tick(self, keys: Keys, pitch_deg: float) -> Body:
-        """Return the player after a tick of keys."""
+        """Return the player's body after one tick of key input."""
         return self.server.hold([keys], pitch_deg)[-1]

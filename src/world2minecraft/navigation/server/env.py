@@ -1,4 +1,4 @@
-"""``world2minecraft/MinecraftVLN-Server-v0``: the environment, by a player on a game server."""
+"""The environment ``world2minecraft/MinecraftVLN-Server-v0``, with a player on a game server."""
 
 from pathlib import Path
 from typing import Any
@@ -16,18 +16,21 @@ from world2minecraft.navigation.types import MoveSet
 
 
 class ServerEnv(VlnEnv):
-    """An agent whose body plays on a server.
+    """A Gymnasium environment whose agent plays on a game server.
 
     Args:
-        server: HOST or HOST:PORT, or a player that has joined.
-        labels, box, blocks_per_metre: as ``open_server_scene`` takes them.
-        name: of the player; it needs to be an operator, for /tp.
-        version: of the game; the server is asked where it is left out.
-        options: those of ``VlnEnv``, but ``scene``, ``body`` and ``sliding``.
+        server: HOST or HOST:PORT, or a player that has already joined.
+        labels: The labels of the blocks, as accepted by ``open_server_scene``.
+        box: The block range, as accepted by ``open_server_scene``.
+        blocks_per_metre: The scale, as accepted by ``open_server_scene``.
+        name: The player name. The player must be an operator in order to use /tp.
+        version: The game version. If empty, the server is queried.
+        options: Options of ``VlnEnv`` except ``scene``, ``body`` and ``sliding``.
 
     Raises:
-        UsageError: an option cannot be, or mineflayer is not installed. ServerError: the server
-            lets the player not in. InputError: nobody can stand there.
+        UsageError: If an option is invalid, or mineflayer is not installed.
+        ServerError: If the server does not admit the player.
+        InputError: If there is no floor to stand on.
     """
 
     def __init__(
@@ -43,7 +46,7 @@ class ServerEnv(VlnEnv):
     ):
         for option in ("scene", "body", "sliding"):
             if option in options:
-                raise UsageError(f"a body on a server has no option {option!r}; leave it out")
+                raise UsageError(f"the option {option!r} is not available on a server; omit it")
         owned = not isinstance(server, ServerPlayer)
         self.server = join(server, name=name, version=version) if owned else server
         self._is_owned = owned
@@ -57,7 +60,7 @@ class ServerEnv(VlnEnv):
             raise
 
     def close(self) -> None:
-        """Close the window and leave the server."""
+        """Close the browser page, and leave the server."""
         super().close()
         self._leave()
 

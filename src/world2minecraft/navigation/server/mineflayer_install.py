@@ -1,4 +1,4 @@
-"""Node's packages of the body, fetched by npm when the user asks for it, and only then."""
+"""Installation of the Node.js packages for server players with npm, on request only."""
 
 import hashlib
 import re
@@ -20,32 +20,33 @@ _HOW = "w2m vln server --install"
 
 
 def is_installed() -> bool:
-    """Whether the pinned packages are there."""
+    """Return whether the pinned packages are installed."""
     return (_folder() / _DONE).is_file()
 
 
 def body_folder() -> Path:
-    """Return the folder that holds the packages.
+    """Return the folder that contains the installed packages.
 
     Raises:
-        UsageError: they are not installed, or Node is not there.
+        UsageError: If the packages or Node.js are not installed.
     """
     if not is_installed():
-        raise UsageError(f"a body on a server needs mineflayer; fetch it once with {_HOW}")
+        raise UsageError(f"playing on a server requires mineflayer; install it once with {_HOW}")
     node()
     return _folder()
 
 
 def install() -> Path:
-    """Fetch the packages that ``package-lock.json`` pins, with their digests; run none of them.
+    """Install the packages pinned in ``package-lock.json``, without running their scripts.
 
     Raises:
-        UsageError: Node or npm is not there. ServerError: npm fails.
+        UsageError: If Node.js or npm is not installed.
+        ServerError: If npm fails.
     """
     node()
     npm = shutil.which("npm")
     if npm is None:
-        raise UsageError("npm is not installed; it comes with Node from https://nodejs.org")
+        raise UsageError("npm not found; install Node.js from https://nodejs.org")
     folder = _folder()
     folder.mkdir(parents=True, exist_ok=True)
     for name in _STATED:
@@ -56,36 +57,37 @@ def install() -> Path:
             command, cwd=folder, check=False, capture_output=True, text=True, timeout=LIMIT_S
         )
     except subprocess.TimeoutExpired as error:
-        raise ServerError(f"npm took longer than {LIMIT_S:g} s; try {_HOW} again") from error
+        raise ServerError(f"npm did not finish within {LIMIT_S:g} s; run {_HOW} again") from error
     if done.returncode:
         last = " ".join(done.stderr.split())[-300:]
-        raise ServerError(f"npm could not fetch mineflayer: {last}")
+        raise ServerError(f"npm could not install mineflayer: {last}")
     write_text(folder / _DONE, "")
     return folder
 
 
 def node() -> str:
-    """Return the path of Node.
+    """Return the path of the Node.js executable.
 
     Raises:
-        UsageError: it is not there, or too old.
+        UsageError: If Node.js is not installed, or too old.
     """
     found = shutil.which("node")
     if found is None:
-        raise UsageError(f"Node is not installed; a body needs Node {MIN_NODE} or newer")
+        raise UsageError(f"Node.js not found; install version {MIN_NODE} or newer")
     version_text = subprocess.run(
         [found, "--version"], check=False, capture_output=True, text=True, timeout=30
     ).stdout
     version = re.match(r"v(\d+)\.", version_text)
     if version is None or int(version[1]) < MIN_NODE:
         raise UsageError(
-            f"a body needs Node {MIN_NODE} or newer, not {version_text.strip() or 'this'}"
+            f"Node.js {MIN_NODE} or newer is required, found "
+            f"{version_text.strip() or 'an unknown version'}"
         )
     return found
 
 
 def script() -> Path:
-    """Return the path of the body's program."""
+    """Return the path of the player program."""
     return Path(str(files("world2minecraft.navigation.server").joinpath(SCRIPT)))
 
 

@@ -1,10 +1,10 @@
-"""A player on a server: it stands where it is put, holds keys for ticks and reports what is around.
+"""A player on a game server, which can be placed, moved by keys, and queried for nearby blocks.
 
-Its time stands still between two calls; the server's goes on. Where it is, the server knows by the
-packets of any player's client, so that all who play there see it walk. Node runs the player; it
-answers lines of JSON, none of them trusted: replies are bounded in size and time, and a process
-that sends too much, too late or nothing that can be read is ended, and every later request is
-refused with the reason.
+The player only advances during calls, while the server continues to run. It uses the network
+protocol of an ordinary client, so other players see it walk. A Node.js process runs the player and
+replies in JSON lines. The replies are not trusted: their size and duration are limited, and a
+process that exceeds the limits or sends invalid data is terminated. Every later request then fails
+with the same reason.
 """
 
 import json
@@ -51,15 +51,15 @@ _VERSION = re.compile(r"1\.[0-9]{1,2}(\.[0-9]{1,2})?")
 
 
 class JsonLineProcess:
-    """A process that answers questions.
+    """A child process that answers requests in JSON lines.
 
     Args:
-        command: what to run.
-        folder: where.
-        environment: its environment; None for ours.
+        command: The command to run.
+        folder: The working directory.
+        environment: The environment variables. None inherits those of this process.
 
     Raises:
-        ServerError: it cannot be started.
+        ServerError: If the process cannot be started.
     """
 
     def __init__(
@@ -80,10 +80,15 @@ class JsonLineProcess:
         self._overhearing.start()
 
     def ask(self, act: str, timeout_s: float, **values: Any) -> dict[str, Any]:
-        """Return the answer to an act.
+        """Send a request, and return the reply.
+
+        Args:
+            act: The name of the request.
+            timeout_s: Seconds to wait for the reply.
+            values: The arguments of the request.
 
         Raises:
-            ServerError: the other side refuses, is silent for too long, or cannot be understood.
+            ServerError: If the request is refused, times out or gets an invalid reply.
         """
         if self._broken:
             raise ServerError(self._broken)
@@ -95,15 +100,15 @@ class JsonLineProcess:
                 stdin.write(line.encode() + b"\n")
                 stdin.flush()
         except OSError:
-            self._give_up("the body on the server has ended")
+            self._give_up("the player process has exited")
         answer = self._answer(act, timeout_s)
         if "error" in answer:
             raise ServerError(f"{act}: {_plain(answer['error'])}")
         return answer
 
     def close(self) -> None:
-        """End the process."""
-        self._broken = self._broken or "the body has left the server"
+        """Terminate the process."""
+        self._broken = self._broken or "the player has left the server"
         if self._process.poll() is None:
             self._process.kill()
         self._process.wait()
@@ -120,31 +125,31 @@ class JsonLineProcess:
             try:
                 line = self._lines.get(timeout=max(end_s - time.monotonic(), 0.0))
             except queue.Empty:
-                self._give_up(f"{act}: no answer in {timeout_s:g} s")
+                self._give_up(f"{act}: no reply within {timeout_s:g} s")
             if line is None:
-                self._give_up("the body on the server has ended")
+                self._give_up("the player process has exited")
             answer = self._read(line)
             if answer.get("id") == self._asked:
                 return answer
 
     def _read(self, line: bytes) -> dict[str, Any]:
         if len(line) >= MAX_LINE:
-            self._give_up(f"an answer is longer than {MAX_LINE:,} bytes")
+            self._give_up(f"a reply of the player process exceeds {MAX_LINE:,} bytes")
         try:
             answer = json.loads(line)
         except (ValueError, RecursionError):
             answer = None
         if not isinstance(answer, dict):
-            self._give_up("an answer is no JSON object")
+            self._give_up("a reply of the player process is not a JSON object")
         return answer
 
     def _give_up(self, reason: str) -> NoReturn:
-        """End the process and raise why, with the last that it wrote."""
+        """Terminate the process, and raise ServerError with its last error output."""
         if self._process.poll() is None:
             self._process.kill()
         self._overhearing.join(1.0)
         words = _plain(self._last_words.decode("utf-8", "replace").strip())
-        self._broken = f"{reason}; its last words: {words}" if words else reason
+        self._broken = f"{reason}; last error output: {words}" if words else reason
         raise ServerError(self._broken)
 
     def _hear(self, stream: IO[bytes]) -> None:
@@ -167,24 +172,30 @@ class JsonLineProcess:
 
 
 def _plain(text: Any) -> str:
-    """Return a text of others on one line, of printable characters, not too long."""
+    """Return an untrusted text on one line, with printable characters only and truncated."""
     kept = "".join(c if c.isprintable() else " " for c in str(text)[-MAX_MESSAGE:])
     return " ".join(kept.split())
 
 
 class Change(NamedTuple):
-    """A block that became another."""
+    """A changed block, with its position and its new state."""
 
     place: tuple[int, int, int]
     state: str
 
 
 class ServerPlayer:
-    """A player that has joined. Use it in a ``with``; ``join`` makes one.
+    """A player that has joined a server. Create it with ``join``, and use it as a context manager.
 
-    ``changes`` are the blocks that changed since they were last taken; ``has_many_changes`` says
-    that there were too many to list. ``corrections`` counts how often the server put the player
-    somewhere while keys were held, since ``place``.
+    Attributes:
+        address: The address of the server.
+        version: The game version of the server.
+        name: The player name.
+        body: The position and movement of the player.
+        changes: The blocks that have changed since the last ``take_changes``.
+        has_many_changes: Whether there were too many changes to list.
+        corrections: How often the server has moved the player while keys were held, since
+            ``place``.
     """
 
     def __init__(self, bridge: JsonLineProcess, address: str, state: dict[str, Any]):
@@ -208,10 +219,11 @@ class ServerPlayer:
         self.close()
 
     def hold(self, keys: Sequence[Keys], pitch_deg: float = 0.0) -> list[Body]:
-        """Hold keys, a tick each, and return the body after each tick.
+        """Hold keys, one entry per tick, and return the body after each tick.
 
         Raises:
-            ServerError: the player is gone, or the ground under it has not been streamed.
+            ServerError: If the player is disconnected, or the ground under it has not been
+                received.
         """
         poses: list[Body] = []
         for start in range(0, len(keys), MAX_TICKS):
@@ -221,7 +233,7 @@ class ServerPlayer:
             answer = self._bridge.ask("hold", limit_s, ticks=ticks)
             found = answer.get("poses")
             if not isinstance(found, list) or len(found) != len(part):
-                raise ServerError("the body tells of other ticks than it was asked for")
+                raise ServerError("the player process reported an unexpected number of ticks")
             self._take(answer)
             self.corrections += int(answer.get("forced", 0))
             poses += [_body(pose, one) for pose, one in zip(found, part, strict=True)]
@@ -229,10 +241,11 @@ class ServerPlayer:
         return poses
 
     def place(self, feet: tuple[float, float, float], yaw_deg: float = 0.0) -> Body:
-        """Put the player somewhere by the command /tp, and let it come to rest there.
+        """Move the player with the command /tp, and wait until it is at rest.
 
         Raises:
-            ServerError: the server does not do so; players need to be operators for /tp.
+            ServerError: If the server does not move the player, for example because it is no
+                operator.
         """
         for _ in range(PLACE_TRIES):
             self._put(feet)
@@ -242,23 +255,23 @@ class ServerPlayer:
                 return self.body  # A busy server may still move one to its spawn after joining.
         x, _, z = self.body.position
         raise ServerError(
-            f"the server moves the player away from where it is put, to {x:.1f} {z:.1f}"
+            f"the server moved the player away from the requested position, to {x:.1f} {z:.1f}"
         )
 
     def _put(self, feet: tuple[float, float, float]) -> None:
-        """Say /tp, and wait until the player is there."""
+        """Send /tp, and wait until the player has moved."""
         x, y, z = feet
         answer = self._bridge.ask("place", MOVE_S + SLACK_S, x=x, y=y, z=z, wait_ms=MOVE_S * 1e3)
         self._take(answer)
         self.body = _body(answer.get("pose"), Keys())
         if not answer.get("moved") or math.dist(self.body.position, feet) > NEAR:
             raise ServerError(
-                f"the server did not put the player at {x:.1f} {y:.1f} {z:.1f}; "
-                f"on its console say: op {self.name}"
+                f"the server did not move the player to {x:.1f} {y:.1f} {z:.1f}; run 'op "
+                f"{self.name}' on the server console"
             )
 
     def settle(self, yaw_deg: float = 0.0) -> Body:
-        """Hold no key until the player stands at rest, and return it."""
+        """Release all keys until the player is at rest, and return its body."""
         for _ in range(0, SETTLE_TICKS, 4):
             self.hold([Keys(yaw_deg=yaw_deg)] * 4)
             vx, _, vz = self.body.velocity
@@ -267,10 +280,11 @@ class ServerPlayer:
         return self.body
 
     def read(self, box: Sequence[int]) -> BlockVolume:
-        """Return the blocks of a box, x0 y0 z0 x1 y1 z1, its last corner not included.
+        """Return the blocks of a box x0 y0 z0 x1 y1 z1 with exclusive ends.
 
         Raises:
-            UsageError: it is no box. ServerError: a part of it has not been streamed.
+            UsageError: If the box is invalid.
+            ServerError: If a part of the box has not been received.
         """
 
         def ask(act: str, **values: Any) -> dict[str, Any]:
@@ -279,7 +293,7 @@ class ServerPlayer:
         return read_blocks(ask, checked_box(box), self.version)
 
     def take_changes(self) -> list[Change]:
-        """Return the changed blocks in the order in which they changed first, and forget them."""
+        """Return the changed blocks in the order of their first change, and clear the list."""
         taken, self.changes, self.has_many_changes = self.changes, [], False
         return taken
 
@@ -295,11 +309,13 @@ class ServerPlayer:
     def _take(self, answer: dict[str, Any]) -> None:
         found = answer.get("changed", [])
         if not isinstance(found, list):
-            raise ServerError("the body tells of changed blocks that are no list")
+            raise ServerError("the player process sent changed blocks that are not a list")
         data_version = data_version_of(self.version)
         for row in found:
             if not isinstance(row, list) or len(row) != 4:
-                raise ServerError("a changed block is no place and state")
+                raise ServerError(
+                    "the player process sent a changed block without a valid position and state"
+                )
             x, y, z = (_number(value) for value in row[:3])
             self.changes.append(Change((int(x), int(y), int(z)), state_of(row[3], data_version)))
         self.has_many_changes |= bool(answer.get("too_many"))
@@ -308,26 +324,31 @@ class ServerPlayer:
 def join(
     address: str, *, name: str = DEFAULT_NAME, version: str = "", folder: Path | None = None
 ) -> ServerPlayer:
-    """Join a server that lets players in without an account (``online-mode=false``).
+    """Join a server that admits players without an account (``online-mode=false``).
 
     Args:
-        address: HOST or HOST:PORT; the port is 25565 where it is left out.
-        name: of the player.
-        version: of the game, such as 1.20.1; the server is asked where it is left out.
-        folder: whose ``node_modules`` hold mineflayer; what ``installing.install`` made if None.
+        address: HOST or HOST:PORT. The default port is 25565.
+        name: The player name.
+        version: The game version, such as 1.20.1. If empty, the server is queried.
+        folder: A folder whose ``node_modules`` contains mineflayer. None uses the folder of
+            ``mineflayer_install.install``.
 
     Raises:
-        UsageError: the address or a name cannot be, or mineflayer is not installed.
-        ServerError: nobody answers there, or it lets the player not in.
+        UsageError: If the address or a name is invalid, or mineflayer is not installed.
+        ServerError: If the server does not respond, or does not admit the player.
     """
     found = _ADDRESS.fullmatch(address)
     port = int(found["port"] or PORT) if found else 0
     if not found or not 1 <= port <= 65535:
-        raise UsageError(f"a server is HOST:PORT, such as localhost:{PORT}, not {address!r}")
+        raise UsageError(
+            f"the server address must be HOST:PORT, such as localhost:{PORT}, got {address!r}"
+        )
     if not _PLAYER.fullmatch(name):
-        raise UsageError(f"a player's name is 3 to 16 letters, digits and _, not {name!r}")
+        raise UsageError(
+            f"a player name must be 3 to 16 letters, digits or underscores, got {name!r}"
+        )
     if version and not _VERSION.fullmatch(version):
-        raise UsageError(f"a version is like 1.20.1, not {version!r}")
+        raise UsageError(f"the version must have the form 1.20.1, got {version!r}")
     place = folder or body_folder()
     bridge = JsonLineProcess([node(), str(script()), str(place)], place)
     try:
@@ -344,7 +365,7 @@ def join(
 def _horizontal_distance(
     one: tuple[float, float, float], other: tuple[float, float, float]
 ) -> float:
-    """Return how far places are from each other along the ground, blocks."""
+    """Return the horizontal distance between two positions in blocks."""
     return math.hypot(one[0] - other[0], one[2] - other[2])
 
 
@@ -353,9 +374,9 @@ def _key_mask(keys: Keys) -> int:
 
 
 def _body(pose: Any, keys: Keys) -> Body:
-    """Return the body that eight numbers tell of."""
+    """Return the body described by a list of eight numbers."""
     if not isinstance(pose, list) or len(pose) != 8:
-        raise ServerError("the body does not tell where it is")
+        raise ServerError("the player process did not send its position")
     x, y, z, vx, vy, vz, on_ground, hit_wall = (_number(value) for value in pose)
     return Body(
         (x, y, z), (vx, vy, vz), on_ground=bool(on_ground), crouched=keys.sneak,
@@ -365,5 +386,5 @@ def _body(pose: Any, keys: Keys) -> Body:
 
 def _number(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e8:
-        raise ServerError("the body tells of a place that is no number")
+        raise ServerError("the player process sent a position that is not a number")
     return float(value)

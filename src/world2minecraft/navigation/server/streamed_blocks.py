@@ -1,4 +1,4 @@
-"""The blocks that a server has streamed, as a volume; a chunk column a question."""
+"""Blocks received from a game server as a volume, requested one chunk column at a time."""
 
 import base64
 import binascii
@@ -26,33 +26,38 @@ Ask = Callable[..., dict[str, Any]]
 
 
 def checked_box(box: Sequence[int]) -> Box:
-    """Return a box x0 y0 z0 x1 y1 z1, its last corner not included.
+    """Validate a box x0 y0 z0 x1 y1 z1 with exclusive ends.
 
     Raises:
-        UsageError: it is no box, or too large to be read from a server.
+        UsageError: If the box is invalid, or too large to be read from a server.
     """
     numbers = [int(value) for value in box]
     sides = [b - a for a, b in zip(numbers[:3], numbers[3:], strict=False)]
     if len(numbers) != 6 or min(sides) < 1 or max(map(abs, numbers)) > 30_000_000:
         raise UsageError(
-            f"a box is x0 y0 z0 x1 y1 z1, each second corner beyond the first, not {list(box)}"
+            "a box must be x0 y0 z0 x1 y1 z1 with the second corner greater than the "
+            f"first on each axis, got {list(box)}"
         )
     if (cells := sides[0] * sides[1] * sides[2]) > MAX_CELLS:
-        raise UsageError(f"a box has up to {MAX_CELLS:,} blocks, not {cells:,}; take a smaller one")
+        raise UsageError(
+            f"a box must contain at most {MAX_CELLS:,} blocks, got {cells:,}; choose a smaller one"
+        )
     x0, y0, z0, x1, y1, z1 = numbers
     return x0, y0, z0, x1, y1, z1
 
 
 def read_blocks(ask: Ask, box: Box, version: str) -> BlockVolume:
-    """Return the blocks of a box, named as 1.20.1 names them, a metre each and without classes.
+    """Return the blocks of a box with 1.20.1 names, one metre per block and without classes.
 
     Args:
-        ask: asks for ``blocks`` from ``low`` to ``high``, both included and of one chunk column.
-        box: which.
-        version: of the server's game.
+        ask: A function that requests ``blocks`` from ``low`` to ``high`` (inclusive) within one
+            chunk
+            column.
+        box: The box to read.
+        version: The game version of the server.
 
     Raises:
-        ServerError: a part of it has not been streamed, or an answer cannot be.
+        ServerError: If a part of the box has not been received, or a reply is invalid.
     """
     x0, y0, z0, x1, y1, z1 = box
     states = np.zeros((x1 - x0, y1 - y0, z1 - z0), np.uint16)
@@ -63,8 +68,9 @@ def read_blocks(ask: Ask, box: Box, version: str) -> BlockVolume:
             answer = ask("blocks", low=[west, y0, north], high=[east - 1, y1 - 1, south - 1])
             if answer.get("missing"):
                 raise ServerError(
-                    f"the server has not sent the blocks around {west} {north}; stand nearer, name "
-                    "a smaller box, or raise view-distance in server.properties"
+                    f"the server has not sent the blocks around {west} {north}; move the "
+                    "player closer, choose a smaller box, or raise view-distance in "
+                    "server.properties"
                 )
             found, palette = _column(answer, (east - west, y1 - y0, south - north), data_version)
             table = np.array([rows.setdefault(state, len(rows)) for state in palette], np.uint16)
@@ -77,20 +83,20 @@ def read_blocks(ask: Ask, box: Box, version: str) -> BlockVolume:
 
 
 def state_of(text: Any, data_version: int) -> str:
-    """Return a block state of a server as 1.20.1 calls it.
+    """Convert a server's block state to its name in 1.20.1.
 
     Raises:
-        ServerError: it is no block state.
+        ServerError: If the block state is invalid.
     """
     try:
         state = read_state(str(parse_state(text)), data_version)
     except (UsageError, AttributeError, TypeError) as error:
-        raise ServerError("the server's blocks have a state that cannot be read") from error
+        raise ServerError("the server sent a block state that cannot be parsed") from error
     return AIR if state in AIRS else state
 
 
 def data_version_of(version: str) -> int:
-    """Return the data version of a game's name; of names that are not known, the newest."""
+    """Return the data version of a game version, or the newest one if the version is unknown."""
     try:
         return game_version(version).data_version
     except UnknownNameError:
@@ -98,7 +104,7 @@ def data_version_of(version: str) -> int:
 
 
 def _parts(low: int, high: int) -> list[tuple[int, int]]:
-    """Cut a range at the borders of chunks."""
+    """Split a range at chunk borders."""
     cuts = [low, *range(low // CHUNK * CHUNK + CHUNK, high, CHUNK), high]
     return list(pairwise(cuts))
 
@@ -109,13 +115,15 @@ def _column(
     palette, packed = answer.get("palette"), answer.get("states")
     count = shape[0] * shape[1] * shape[2]
     if not isinstance(palette, list) or not 1 <= len(palette) <= MAX_PALETTE:
-        raise ServerError("the blocks of a chunk come without their palette")
+        raise ServerError("the server sent the blocks of a chunk without a palette")
     try:
         unpacker = zlib.decompressobj()
         data = unpacker.decompress(base64.b64decode(str(packed), validate=True), 2 * count + 1)
     except (binascii.Error, zlib.error) as error:
-        raise ServerError("the blocks of a chunk cannot be unpacked") from error
+        raise ServerError("the blocks of a chunk cannot be decompressed") from error
     found = np.frombuffer(data[: len(data) // 2 * 2], "<u2")
     if len(data) != 2 * count or int(found.max(initial=0)) >= len(palette):
-        raise ServerError(f"{count:,} blocks of a chunk were asked for, and others came")
+        raise ServerError(
+            f"expected {count:,} blocks of a chunk, but the server sent another number"
+        )
     return found.reshape(shape), [state_of(text, data_version) for text in palette]

@@ -1,8 +1,8 @@
-"""The blocks that a server has streamed, as a scene to walk in and to look at.
+"""Scenes for navigation from blocks received from a game server.
 
-The walker is the game's own player, whatever the scale of the build: at 4 blocks a metre a robot of
-0.45 m. Doors stand as they stand. The eyes see blocks change; floor, paths and things with names
-are those of the moment in which the scene was made. ``ServerSimulator`` walks episodes there.
+The body is the game's own player at any scale, so at 4 blocks per metre it is a robot of 0.45 m.
+Doors keep their state. Rendering follows block changes, but the floor, the paths and the landmarks
+are those at the time when the scene was created. ``ServerSimulator`` walks episodes in such scenes.
 """
 
 from functools import cached_property
@@ -32,7 +32,7 @@ EDGE = 2  # Around a scene.
 
 
 class ServerScene(VlnScene):
-    """A scene whose blocks stand on a server. Make it by ``open_server_scene``."""
+    """A scene whose blocks are on a game server. Create it with ``open_server_scene``."""
 
     def __init__(self, source: BuildSource, scene_id: str, server: ServerPlayer):
         scale = source.volume.blocks_per_metre
@@ -41,22 +41,22 @@ class ServerScene(VlnScene):
 
     @cached_property
     def live(self) -> EditableScene:
-        """The pictures' scene, which follows the server's blocks."""
+        """The scene for rendering, which follows the block changes on the server."""
         return EditableScene(self.volume)
 
     @property
     def render_scene(self) -> BlockScene:  # type: ignore[override]
-        """What pictures are taken of, with all changes that the server has told of."""
+        """The scene prepared for rendering, with all block changes received from the server."""
         self._follow()
         return self.live.scene
 
     @cached_property
     def layouts(self) -> tuple[Layout, ...]:
-        """The floor plans that lie beside the labels."""
+        """The floor plans stored beside the labels."""
         return layouts_beside(self._labels) if self._labels else ()
 
     def _follow(self) -> None:
-        """Set the blocks that changed; read all again where the server told of too many."""
+        """Apply the block changes, or read all blocks again after too many changes."""
         if self.server.has_many_changes:
             self.server.take_changes()
             low, shape = np.array(self.volume.corner), np.array(self.volume.states.shape)
@@ -83,29 +83,30 @@ def open_server_scene(
     box: Box | None = None,
     blocks_per_metre: float | None = None,
 ) -> ServerScene:
-    """Read the blocks around a player, or of a box, and make a scene of them.
+    """Create a scene from the blocks around a player or in a box.
 
     Args:
-        server: the player.
-        labels: the run, house or build that stands there, at its own coordinates: it says what
-            blocks are, what things are called, the scale, and the box.
-        box: x0 y0 z0 x1 y1 z1 in blocks, the last ones not included.
-        blocks_per_metre: the scale, where no labels say it; 1 where nobody does.
+        server: The player.
+        labels: A run, house or build that is in the world at its own coordinates. It provides the
+            classes, the names of objects, the scale and the box.
+        box: The block range x0 y0 z0 x1 y1 z1 with exclusive ends.
+        blocks_per_metre: The scale if no labels are given. The default is 1.
 
     Raises:
-        UsageError: an option cannot be. InputError: the labels cannot be read, are of other blocks,
-            or nobody can stand there. ServerError: the blocks have not been streamed.
+        UsageError: If an option is invalid.
+        InputError: If the labels cannot be read or do not fit the blocks, or there is no floor.
+        ServerError: If the blocks have not been received.
     """
     if labels is not None and blocks_per_metre is not None:
-        raise UsageError("labels have their scale; leave blocks_per_metre out")
+        raise UsageError("the labels already define the scale; omit blocks_per_metre")
     if blocks_per_metre is not None and not 0 < blocks_per_metre <= 64:
-        raise UsageError(f"blocks per metre must be above 0 and up to 64, not {blocks_per_metre}")
+        raise UsageError(f"blocks_per_metre must be above 0 and at most 64, got {blocks_per_metre}")
     folder = None if labels is None else _scene_folder(Path(labels))
     wanted = checked_box(box) if box else _box_of(folder) if folder else _around(server)
     volume = server.read(wanted)
     where = f"server {server.address}"
     if not volume.states.any():
-        raise InputError(where, "nothing but air is in the box; choose another")
+        raise InputError(where, "the box contains only air; choose another")
     if folder is None:
         source = BuildSource(
             _scaled(trim_air(volume), blocks_per_metre or 1.0), "server", Path(where)
@@ -121,7 +122,9 @@ def open_server_scene(
 def _labelled(volume: BlockVolume, folder: Path, where: str) -> BlockVolume:
     known = with_scene_labels(volume, folder)
     if not known.semantic.any():
-        raise InputError(where, f"the blocks of {folder} do not stand there; build them first")
+        raise InputError(
+            where, f"the blocks of {folder} are not in the world at this position; build them first"
+        )
     return trim_air(known)
 
 
@@ -129,7 +132,11 @@ def _scene_folder(path: Path) -> Path:
     for folder in (path, path / "build", path.parent):
         if (folder / "scene.npz").is_file() and (folder / "scene.json").is_file():
             return folder
-    raise InputError(path, "holds no scene.json with a scene.npz; name a run or a generated house")
+    raise InputError(
+        path,
+        "does not contain scene.json with scene.npz; give the folder of a run or of a "
+        "generated house",
+    )
 
 
 def _box_of(folder: Path) -> Box:
@@ -162,7 +169,7 @@ def _is_in(cell: np.ndarray, shape: tuple[int, ...]) -> bool:
 
 
 class ServerSimulator(SceneSimulator):
-    """A scene whose player stands on a server; see ``offline`` for moves that it does not make."""
+    """A simulator that moves a player on a server, with an ``offline`` variant for planning."""
 
     def __init__(
         self, scene: ServerScene, move_set: str | MoveSet = "vlnce", camera: Camera | None = None
@@ -171,7 +178,7 @@ class ServerSimulator(SceneSimulator):
         self._controller = ServerDiscreteActions(scene, self.move_set, scene.server)
 
     def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
-        """Make a move; the player is put where it begins, if it stands elsewhere."""
+        """Make a move, after placing the player at the start of the move if necessary."""
         if stance != self._controller.stance:
             self._controller.begin(stance)
         if move == Move.STOP:
@@ -181,5 +188,5 @@ class ServerSimulator(SceneSimulator):
 
     @property
     def offline(self) -> Simulator:
-        """The scene alone: what the oracle thinks of moves no player."""
+        """A simulator of the scene alone, for planning without moving the player."""
         return SceneSimulator(self.scene, self.move_set, self.camera)

@@ -1,4 +1,4 @@
-"""The recipes and scripts that exports put beside the data, as templates."""
+"""Templates of the recipes and scripts that exports write beside the data."""
 
 from importlib.resources import files
 from typing import Any
@@ -7,11 +7,11 @@ import jinja2
 
 
 def render_recipe(name: str, /, **values: Any) -> str:
-    """Return a recipe, its blanks filled.
+    """Render a recipe template.
 
     Args:
-        name: of the file, without ``.jinja``.
-        values: what the blanks are filled with; each must be there.
+        name: The file name without ``.jinja``.
+        values: The template variables, all of which must be given.
     """
     environment = jinja2.Environment(
         undefined=jinja2.StrictUndefined, trim_blocks=True, keep_trailing_newline=True
@@ -20,5 +20,5 @@ def render_recipe(name: str, /, **values: Any) -> str:
 
 
 def read_recipe(name: str) -> str:
-    """Return a file of this folder as it is."""
+    """Return the text of a file in this folder."""
     return files(__name__).joinpath(name).read_text("utf-8")
