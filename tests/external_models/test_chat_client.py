@@ -79,7 +79,7 @@ def test_a_busy_server_is_asked_again_and_no_more_than_said():
         _, reply = model_at(server).ask(HELLO)
         assert (reply.text, reply.attempts, len(server.requests)) == ("fine", 3, 3)
     with scripted([BUSY]) as server:
-        with pytest.raises(BusyServerError, match='says 429: .*"slow down"'):
+        with pytest.raises(BusyServerError, match='returned HTTP status 429: .*"slow down"'):
             model_at(server, attempts=4).ask(HELLO)
         assert len(server.requests) == 4
 
@@ -108,21 +108,26 @@ def test_no_server_makes_us_wait_for_ever(header):
 
 def test_a_server_that_drips_ends_at_the_deadline():
     began = time.monotonic()
-    with scripted([SLOW]) as server, pytest.raises(BusyServerError, match="took over 0.3 s"):
+    with (
+        scripted([SLOW]) as server,
+        pytest.raises(BusyServerError, match=("did not reply within 0.3 s")),
+    ):
         model_at(server, attempts=1, timeout_s=0.3).ask(HELLO)
     assert time.monotonic() - began < 2
 
 
 def test_a_megabyte_is_not_read_to_its_end():
     with scripted([MEGABYTE]) as server:
-        with pytest.raises(UselessReplyError, match="sent over 262,144 bytes"):
+        with pytest.raises(UselessReplyError, match="sent a reply of more than 262,144 bytes"):
             model_at(server).ask(HELLO)
         assert len(server.requests) == 1
 
 
 def test_a_megabyte_of_failure_is_not_read_either():
     body = b"no " * (1 << 20)
-    right = pytest.raises(ServerError, match="says 401: no no .*is the key in")
+    right = pytest.raises(
+        ServerError, match=("returned HTTP status 401: no no .*check the API key in")
+    )
     with scripted([Answer(401, body)]) as server, right as caught:
         model_at(server).ask(HELLO)
     assert len(str(caught.value)) < 500
@@ -163,10 +168,13 @@ def test_values_of_a_server_are_taken_with_care():
 
 
 def test_refusals_and_redirects_are_not_followed():
-    with scripted([NO_SCHEMA]) as server, pytest.raises(RefusedQuestionError, match="says 400"):
+    with (
+        scripted([NO_SCHEMA]) as server,
+        pytest.raises(RefusedQuestionError, match=("HTTP status 400")),
+    ):
         model_at(server).ask(HELLO)
     with scripted([Answer(307, b"", {"Location": "http://127.0.0.1:1/"})]) as server:
-        with pytest.raises(ServerError, match="says 307"):
+        with pytest.raises(ServerError, match="HTTP status 307"):
             model_at(server).ask(HELLO)
         assert len(server.requests) == 1
 
@@ -189,7 +197,9 @@ def test_a_recorded_reply_is_not_asked_for_again(tmp_path):
         assert (model.ledger.calls, model.ledger.replayed, len(server.requests)) == (2, 1, 2)
     replayed = open_chat("openai:scripted", store=ReplyStore(path, "replay"))  # No key, no server.
     assert replayed.ask(HELLO)[1].text == "first"
-    with pytest.raises(InputError, match="has no reply to question .*same scene, model, prompts"):
+    with pytest.raises(
+        InputError, match=("no reply is recorded for question .*same scene, model, prompts")
+    ):
         replayed.ask((Turn("user", ("Goodbye",)),))
 
 
@@ -230,14 +240,14 @@ def test_a_line_cut_by_a_crash_is_dropped_and_written_again(tmp_path):
 def test_a_damaged_record_is_named(tmp_path, line):
     path = tmp_path / "replies.jsonl"
     path.write_bytes(line)
-    with pytest.raises(InputError, match="line 1 is no reply"):
+    with pytest.raises(InputError, match="line 1 is not a valid reply record"):
         ReplyStore(path)
 
 
 def test_a_replay_needs_its_file(tmp_path):
-    with pytest.raises(InputError, match="is not there"):
+    with pytest.raises(InputError, match="not found"):
         ReplyStore(tmp_path / "none.jsonl", "replay")
-    with pytest.raises(UsageError, match="to record or to replay, not to 'look'"):
+    with pytest.raises(UsageError, match="must be record or replay, got 'look'"):
         ReplyStore(tmp_path / "none.jsonl", "look")
 
 
@@ -263,7 +273,7 @@ def test_the_budget_stops_before_it_is_passed():
         for sample in range(2):
             model.ask(HELLO, sample=sample)
         assert model.ledger.usd == pytest.approx(0.22)
-        with pytest.raises(BudgetError, match=r"\$0.2200 is spent .* over the \$0.2500"):
+        with pytest.raises(BudgetError, match=r"\$0.2200 has been spent .* more than the \$0.2500"):
             model.ask(HELLO, sample=3)
         assert len(server.requests) == 2
 
@@ -274,7 +284,7 @@ def test_failed_calls_count_but_cost_nothing():
         with pytest.raises(ServerError):
             model_at(server, ledger=ledger).ask(HELLO)
         assert (ledger.calls, ledger.usd) == (1, 0)
-        with pytest.raises(BudgetError, match="1 calls were made"):
+        with pytest.raises(BudgetError, match="1 calls have been made"):
             model_at(server, ledger=ledger).ask(HELLO)
 
 
@@ -283,7 +293,7 @@ def test_an_attempt_without_reply_costs_its_maximum():
     price = Price(0.0, 100.0)  # 1,024 tokens of reply: at most 10.24 cents an attempt.
     ledger = Ledger(price, max_usd=0.25)
     with scripted([SLOW]) as server:
-        with pytest.raises(BudgetError, match=r"\$0.2048 is spent .* over the \$0.2500"):
+        with pytest.raises(BudgetError, match=r"\$0.2048 has been spent .* more than the \$0.2500"):
             model_at(server, ledger=ledger, attempts=5, timeout_s=0.3).ask(HELLO)
         assert len(server.requests) == 2
     assert (ledger.calls, ledger.usd) == (1, pytest.approx(0.2048))
@@ -322,13 +332,13 @@ def test_an_echoed_key_is_in_no_error_and_no_record(tmp_path, monkeypatch):
 def test_a_file_that_is_no_record_is_left_as_it_is(tmp_path, text):
     path = tmp_path / "replies.jsonl"
     path.write_text(text)
-    with pytest.raises(InputError, match="is no reply"):
+    with pytest.raises(InputError, match="not a (valid reply|recorded reply)"):
         ReplyStore(path)
     assert path.read_text() == text
 
 
 def test_money_cannot_be_capped_at_an_unknown_price():
-    with pytest.raises(UsageError, match="price of this model is not known"):
+    with pytest.raises(UsageError, match="price of this model is unknown"):
         Ledger(None, max_usd=1.0)
     assert Ledger().usd is None
 
@@ -338,9 +348,9 @@ def test_endpoints_are_names_or_addresses():
     assert resolve_endpoint("openai", model="gpt-4.1").model == "gpt-4.1"
     for text, error in [
         ("gemni", "did you mean 'gemini'"),
-        ("http://", "is no address"),
-        ("ftp://host/v1", "is no address"),
-        ("http://host:99999/v1", "is no address"),
+        ("http://", "is not a valid server address"),
+        ("ftp://host/v1", "is not a valid server address"),
+        ("http://host:99999/v1", "is not a valid server address"),
         ("https://me:secret@host/v1", "use --key-env NAME"),
     ]:
         with pytest.raises(UsageError, match=error):
@@ -352,7 +362,9 @@ def test_endpoints_are_names_or_addresses():
 def test_the_only_model_of_a_server_needs_no_name():
     with scripted(["fine"], models=("tiny",)) as server:
         assert open_chat(server.url).name == "tiny"
-    several = pytest.raises(ServerError, match="has these models: a, b; say which with --model")
+    several = pytest.raises(
+        ServerError, match=("provides several models: a, b; choose one with --model")
+    )
     with scripted(["fine"], models=("a", "b")) as server, several:
         open_chat(server.url)
 

@@ -49,12 +49,12 @@ def test_small_pictures_are_unchanged_and_large_ones_become_jpeg():
 
 
 def test_what_is_no_picture_is_told():
-    with pytest.raises(ValueError, match="is no picture that can be opened"):
+    with pytest.raises(ValueError, match="not an image that can be opened"):
         downscale_picture(Picture(b"\x89PNG no more"), 1000)
 
 
 def test_a_cap_is_one_token_at_least():
-    with pytest.raises(UsageError, match="a picture for a model has 784 pixels or more, not 10"):
+    with pytest.raises(UsageError, match="max_px must be 784 or more, got 10"):
         check_max_px(10)
 
 

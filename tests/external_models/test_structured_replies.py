@@ -133,4 +133,4 @@ def test_thoughts_are_taken_out_in_linear_time():
 def test_a_cut_reply_says_how_long_it_could_be():
     with scripted([proper("", finish="length")]) as server:
         formed = ask_structured(model_at(server), HELLO, COLOUR, repairs=0)
-    assert formed.problem == "the reply was cut at 1,024 tokens; be shorter"
+    assert formed.problem == "the reply was truncated at 1,024 tokens; be shorter"

@@ -1,1 +1,1 @@
-"""Clients of external models: networks from a model hub, and language models on servers."""
+"""Clients of external models: Hugging Face networks, and language models on servers."""

@@ -1,7 +1,7 @@
-"""Client for language models on any server that speaks OpenAI's chat protocol.
+"""A client for language models on servers with an OpenAI-compatible chat API.
 
-``ChatModel.ask`` takes turns of text and pictures and returns a reply: from the record where the
-same was asked before, else from the server, with bounded repeats, and never over the budget.
+``ChatModel.ask`` accepts turns of text and images and returns a reply, either from the reply cache
+or from the server. It retries a limited number of times and never exceeds the budget.
 
 Example::
 
@@ -31,18 +31,23 @@ TIMEOUT_S = 60.0  # Of one attempt, from the question to the last byte.
 
 
 class Transport(Protocol):
-    """Sends a question to a server once."""
+    """The interface of objects that send a question to a server once."""
 
     def ask(self, question: Question) -> Reply:
-        """Return the reply; raises the errors of ``chat_transport``."""
+        """Return the reply to a question.
+
+        Raises:
+            ServerError: If the server does not reply.
+        """
         ...
 
 
 class ChatModel:
-    """A model on a server, with its record of replies and its budget. Threads may share it.
+    """A chat model behind a server, with its reply cache and its budget. It is thread-safe.
 
-    ``rung`` is how strictly a reply format can be enforced; ``structured_replies`` lowers it for
-    good where the server refuses.
+    ``rung`` is the strictness with which a reply format is enforced. ``structured_replies`` lowers
+    it
+    permanently if the server rejects a stricter one.
     """
 
     def __init__(
@@ -57,9 +62,23 @@ class ChatModel:
         attempts: int = ATTEMPTS,
         sleep: Callable[[float], None] = time.sleep,
     ):
-        """Take a transport, None where all replies come from the store."""
+        """Create a model.
+
+        Args:
+            name: The name of the model.
+            transport: The connection to the server. None if all replies come from ``store``.
+            store: The reply cache.
+            ledger: The budget. None counts without limits.
+            temperature: The sampling temperature. None uses the server's default.
+            max_tokens: The maximum number of tokens of a reply.
+            attempts: The maximum number of attempts if the server is busy.
+            sleep: The function for waiting between attempts.
+
+        Raises:
+            UsageError: If ``attempts`` is less than 1.
+        """
         if attempts < 1:
-            raise UsageError(f"a question is asked at least once, not {attempts} times")
+            raise UsageError(f"attempts must be 1 or more, got {attempts}")
         self.name, self._transport, self._store = name, transport, store
         self.ledger = Ledger() if ledger is None else ledger
         self.temperature, self.max_tokens = temperature, max_tokens
@@ -69,11 +88,17 @@ class ChatModel:
     def ask(
         self, turns: tuple[Turn, ...], *, form: dict[str, Any] | None = None, sample: int = 0
     ) -> tuple[str, Reply]:
-        """Ask, and return the key of the question with the reply.
+        """Ask a question, and return its key with the reply.
+
+        Args:
+            turns: The messages.
+            form: The ``response_format`` of the protocol. None requests free text.
+            sample: A number that distinguishes repetitions of the same question.
 
         Raises:
-            BudgetError: a cap is reached. ServerError and its kinds: there is no reply.
-            InputError: only recorded replies are wanted and this question has none.
+            BudgetError: If the limit on calls or cost is reached.
+            ServerError: If the server does not reply.
+            InputError: If the cache only replays and has no reply to this question.
         """
         question = Question(self.name, turns, self.temperature, self.max_tokens, form, sample)
         found = self._store.get(question) if self._store is not None else None
@@ -81,7 +106,9 @@ class ChatModel:
             self.ledger.book_replay()
             return question.key, found
         if self._transport is None:
-            raise UsageError("a model without a server answers from a record alone; give one")
+            raise UsageError(
+                "without a server, a model can only replay recorded replies; pass a reply cache"
+            )
         try:
             reply = self._ask_paid(self._transport, question)
         except ServerError as error:
@@ -126,10 +153,10 @@ class ChatModel:
 
 
 def retry_wait_s(state: Any) -> float:
-    """Return how long to wait before the next attempt, by the outcome of the last.
+    """Return the seconds to wait before the next attempt.
 
-    As long as the server asks for, else twice as long each time, with random jitter, so that
-    threads do not retry together.
+    The server's Retry-After value is used if present. Otherwise the wait doubles with each attempt,
+    with random jitter so that threads do not retry at the same time.
     """
     error = state.outcome.exception()
     requested_s = getattr(error, "retry_after_s", None)
@@ -153,31 +180,31 @@ def open_chat(
     timeout_s: float = TIMEOUT_S,
     attempts: int = ATTEMPTS,
 ) -> ChatModel:
-    """Return a model by the name or the address of its server.
+    """Open a chat model by the name or the address of its server.
 
     Args:
-        text: as ``resolve_endpoint`` takes it.
-        model: its name; without it the usual one, or the only one that the server has.
-        key_name: the variable of the environment that holds the key.
-        store: replies that were recorded. One that only replays needs no server and no key.
-        prices: a file of prices, None for the shipped one.
-        max_usd: dollars that may be spent.
-        max_calls: questions that may be asked.
-        temperature: of the replies, None for the server's own.
-        max_tokens: the most of a reply.
-        timeout_s: of one attempt.
-        attempts: how often a busy server is asked.
+        text: The server, as accepted by ``resolve_endpoint``.
+        model: The model name. The default is the server's default model, or its only one.
+        key_name: The environment variable that contains the API key.
+        store: The reply cache. One that only replays requires no server and no key.
+        prices: A price file. None uses the built-in prices.
+        max_usd: The maximum cost in US dollars.
+        max_calls: The maximum number of questions.
+        temperature: The sampling temperature. None uses the server's default.
+        max_tokens: The maximum number of tokens of a reply.
+        timeout_s: Seconds to wait for one attempt.
+        attempts: The maximum number of attempts if the server is busy.
 
     Raises:
-        UsageError: a name, an address, a key or a cap is wrong. ServerError: no model was named
-        and the server does not list exactly one.
+        UsageError: If a name, an address, a key or a limit is invalid.
+        ServerError: If no model is named and the server does not offer exactly one.
     """
     endpoint = resolve_endpoint(text, model=model, key_name=key_name)
     replays = store is not None and store.mode == "replay"
     transport = None if replays else ChatTransport(endpoint, timeout_s=timeout_s)
     name = endpoint.model or (single_model(transport.models(), endpoint.url) if transport else "")
     if not name:
-        raise UsageError("a replay needs the name of the model that was asked: --model NAME")
+        raise UsageError("replaying requires the name of the recorded model; pass --model NAME")
     table = read_prices(prices) if prices else read_prices()
     ledger = Ledger(find_price(name, table), max_usd=max_usd, max_calls=max_calls)
     return ChatModel(
@@ -187,8 +214,12 @@ def open_chat(
 
 
 def single_model(names: tuple[str, ...], url: str) -> str:
-    """Return the one name of several. Raises ServerError where there is none or more."""
+    """Return the only name of a list.
+
+    Raises:
+        ServerError: If there is no name, or more than one.
+    """
     if len(names) == 1:
         return names[0]
     some = ", ".join(names[:8]) or "none"
-    raise ServerError(f"{url} has these models: {some}; say which with --model NAME")
+    raise ServerError(f"{url} provides several models: {some}; choose one with --model NAME")

@@ -1,8 +1,8 @@
-"""Costs of model calls: prices by model, and a ledger with caps on calls and money.
+"""Costs of model calls: prices by model, and a ledger with limits on calls and cost.
 
-Servers report tokens, not money; so money is counted here, before a call by the most that it may
-cost and after it by what it took. An attempt that came too late, broke off or gave no reply may
-have been paid all the same, and counts by its most. A ledger is shared by threads.
+Servers report tokens but not prices, so the cost is computed here: before a call as an upper bound,
+and after it from the reported tokens. An attempt that timed out, was interrupted or had no reply
+may still be billed, so it counts with its upper bound. A ledger is thread-safe.
 """
 
 import threading
@@ -23,13 +23,13 @@ TOKENS_PER_PICTURE = 1600  # A picture of 1280x720 takes 1,196 in Qwen2.5-VL, ot
 
 @dataclass(frozen=True)
 class Price:
-    """US dollars for a million tokens, read and written."""
+    """The prices of a model in US dollars per million prompt and completion tokens."""
 
     prompt_usd: float
     completion_usd: float
 
     def of(self, prompt_tokens: int, completion_tokens: int) -> float:
-        """Return dollars.
+        """Return the cost in US dollars.
 
         Example:
             >>> Price(1.25, 10.0).of(1000, 100)
@@ -40,26 +40,29 @@ class Price:
 
 
 def read_prices(path: str | Path = PRICES_FILE) -> dict[str, Price]:
-    """Read a table of prices: YAML, ``MODEL: [dollars a million read, and written]``.
+    """Read a price table from YAML, in US dollars per million prompt and completion tokens.
+
+    Each line has the form ``MODEL: [prompt, completion]``.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is no such table.
+        InputError: If the file is missing.
+        DamagedFileError: If the file is not a valid price table.
     """
     try:
         table = load_plain_yaml(read_bytes(path, MAX_PRICES_BYTES))
         prices = {str(name): Price(*map(float, pair)) for name, pair in table.items()}
     except (AttributeError, TypeError, ValueError) as error:
         raise DamagedFileError(
-            path, "is no table of prices; a line is `MODEL: [1.25, 10.0]`"
+            path, "not a valid price table; expected lines such as `MODEL: [1.25, 10.0]`"
         ) from error
     for name, price in prices.items():
         if not (0 <= price.prompt_usd < 1e6 and 0 <= price.completion_usd < 1e6):
-            raise DamagedFileError(path, f"the prices of {name} must be dollars of 0 or more")
+            raise DamagedFileError(path, f"prices of {name} must be non-negative dollar amounts")
     return prices
 
 
 def find_price(model: str, prices: Mapping[str, Price]) -> Price | None:
-    """Return the price of a model: by its name, or by the longest name that it begins with.
+    """Return the price of a model, by its name or by the longest known prefix of it.
 
     Example:
         >>> table = {"gpt-4o": Price(2.5, 10), "gpt-4o-mini": Price(0.15, 0.6)}
@@ -71,12 +74,12 @@ def find_price(model: str, prices: Mapping[str, Price]) -> Price | None:
 
 
 def estimate_tokens(question: Question) -> int:
-    """Return how many tokens a question has at most, by its letters and pictures."""
+    """Return an upper bound of a question's tokens, from its characters and images."""
     return question.characters // CHARACTERS_PER_TOKEN + question.pictures * TOKENS_PER_PICTURE + 1
 
 
 class Ledger:
-    """Counts calls, tokens and money, and refuses the call that would go over a cap."""
+    """A counter of calls, tokens and cost that rejects calls beyond its limits."""
 
     def __init__(
         self,
@@ -85,18 +88,23 @@ class Ledger:
         max_usd: float | None = None,
         max_calls: int | None = None,
     ):
-        """Begin at nothing.
+        """Create an empty ledger.
+
+        Args:
+            price: The price of the model, if known.
+            max_usd: The maximum cost in US dollars. None is unlimited.
+            max_calls: The maximum number of calls. None is unlimited.
 
         Raises:
-            UsageError: money is capped but the price is not known, or a cap is negative.
+            UsageError: If the cost is limited but the price is unknown, or a limit is negative.
         """
         if max_usd is not None and price is None:
             raise UsageError(
-                "the price of this model is not known, so --max-usd cannot hold; "
-                "add it to a file of prices and give --prices, or cap with --max-calls"
+                "the price of this model is unknown, so --max-usd cannot be enforced; "
+                "pass a price file with --prices, or limit the calls with --max-calls"
             )
         if (max_usd is not None and not max_usd >= 0) or (max_calls is not None and max_calls < 0):
-            raise UsageError("caps on money and calls are 0 or more")
+            raise UsageError("--max-usd and --max-calls must be 0 or more")
         self.price, self.max_usd, self.max_calls = price, max_usd, max_calls
         self.calls = self.replayed = self.prompt_tokens = self.completion_tokens = 0
         self._held_usd = 0.0  # What the calls under way may cost,
@@ -105,16 +113,16 @@ class Ledger:
 
     @property
     def usd(self) -> float | None:
-        """What was spent at most, None where the price is not known."""
+        """The maximum cost so far in US dollars, or None if the price is unknown."""
         if self.price is None:
             return None
         return self.price.of(self.prompt_tokens, self.completion_tokens) + self._lost_usd
 
     def hold(self, question: Question) -> float:
-        """Set aside the most that a call may cost and return it; ``settle`` gives it back.
+        """Reserve the maximum cost of a call, and return it. ``settle`` releases it.
 
         Raises:
-            BudgetError: it would go over a cap.
+            BudgetError: If the call would exceed a limit.
         """
         most = 0.0
         if self.price is not None:
@@ -122,7 +130,8 @@ class Ledger:
         with self._lock:
             if self.max_calls is not None and self.calls >= self.max_calls:
                 raise BudgetError(
-                    f"{self.calls:,} calls were made, all that --max-calls allows; give more"
+                    f"{self.calls:,} calls have been made, the limit of --max-calls; raise "
+                    "it to continue"
                 )
             self._check(self._held_usd, most)
             self.calls += 1
@@ -130,26 +139,30 @@ class Ledger:
         return most
 
     def lose(self, held_usd: float) -> None:
-        """Book an attempt that the server may have worked on, and that gave no reply: its most."""
+        """Count a failed attempt that may be billed with its maximum cost."""
         with self._lock:
             self._lost_usd += held_usd
 
     def hold_again(self, held_usd: float) -> None:
-        """Make sure that a held call may be attempted once more. Raises BudgetError."""
+        """Check that a reserved call may be attempted again.
+
+        Raises:
+            BudgetError: If another attempt would exceed a limit.
+        """
         with self._lock:
             self._check(self._held_usd - held_usd, held_usd)
 
     def _check(self, others_usd: float, most_usd: float) -> None:
-        """Refuse what may pass the cap beside what was spent and what other calls may cost."""
+        """Check that a call does not exceed the limit, given past costs and reservations."""
         spent = (self.usd or 0.0) + others_usd
         if self.max_usd is not None and spent + most_usd > self.max_usd:
             raise BudgetError(
-                f"${spent:.4f} is spent and the next call may cost ${most_usd:.4f}: "
-                f"over the ${self.max_usd:.4f} of --max-usd; give more"
+                f"${spent:.4f} has been spent and the next call may cost ${most_usd:.4f}, "
+                f"more than the ${self.max_usd:.4f} of --max-usd; raise it to continue"
             )
 
     def settle(self, held_usd: float, reply: Reply | None) -> None:
-        """Book what a call took, nothing where it failed; see ``lose``."""
+        """Release a reservation, and count the tokens of the reply if there is one."""
         with self._lock:
             self._held_usd -= held_usd
             if reply is not None:
@@ -157,12 +170,12 @@ class Ledger:
                 self.completion_tokens += reply.completion_tokens
 
     def book_replay(self) -> None:
-        """Count a reply that came from a record and cost nothing."""
+        """Count a reply from the cache, which costs nothing."""
         with self._lock:
             self.replayed += 1
 
     def to_json(self) -> dict[str, Any]:
-        """Return the sums, for reports."""
+        """Return the totals for reports as JSON data."""
         return {
             "calls": self.calls,
             "replayed": self.replayed,

@@ -1,8 +1,8 @@
-"""Messages to a language model: turns of text and pictures, questions and replies.
+"""Messages to language models: turns of text and images, questions and replies.
 
-A question is identified by its key, the SHA-256 of all that could change the reply, with each
-picture replaced by its own digest, so that records of questions stay small and readable. Pictures
-are downscaled before they are sent: every pixel costs tokens, time and money.
+A question is identified by its key, the SHA-256 of everything that can change the reply. In the
+record of a question, images are replaced by their digests, which keeps records small and readable.
+Images are downscaled before they are sent, because pixels cost tokens, time and money.
 """
 
 import base64
@@ -27,7 +27,7 @@ JPEG_QUALITY = 90
 
 @dataclass(frozen=True)
 class Picture:
-    """An encoded picture, ``data`` of the media type ``kind``."""
+    """An encoded image with its media type ``kind``."""
 
     data: bytes
     kind: str = "image/jpeg"
@@ -35,43 +35,45 @@ class Picture:
     def __post_init__(self):
         if self.kind not in PICTURE_KINDS:
             known = ", ".join(PICTURE_KINDS)
-            raise UsageError(f"a picture for a model is one of {known}, not {self.kind!r}")
+            raise UsageError(f"an image for a model must be one of {known}, got {self.kind!r}")
 
     @property
     def sha256(self) -> str:
-        """The digest of its bytes, hexadecimal."""
+        """The SHA-256 of the image data in hexadecimal."""
         return hashlib.sha256(self.data).hexdigest()
 
     @property
     def url(self) -> str:
-        """The picture as a data URL."""
+        """The image as a data URL."""
         return f"data:{self.kind};base64,{base64.b64encode(self.data).decode()}"
 
 
 @dataclass(frozen=True)
 class Turn:
-    """A message of one side: texts and pictures in their order."""
+    """A message of one role with texts and images in order."""
 
     role: str
     parts: tuple[str | Picture, ...]
 
     def __post_init__(self):
         if self.role not in ROLES:
-            raise UsageError(f"a turn is of one of {', '.join(ROLES)}, not {self.role!r}")
+            raise UsageError(
+                f"the role of a turn must be one of {', '.join(ROLES)}, got {self.role!r}"
+            )
 
     @property
     def pictures(self) -> tuple[Picture, ...]:
-        """The pictures alone."""
+        """The images of the message."""
         return tuple(part for part in self.parts if isinstance(part, Picture))
 
     def to_api(self) -> dict[str, Any]:
-        """Return the turn in the format of chat servers."""
+        """Return the turn in the format of the chat API."""
         if not self.pictures:
             return {"role": self.role, "content": "".join(map(str, self.parts))}
         return {"role": self.role, "content": [_content_part(part) for part in self.parts]}
 
     def to_record(self) -> dict[str, Any]:
-        """Return the turn for a record; pictures are their digests."""
+        """Return the turn as JSON data for a record, with images replaced by their digests."""
         parts = [
             {"picture": part.sha256} if isinstance(part, Picture) else part for part in self.parts
         ]
@@ -82,8 +84,13 @@ class Turn:
 class Question:
     """A request to a model.
 
-    ``form`` is the ``response_format`` of the protocol, None for free text. ``sample``
-    distinguishes questions that are asked again on purpose, to see how much replies differ.
+    Attributes:
+        model: The name of the model.
+        turns: The messages.
+        temperature: The sampling temperature. None uses the server's default.
+        max_tokens: The maximum number of tokens of the reply.
+        form: The ``response_format`` of the protocol. None requests free text.
+        sample: A number that distinguishes intended repetitions of the same question.
     """
 
     model: str
@@ -94,7 +101,7 @@ class Question:
     sample: int = 0
 
     def to_record(self) -> dict[str, Any]:
-        """Return the question for a record; pictures are their digests."""
+        """Return the question as JSON data for a record, with images replaced by their digests."""
         return {
             "model": self.model,
             "turns": [turn.to_record() for turn in self.turns],
@@ -106,7 +113,7 @@ class Question:
 
     @property
     def key(self) -> str:
-        """The digest that identifies this question, hexadecimal.
+        """The hexadecimal digest that identifies the question.
 
         Example:
             >>> Question("m", (Turn("user", ("Hello",)),)).key[:8]
@@ -117,21 +124,29 @@ class Question:
 
     @property
     def pictures(self) -> int:
-        """The number of pictures."""
+        """The number of images."""
         return sum(len(turn.pictures) for turn in self.turns)
 
     @property
     def characters(self) -> int:
-        """The number of characters of its texts."""
+        """The number of characters of all texts."""
         parts = [part for turn in self.turns for part in turn.parts]
         return sum(len(part) for part in parts if isinstance(part, str))
 
 
 @dataclass(frozen=True)
 class Reply:
-    """A reply of a model to a question.
+    """The reply of a model to a question.
 
-    Tokens are as the server counts them; where it does not, they are estimated.
+    Attributes:
+        text: The text of the reply.
+        prompt_tokens: The number of prompt tokens.
+        completion_tokens: The number of completion tokens.
+        finish: The reason for the end of the reply, "length" if it was truncated.
+        is_estimated: Whether the token counts are estimates, because the server reported none.
+        latency_s: The response time in seconds.
+        attempts: The number of attempts.
+        is_replayed: Whether the reply comes from the cache.
     """
 
     text: str
@@ -151,13 +166,17 @@ def _content_part(part: str | Picture) -> dict[str, Any]:
 
 
 def check_max_px(max_px: int) -> None:
-    """Raise UsageError where a cap on pixels is too small."""
+    """Check that a limit on image pixels is large enough.
+
+    Raises:
+        UsageError: If the limit is too small.
+    """
     if max_px < MIN_PX:
-        raise UsageError(f"a picture for a model has {MIN_PX} pixels or more, not {max_px}")
+        raise UsageError(f"max_px must be {MIN_PX} or more, got {max_px}")
 
 
 def downscale(colour: np.ndarray, max_px: int) -> np.ndarray:
-    """Return a picture, uint8 [H, W, 3], of at most so many pixels, in its own shape.
+    """Downscale an image, uint8 [H, W, 3], to at most ``max_px`` pixels, keeping its aspect ratio.
 
     Example:
         >>> downscale(np.zeros((480, 640, 3), np.uint8), 76_800).shape
@@ -171,28 +190,30 @@ def downscale(colour: np.ndarray, max_px: int) -> np.ndarray:
 
 
 def downscale_picture(picture: Picture, max_px: int) -> Picture:
-    """Return a picture as it is, or a smaller JPEG of it where it has more pixels.
+    """Return an image unchanged, or downscaled as JPEG if it has too many pixels.
 
     Raises:
-        ValueError: it cannot be opened, or is far too large to be.
+        ValueError: If the image cannot be opened or is too large to open.
     """
     try:
         with Image.open(BytesIO(picture.data)) as image:
             if image.width * image.height > MAX_FILE_PX:
-                raise ValueError(f"has {image.width} x {image.height} pixels, too many to open")
+                raise ValueError(
+                    f"the image has {image.width} x {image.height} pixels, too many to open"
+                )
             size = _size_within(image.width, image.height, max_px)
             if size == image.size:
                 return picture
             small = image.convert("RGB").resize(size, Image.Resampling.LANCZOS)
     except (OSError, SyntaxError, Image.DecompressionBombError) as error:
-        raise ValueError(f"is no picture that can be opened ({error})") from error
+        raise ValueError(f"not an image that can be opened ({error})") from error
     stream = BytesIO()
     small.save(stream, "JPEG", quality=JPEG_QUALITY)
     return Picture(stream.getvalue(), "image/jpeg")
 
 
 def _size_within(width: int, height: int, max_px: int) -> tuple[int, int]:
-    """Return the size of a picture that may have so many pixels."""
+    """Return the image size within a number of pixels."""
     if width * height <= max_px:
         return width, height
     scale = (max_px / (width * height)) ** 0.5

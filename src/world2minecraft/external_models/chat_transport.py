@@ -1,15 +1,16 @@
-"""Calls of a chat server through the openai SDK, with bounds on time and size.
+"""Transport to a chat server through the openai SDK, with limits on time and size.
 
-``gemini``, ``openai`` and ``qwen`` are clouds, each with its key in an environment variable;
-``local`` is a server on this machine, such as vLLM's or LLaMA-Factory's. A model may follow a name,
-``gemini:gemini-3.5-flash-lite``; any address that speaks the same protocol works too.
+``gemini``, ``openai`` and ``qwen`` are cloud services whose API keys are read from environment
+variables. ``local`` is a server on this machine, such as vLLM or LLaMA-Factory. A name can be
+followed by a model, as in ``gemini:gemini-3.5-flash-lite``. The address of any compatible server
+works as well.
 
-A server may answer late, by drops, with a megabyte, or with anything but what was asked. So a
-reply is read in pieces until it is whole, too large or too late, and the type of everything in it
-is checked. What goes wrong is one of three errors, by what helps: ask again later
-(``BusyServerError``), ask otherwise (``RefusedQuestionError``), or read nothing of it
-(``UselessReplyError``). Errors of keys and addresses are plain ``ServerError``. An error says
-whether the server may have been at work on the reply (``may_cost``), and never the key.
+Servers are not trusted to reply in time, in reasonable size, or in the correct format. A reply is
+therefore read in pieces up to the limits, and the type of every value is checked. Errors are
+classified by what the caller can do: ask again later (``BusyServerError``), ask differently
+(``RefusedQuestionError``), or discard the reply (``UselessReplyError``). Invalid keys and addresses
+raise a plain ``ServerError``. Each error states whether the call may be billed (``may_cost``), and
+never contains the API key.
 """
 
 import json
@@ -38,8 +39,11 @@ UNSENT = ("ConnectError", "ConnectTimeout", "PoolTimeout")  # Of httpx, whose na
 class Endpoint:
     """A server and a model on it.
 
-    ``key_name`` names the variable of the environment that holds the key, empty for none.
-    ``length_name`` is what the server calls the most tokens of a reply.
+    Attributes:
+        url: The base URL of the API.
+        model: The model name. Empty selects the only model of the server.
+        key_name: The environment variable that contains the API key, or "".
+        length_name: The API parameter for the maximum number of tokens of a reply.
     """
 
     url: str
@@ -48,14 +52,18 @@ class Endpoint:
     length_name: str = "max_tokens"
 
     def key(self, environment: Mapping[str, str] | None = None) -> str:
-        """Return the key of the server. Raises UsageError where the variable is not set."""
+        """Return the API key of the server.
+
+        Raises:
+            UsageError: If the environment variable is not set.
+        """
         if not self.key_name:
             return NO_KEY
         key = (os.environ if environment is None else environment).get(self.key_name, "").strip()
         if not key:
             raise UsageError(
-                f"{self.url} needs a key: export {self.key_name}=..., or name another variable "
-                "with --key-env"
+                f"{self.url} requires an API key: export {self.key_name}=..., or name "
+                "another environment variable with --key-env"
             )
         return key
 
@@ -79,7 +87,7 @@ ENDPOINTS = {
 
 
 def is_endpoint(text: str) -> bool:
-    """Return whether a text names a server: a known one, perhaps with a model, or an address.
+    """Return whether a text is a known server, optionally with a model, or an address.
 
     Example:
         >>> [is_endpoint(text) for text in ("gemini", "qwen:qwen-vl-max", "http://me/v1", "stop")]
@@ -89,15 +97,16 @@ def is_endpoint(text: str) -> bool:
 
 
 def resolve_endpoint(text: str, *, model: str = "", key_name: str | None = None) -> Endpoint:
-    """Return the server that a text names.
+    """Return the endpoint for a server name or address.
 
     Args:
-        text: a known name, NAME:MODEL, or an address http(s)://HOST/v1.
-        model: the model, where the text does not say it.
-        key_name: the variable of the environment with the key, None for the usual one.
+        text: A known name, NAME:MODEL, or an address http(s)://HOST/v1.
+        model: The model, if the text does not name one.
+        key_name: The environment variable with the API key. None uses the server's default.
 
     Raises:
-        UnknownNameError: no such name. UsageError: the address is none.
+        UnknownNameError: If the name is unknown.
+        UsageError: If the address is invalid.
 
     Example:
         >>> names = ("qwen:qwen-vl-max", "http://localhost:8000/v1")
@@ -124,14 +133,20 @@ def _check_address(address: str) -> str:
     except ValueError:
         fine, secret = False, None
     if secret:
-        raise UsageError("an address with a password in it is kept in records; use --key-env NAME")
+        raise UsageError(
+            "the address contains a password, which would be saved in records; use --key-env "
+            "NAME instead"
+        )
     if not fine:
-        raise UsageError(f"{address!r} is no address; one is http://localhost:8000/v1")
+        raise UsageError(
+            f"{address!r} is not a valid server address; expected one such as "
+            "http://localhost:8000/v1"
+        )
     return address.rstrip("/")
 
 
 class BusyServerError(ServerError):
-    """The server is busy, late or away; the same question may be answered later."""
+    """The server is busy, slow or unreachable. The same question may be answered later."""
 
     def __init__(self, text: str, retry_after_s: float | None = None, *, may_cost: bool = False):
         super().__init__(text)
@@ -139,17 +154,17 @@ class BusyServerError(ServerError):
 
 
 class RefusedQuestionError(ServerError):
-    """The server takes no such question; another form of it may be answered."""
+    """The server rejects the question. A different format may be accepted."""
 
 
 class UselessReplyError(ServerError):
-    """The server replied with what is no reply: too large, or not of the protocol."""
+    """The reply of the server is too large or does not follow the protocol."""
 
     may_cost = True
 
 
 class ChatTransport:
-    """A connection to a server; it may be used by several threads."""
+    """A connection to a chat server. It is thread-safe."""
 
     def __init__(
         self,
@@ -159,15 +174,22 @@ class ChatTransport:
         max_reply_bytes: int = MAX_REPLY_BYTES,
         clock: Callable[[], float] = time.monotonic,
     ):
-        """Prepare a connection; nothing is sent yet.
+        """Prepare a connection without sending anything.
+
+        Args:
+            endpoint: The server.
+            timeout_s: Seconds to wait for one attempt.
+            max_reply_bytes: The maximum size of a reply in bytes.
+            clock: The function that returns the current time in seconds.
 
         Raises:
-            MissingExtraError: the SDK is not installed. UsageError: the key is not set.
+            MissingExtraError: If the SDK is not installed.
+            UsageError: If the API key is not set.
         """
         try:
             import openai  # noqa: PLC0415  # An extra, and slow to import.
         except ImportError:
-            raise MissingExtraError("asking a language model", "vln") from None
+            raise MissingExtraError("querying a language model", "vln") from None
         self.endpoint, self.timeout_s = endpoint, timeout_s
         self._limit, self._clock, self._sdk = max_reply_bytes, clock, openai
         self._key = endpoint.key()
@@ -184,14 +206,25 @@ class ChatTransport:
         )
 
     def ask(self, question: Question) -> Reply:
-        """Ask once. Raises the errors of this module, or ServerError."""
+        """Ask a question once.
+
+        Raises:
+            BusyServerError: If the server is busy, slow or unreachable.
+            RefusedQuestionError: If the server rejects the question.
+            UselessReplyError: If the reply is too large or invalid.
+            ServerError: If the key or the address is wrong.
+        """
         began = self._clock()
         with self._without_key():
             data = self._call(self._client.chat.completions, self._parameters(question))
             return _parse_reply(data, question, self._clock() - began)
 
     def models(self) -> tuple[str, ...]:
-        """Return the names of the models that the server has. Raises as ``ask``."""
+        """Return the names of the models on the server.
+
+        Raises:
+            ServerError: If the server does not return a valid list.
+        """
         with self._without_key():
             data = self._call(self._client.models, None)
         listed = data.get("data") if isinstance(data, dict) else None
@@ -204,7 +237,7 @@ class ChatTransport:
 
     @contextmanager
     def _without_key(self) -> Iterator[None]:
-        """Take the key out of errors: some servers send it back, and errors are recorded."""
+        """Remove the API key from errors, because some servers return it and errors are saved."""
         try:
             yield
         except ServerError as error:
@@ -225,7 +258,7 @@ class ChatTransport:
         return parameters
 
     def _call(self, part: Any, parameters: dict[str, Any] | None) -> Any:
-        """Call a part of the SDK and return the JSON that came."""
+        """Call a part of the SDK, and return the parsed JSON."""
         deadline = self._clock() + self.timeout_s
         streaming = part.with_streaming_response
         try:
@@ -244,22 +277,27 @@ class ChatTransport:
                 may_cost=_is_sent(error),
             ) from None
         except Exception as error:  # Whatever the SDK and its transport raise on odd bytes.
-            text = f"{self.endpoint.url} broke off: {_cause(error)}"
+            text = f"{self.endpoint.url} interrupted the connection: {_cause(error)}"
             raise BusyServerError(text, may_cost=True) from None
         try:
             return json.loads(data)
         except (ValueError, RecursionError):
-            raise UselessReplyError(f"{self.endpoint.url} sent no JSON: {_excerpt(data)}") from None
+            raise UselessReplyError(
+                f"{self.endpoint.url} sent a reply that is not JSON: {_excerpt(data)}"
+            ) from None
 
     def _read(self, pieces: Iterable[bytes], headers: Any, deadline: float) -> bytes:
         if headers.get("content-encoding", "identity") != "identity":
-            raise UselessReplyError(f"{self.endpoint.url} sent a packed reply, which was not asked")
+            raise UselessReplyError(
+                f"{self.endpoint.url} sent a compressed reply although none was requested"
+            )
         data = bytearray()
         for piece in pieces:
             data += piece
             if len(data) > self._limit:
                 raise UselessReplyError(
-                    f"{self.endpoint.url} sent over {self._limit:,} bytes; a reply has far fewer"
+                    f"{self.endpoint.url} sent a reply of more than {self._limit:,} bytes, "
+                    "which exceeds the limit"
                 )
             if self._clock() > deadline:
                 raise self._timeout_error()
@@ -267,12 +305,12 @@ class ChatTransport:
 
     def _timeout_error(self, is_sent: bool = True) -> BusyServerError:
         return BusyServerError(
-            f"{self.endpoint.url} took over {self.timeout_s:g} s; --timeout gives it longer",
+            f"{self.endpoint.url} did not reply within {self.timeout_s:g} s; raise --timeout",
             may_cost=is_sent,
         )
 
     def _refuse_failures(self, response: Any) -> None:
-        """Raise what a status says, after a look at the first bytes of the body alone."""
+        """Raise the error for an HTTP status, reading only the first bytes of the body."""
         status = int(response.status_code)
         if 200 <= status < 300:
             return
@@ -280,18 +318,18 @@ class ChatTransport:
         for piece in response.iter_raw():
             body = _excerpt(piece)
             break
-        text = f"{self.endpoint.url} says {status}: {body or 'nothing more'}"
+        text = f"{self.endpoint.url} returned HTTP status {status}: {body or 'no message'}"
         if status in BUSY:
             raise BusyServerError(text, _seconds(response.headers.get("retry-after")))
         if status in REFUSED:
             raise RefusedQuestionError(text)
         if status in (401, 403):
-            text += f"; is the key in {self.endpoint.key_name or '--key-env NAME'} right?"
+            text += f"; check the API key in {self.endpoint.key_name or '--key-env NAME'}"
         raise ServerError(text)
 
 
 def sanitize_text(text: str) -> str:
-    """Return a text that is safe to show and to write: no control characters, no lone surrogates.
+    """Remove control characters and lone surrogates from a text.
 
     Example:
         >>> sanitize_text("a" + chr(27) + "[31mb" + chr(0xd800))
@@ -306,7 +344,9 @@ def _parse_reply(data: Any, question: Question, latency_s: float) -> Reply:
     first = choices[0] if choices else None
     message = first.get("message") if isinstance(first, dict) else None
     if not isinstance(message, dict):
-        raise UselessReplyError(f"the server sent no choice: {_excerpt(json.dumps(data).encode())}")
+        raise UselessReplyError(
+            f"the server sent a reply without a choice: {_excerpt(json.dumps(data).encode())}"
+        )
     text = sanitize_text(_text(message.get("content")) or _text(message.get("refusal")))
     usage = data.get("usage")
     counts = [_count(usage, name) for name in ("prompt_tokens", "completion_tokens")]
@@ -323,7 +363,7 @@ def _parse_reply(data: Any, question: Question, latency_s: float) -> Reply:
 
 
 def _text(content: Any) -> str:
-    """Return the text of a content: a text, or a list of parts with texts."""
+    """Return the text of a message content, which is a string or a list of parts."""
     if isinstance(content, str):
         return content
     texts = [part.get("text") for part in _list(content) if isinstance(part, dict)]
@@ -337,12 +377,12 @@ def _count(usage: Any, name: str) -> int | None:
 
 
 def _list(value: Any) -> list[Any]:
-    """Return a list, an empty one for what is none."""
+    """Return a list unchanged, or an empty list for any other value."""
     return value if isinstance(value, list) else []
 
 
 def _seconds(header: str | None) -> float | None:
-    """Return what a Retry-After says in seconds; dates are not read."""
+    """Parse the seconds of a Retry-After header. Dates are ignored."""
     try:
         seconds = float(header or "")
     except ValueError:
@@ -351,13 +391,13 @@ def _seconds(header: str | None) -> float | None:
 
 
 def _excerpt(data: bytes) -> str:
-    """Return the first words of a server's message."""
+    """Return the beginning of a server's message."""
     words = sanitize_text(data[:4096].decode("utf-8", "replace")).split()
     return " ".join(words)[:MAX_EXCERPT]
 
 
 def _is_sent(error: BaseException) -> bool:
-    """Whether a question may have reached the server before its connection failed."""
+    """Return whether a question may have reached the server before the connection failed."""
     return type(error.__cause__).__name__ not in UNSENT
 
 

@@ -1,4 +1,4 @@
-"""Which language model answers, what it may cost, and where its replies are recorded."""
+"""Options of a language model: the server, the budget and the reply cache."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,19 +13,20 @@ REPLIES_FILE = "replies.jsonl"
 class ModelOptions:
     """Options of a language model on a server.
 
-    Every reply is recorded in ``replies.jsonl`` of the output folder; the same question is
-    answered from the record and costs nothing.
+    Every reply is recorded in ``replies.jsonl`` in the output folder. A repeated question is
+    answered
+    from this file at no cost.
 
     Attributes:
-        model: the model on the server, where the agent does not name it.
-        key_env: the environment variable that holds the key; that of the provider by default.
-        max_usd: stop before more than this is spent, in dollars.
-        max_calls: stop after this many questions.
-        prices: a YAML file of prices; the shipped one by default.
-        max_tokens: the longest reply, reasoning included.
-        timeout_s: the longest attempt, in seconds.
-        temperature: the temperature of replies; None for that of the server.
-        replay: take all replies from this ``replies.jsonl`` and send no request.
+        model: The model on the server, if the agent does not name one.
+        key_env: The environment variable with the API key. Empty uses the provider's default.
+        max_usd: The maximum cost in US dollars.
+        max_calls: The maximum number of questions.
+        prices: A YAML file with prices. None uses the built-in prices.
+        max_tokens: The maximum number of tokens of a reply, including reasoning.
+        timeout_s: Seconds to wait for one attempt.
+        temperature: The sampling temperature. None uses the server's default.
+        replay: A ``replies.jsonl`` from which all replies are taken, without sending requests.
     """
 
     model: str = ""
@@ -39,10 +40,11 @@ class ModelOptions:
     replay: str | Path | None = None
 
     def open(self, agent: str, out: str | Path) -> ChatModel:
-        """Return the model of a provider or a server; its replies are recorded in ``out``.
+        """Open the model of a provider or a server, recording its replies in ``out``.
 
         Raises:
-            UsageError: an option is wrong. ServerError: the server lists no model.
+            UsageError: If an option is invalid.
+            ServerError: If the server does not offer a model.
         """
         store = (
             ReplyStore(self.replay, "replay")

@@ -1,8 +1,9 @@
-"""Cache of replies on disk, one line per question, so that runs can be resumed and replayed.
+"""A reply cache on disk with one line per question, so that runs can be resumed and replayed.
 
-A line is ``{"key", "question", "reply"}``; pictures are their digests and no key of a server is in
-it. Where there was no reply it has a ``failure`` instead, so that a replay fails as the run did;
-a run that goes on asks again. A line that was cut by a crash is dropped, other damage is an error.
+A line is ``{"key", "question", "reply"}``, with images replaced by their digests and without API
+keys. A question without a reply has a ``failure`` instead, so that a replay fails like the original
+run, while a resumed run asks again. An incomplete last line after a crash is dropped. Other damage
+is an error.
 """
 
 import json
@@ -38,20 +39,28 @@ TYPES = {"text": str, "prompt_tokens": int, "completion_tokens": int, "finish": 
 
 
 class ReplyStore:
-    """The replies of a file, by the keys of their questions.
+    """A reply cache in a file, keyed by question.
 
-    ``record`` returns what it has and takes what is new; ``replay`` has what it has.
+    The mode ``record`` returns known replies and adds new ones. The mode ``replay`` only returns
+    known
+    replies.
     """
 
     def __init__(self, path: str | Path, mode: str = "record"):
-        """Read the file.
+        """Open a cache, and read its file.
+
+        Args:
+            path: The cache file.
+            mode: "record" or "replay".
 
         Raises:
-            UsageError: no such mode. InputError: a file to replay is missing.
-            DamagedFileError: a line is no reply. LimitError: it is too large.
+            UsageError: If the mode is unknown.
+            InputError: If the file to replay is missing.
+            DamagedFileError: If a line is not a valid record.
+            LimitError: If the file is too large.
         """
         if mode not in MODES:
-            raise UsageError(f"replies are used to {' or to '.join(MODES)}, not to {mode!r}")
+            raise UsageError(f"the reply cache mode must be {' or '.join(MODES)}, got {mode!r}")
         self.path, self.mode = Path(path), mode
         self._replies: dict[str, Reply] = {}
         self._failures: dict[str, tuple[str, str]] = {}
@@ -59,17 +68,17 @@ class ReplyStore:
         if self.path.exists():
             self._read()
         elif mode == "replay":
-            raise InputError(path, "is not there; a run with --out writes replies.jsonl")
+            raise InputError(path, "not found; a run with --out writes replies.jsonl")
 
     def __len__(self) -> int:
         return len(self._replies)
 
     def get(self, question: Question) -> Reply | None:
-        """Return the reply to a question, None where it was not asked yet.
+        """Return the reply to a question, or None if it is not cached.
 
         Raises:
-            InputError: it was not asked, and this store only replays. ServerError: it was, and
-            failed then.
+            InputError: If the question is unknown and the cache only replays.
+            ServerError: If the cache only replays and the recorded question failed.
         """
         reply = self._replies.get(question.key)
         if reply is None and self.mode == "replay":
@@ -78,19 +87,27 @@ class ReplyStore:
                 raise FAILURES[kind](text)
             raise InputError(
                 self.path,
-                f"has no reply to question {question.key[:12]}; a replay needs the same scene, "
-                "model, prompts and options as the run that was recorded",
+                f"no reply is recorded for question {question.key[:12]}; a replay requires "
+                "the same scene, model, prompts and options as the recorded run",
             )
         return reply
 
     def put(self, question: Question, reply: Reply) -> None:
-        """Add a reply to the file. Raises OutputError."""
+        """Append a reply to the file.
+
+        Raises:
+            OutputError: If the file cannot be written.
+        """
         fields = {name: value for name, value in asdict(reply).items() if name != "is_replayed"}
         self._replies[question.key] = Reply(**fields, is_replayed=True)
         self._add({"key": question.key, "question": question.to_record(), "reply": fields})
 
     def put_failure(self, question: Question, error: ServerError) -> None:
-        """Add that a question failed in a way of ``FAILURES``. Raises OutputError."""
+        """Append a failure of one of the kinds in ``FAILURES`` to the file.
+
+        Raises:
+            OutputError: If the file cannot be written.
+        """
         for kind, own in FAILURES.items():
             if isinstance(error, own):
                 failure = {"kind": kind, "text": str(error)}
@@ -104,7 +121,7 @@ class ReplyStore:
                 with self.path.open("a", encoding="utf-8") as stream:
                     stream.write(json.dumps(line, sort_keys=True) + "\n")
             except OSError as error:
-                reason = f"cannot be written: {error.strerror or error}"
+                reason = f"cannot be written ({error.strerror or error})"
                 raise OutputError(self.path, reason) from error
 
     def _read(self) -> None:
@@ -114,7 +131,10 @@ class ReplyStore:
             if line.strip():
                 self._take(line, number)
         if not any(rest.startswith(head) or head.startswith(rest) for head in LINE_HEADS):
-            raise DamagedFileError(self.path, "ends with what is no reply; is it another file?")
+            raise DamagedFileError(
+                self.path,
+                "the last line is not a recorded reply; check that this is a replies.jsonl file",
+            )
         if rest and self.mode == "record":
             self._drop_after(len(whole) + len(end))
 
@@ -123,27 +143,36 @@ class ReplyStore:
             with self.path.open("r+b") as stream:
                 stream.truncate(size)
         except OSError as error:
-            raise OutputError(self.path, f"cannot be written: {error.strerror or error}") from error
+            raise OutputError(
+                self.path, f"cannot be written ({error.strerror or error})"
+            ) from error
 
     def _take(self, line: bytes, number: int) -> None:
         try:
             record: Any = json.loads(line)
             if not isinstance(record["key"], str):
-                raise TypeError("the key is no text")
+                raise TypeError("the key must be a string")
             if "failure" in record:
                 kind, text = record["failure"]["kind"], record["failure"]["text"]
                 if kind not in FAILURES or not isinstance(text, str):
-                    raise TypeError("the failure is of no kind")
+                    raise TypeError("unknown kind of failure")
                 self._failures[record["key"]] = (kind, text)
             else:
                 self._replies[record["key"]] = _parse_reply(record["reply"])
         except (ValueError, TypeError, KeyError, RecursionError) as error:
-            raise DamagedFileError(self.path, f"line {number} is no reply ({error})") from error
+            raise DamagedFileError(
+                self.path, f"line {number} is not a valid reply record ({error})"
+            ) from error
 
 
 def _parse_reply(fields: Any) -> Reply:
-    """Return a reply of JSON. Raises TypeError, KeyError."""
+    """Parse the reply of a JSON record.
+
+    Raises:
+        TypeError: If a field has the wrong type.
+        KeyError: If a field is missing.
+    """
     for name, kind in TYPES.items():
         if type(fields[name]) is not kind:
-            raise TypeError(f"{name} is no {kind.__name__}")
+            raise TypeError(f"{name} must be of type {kind.__name__}")
     return Reply(**{**fields, "is_replayed": True})

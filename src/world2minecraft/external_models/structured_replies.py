@@ -1,9 +1,9 @@
-"""Structured replies: from a strict JSON schema down to plain text, with two repairs.
+"""Structured replies, from a strict JSON schema down to plain text, with up to two repairs.
 
-A server that can is held to a JSON schema; one that refuses is asked for any JSON object, and the
-next for plain text. What comes is read with care whatever the rung, for servers differ in what
-they promise and what they do. A reply that cannot be read is answered with what is wrong about it,
-twice at most; then there is no value, and the tries tell why. Nothing is ever guessed.
+Servers that support it are held to a JSON schema. If a server rejects that, any JSON object is
+requested, and then plain text. Replies are always validated, because servers do not reliably follow
+their format. An invalid reply is sent back with a description of the problem, at most twice. After
+that there is no value, and the attempts contain the reasons. Values are never guessed.
 """
 
 import json
@@ -26,16 +26,20 @@ Value = TypeVar("Value")
 
 
 class UnreadableError(Exception):
-    """A reply is not of the form; the text says what is wrong, to the model."""
+    """A reply does not have the requested format. The message tells the model why."""
 
 
 @dataclass(frozen=True)
 class ReplyFormat(Generic[Value]):
-    """What a reply must be.
+    """The required format of a reply.
 
-    ``read`` takes the text of a reply and returns the value; it raises UnreadableError.
-    ``words`` say the form to a model that is not held to the schema; with ``is_said`` the question
-    has them already. ``rung`` is the first that is tried, 0 the strictest.
+    Attributes:
+        name: The name of the format.
+        schema: The JSON schema.
+        words: A description of the format for models that are not held to the schema.
+        read: The parser of a reply's text, which raises UnreadableError for an invalid reply.
+        is_said: Whether the question already contains ``words``.
+        rung: The index in ``RUNGS`` of the strictest format to try.
     """
 
     name: str
@@ -55,7 +59,7 @@ class ReplyFormat(Generic[Value]):
 
 @dataclass(frozen=True)
 class Attempt:
-    """One question of a ladder: its rung and key, the reply or none, and what was wrong."""
+    """A single query with its rung, its key, the reply if there was one, and the problem."""
 
     rung: str
     key: str
@@ -65,20 +69,20 @@ class Attempt:
 
 @dataclass(frozen=True)
 class StructuredReply(Generic[Value]):
-    """The outcome of all attempts: a value, or None, and the attempts."""
+    """The value of a structured query, or None, with all attempts."""
 
     value: Value | None
     tries: tuple[Attempt, ...]
 
     @property
     def raw(self) -> str:
-        """The last text that came, empty where none did."""
+        """The text of the last reply, or ""."""
         texts = [one.reply.text for one in self.tries if one.reply is not None]
         return texts[-1] if texts else ""
 
     @property
     def problem(self) -> str:
-        """What was wrong with the last try, empty where there is a value."""
+        """The problem of the last attempt, or "" if there is a value."""
         return self.tries[-1].problem if self.tries and self.value is None else ""
 
 
@@ -90,16 +94,24 @@ def ask_structured(
     repairs: int = REPAIRS,
     sample: int = 0,
 ) -> StructuredReply[Value]:
-    """Ask for a value of a form.
+    """Query a model for a value in a given format.
 
-    ``sample`` tells apart the times that the same is asked on purpose.
+    If a rung is rejected and the next one is accepted, the model does not try the rejected one
+    again
+    (``model.rung``). This does not count as a repair.
 
-    A rung that is refused where the next one is taken is left for good (``model.rung``); that
-    costs no repair.
+    Args:
+        model: The model.
+        turns: The messages.
+        form: The format of the reply.
+        repairs: The maximum number of repair attempts.
+        sample: A number that distinguishes intended repetitions of the same question.
 
     Raises:
-        RefusedQuestionError: even plain text is refused. BudgetError, ServerError, InputError: as
-        ``ChatModel.ask``; a reply that is no reply counts as an unreadable one.
+        RefusedQuestionError: If the server rejects even plain text.
+        BudgetError: If the limit on calls or cost is reached.
+        ServerError: If the server does not reply.
+        InputError: If the cache only replays and has no reply.
     """
     tries: list[Attempt] = []
     request = turns if form.is_said else _with_words(turns, form.words)
@@ -123,9 +135,10 @@ def ask_structured(
 
 
 def _with_words(turns: tuple[Turn, ...], words: str) -> tuple[Turn, ...]:
-    """Return turns that end with some words, in the user's last turn where that ends them.
+    """Append a text to the last user turn, or as a new user turn.
 
-    Chat templates of many models, and LLaMA-Factory's server, take no two turns of one side.
+    Many chat templates, and LLaMA-Factory's server, do not accept two consecutive turns of one
+    role.
     """
     if turns and turns[-1].role == "user":
         return (*turns[:-1], Turn("user", (*turns[-1].parts, f"\n{words}")))
@@ -140,7 +153,7 @@ def _ask_once(
     except UselessReplyError as error:
         return Attempt(rung, "", None, str(error)), None
     if reply.finish == "length":
-        problem = f"the reply was cut at {model.max_tokens:,} tokens; be shorter"
+        problem = f"the reply was truncated at {model.max_tokens:,} tokens; be shorter"
         return Attempt(rung, key, reply, problem), None
     try:
         return Attempt(rung, key, reply), form.read(strip_reasoning(reply.text))
@@ -156,10 +169,10 @@ def _repair(tried: Attempt, form: ReplyFormat[Any]) -> tuple[Turn, ...]:
 
 
 def strip_reasoning(text: str) -> str:
-    """Return the text of a reply without the reasoning before it.
+    """Return the text of a reply without the model's reasoning.
 
-    Servers that do not separate it leave ``<think>`` around thoughts, or its end alone, where their
-    template has said the beginning.
+    Servers that do not separate it leave ``<think>`` tags around it, or only the closing tag if the
+    chat template contains the opening one.
 
     Example:
         >>> texts = ("<think>B? No.</think> A", "Not B.</think>A", "<b>C</b>")
@@ -170,7 +183,7 @@ def strip_reasoning(text: str) -> str:
 
 
 def extract_json_object(text: str) -> dict[str, Any] | None:
-    """Return the one JSON object of a text, bare or between other words, else None.
+    """Return the only JSON object in a text, alone or surrounded by other text, or None.
 
     Example:
         >>> texts = ('Sure! ```json {"a": 1} ```', '{"a": 1} {"b": 2}')

@@ -1,10 +1,10 @@
-"""Networks of the transformers library, by their name on the hub or from a folder.
+"""Networks of the transformers library, by their name on the Hugging Face Hub or from a folder.
 
-Nothing is downloaded unless a network is asked for by name and is not yet on this computer. Only
-safetensors are read, and no code that comes with a model is run. Pictures are preprocessed here, as
-the model's own preprocessor file states: the library's image processors need torchvision, of which
-not every version goes with every torch. Inference runs on one thread, since the number of threads
-would show in the last digits.
+A network is only downloaded if it is requested by name and is not cached yet. Only safetensors are
+loaded, and no code from a model repository is executed. Images are preprocessed here according to
+the model's preprocessor file, because the library's image processors require torchvision, which is
+not compatible with every version of torch. Inference uses one thread, because the number of threads
+affects the last digits of the result.
 """
 
 import hashlib
@@ -28,7 +28,7 @@ DIGEST_DIGITS = 16  # Digits of a digest that tell two models apart.
 
 @contextmanager
 def single_thread() -> Iterator[Any]:
-    """Yield the torch library for inference on one thread; restore the threads afterwards."""
+    """Yield the torch library for inference on one thread, and reset the threads afterwards."""
     import torch  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
 
     threads = torch.get_num_threads()
@@ -41,14 +41,14 @@ def single_thread() -> Iterator[Any]:
 
 
 def preprocess(colour: np.ndarray, settings: dict[str, Any]) -> np.ndarray:
-    """Return a picture preprocessed for a network.
+    """Preprocess an image for a network.
 
     Args:
-        colour: uint8 [H, W, 3].
-        settings: the entries of a preprocessor_config.json.
+        colour: The image as uint8 [H, W, 3].
+        settings: The entries of a preprocessor_config.json.
 
     Returns:
-        float32 [1, 3, h, w].
+        The input of the network as float32 [1, 3, h, w].
     """
     picture = Image.fromarray(colour)
     if settings.get("do_resize", True):
@@ -65,11 +65,12 @@ def preprocess(colour: np.ndarray, settings: dict[str, Any]) -> np.ndarray:
 
 
 def preprocessed_size(size_px: tuple[int, int], settings: dict[str, Any]) -> tuple[int, int]:
-    """Return the width and height to which a picture is resized for a network.
+    """Return the width and height to which an image is resized for a network.
 
-    >>> settings = {"size": 518, "keep_aspect_ratio": True, "ensure_multiple_of": 14}
-    >>> preprocessed_size((640, 480), settings)
-    (686, 518)
+    Example:
+        >>> settings = {"size": 518, "keep_aspect_ratio": True, "ensure_multiple_of": 14}
+        >>> preprocessed_size((640, 480), settings)
+        (686, 518)
     """
     step = settings.get("ensure_multiple_of") or settings.get("size_divisor") or 1
     size = settings.get("size") or {"width": size_px[0], "height": size_px[1]}
@@ -91,10 +92,13 @@ def preprocessed_size(size_px: tuple[int, int], settings: dict[str, Any]) -> tup
 
 
 def import_transformers(feature: str) -> Any:
-    """Return the transformers library, silent.
+    """Import the transformers library with progress bars disabled.
+
+    Args:
+        feature: The feature that requires it, for the error message.
 
     Raises:
-        MissingExtraError: torch or transformers is not installed; ``feature`` is what needs them.
+        MissingExtraError: If torch or transformers is not installed.
     """
     try:
         import torch  # noqa: F401, PLC0415  # pyright: ignore[reportMissingImports]
@@ -106,22 +110,22 @@ def import_transformers(feature: str) -> Any:
 
 
 def display_name(model: str) -> str:
-    """Return the name of a model in reports.
+    """Return the name of a model for reports.
 
     Raises:
-        InputError: it is neither a folder nor could be the name of a model.
+        InputError: If the text is neither a folder nor a valid model name.
     """
     folder = Path(model).is_dir()
     if not folder and not MODEL_NAME.fullmatch(model):
-        raise InputError(model, "neither a folder nor the name of a model, ORG/NAME")
+        raise InputError(model, "neither a folder nor a model name of the form ORG/NAME")
     return f"hf:{Path(model).resolve().name if folder else model}"
 
 
 def model_revision(model: str, transformers: Any) -> str:
-    """Return what identifies this state of a model: a digest of its files or the hub's commit.
+    """Return the revision of a model: a digest of its files, or its commit on the Hub.
 
     Raises:
-        InputError: there is no such model.
+        InputError: If the model is not found.
     """
     if Path(model).is_dir():
         digest = hashlib.sha256()
@@ -134,15 +138,15 @@ def model_revision(model: str, transformers: Any) -> str:
     try:
         path = Path(transformers.utils.cached_file(model, "config.json"))
     except (OSError, ValueError):
-        raise InputError(model, "no such model here or on the hub") from None
+        raise InputError(model, "model not found locally or on the Hugging Face Hub") from None
     return f"{model}@{path.parent.name[:DIGEST_DIGITS]}"
 
 
 def load_config(model: str, transformers: Any) -> Any:
-    """Return the config of a model.
+    """Load the configuration of a model.
 
     Raises:
-        InputError: there is no such model, or its config cannot be read.
+        InputError: If the model is not found, or its configuration cannot be read.
     """
     try:
         return transformers.AutoConfig.from_pretrained(model)
@@ -151,7 +155,7 @@ def load_config(model: str, transformers: Any) -> Any:
 
 
 def has_file(model: str, names: tuple[str, ...], transformers: Any) -> bool:
-    """Return whether a model comes with one of some files."""
+    """Return whether a model includes one of the given files."""
     for name in names:
         try:
             transformers.utils.cached_file(model, name)
@@ -162,10 +166,11 @@ def has_file(model: str, names: tuple[str, ...], transformers: Any) -> bool:
 
 
 def load_preprocessor(model: str, transformers: Any) -> dict[str, Any]:
-    """Return the settings of a model's preprocessor file.
+    """Load the settings of a model's preprocessor file.
 
     Raises:
-        DamagedFileError: what it states makes no sense. InputError: there is no such model.
+        DamagedFileError: If the settings are invalid.
+        InputError: If the model is not found.
     """
     for file in PREPROCESSOR_FILES:
         try:
@@ -178,19 +183,20 @@ def load_preprocessor(model: str, transformers: Any) -> dict[str, Any]:
             preprocess(np.zeros((30, 40, 3), np.uint8), settings)
             return settings
         except (AttributeError, KeyError, TypeError, ValueError, ArithmeticError) as error:
-            raise DamagedFileError(model, f"{file} makes no sense: {first_line(error)}") from None
-    raise InputError(model, "no such model here or on the hub (it needs preprocessor_config.json)")
+            raise DamagedFileError(model, f"{file} is not valid: {first_line(error)}") from None
+    raise InputError(model, "preprocessor_config.json not found locally or on the Hugging Face Hub")
 
 
 def load_network(model: str, kind: Any) -> Any:
-    """Load a network in single precision, ready to run.
+    """Load a network in single precision for inference.
 
     Args:
-        model: a name or a folder.
-        kind: the class of the library that loads it, such as ``AutoModelForDepthEstimation``.
+        model: A model name or a folder.
+        kind: The transformers class that loads it, such as ``AutoModelForDepthEstimation``.
 
     Raises:
-        InputError: it cannot be had or is of another kind. DamagedFileError: weights are lacking.
+        InputError: If the model cannot be loaded, or is of another kind.
+        DamagedFileError: If weights are missing.
     """
     try:
         found, report = kind.from_pretrained(
@@ -200,5 +206,9 @@ def load_network(model: str, kind: Any) -> Any:
         raise InputError(model, f"cannot be loaded: {first_line(error)}") from None
     if report["missing_keys"] or report["mismatched_keys"]:
         lacking = sorted(map(str, report["missing_keys"] or report["mismatched_keys"]))[0]
-        raise DamagedFileError(model, f"its weights lack {lacking}, and would be drawn by chance")
+        raise DamagedFileError(
+            model,
+            f"the weights lack {lacking}, which would be initialised randomly; use a complete "
+            "checkpoint",
+        )
     return found.eval()

@@ -108,7 +108,7 @@ def test_what_is_damaged_is_refused_in_one_line(folder, file, content):
 def test_no_folder_and_no_name_is_refused():
     pytest.importorskip("torch")
     pytest.importorskip("transformers")
-    with pytest.raises(InputError, match="neither a folder nor the name of a model"):
+    with pytest.raises(InputError, match="neither a folder nor a model name"):
         load_depth_model("hf:../nowhere/at/all")
 
 
