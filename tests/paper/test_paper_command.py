@@ -82,15 +82,15 @@ def test_an_unknown_table_is_told(capsys):
             "no field of row base-next-view is named 'True'; known: cells, command, data, label, "
             "line, page",
         ),
-        ("vln: [1]", 3, "mine.yaml: vln must be a mapping, as w2m paper --help shows"),
-        ("vln: {base-next-view: {cells: {3b-sft: [1]}}}", 3, "3b-sft must be a number or a text"),
+        ("vln: [1]", 3, "mine.yaml: vln must be a mapping; w2m paper --help shows"),
+        ("vln: {base-next-view: {cells: {3b-sft: [1]}}}", 3, "3b-sft must be a number or a string"),
         ("vln: {base-next-view: {cells: {3b-sft: .nan}}}", 3, "3b-sft must be a finite number"),
         (
             'vln: {base-next-view: {data: "\\e[31m"}}',
             3,
-            "base-next-view must be of at most 400 letters, in one line",
+            "base-next-view must be a single line of at most 400 characters",
         ),
-        ("{", 3, "mine.yaml: is no YAML"),
+        ("{", 3, "mine.yaml: not valid YAML"),
     ],
 )
 def test_wrong_results_are_told(tmp_path, capsys, text, code, message):

@@ -89,7 +89,7 @@ def test_a_room_is_drawn(finished, capsys, monkeypatch):
     strip = page[-20, 8:].reshape(-1, 3)
     assert strip[5, 0] < 10 and 150 < strip[-30, 0] < 170  # The first step, and the last.
     assert run([*words, "--walk", str(finished / "scan"), "--out", str(out)]) == 3
-    assert "holds no walk; name a folder of w2m vln run" in capsys.readouterr().err
+    assert "no recorded walk found; give a folder written by w2m vln run" in capsys.readouterr().err
 
 
 def test_what_an_agent_saw_that_kept_no_views_is_drawn_again(finished, tmp_path):
@@ -104,7 +104,9 @@ def test_what_an_agent_saw_that_kept_no_views_is_drawn_again(finished, tmp_path)
     assert len(views) == 2
     for view, stance in zip(views, (east, north), strict=True):
         np.testing.assert_array_equal(view, ground.view(stance))
-    with pytest.raises(InputError, match="holds 1 walks; name one, such as .*wish"):
+    with pytest.raises(
+        InputError, match=("the folder contains 1 walks; give one of them, such as .*wish")
+    ):
         views_of_walk(finished / "OUT", tmp_path / "run", 6)
 
 

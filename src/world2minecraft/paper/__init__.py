@@ -1,9 +1,9 @@
-"""The tables of the paper, each with what we measured beside it, or with what we lack for it.
+"""The tables of the paper, with this project's measurements beside the published values.
 
-``tables`` holds them as printed, a YAML file each, with notes where the paper contradicts itself.
-``measured.yaml`` holds our figures, each with what it was measured on, the command, and the page
-that tells it. ``from_program`` reads what the program itself knows: the mapping of classes, the
-recipes of fine-tuning, the sizes. ``layout`` puts all of it into one table, ``writing`` prints it.
+``tables`` contains the published tables as YAML files, with notes where the paper contradicts
+itself. ``measured.yaml`` contains our measurements with their data, command and documentation page.
+``table_rows`` combines both with facts from the program, such as class mappings and recipes, and
+``table_writer`` formats the result.
 """
 
 from world2minecraft.paper.table_reader import (

@@ -1,8 +1,8 @@
-"""The paper's figures of a run of one's own: reality beside what was made of it, and a walk.
+"""The paper's figures for a run: photos beside the reconstruction, and a walk.
 
-A row a view: the photo, the world from the same pose, the predicted cells in the colours of their
-classes, and the construction, both from outside without ceiling and near walls. Below, where a
-walk is given, what its agent saw from step to step.
+Each row shows a photo, the world from the same pose, the predicted cells in class colours, and the
+construction, the latter two from outside without the ceiling and near walls. If a walk is given,
+a strip below shows the views of its agent.
 """
 
 from collections.abc import Iterator, Sequence
@@ -54,34 +54,43 @@ MATTER = "minecraft:white_concrete"  # Takes the light; its colour comes from th
 
 
 def views_of_walk(run: Path, walk: Path, most: int) -> list[np.ndarray]:
-    """Return what an agent saw, uint8 [H, W, 3] each, the first and the last among it.
+    """Return the views of an agent's walk, including the first and the last.
 
-    Agents that look keep their views. Of those that know the scene, as the oracle, they are drawn
-    from where they stood.
+    Recorded views are used if the agent had any. Otherwise, as for the oracle, the views are
+    rendered
+    from the recorded positions.
 
     Args:
-        run: the reconstruction that was walked in.
-        walk: the folder of one walk of ``w2m vln run``.
-        most: how many views are wanted; a short walk has fewer.
+        run: The reconstruction in which the agent walked.
+        walk: The folder of a single walk of ``w2m vln run``.
+        most: The maximum number of views.
+
+    Returns:
+        The views as uint8 [H, W, 3].
 
     Raises:
-        InputError: the folder holds no walk, or several. DamagedFileError: its trace is none.
+        InputError: If the folder contains no walk, or several.
+        DamagedFileError: If the trace is invalid.
     """
     kept = sorted((walk / VIEWS_FOLDER).glob("*.jpg"))
     if kept:
         return [read_colour(kept[n]) for n in spread(len(kept), most)]
     traces = traces_in(walk)
     if not traces[0].is_file():
-        raise InputError(walk, "holds no walk; name a folder of w2m vln run")
+        raise InputError(walk, "no recorded walk found; give a folder written by w2m vln run")
     if traces[0].parent != walk:
-        raise InputError(walk, f"holds {len(traces)} walks; name one, such as {traces[0].parent}")
+        raise InputError(
+            walk,
+            f"the folder contains {len(traces)} walks; give one of them, such as "
+            f"{traces[0].parent}",
+        )
     stances = stances_of(read_trace(walk / TRACE_FILE), walk / TRACE_FILE)
     ground = SceneSimulator(open_scene(run))
     return [ground.view(stances[n]) for n in spread(len(stances), most)]
 
 
 def spread(count: int, most: int) -> Sequence[int]:
-    """Return up to ``most`` numbers below ``count``, evenly apart, the first and last among them.
+    """Return up to ``most`` evenly spaced indices below ``count``, with the first and last.
 
     Example:
         >>> spread(10, 4)
@@ -97,16 +106,16 @@ Pixels = np.ndarray  # uint8 [H, W, 3]
 
 
 def reconstruction_figure(run: Path, capture: Path, walk: Path | None = None) -> Pixels:
-    """Return the figure, uint8 [H, W, 3].
+    """Return the figure of a reconstruction as uint8 [H, W, 3].
 
     Args:
-        run: the folder of a finished reconstruction.
-        capture: what it was made of.
-        walk: the folder of a ``w2m vln run``; its strip comes below.
+        run: The folder of a finished reconstruction.
+        capture: The capture that was reconstructed.
+        walk: The folder of a ``w2m vln run``, whose views are shown below.
 
     Raises:
-        CaptureError: the capture has no posed photo that the run used.
-        InputError: a file is missing or damaged.
+        CaptureError: If the capture has no posed photo that the run used.
+        InputError: If a file is missing or damaged.
     """
     grid, scan_to_room = read_room(run / "room.npz")
     built = read_built(run / "build")
@@ -125,7 +134,7 @@ def reconstruction_figure(run: Path, capture: Path, walk: Path | None = None) ->
 
 
 def volume_of_cells(grid: OccupancyGrid) -> BlockVolume:
-    """Return occupied cells as one white block each, with their classes, for the renderer."""
+    """Convert occupied cells to white blocks with their classes, for rendering."""
     occupied = (grid.labels != 0) & (grid.labels != UNKNOWN)
     labels = np.where(occupied, grid.labels, 0).astype(np.uint8)
     turned = [grid_to_block_axes(one) for one in (labels, grid.instance)]
@@ -140,12 +149,14 @@ def volume_of_cells(grid: OccupancyGrid) -> BlockVolume:
 def _photos(
     run: Path, capture: Path, scan_to_room: np.ndarray, scene: BlockScene
 ) -> list[tuple[Pixels, Camera, np.ndarray]]:
-    """Return photos with cameras and poses: of each third of the frames the one that shows most."""
+    """Return the photo that shows the most objects in each third of the frames."""
     frames = placed_frames(run, judge_capture_of(run, capture), scan_to_room)
     is_told = bool(used_by(run))
     placed = [(path, one) for one in frames if is_told and (path := one.frame.colour_path)]
     if not placed:
-        raise CaptureError(capture, f"has no posed photo that {run.name} was made of")
+        raise CaptureError(
+            capture, f"no posed photo found among those that {run.name} was reconstructed from"
+        )
     count = min(VIEWS, len(placed))
     edges = [n * len(placed) // count for n in range(count + 1)]
     found = []
@@ -158,7 +169,7 @@ def _photos(
 
 
 def _shown(scene: BlockScene, one: PlacedFrame) -> int:
-    """Return how many pixels of a small picture of the world from a frame's place show objects."""
+    """Return the number of object pixels in a small rendering from a frame's pose."""
     tiny = one.camera.resized(SCOUT_PX[0], SCOUT_PX[1])
     picture = render_volume(scene, tiny, one.camera_to_room, outputs=("semantic",))
     semantic = _present(picture.semantic)
@@ -171,7 +182,7 @@ def _drawn(scene: BlockScene, camera: Camera, pose: np.ndarray) -> Pixels:
 
 
 def _outside(volume: BlockVolume, start_deg: float) -> Iterator[tuple[Pixels, np.ndarray]]:
-    """Return pictures from as many sides as there are views, twice as large, with their classes."""
+    """Render the volume from several sides at double size, with the class of each pixel."""
     build = OpenedBuild(volume)
     camera = camera_of(2 * CELL_PX[0], 2 * CELL_PX[1], vertical_fov_deg=FOV_DEG)
     shots = orbit_shots(
@@ -185,7 +196,7 @@ def _outside(volume: BlockVolume, start_deg: float) -> Iterator[tuple[Pixels, np
 
 
 def _coloured(colour: Pixels, semantic: np.ndarray) -> Pixels:
-    """Return white matter in the colours of its classes, light and shade kept."""
+    """Tint white blocks with their class colours, preserving light and shade."""
     table = np.array(CLASS_COLOURS, np.float32) / 255
     known = np.where(semantic < len(table), semantic, 0)
     return np.rint(colour * table[known]).astype(np.uint8)
@@ -193,19 +204,19 @@ def _coloured(colour: Pixels, semantic: np.ndarray) -> Pixels:
 
 def _present(pixels: np.ndarray | None) -> np.ndarray:
     if pixels is None:
-        raise RuntimeError("the renderer gave no picture")
+        raise RuntimeError("the renderer returned no image")
     return pixels
 
 
 def _strip(run: Path, walk: Path, across: int) -> list[Pixels]:
-    """Return what an agent saw, first and last step among it, to fill the width of the page."""
+    """Return the views of a walk, scaled to fill the width of the page."""
     width = (across * (CELL_PX[0] + GAP_PX) - GAP_PX * STEPS) // STEPS
     size = (width, width * CELL_PX[1] // CELL_PX[0])
     return [_fitted(view, size) for view in views_of_walk(run, walk, STEPS)]
 
 
 def _fitted(pixels: Pixels, size: tuple[int, int]) -> Pixels:
-    """Return a picture of a size, cut about its middle where its shape is another."""
+    """Return an image resized to a size, cropped around its centre if the aspect ratios differ."""
     height, width = pixels.shape[:2]
     scale = max(size[0] / width, size[1] / height)
     wide, tall = (
@@ -217,7 +228,7 @@ def _fitted(pixels: Pixels, size: tuple[int, int]) -> Pixels:
 
 
 def _page(rows: Sequence[Sequence[Pixels]], strip: Sequence[Pixels]) -> Pixels:
-    """Return pictures in rows under their heads, the strip below."""
+    """Arrange images in rows under column headings, with the strip below."""
     width = len(HEADS) * (CELL_PX[0] + GAP_PX) + GAP_PX
     tall = HEAD_PX + len(rows) * (CELL_PX[1] + GAP_PX)
     extra = HEAD_PX + strip[0].shape[0] + GAP_PX if strip else 0
@@ -237,5 +248,5 @@ def _page(rows: Sequence[Sequence[Pixels]], strip: Sequence[Pixels]) -> Pixels:
         left = margin + n * step
         page.paste(Image.fromarray(picture), (left, tall + HEAD_PX))
     if strip:
-        pen.text((width // 2, tall + HEAD_PX // 2), "The agent's way", "black", font, anchor="mm")
+        pen.text((width // 2, tall + HEAD_PX // 2), "The agent's path", "black", font, anchor="mm")
     return np.asarray(page)

@@ -1,7 +1,6 @@
-"""Read tables of the paper, our figures and a user's results from YAML.
+"""Reading of the paper's tables, of our measurements and of user results from YAML.
 
-A ``PaperTable`` holds a table as printed, and what stands beside it. A user's file is checked like
-any input.
+``PaperTable`` contains a table as published. User files are validated like any other input.
 """
 
 import math
@@ -23,10 +22,14 @@ _FIELDS = ("cells", "data", "command", "page", "line", "label")
 
 @dataclass(frozen=True)
 class PaperRow:
-    """A row: ``cells`` as printed, in the order of the columns; ``notes`` by column.
+    """A row of a table.
 
-    A row of ours that the paper has no counterpart of is not ``is_printed``; its cells are its
-    label, and empty.
+    Attributes:
+        key: The key of the row.
+        cells: The cells as published, in column order. For a row that the paper does not have, its
+            label followed by empty cells.
+        notes: Notes by column.
+        is_printed: Whether the paper has the row.
     """
 
     key: str
@@ -37,9 +40,13 @@ class PaperRow:
 
 @dataclass(frozen=True)
 class Lack:
-    """Cells that we cannot fill: ``what`` is missing, and the ``command`` that fills them then.
+    """Cells for which we have no measurement, and how to obtain it.
 
-    ``rows`` and ``columns`` are keys; empty for all.
+    Attributes:
+        what: The missing resource.
+        command: The command that produces the values once the resource is available.
+        rows: The keys of the rows. Empty means all.
+        columns: The keys of the columns. Empty means all.
     """
 
     what: str
@@ -48,7 +55,7 @@ class Lack:
     columns: tuple[str, ...] = ()
 
     def covers(self, row: str, column: str | None = None) -> bool:
-        """Whether a row, or a cell of it, is meant.
+        """Return whether a row, or a cell of it, is affected.
 
         Example:
             >>> lack = Lack("a judge", "w2m compare judge ROOM", columns=("visual",))
@@ -62,10 +69,17 @@ class Lack:
 
 @dataclass(frozen=True)
 class Ours:
-    """A row of ours: cells by column, what they were measured on (``data``), and how.
+    """A row of our own values.
 
-    ``page`` is the file of the repository that tells them, in ``line``; both are empty where the
-    program itself knows them, or a user says them. ``label`` names a row that the table has not.
+    Attributes:
+        cells: The values by column.
+        data: The data on which the values were measured.
+        command: The command that measures them.
+        page: The documentation file that states the values. Empty for values from the program or
+            the
+            user.
+        line: The line of the page that states the values.
+        label: The label of a row that the published table does not have.
     """
 
     cells: Mapping[str, str]
@@ -77,7 +91,7 @@ class Ours:
 
     @property
     def source(self) -> str:
-        """What the cells were measured on, and by which command, in one line."""
+        """The data and the command of the values in one line."""
         told = (
             f"{self.data}: {self.command}"
             if self.data and self.command
@@ -90,8 +104,18 @@ class Ours:
 class PaperTable:
     """A table of the paper.
 
-    ``columns`` and ``our_columns`` are titles by key; the first ``stub`` columns say what a row is.
-    Where ``is_beside``, ours stands in columns of its own, else in a row below each printed one.
+    Attributes:
+        name: The name of the table.
+        number: Its number in the paper.
+        title: Its title.
+        about: Its caption.
+        stub: The number of leading columns that identify a row.
+        columns: The titles of the published columns by key.
+        our_columns: The titles of our own columns by key.
+        rows: The rows.
+        lacks: The cells for which we have no measurement.
+        is_beside: Whether our values are in separate columns instead of a row below each published
+            one.
     """
 
     name: str
@@ -107,12 +131,12 @@ class PaperTable:
 
     @property
     def titles(self) -> dict[str, str]:
-        """Titles of all columns, ours last, by key."""
+        """The titles of all columns by key, with our own last."""
         return {**self.columns, **self.our_columns}
 
     @property
     def fillable(self) -> tuple[str, ...]:
-        """The keys of the columns that results may stand in."""
+        """The keys of the columns that can contain results."""
         if self.is_beside:
             return tuple(self.our_columns)
         return (*tuple(self.columns)[self.stub :], *self.our_columns)
@@ -126,16 +150,16 @@ Results = dict[str, dict[str, Ours]]  # By table, then by row.
 
 @cache
 def table_names() -> dict[str, int]:
-    """Return the names of the tables with their numbers, in the paper's order."""
+    """Return the numbers of the tables by name, in the paper's order."""
     numbers = {path.stem: _yaml(path)["number"] for path in TABLES.glob("*.yaml")}
     return dict(sorted(numbers.items(), key=lambda one: one[1]))
 
 
 def read_table(which: str | int) -> PaperTable:
-    """Return a table by its name or its number in the paper.
+    """Read a table by its name or its number in the paper.
 
     Raises:
-        UnknownNameError: there is none.
+        UnknownNameError: If the table is unknown.
 
     Example:
         >>> read_table(6).title, read_table("layouts").number
@@ -168,25 +192,26 @@ def read_table(which: str | int) -> PaperTable:
 
 @cache
 def measured() -> Results:
-    """Return what we measured, by table and row."""
+    """Return our measurements by table and row."""
     return read_results(MEASURED)
 
 
 def read_results(path: str | Path) -> Results:
-    """Read results: YAML or JSON, ``TABLE: {ROW: {cells: {COLUMN: value}, data: ...}}``.
+    """Read results from YAML or JSON: ``TABLE: {ROW: {cells: {COLUMN: value}, data: ...}}``.
 
-    A row that the table has not is a new one where it has a ``label``.
+    A row that the table does not have must have a ``label`` and is added.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is no such table.
-        UnknownNameError: a key is none of the tables, rows, columns or fields.
+        InputError: If the file is missing.
+        DamagedFileError: If the file is not a valid table of results.
+        UnknownNameError: If a table, row, column or field is unknown.
     """
     try:
         raw = _yaml(Path(path))
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise DamagedFileError(path, "is no YAML") from error
+        raise DamagedFileError(path, "not valid YAML") from error
     results: Results = {}
-    for name, rows in _mapping(path, "it", raw).items():
+    for name, rows in _mapping(path, "the file", raw).items():
         table = read_table(name)
         results[table.name] = {
             row: _checked(path, table, row, _mapping(path, f"{name}.{row}", told))
@@ -196,7 +221,7 @@ def read_results(path: str | Path) -> Results:
 
 
 def _checked(path: str | Path, table: PaperTable, row: str, told: Mapping[str, Any]) -> Ours:
-    """Return a row of results whose keys are all known and whose texts can be printed."""
+    """Validate a row of results."""
     known = [one.key for one in table.rows]
     if row not in known and "label" not in told:
         raise UnknownNameError(f"row of table {table.name}", row, known)
@@ -213,18 +238,18 @@ def _checked(path: str | Path, table: PaperTable, row: str, told: Mapping[str, A
 
 def _text(path: str | Path, key: str, value: Any, limit: int) -> str:
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
-        raise DamagedFileError(path, f"{key} must be a number or a text")
+        raise DamagedFileError(path, f"{key} must be a number or a string")
     if isinstance(value, float) and not math.isfinite(value):
         raise DamagedFileError(path, f"{key} must be a finite number")
     text = str(value)
     if len(text) > limit or not text.isprintable():
-        raise DamagedFileError(path, f"{key} must be of at most {limit} letters, in one line")
+        raise DamagedFileError(path, f"{key} must be a single line of at most {limit} characters")
     return text
 
 
 def _mapping(path: str | Path, what: str, value: Any) -> dict[str, Any]:
     if not isinstance(value, dict):
-        raise DamagedFileError(path, f"{what} must be a mapping, as w2m paper --help shows")
+        raise DamagedFileError(path, f"{what} must be a mapping; w2m paper --help shows an example")
     return {str(key): one for key, one in value.items()}
 
 

@@ -1,6 +1,6 @@
-"""The values of our rows of a table: figures of our pages, of the program, of the user.
+"""Our values for the rows of a table, from measurements, the program or the user.
 
-What the program itself knows, such as the number of classes, no page has to state again.
+Values that the program knows, such as the number of classes, are not repeated in documentation.
 """
 
 import math
@@ -26,7 +26,7 @@ Rows = dict[str, Ours]
 
 
 def known_to_the_program(table: PaperTable) -> Rows:
-    """Return our rows of a table that come from the program's own code, none for most tables."""
+    """Return the rows of a table whose values come from the program's code, usually none."""
     makers: dict[str, Callable[[PaperTable], Rows]] = {
         "classes": _classes,
         "hyperparameters": _hyperparameters,
@@ -36,7 +36,7 @@ def known_to_the_program(table: PaperTable) -> Rows:
 
 
 def rft_recipe() -> dict[str, Any]:
-    """Return the recipe that ``w2m vln export --to easyr1`` writes, as EasyR1 reads it."""
+    """Return the parsed recipe that ``w2m vln export --to easyr1`` writes."""
     rule, plan = ExportOptions(), steps.grpo_plan(ROWS, easyr1.GPUS)
     text = render_recipe(
         "easyr1_grpo.yaml",
@@ -49,7 +49,7 @@ def rft_recipe() -> dict[str, Any]:
 
 
 def sft_recipe() -> dict[str, Any]:
-    """Return the recipe that ``w2m vln export --to llamafactory`` writes, as its trainer reads."""
+    """Return the parsed recipe that ``w2m vln export --to llamafactory`` writes."""
     rule = ExportOptions()
     taken = steps.sft_steps(ROWS, rule.max_samples, 1)
     text = render_recipe(
@@ -84,7 +84,7 @@ def _hyperparameters(table: PaperTable) -> Rows:
         "rollouts": (rollout["n"], None),
         "temperature": (rollout["temperature"], None),
     }
-    on, command = "the recipes that the export writes", "w2m vln export SET --to easyr1 --out GRPO"
+    on, command = "the exported recipes", "w2m vln export SET --to easyr1 --out GRPO"
     return {
         key: Ours({"our-rft": _text(one), "our-sft": _text(other)}, on, command)
         for key, (one, other) in found.items()
@@ -92,7 +92,7 @@ def _hyperparameters(table: PaperTable) -> Rows:
 
 
 def _text(value: Any) -> str:
-    """Return a value as the paper prints such.
+    """Format a value as in the paper.
 
     Example:
         >>> _text(1e-6), _text(0.1), _text(None), _text(30)
@@ -115,7 +115,7 @@ def _classes(table: PaperTable) -> Rows:
         for word, meaning in group.meanings.items():
             words.setdefault(meaning, []).append(word)
     examples = list(table.columns).index("examples")
-    on, command = "the map that comes along", "w2m dataset map --map paper --json paper.json"
+    on, command = "the built-in block map", "w2m dataset map --map paper --json paper.json"
     return {
         row.key: Ours(
             {
@@ -132,13 +132,13 @@ def _classes(table: PaperTable) -> Rows:
 
 
 def _meanings(rules: Any, blocks: list[str]) -> str:
-    """Return the classes that a map gives to blocks; ``...`` in a name stands for any end."""
+    """Return the classes that a map assigns to blocks. A name may end in ``...`` as a wildcard."""
     found = (name for block in blocks for name in rules.classes_of(block.removesuffix("...")))
     return ", ".join(dict.fromkeys(found))
 
 
 def _some(what: str, names: list[str]) -> str:
-    """Return the first names and how many more there are, in a sentence."""
+    """Return the first names and the number of the others as a sentence."""
     if not names:
         return ""
     more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
@@ -146,7 +146,7 @@ def _some(what: str, names: list[str]) -> str:
 
 
 def _sizes(table: PaperTable) -> Rows:
-    on = "the sizes that the program makes"
+    on = "the sizes of the built-in presets"
     rows = {
         f"occ-{name}": Ours(
             _counts(one.train, one.test), on, f"w2m dataset build DATA --preset {name}"
@@ -160,7 +160,11 @@ def _sizes(table: PaperTable) -> Rows:
     command = "w2m vln build --rooms 15 --houses 5 --paper-size --paper-split --out SET"
     for (composition, task), (count, held) in parts.items():
         key = f"{composition}-{task.replace('_', '-')}"
-        rows[key] = Ours(_counts(count - held, held), f"{on}, Base and Extend put right", command)
+        rows[key] = Ours(
+            _counts(count - held, held),
+            f"{on}, with the paper's swapped Base and Extend rows corrected",
+            command,
+        )
     return rows
 
 
@@ -171,9 +175,9 @@ def _counts(train: int, test: int) -> dict[str, str]:
 def fill_table(
     table: PaperTable, results: Results | None = None
 ) -> tuple[PaperTable, dict[str, Ours]]:
-    """Return a table and our rows of it, by key; rows that a user adds are in the table, too.
+    """Combine a table with our values by row key, adding rows that the user's results define.
 
-    A row of the user's ``results`` stands in place of ours, whole: no row mixes two measurements.
+    A row in ``results`` replaces our row completely, so that no row mixes two measurements.
     """
     own = (results or {}).get(table.name, {})
     ours = {**known_to_the_program(table), **measured().get(table.name, {}), **own}

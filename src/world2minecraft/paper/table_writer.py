@@ -1,8 +1,8 @@
-"""Write a table of the paper with ours: text for the terminal, Markdown, LaTeX or JSON values.
+"""Output of a table with our values as terminal text, Markdown, LaTeX or JSON data.
 
-The table is a grid of text with marks in cells and a line for each mark below it: ``[1]`` marks
-what in the paper contradicts itself, ``[A]`` what ours was measured on and how, ``[a]`` what we
-lack, with the command that fills the cell.
+Cells can contain marks that refer to notes below the table: ``[1]`` marks a contradiction in the
+paper, ``[A]`` the data and command of our value, and ``[a]`` a missing value with the command that
+produces it.
 """
 
 import textwrap
@@ -22,19 +22,19 @@ GAP = "  "  # Between columns.
 
 @dataclass
 class Marks:
-    """Texts by the mark that stands for each; equal texts share one."""
+    """Notes with their marks, where equal notes share a mark."""
 
     signs: str
     texts: list[str] = field(default_factory=list)
 
     def of(self, text: str) -> str:
-        """Return the mark of a text, a new one for a new text."""
+        """Return the mark of a note, adding the note if it is new."""
         if text not in self.texts:
             self.texts.append(text)
         return f"[{self._sign(self.texts.index(text))}]"
 
     def lines(self) -> Iterator[str]:
-        """Return each mark with its text."""
+        """Return the notes, each preceded by its mark."""
         return (f"[{self._sign(n)}] {text}" for n, text in enumerate(self.texts))
 
     def _sign(self, number: int) -> str:
@@ -43,9 +43,13 @@ class Marks:
 
 @dataclass(frozen=True)
 class Grid:
-    """Rows of cells, the first the titles; ``ours`` are the numbers of rows that are ours.
+    """A table as a grid of cells with titles in the first row.
 
-    The first ``left`` columns are texts, all others numbers. ``notes`` are the lines below.
+    Attributes:
+        rows: The rows of cells.
+        ours: The indices of rows with our values.
+        left: The number of leading text columns. The others are numeric.
+        notes: The lines below the table.
     """
 
     rows: list[list[str]]
@@ -55,7 +59,7 @@ class Grid:
 
 
 def grid_of(table: PaperTable, ours: Mapping[str, Ours]) -> Grid:
-    """Return a table with ours in it; ``ours`` by the keys of rows."""
+    """Return a table with our values, which are given by row key, as a grid."""
     paper, sources, lacks = Marks(""), Marks(ascii_uppercase), Marks(ascii_lowercase)
     rows, own = [], set()
     for row in table.rows:
@@ -87,7 +91,7 @@ def grid_of(table: PaperTable, ours: Mapping[str, Ours]) -> Grid:
 
 
 def lacking(table: PaperTable, ours: Mapping[str, Ours]) -> int:
-    """Return how many cells have nothing of ours and are told to need what we lack."""
+    """Return the number of cells without a value of ours that are listed as missing."""
     return sum(
         any(lack.covers(row.key, key) for lack in table.lacks)
         and not (row.key in ours and ours[row.key].cells.get(key))
@@ -109,7 +113,7 @@ def _printed(table: PaperTable, row: PaperRow, paper: Marks) -> list[str]:
 
 
 def _own(table: PaperTable, row: PaperRow, told: Ours, sources: Marks, lacks: Marks) -> list[str]:
-    """Return a row of ours: below a printed one it is called so, else by its own label."""
+    """Return a row of our values, labelled "ours" below a published row."""
     stub = ["  ours", *[""] * (table.stub - 1)] if row.is_printed else list(row.cells[: table.stub])
     if told.source:
         stub[0] += f" {sources.of(told.source)}"
@@ -120,7 +124,7 @@ def _own(table: PaperTable, row: PaperRow, told: Ours, sources: Marks, lacks: Ma
 
 
 def _lack(table: PaperTable, row: PaperRow, key: str, lacks: Marks) -> str:
-    """Return the mark of the first lack that covers a cell; nothing where none does."""
+    """Return the mark of the first entry of missing values that covers a cell, or ""."""
     for lack in table.lacks:
         if lack.covers(row.key, key):
             return lacks.of(f"{lack.what}: {lack.command}")
@@ -128,13 +132,13 @@ def _lack(table: PaperTable, row: PaperRow, key: str, lacks: Marks) -> str:
 
 
 def _marks(table: PaperTable, row: PaperRow, lacks: Marks) -> str:
-    """Return the marks of a row of which nothing is ours."""
+    """Return the marks of a row without values of ours."""
     found = {_lack(table, row, key, lacks) for key in table.fillable}
     return "".join(f" {mark}" for mark in sorted(found - {""}))
 
 
 def as_text(table: PaperTable, ours: Mapping[str, Ours]) -> str:
-    """Return a table for the terminal, with its title above and its notes below."""
+    """Format a table for the terminal, with its title above and its notes below."""
     grid = grid_of(table, ours)
     rows = _indented(grid)
     lines = [line for block in _blocks(rows, grid.left) for line in [*_drawn(*block), ""]]
@@ -146,14 +150,14 @@ def as_text(table: PaperTable, ours: Mapping[str, Ours]) -> str:
 
 
 def as_markdown(table: PaperTable, ours: Mapping[str, Ours]) -> str:
-    """Return a table as Markdown, its notes as a list below."""
+    """Format a table as Markdown, with its notes as a list below."""
     grid = grid_of(table, ours)
     notes = [f"- {note}" for note in grid.notes]
     return "\n".join([f"**{_title(table)}**", "", format_markdown(grid.rows), "", *notes])
 
 
 def as_latex(table: PaperTable, ours: Mapping[str, Ours]) -> str:
-    """Return a table for ``booktabs``; our rows are in italics, notes stand below."""
+    """Format a table as LaTeX for ``booktabs``, with our rows in italics and the notes below."""
     grid = grid_of(table, ours)
     width = len(grid.rows[0])
     kinds = "l" * grid.left + "r" * (width - grid.left)
@@ -171,7 +175,7 @@ def as_latex(table: PaperTable, ours: Mapping[str, Ours]) -> str:
 
 
 def as_values(table: PaperTable, ours: Mapping[str, Ours]) -> dict[str, Any]:
-    """Return a table as JSON values; keys of rows and columns are those that results take."""
+    """Return a table as JSON data, with the row and column keys that results files use."""
     return {
         "table": table.name,
         "number": table.number,
@@ -212,10 +216,11 @@ def _title(table: PaperTable) -> str:
 
 
 def _blocks(rows: list[list[str]], left: int) -> list[tuple[list[list[list[str]]], int]]:
-    """Return the table as blocks no wider than the page, each with how many columns are texts.
+    """Split a table into blocks no wider than the page, each with its number of text columns.
 
-    Columns of text are folded. Where that is not enough the numbers go on in a block below, beside
-    the same labels.
+    Text columns are wrapped first. If that is not enough, the remaining numeric columns continue in
+    a
+    block below, with the same labels.
     """
     whole = _folded(rows)
     if _total(whole) <= PAGE_WIDTH or left == len(rows[0]):
@@ -236,7 +241,7 @@ def _unfolded(rows: list[list[str]], columns: list[int]) -> list[list[list[str]]
 
 
 def _drawn(broken: list[list[list[str]]], left: int) -> list[str]:
-    """Return the lines of a block: texts to the left of their columns, numbers to the right."""
+    """Return the lines of a block, with text aligned left and numbers aligned right."""
     widths = _widths(broken)
     return [
         GAP.join(
@@ -249,7 +254,7 @@ def _drawn(broken: list[list[list[str]]], left: int) -> list[str]:
 
 
 def _folded(rows: list[list[str]]) -> list[list[list[str]]]:
-    """Return each cell as its lines: the widest column that can be folded more gives way first."""
+    """Wrap the cells of the widest columns until the table fits the page."""
     limits = [CELL_WIDTH] * len(rows[0])
     firm: set[int] = set()  # Columns as narrow as their longest word.
     while True:
@@ -280,7 +285,7 @@ def _widths(broken: list[list[list[str]]]) -> list[int]:
 
 
 def _indented(grid: Grid) -> list[list[str]]:
-    """Return the rows, the indent of ours kept through the breaking of lines."""
+    """Return the rows with non-breaking indents, so that wrapping keeps them."""
     return [[cell.replace("  ours", "\u00a0\u00a0ours") for cell in row] for row in grid.rows]
 
 
@@ -289,5 +294,5 @@ def _line(cell: list[str], number: int) -> str:
 
 
 def _guarded(cells: list[str]) -> list[str]:
-    r"""Keep a bracket at the start of a row from being read as an option of ``\\``."""
+    r"""Prevent a bracket at the start of a LaTeX row from being read as an option of ``\\``."""
     return [f"{{}}{cell}" if cell.startswith("[") else cell for cell in cells]

@@ -93,7 +93,7 @@ def test_each_thing_is_in_the_room_that_it_stands_in():
 
 def test_a_run_has_its_world_already():
     placed = Placement(1, int(SemanticClass.BED), "double_bed", BED.center_m, BED.size_m, 0, 0.9)
-    with pytest.raises(UsageError, match="is a finished run and has its world already"):
+    with pytest.raises(UsageError, match="is a finished run that already has a world"):
         plan_of(scene(placed))
 
 

@@ -71,11 +71,11 @@ def test_scenes_can_be_told_one_by_one(layouts, capsys):
 
 def test_what_cannot_be_scored_is_said(layouts, tmp_path, capsys):
     assert cli.run(["compare", "layouts", str(tmp_path / "none.json")]) == 3
-    assert capsys.readouterr().err.strip().endswith("none.json: is not there")
+    assert capsys.readouterr().err.strip().endswith("none.json: not found")
     assert cli.run(["compare", "layouts", str(layouts[0]), "--px-m", "0"]) == 2
     assert "--px-m must be metres per pixel" in capsys.readouterr().err
     assert cli.run(["compare", "layouts", str(layouts[0]), "--truth", str(layouts[0])]) == 3
-    assert "holds 2 scenes; one is true" in capsys.readouterr().err
+    assert "found 2 scenes, expected exactly one ground-truth scene" in capsys.readouterr().err
 
 
 def test_what_is_left_out_is_told(tmp_path, capsys):
@@ -83,7 +83,7 @@ def test_what_is_left_out_is_told(tmp_path, capsys):
     record["object_list"] += [[f"thing {n}", {}] for n in range(7)]
     assert cli.run(["compare", "layouts", str(write(tmp_path / "a.json", [record]))]) == 0
     text = capsys.readouterr().out
-    assert "note: left out: room-1: thing 0: has no 'length'" in text
+    assert "note: left out: room-1: thing 0: 'length' is missing" in text
     assert "note: ... and 2 more" in text
 
 

@@ -107,7 +107,7 @@ def test_layoutvlm_names_assets_of_one_category_by_letters(tmp_path):
     names = ("lamp_A-0", "lamp_B-0", "chair-0", "chair-1")
     told = {name: here for name in names}
     (less,) = read_layouts_of(write(tmp_path / "layout.json", {**told, "chair-1": {}}))
-    assert less.skipped == ("chair-1: has no 'position'",) and not less.unplaced
+    assert less.skipped == ("chair-1: 'position' is missing",) and not less.unplaced
     del told["chair-1"]
     (none,) = read_layouts_of(write(tmp_path / "layout.json", told))
     assert none.unplaced == ("chair-1",)
@@ -130,7 +130,7 @@ def test_layoutvlm_sizes_come_from_the_folder_of_assets(tmp_path):
         tmp_path / "layout.json", {"aa-0": {"position": [1, 1, 0.25], "rotation": [0, 0, 0]}}
     )
     (without,) = read_layouts_of(path)
-    assert without.skipped == ("aa-0: has no size; give the folder of assets with --assets",)
+    assert without.skipped == ("aa-0: size is unknown; give the asset folder with --assets",)
     (scene,) = read_layouts_of(path, How(assets=tmp_path / "assets"))
     assert scene.objects[0].size_m == pytest.approx([2.0, 1.6, 0.5])
 
@@ -143,14 +143,14 @@ def test_the_name_of_an_asset_is_no_path(tmp_path):
         {"../secret-0": {"position": [1, 1, 0], "rotation": [0, 0, 0]}},
     )
     (scene,) = read_layouts_of(path, How(assets=tmp_path / "set"))
-    assert "has no size" in scene.skipped[0]
+    assert "size is unknown" in scene.skipped[0]
 
 
 BAD_OBJECTS = [
-    (["lamp"], "lamp: is no [category, {length, width, height, left, top, ...}]"),
-    ({"lamp": {}}, "object: is no [category, {length, width, height, left, top, ...}]"),
-    (["lamp", {"left": 1}], "lamp: has no 'length'"),
-    (["window", {}], "window: has no 'length'"),
+    (["lamp"], "lamp: expected [category, {length, width, height, left, top, ...}]"),
+    ({"lamp": {}}, "object: expected [category, {length, width, height, left, top, ...}]"),
+    (["lamp", {"left": 1}], "lamp: 'length' is missing"),
+    (["window", {}], "window: 'length' is missing"),
 ]
 
 
@@ -165,11 +165,11 @@ def test_what_is_no_object_is_left_out_and_told(item, reason, tmp_path):
 @pytest.mark.parametrize(
     ("values", "reason"),
     [
-        ({"length": 0}, "has a side of 0 m"),
-        ({"left": 1e9}, "reaches over 1000 m"),
-        ({"left": True}, "left is bool, not a number"),
-        ({"left": "nan"}, "left is no finite number"),
-        ({"left": "far"}, "left is no finite number"),
+        ({"length": 0}, "box side of 0 m is too short"),
+        ({"left": 1e9}, "extends farther than 1000 m from the origin"),
+        ({"left": True}, "left must be a number, got bool"),
+        ({"left": "nan"}, "left must be a finite number"),
+        ({"left": "far"}, "left must be a finite number"),
     ],
 )
 def test_a_wild_number_is_left_out(values, reason, tmp_path):
@@ -220,18 +220,18 @@ def test_numbers_may_carry_their_unit(tmp_path):
 @pytest.mark.parametrize(
     ("told", "text"),
     [
-        ({"a": 1}, "holds no layout that is known (stored, run, layoutgpt, idesign, layoutvlm); "
-                   "--format says which it is"),
+        ({"a": 1}, "no layout in a known format found (stored, run, layoutgpt, idesign, "
+                   "layoutvlm); name the format with --format"),
         ([{"object_list": [], "prompt": "a bedroom"}],
-         "is not what its format says (record 0 says no room size: 'max length 270px, max width "
-         "252px')"),
+         "not valid in its format (record 0 has no room size, such as 'max length 270px, max "
+         "width 252px')"),
         ([{"object_list": [["dog", [0.5, 0.5, 1.0, 0.9]]], "prompt": "a toilet left of a dog"}],
-         "is not what its format says (record 0 is the layout of a picture; rooms are in "
+         "not valid in its format (record 0 is an image layout; room layouts are in "
          "LayoutGPT's llm_output/3D)"),
         ([{"new_object_id": "bed"}],
-         "is not what its format says (has no east_wall, so the room's size is not known)"),
+         "not valid in its format (east_wall is missing, so the room size is unknown)"),
         ({"bed-0": {"position": [0, 0, 0]}},
-         "has 0 scene files with a boundary beside it; give one with --task"),
+         "0 scene files with a boundary found beside it; choose one with --task"),
     ],
 )  # fmt: skip
 def test_what_is_no_layout_is_said(told, text, tmp_path):
@@ -244,12 +244,12 @@ def test_what_is_no_layout_is_said(told, text, tmp_path):
 def test_a_scene_of_too_many_objects_is_refused(tmp_path):
     record = gpt_record([])
     record["object_list"] = [["bed", {}]] * 1001
-    with pytest.raises(DamagedFileError, match="has 1,001 objects; at most 1,000 are read"):
+    with pytest.raises(DamagedFileError, match="1,001 objects exceed the limit of 1,000"):
         read_layouts_of(write(tmp_path / "a.json", [record]))
 
 
 def test_other_ways_to_go_wrong(tmp_path):
-    with pytest.raises(InputError, match="is not there"):
+    with pytest.raises(InputError, match="not found"):
         read_layouts_of(tmp_path / "none")
     (tmp_path / "a.json").write_text("{")
     with pytest.raises(DamagedFileError, match="is not JSON"):
@@ -257,7 +257,7 @@ def test_other_ways_to_go_wrong(tmp_path):
     with pytest.raises(UnknownNameError, match="did you mean 'layoutgpt'"):
         read_layouts_of(as_gpt(tmp_path), name="layoutgtp")
     (tmp_path / SCENE_FILE).write_text(json.dumps({"name": "x"}))
-    with pytest.raises(DamagedFileError, match="is no scene of w2m compare"):
+    with pytest.raises(DamagedFileError, match="not a valid scene of w2m compare"):
         read_layouts_of(tmp_path)
     assert issubclass(LimitError, InputError)
 

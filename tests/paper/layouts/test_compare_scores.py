@@ -87,7 +87,7 @@ def test_two_placements_of_one_object_do_not_collide():
 
 
 def test_margins_are_checked_and_heeded():
-    with pytest.raises(UsageError, match="margins are 0 or more"):
+    with pytest.raises(UsageError, match="tolerances must be 0 or more"):
         Margins(depth_m=-1)
     close = scene(thing(1, 1), thing(1.99, 1))
     assert score_scene(close, Margins(shared=0.0, depth_m=0.0)).colliding == ((0, 1),)

@@ -102,7 +102,7 @@ def test_a_model_describes_photos():
         assert describe_photos(open_chat(server.url), [Picture(b"x")]) == "A small kitchen.\n"
         parts = server.requests[0]["messages"][0]["content"]
         assert [part["type"] for part in parts] == ["text", "image_url"]
-    with scripted([" "]) as server, pytest.raises(ServerError, match="says nothing of the photos"):
+    with scripted([" "]) as server, pytest.raises(ServerError, match="did not describe the photos"):
         describe_photos(open_chat(server.url), [Picture(b"x")])
 
 

@@ -67,11 +67,11 @@ def test_means_are_over_scenes():
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("good", "it holds no JSON object"),
-        ('{"realism": 5}', "completeness must be a whole number from 1 to 10"),
-        (said(11, 5, 5), "realism must be a whole number from 1 to 10"),
-        (said(5.5, 5, 5), "realism must be a whole number from 1 to 10"),
-        (said("true", 5, 5), "realism must be a whole number from 1 to 10"),
+        ("good", "the reply does not contain a JSON object"),
+        ('{"realism": 5}', "completeness must be an integer from 1 to 10"),
+        (said(11, 5, 5), "realism must be an integer from 1 to 10"),
+        (said(5.5, 5, 5), "realism must be an integer from 1 to 10"),
+        (said("true", 5, 5), "realism must be an integer from 1 to 10"),
     ],
 )
 def test_a_bad_reply_is_told_why(text, problem):
@@ -90,5 +90,5 @@ def test_the_prompt_is_fixed():
 
 
 def test_a_room_is_graded_at_least_once():
-    with pytest.raises(UsageError, match="at least once"):
+    with pytest.raises(UsageError, match="repeats must be 1 or more"):
         grade(None, "a", "b", SHOWN, repeats=0)

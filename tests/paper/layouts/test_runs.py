@@ -86,11 +86,11 @@ def test_the_true_scene_is_a_truth_or_a_run(run, tmp_path):
     assert told.categories == {int(SemanticClass.TABLE), int(SemanticClass.BED)}
     assert score_scene(true_scene(run)).objects == 2
     write(folder / "truth.json", {"objects": []})
-    with pytest.raises(InputError, match="tells of no room"):
+    with pytest.raises(InputError, match="the scan does not contain a room"):
         true_scene(folder)
 
 
 def test_a_run_without_a_room_is_refused(run):
     (run / "layout.json").unlink()
-    with pytest.raises(InputError, match="tells of no room; run w2m reconstruct again"):
+    with pytest.raises(InputError, match="the run has no rooms; run w2m reconstruct again"):
         read_layouts_of(run)

@@ -1,8 +1,8 @@
-"""Rooms made in other ways beside ours: their layouts read, scored alike, built and judged.
+"""Comparison of rooms from different layout methods: importing, scoring, building and judging.
 
-``importers`` read what LayoutGPT, I-Design and LayoutVLM write, and our own runs, as
-``ComparedScene``. ``scores`` counts what lies outside, what collides and which categories are
-there. ``building`` makes Minecraft worlds of them, ``judge`` asks a model how they look.
+``importers`` read the output of LayoutGPT, I-Design and LayoutVLM, and runs of this program, as
+``ComparedScene``. ``scores`` measures objects outside rooms, collisions and categories.
+``layout_to_world`` builds Minecraft worlds, and ``judge`` grades images with a model.
 """
 
 from world2minecraft.paper.layouts.compared_scene import ComparedScene

@@ -1,4 +1,4 @@
-"""A scene to compare, whoever made it, and its file ``compared.json``."""
+"""A scene for comparison between methods, and its file format ``compared.json``."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,13 +17,18 @@ DECIMALS = 6  # Micrometres: finer than any margin, so that what is read again s
 
 @dataclass(frozen=True, eq=False)
 class ComparedScene:
-    """Rooms and the boxes that stand in them, in one frame: metres, z up, floor at z = 0.
+    """Rooms and object boxes in one frame: metres, z up, floor at z = 0.
 
-    ``objects`` are boxes as their makers gave them, before anything becomes cells. ``method`` says
-    who made the scene. ``is_height_stated`` is False where ``wall_height_m`` is only a guess, so
-    that nothing can be too high. ``unplaced`` names what the method wanted and found no place for,
-    ``skipped`` says what could not be read. ``collided`` counts the pairs of a run whose solid
-    parts meet, by its own cells; of a layout it is None.
+    Attributes:
+        name: The name of the scene.
+        method: The method that created the scene.
+        rooms: The rooms, at least one.
+        objects: The boxes as the method placed them, before any conversion to cells.
+        unplaced: The names of objects for which the method found no position.
+        skipped: Descriptions of entries that could not be read.
+        is_height_stated: Whether the wall height is known. If False, no object counts as too high.
+        collided: The number of object pairs of a run that collide, based on their cells. None for a
+            layout.
     """
 
     name: str
@@ -37,13 +42,17 @@ class ComparedScene:
 
     def __post_init__(self):
         if not self.rooms:
-            raise ValueError("a scene has a room")
+            raise ValueError("a scene must have at least one room")
         for name in ("rooms", "objects", "unplaced", "skipped"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
 
 
 def write_scene(path: str | Path, scene: ComparedScene) -> None:
-    """Write a scene. Raises OutputError."""
+    """Write a scene to a file.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     write_json(
         path,
         {
@@ -60,10 +69,11 @@ def write_scene(path: str | Path, scene: ComparedScene) -> None:
 
 
 def read_scene(path: str | Path) -> ComparedScene:
-    """Read a scene.
+    """Read a scene from a file.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is no scene.
+        InputError: If the file is missing.
+        DamagedFileError: If the file is not a valid scene.
     """
     data = read_json(path, MAX_BYTES)
     try:
@@ -78,7 +88,7 @@ def read_scene(path: str | Path) -> ComparedScene:
             collided=None if data["collided"] is None else int(data["collided"]),
         )
     except (KeyError, TypeError, ValueError, AttributeError, World2MinecraftError) as error:
-        raise DamagedFileError(path, f"is no scene of w2m compare ({error})") from error
+        raise DamagedFileError(path, f"not a valid scene of w2m compare ({error})") from error
 
 
 def _row(item: LayoutObject | Placement) -> dict[str, Any]:

@@ -1,7 +1,7 @@
-"""What stands for a thing of a layout: a design of the furniture library, by the thing's name.
+"""Selection of furniture designs for layout objects by their names.
 
-Names of others are many; the longest words that are known count, from their end. What no word
-tells is told by class and size, and what that does not tell is built as the box that it is.
+The longest known words at the end of a name determine the design. Without a known word, class and
+size determine it, and otherwise the object is built as a plain box.
 """
 
 import re
@@ -32,7 +32,7 @@ CATEGORIES = {
 
 
 class Design(NamedTuple):
-    """A template of the library, or ``cells``, and the category that colours it."""
+    """A furniture template, or ``cells``, and the category that determines its colour."""
 
     template: str
     category: str
@@ -40,12 +40,12 @@ class Design(NamedTuple):
 
 @lru_cache(maxsize=1)
 def designs() -> dict[str, Design]:
-    """Return the designs by the words that name them."""
+    """Return the designs by the words that identify them."""
     return {word: Design(*pair) for word, pair in read_json(TABLE).items()}
 
 
 def design_of(item: LayoutObject, floor_z_m: float = 0.0) -> Design:
-    """Return what stands for a thing.
+    """Return the furniture design for an object.
 
     Example:
         >>> import numpy as np
@@ -75,7 +75,7 @@ def _named(name: str) -> Design | None:
 
 
 def _hint(item: LayoutObject, floor_z_m: float) -> str:
-    """Return the category of a thing that nobody knows: a lamp, where it hangs and is named so."""
+    """Return the category of an unknown object, which is "lamp" or ""."""
     bottom_m = float(item.center_m[2] - item.size_m[2] / 2) - floor_z_m
     lit = "lamp" in item.name.lower() or "light" in item.name.lower()
     return "lamp" if lit or bottom_m > 3 * HUNG_FROM_M else ""

@@ -1,9 +1,10 @@
-"""How a room looks to a vision-language model: realism, completeness, atmosphere, from 1 to 10.
+"""Grading of rooms by a vision-language model for realism, completeness and atmosphere, 1 to 10.
 
-All methods are shown alike: built of the same blocks, from the same two corners, in the same
-light. Each room is graded several times; a reply that cannot be read is no grade, and where there
-is none the score stays empty. The prompt is ``prompts/judge.md``; its sum, the model and those of
-the pictures stand beside the grades, since grades of different models or prompts do not compare.
+All methods are shown alike: built from the same blocks, from the same two corners, in the same
+light. Each room is graded several times. A reply that cannot be parsed gives no grade, and a room
+without grades has no score. The prompt is ``prompts/judge.md``. Its SHA-256, the model and the
+SHA-256 of the images are stored with the grades, because grades of different models or prompts are
+not comparable.
 """
 
 import hashlib
@@ -45,7 +46,7 @@ PROMPT = "judge.md"
 
 @dataclass(frozen=True)
 class Grades:
-    """What a model said of one room: a row a repeat, None where a reply could not be read."""
+    """The grades of one room, with a row per repetition, or None for an invalid reply."""
 
     name: str
     method: str
@@ -54,16 +55,16 @@ class Grades:
 
     @property
     def unread(self) -> int:
-        """How many replies could not be read."""
+        """The number of replies that could not be parsed."""
         return sum(row is None for row in self.rows)
 
     def mean(self, aspect: str) -> float | None:
-        """Return the mean grade of an aspect, None where there is none."""
+        """Return the mean grade of an aspect, or None without grades."""
         told = [row[aspect] for row in self.rows if row is not None]
         return float(np.mean(told)) if told else None
 
     def told(self) -> dict[str, Any]:
-        """Return the grades as plain values."""
+        """Return the grades as JSON data."""
         return {
             "name": self.name,
             "method": self.method,
@@ -75,7 +76,7 @@ class Grades:
 
 
 def prompt_text(name: str = PROMPT) -> str:
-    """Return a prompt of this package."""
+    """Return the text of a prompt file."""
     return (files("world2minecraft.paper.layouts") / "prompts" / name).read_text(encoding="utf-8")
 
 
@@ -85,7 +86,7 @@ def prompt_sum() -> str:
 
 
 def pictures_of(volume: BlockVolume) -> list[Picture]:
-    """Return the pictures of a room that every judge is shown, JPEG."""
+    """Render the images of a room for the judge as JPEG."""
     build = OpenedBuild(volume)
     camera = camera_of(*SIZE_PX, vertical_fov_deg=FOV_DEG)
     shots = orbit_shots(
@@ -97,7 +98,7 @@ def pictures_of(volume: BlockVolume) -> list[Picture]:
         scene = prepare_scene(build.seen_by(shot.camera_to_room))
         picture = next(iter(draw_shots(scene, [shot], how)))
         if picture.colour is None:
-            raise RuntimeError("the renderer gave no colour")
+            raise RuntimeError("the renderer returned no colour image")
         pictures.append(Picture(colour_bytes(picture.colour, ".jpg", QUALITY)))
     return pictures
 
@@ -111,21 +112,23 @@ def grade(
     wish: str = "",
     repeats: int = REPEATS,
 ) -> Grades:
-    """Ask a model for the grades of one room; it is not told who made it.
+    """Ask a model to grade a room, without naming the method that created it.
 
     Args:
-        model: on any server; replies that it has on record cost nothing.
-        name: of the scene, for the record.
-        method: who made it, for the record.
-        pictures: what is shown.
-        wish: what the room was to be, where all methods were told the same; else empty.
-        repeats: how often.
+        model: The model. Cached replies cost nothing.
+        name: The name of the scene, for the record.
+        method: The method that created the scene, for the record.
+        pictures: The images to show.
+        wish: The description that all methods were given, or "".
+        repeats: The number of repetitions.
 
     Raises:
-        UsageError: fewer than one repeat. ServerError, BudgetError: the model cannot be asked.
+        UsageError: If ``repeats`` is less than 1.
+        ServerError: If the model cannot be queried.
+        BudgetError: If the limit on calls or cost is reached.
     """
     if repeats < 1:
-        raise UsageError(f"a room is graded at least once, not {repeats} times")
+        raise UsageError(f"repeats must be 1 or more, got {repeats}")
     words = prompt_text()
     if wish:
         words += f"\nThe room was to be this; grade completeness by it.\n\n{wish.strip()}\n"
@@ -135,9 +138,9 @@ def grade(
 
 
 def means_of(grades: Sequence[Grades]) -> dict[str, dict[str, tuple[float, float, int] | None]]:
-    """Return, by method, the mean grade of each aspect over scenes, its deviation and how many.
+    """Return the mean grade of each aspect by method, with its standard deviation and count.
 
-    The deviation is over the scenes' means; an aspect that no reply graded is None.
+    The standard deviation is that of the scene means. An aspect without grades is None.
     """
     result: dict[str, dict[str, tuple[float, float, int] | None]] = {}
     for method in dict.fromkeys(one.method for one in grades):
@@ -151,10 +154,10 @@ def means_of(grades: Sequence[Grades]) -> dict[str, dict[str, tuple[float, float
 
 
 def read_grades(text: str) -> dict[str, int]:
-    """Return the grades of a reply.
+    """Parse the grades of a reply.
 
     Raises:
-        UnreadableError: an aspect is missing, or is no whole number from 1 to 10.
+        UnreadableError: If an aspect is missing, or is not an integer from 1 to 10.
 
     Example:
         >>> read_grades('{"realism": 7, "completeness": 6, "atmosphere": 8}')["atmosphere"]
@@ -162,14 +165,14 @@ def read_grades(text: str) -> dict[str, int]:
     """
     told = extract_json_object(text)
     if told is None:
-        raise UnreadableError("it holds no JSON object")
+        raise UnreadableError("the reply does not contain a JSON object")
     row = {}
     for aspect in ASPECTS:
         value = told.get(aspect)
         if isinstance(value, float) and value.is_integer():
             value = int(value)
         if type(value) is not int or not LEAST <= value <= MOST:
-            raise UnreadableError(f"{aspect} must be a whole number from {LEAST} to {MOST}")
+            raise UnreadableError(f"{aspect} must be an integer from {LEAST} to {MOST}")
         row[aspect] = value
     return row
 

@@ -1,9 +1,9 @@
-"""A layout becomes a Minecraft world, as it is: nothing is moved to mend it.
+"""Building of a Minecraft world from a layout, without correcting its errors.
 
-Each thing stands as the design of its name, in its box, turned to the nearest quarter. What lies
-in a wall or beyond it is cut off there (a box that reaches less than 16 cm into a wall is pushed
-out of it), and where two things meet the larger one keeps the place. So faults can be seen, as far
-as blocks can show them; scores are taken from the boxes, never from the blocks.
+Each object is built with the design for its name, within its box, rotated to the nearest quarter
+turn. Parts inside or beyond a wall are cut off, except that a box that extends less than 16 cm into
+a wall is moved out of it. If two objects overlap, the larger one wins. Errors of the layout thus
+remain visible as far as blocks permit. Scores are computed from the boxes, never from the blocks.
 """
 
 import hashlib
@@ -33,17 +33,17 @@ def build_scene(
     parameters: Parameters | None = None,
     progress: Progress = no_progress,
 ) -> PlanWorld:
-    """Build the world of a layout into a run's folder, with a brief report and its boxes.
+    """Build the world of a layout into a run folder, with a brief report and the boxes.
 
     Args:
-        scene: a layout; its boxes are written to ``compared.json`` beside the world.
-        out: the folder.
-        parameters: cells, scale, style and palette count.
-        progress: called at each step.
+        scene: The layout. Its boxes are written to ``compared.json`` beside the world.
+        out: The output folder.
+        parameters: The parameters, of which cell size, scale, style and palette are used.
+        progress: Called at each step.
 
     Raises:
-        UsageError: it is a run, which has its world, or it is too large for such cells.
-        OutputError: ``out`` cannot be written.
+        UsageError: If the scene is a run, which already has a world, or is too large.
+        OutputError: If the folder cannot be written.
     """
     plan = plan_of(scene)
     write_scene(out / SCENE_FILE, scene)
@@ -60,24 +60,26 @@ def build_scene(
 
 
 def plan_of(scene: ComparedScene) -> CapturedPlan:
-    """Return a layout as a plan whose things are known by design.
+    """Convert a layout to a floor plan whose objects have furniture designs.
 
     Raises:
-        UsageError: it is a run of ours.
+        UsageError: If the scene is a finished run.
     """
     boxes = [item for item in scene.objects if isinstance(item, LayoutObject)]
     if len(boxes) < len(scene.objects):
-        raise UsageError(f"{scene.name} is a finished run and has its world already: w2m render")
+        raise UsageError(
+            f"{scene.name} is a finished run that already has a world; render it with w2m render"
+        )
     owners = [_room_of(item, scene.rooms) for item in boxes]
     rooms = []
     for number, room in enumerate(scene.rooms):
         own = [item for item, owner in zip(boxes, owners, strict=True) if owner == number]
         rooms.append(_plan_room(room, own, number))
-    return CapturedPlan(tuple(rooms), tuple(f"left out: {line}" for line in scene.skipped))
+    return CapturedPlan(tuple(rooms), tuple(f"skipped: {line}" for line in scene.skipped))
 
 
 def _room_of(item: LayoutObject, rooms: tuple[Layout, ...]) -> int:
-    """Return the room that a thing stands in, the first where it stands in none."""
+    """Return the index of the room that contains an object, or 0 if there is none."""
     for number, room in enumerate(rooms):
         in_height = -0.1 <= item.center_m[2] - room.floor_z_m <= room.wall_height_m + 0.1
         if in_height and inside_polygon(item.center_m[None, :2], room.floor_polygon_m, 0.1)[0]:

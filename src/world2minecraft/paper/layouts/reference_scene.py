@@ -1,4 +1,4 @@
-"""The true scene that others are held to: a scan's truth, or one that a person has mended."""
+"""The reference scene of a comparison: a ground truth, or a scene corrected by a person."""
 
 from pathlib import Path
 
@@ -11,25 +11,29 @@ TRUTH = "truth"
 
 
 def is_truth(path: Path) -> bool:
-    """Whether a folder is a capture with its truth."""
+    """Return whether a folder is a capture with ground truth."""
     return path.is_dir() and (path / "truth.json").is_file()
 
 
 def true_scene(path: Path) -> ComparedScene:
-    """Return the scene that is true, in its own frame.
+    """Read the reference scene in its own frame.
 
     Args:
-        path: a capture of ``w2m rooms scan``, or anything that ``read_layouts_of`` reads.
+        path: A capture of ``w2m rooms scan``, or anything that ``read_layouts_of`` accepts.
 
     Raises:
-        InputError: it cannot be read, or holds several scenes.
+        InputError: If the scene cannot be read, or there are several.
     """
     if is_truth(path):
         known = read_truth(path)
         if not known.layouts:
-            raise InputError(path, "tells of no room; scan it again with w2m rooms scan")
+            raise InputError(
+                path, "the scan does not contain a room; scan it again with w2m rooms scan"
+            )
         return ComparedScene(path.name, TRUTH, known.layouts, known.objects)
     scenes = read_layouts_of(path)
     if len(scenes) > 1:
-        raise InputError(path, f"holds {len(scenes):,} scenes; one is true")
+        raise InputError(
+            path, f"found {len(scenes):,} scenes, expected exactly one ground-truth scene"
+        )
     return scenes[0]

@@ -1,4 +1,4 @@
-"""Which scenes of a file are built, and the names of their folders."""
+"""Selection of the scenes of a file, and names for their folders."""
 
 from collections.abc import Sequence
 
@@ -11,15 +11,15 @@ MAX_NAME = 60
 def select_scenes(
     found: Sequence[ComparedScene], names: Sequence[str] = (), count: int | None = None
 ) -> list[ComparedScene]:
-    """Return the scenes that are asked for, the first one where nothing is.
+    """Select scenes by name. Without names, the first scenes are selected.
 
     Args:
-        found: the scenes of a file.
-        names: parts of the names of scenes.
-        count: how many scenes; of each name where there are names.
+        found: The scenes of a file.
+        names: Substrings of scene names.
+        count: The maximum number of scenes, for each name if there are names. None selects one.
 
     Raises:
-        UnknownNameError: no scene has such a name.
+        UnknownNameError: If no scene matches a name.
     """
     if not names:
         return list(found[: count or 1])
@@ -33,9 +33,10 @@ def select_scenes(
 
 
 def folder_names(scenes: Sequence[ComparedScene]) -> list[str]:
-    """Return a folder name for each scene that every system accepts; no two are alike.
+    """Return a unique and portable folder name for each scene.
 
-    Names come from files of others, so only ASCII letters, digits, hyphens and underscores remain.
+    Scene names come from external files, so only ASCII letters, digits, hyphens and underscores are
+    kept.
     """
     names: list[str] = []
     for number, one in enumerate(scenes):

@@ -1,4 +1,4 @@
-"""The comparison as a table of text: a row a method, in the order and the manner of the paper."""
+"""Text tables of the layout comparison, with a row per method in the paper's order."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -12,15 +12,20 @@ OTHER_HEADS: tuple[str, ...] = (
     "semantic precision", "semantic with structure",
 )  # fmt: skip
 NOTES: tuple[str, ...] = (
-    "OOB: share of objects out of bounds, with its interval; collisions: pairs a scene; semantic: "
-    "share of the true categories; solid collisions: pairs a scene whose solid parts meet.",
-    "corner OOB: LayoutGPT's own rule, a corner over 10 cm outside; overlaps: pairs a scene that "
-    "share any volume.",
+    (
+        "OOB: share of objects out of bounds with its confidence interval; collisions: pairs "
+        "per scene; semantic: share of the true categories that are present; solid "
+        "collisions: pairs per scene whose solid parts overlap."
+    ),
+    (
+        "corner OOB: LayoutGPT's rule, an object with a corner more than 10 cm outside the "
+        "room; overlaps: pairs per scene with any common volume."
+    ),
 )
 
 
 def layout_table(summaries: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
-    """Return the figures that the paper compares, by method; blank where nothing is known."""
+    """Return the paper's scores by method, with empty cells for unknown values."""
     rows = [list(HEADS)]
     for method, told in summaries.items():
         low, high = told["out_of_bounds_interval"]
@@ -35,7 +40,7 @@ def layout_table(summaries: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
 
 
 def other_table(summaries: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
-    """Return the figures by the rules of others, and what stands behind the first ones."""
+    """Return additional scores by method, including those by other methods' rules."""
     rows = [list(OTHER_HEADS)]
     for method, told in summaries.items():
         rows.append(
@@ -50,7 +55,7 @@ def other_table(summaries: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
 def grade_table(
     means: Mapping[str, Mapping[str, tuple[float, float, int] | None]],
 ) -> list[list[str]]:
-    """Return a judge's grades by method: the mean, and the deviation over scenes."""
+    """Return the mean grades by method, with their standard deviation over scenes."""
     rows: list[list[str]] = []
     for method, told in means.items():
         if not rows:
@@ -62,7 +67,7 @@ def grade_table(
 
 
 def by_method(pairs: Sequence[tuple[str, Any]]) -> dict[str, list[Any]]:
-    """Return things by their method, in the order in which methods first come."""
+    """Group values by method, in the order in which the methods first occur."""
     groups: dict[str, list[Any]] = {}
     for method, one in pairs:
         groups.setdefault(method, []).append(one)

@@ -1,19 +1,19 @@
-"""Score layouts: what lies outside its room, collides, or is missing, by one rule for all methods.
+"""Scores of layouts for objects outside rooms, collisions and missing categories.
 
-An object is **out of bounds** where more than 1 % of its footprint lies more than 10 cm outside
-the floor, or its top is more than 10 cm over the ceiling. Two **collide** where they share more
-than 1 % of the smaller one's volume and would have to be moved by more than 2 cm to part; what
-rests on something, and what is thinner than 5 cm (rugs), does not. Boxes count before they become
-cells, for cells of two things can never overlap.
+An object is **out of bounds** if more than 1 % of its footprint is more than 10 cm outside the
+floor, or its top is more than 10 cm above the ceiling. Two objects **collide** if they share more
+than 1 % of the smaller one's volume and would have to be moved by more than 2 cm to separate them.
+Objects that rest on others, and objects thinner than 5 cm such as rugs, do not collide. The boxes
+are scored before conversion to cells, because cells of two objects can never overlap.
 
-Beside these stand the rules of others, so that their figures can be met: ``reaching`` is the rule
-of LayoutGPT's own script (a corner of the turned box more than 10 cm outside the box around the
-room), ``overlapping`` are pairs that share any volume at all.
+Two scores follow other publications for comparison: ``reaching`` is the rule of LayoutGPT's script
+(a corner of the rotated box more than 10 cm outside the room's bounding box), and ``overlapping``
+counts pairs with any common volume.
 
-Solid collisions look at designs instead of boxes: a chair pushed under a table is in its box and
-meets nothing. A thing of a layout is as solid as the design that stands for it (``designs``),
-turned as the layout says; what no design stands for is solid all through. So layouts of others are
-held to the rule that our own furniture is held to, with its 4 cm.
+Solid collisions use furniture designs instead of boxes, so a chair pushed under a table does not
+collide. An object of a layout has the solid parts of its design (``furniture_lookup``), rotated as
+in the layout. An object without a design is completely solid. Layouts of other methods are thus
+subject to the same 4 cm tolerance as our own furniture.
 """
 
 from collections.abc import Sequence
@@ -44,7 +44,7 @@ ANY_M3 = 1e-9  # Less is rounding: boxes that touch.
 
 
 def solid_collisions(scene: ComparedScene) -> int:
-    """Return how many pairs of things meet with their solid parts; a run's count is its own."""
+    """Return the number of object pairs whose solid parts overlap, as recorded for a run."""
     if scene.collided is not None:
         return scene.collided
     boxes = [item for item in scene.objects if isinstance(item, LayoutObject)]
@@ -59,7 +59,7 @@ def solid_collisions(scene: ComparedScene) -> int:
 
 
 def solid_parts(item: LayoutObject) -> list[LayoutObject]:
-    """Return the solid boxes of a thing; itself where no design stands for it."""
+    """Return the solid boxes of an object, or its own box if it has no design."""
     name = design_of(item).template
     if name == OWN_CELLS:
         return [item]
@@ -86,7 +86,17 @@ def _meet(one: list[LayoutObject], other: list[LayoutObject]) -> bool:
 
 @dataclass(frozen=True)
 class Margins:
-    """How much is forgiven; the numbers of the module's first lines."""
+    """The tolerances of the scores, which the module's docstring explains.
+
+    Attributes:
+        outside_m: The distance outside the floor that is tolerated, in metres.
+        outside_share: The share of the footprint outside that is tolerated.
+        above_m: The height above the ceiling that is tolerated, in metres.
+        shared: The share of the smaller volume that may be shared.
+        depth_m: The overlap depth that is tolerated, in metres.
+        thin_m: The height below which objects do not collide, in metres.
+        resting_m: The shared height below which one object rests on another, in metres.
+    """
 
     outside_m: float = 0.1
     outside_share: float = 0.01
@@ -98,7 +108,7 @@ class Margins:
 
     def __post_init__(self):
         if not all(np.isfinite(value) and value >= 0 for value in vars(self).values()):
-            raise UsageError(f"margins are 0 or more, not {vars(self)}")
+            raise UsageError(f"tolerances must be 0 or more, got {vars(self)}")
 
 
 USUAL = Margins()
@@ -106,10 +116,19 @@ USUAL = Margins()
 
 @dataclass(frozen=True)
 class SceneScores:
-    """Counts of one scene: indices of objects, and sorted pairs of them.
+    """The scores of one scene as object indices and sorted pairs of indices.
 
-    ``categories`` are the classes of objects, ``structure`` those of its shell; ``collided``
-    counts the pairs whose solid parts meet.
+    Attributes:
+        name: The name of the scene.
+        objects: The number of objects.
+        unplaced: The number of objects that the method did not place.
+        outside: The objects out of bounds.
+        reaching: The objects out of bounds by LayoutGPT's rule.
+        colliding: The pairs that collide.
+        overlapping: The pairs with any common volume.
+        categories: The classes of the objects.
+        structure: The classes of the building structure.
+        collided: The number of pairs whose solid parts overlap.
     """
 
     name: str
@@ -125,7 +144,7 @@ class SceneScores:
 
 
 def score_scene(scene: ComparedScene, margins: Margins = USUAL) -> SceneScores:
-    """Return the counts of a scene."""
+    """Compute the scores of a scene."""
     pairs = [
         (m, n)
         for (m, a), (n, b) in combinations(enumerate(scene.objects), 2)
@@ -147,14 +166,14 @@ def score_scene(scene: ComparedScene, margins: Margins = USUAL) -> SceneScores:
 
 
 def structure_of(rooms: Sequence[Layout]) -> frozenset[int]:
-    """Return the classes of structure that rooms have."""
+    """Return the structural classes that rooms contain."""
     windows = any(one.kind == "window" for room in rooms for one in room.openings)
     shell = {SemanticClass.FLOOR, SemanticClass.WALL, SemanticClass.CEILING}
     return frozenset(int(one) for one in shell | ({SemanticClass.WINDOW} if windows else set()))
 
 
 def integrity(built: frozenset[int], true: frozenset[int]) -> tuple[float, float]:
-    """Return how many of the true categories are there, and how many of those there are true.
+    """Return the recall and the precision of categories.
 
     Example:
         >>> integrity(frozenset({5, 8, 9}), frozenset({5, 6, 8, 10}))
@@ -167,21 +186,22 @@ def integrity(built: frozenset[int], true: frozenset[int]) -> tuple[float, float
 def summary_of(
     scores: Sequence[SceneScores], true: Sequence[SceneScores | None] = ()
 ) -> dict[str, Any]:
-    """Return the rates over scenes, as plain values.
+    """Summarise the scores of scenes as JSON data.
 
     Args:
-        scores: of the scenes.
-        true: of the true scene of each, None where it is not known; empty for none at all.
+        scores: The scores of the scenes.
+        true: The scores of each scene's ground truth, or None if unknown. Empty if none is known.
 
     Returns:
-        Rates from 0 to 1, counts a scene; ``interval`` of a rate is Wilson's at 95 %. Objects
-        count alike, so a rate is over all objects; a share of scenes says ``scenes``.
+        Rates from 0 to 1 and counts per scene. Rates are over all objects, and shares of scenes
+        have
+        ``scenes`` in their names. ``interval`` is the 95 percent Wilson interval.
 
     Raises:
-        UsageError: there is no scene.
+        UsageError: If there are no scenes.
     """
     if not scores:
-        raise UsageError("there is no scene to score")
+        raise UsageError("no scenes to score")
     objects = sum(one.objects for one in scores)
     outside = sum(len(one.outside) for one in scores)
     counts = {
@@ -207,7 +227,7 @@ def summary_of(
 def _integrity_of(
     scores: Sequence[SceneScores], true: Sequence[SceneScores | None]
 ) -> dict[str, float | None]:
-    """Return the means over the scenes whose truth is known; None where none is."""
+    """Return the mean integrity over scenes with a known ground truth, or None."""
     known = [(one, of) for one, of in zip(scores, true, strict=bool(true)) if of is not None]
     plain = [integrity(one.categories, of.categories) for one, of in known]
     shell = [
@@ -225,7 +245,7 @@ def _integrity_of(
 
 
 def _in_no_room(scene: ComparedScene, is_outside: Any) -> tuple[int, ...]:
-    """Return the indices of the objects that are outside of every room."""
+    """Return the indices of the objects that are outside every room."""
     return tuple(
         index
         for index, item in enumerate(scene.objects)
@@ -257,13 +277,13 @@ def _is_convex(polygon: np.ndarray) -> bool:
 
 
 def _one_thing(a: Any, b: Any) -> bool:
-    """Whether two placements stand for one object, as the two runs of an L do."""
+    """Return whether two placements belong to one object, such as the two parts of an L shape."""
     owner = getattr(a, "object_id", None)
     return owner is not None and owner == getattr(b, "object_id", None)
 
 
 def _collide(a: Any, b: Any, margins: Margins) -> bool:
-    """Whether two boxes that share a volume collide."""
+    """Return whether two overlapping boxes collide."""
     if min(a.size_m[2], b.size_m[2]) < margins.thin_m:
         return False
     if shared_height_m(a, b) <= margins.resting_m:

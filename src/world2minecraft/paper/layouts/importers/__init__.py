@@ -1,7 +1,7 @@
-"""Layouts of others as ``ComparedScene``: one file a format, found by what is in it.
+"""Importers of layouts from other programs as ``ComparedScene``, with one module per format.
 
-A format is a module with ``is_mine(path, data)`` (``data`` is the JSON of a file, None for a
-folder) and ``read(path, data, how)``. Packages outside add theirs through the entry point group
+A format is an object with ``is_mine(path, data)``, where ``data`` is the JSON of a file or None for
+a folder, and ``read(path, data, how)``. Other packages add formats through the entry point group
 ``world2minecraft.layout_format``.
 """
 
@@ -32,11 +32,13 @@ FORMATS = Registry(
 
 @dataclass(frozen=True)
 class How:
-    """What files do not say.
+    """Information that layout files do not contain.
 
-    ``px_m``: metres of a pixel, of layouts in pixels. ``task``: LayoutVLM's scene file, None for
-    the one beside the layout. ``assets``: the folder of its assets. ``truth``: the capture with
-    the truth of a run.
+    Attributes:
+        px_m: The metres per pixel of layouts in pixels.
+        task: The LayoutVLM scene file. None uses the one beside the layout.
+        assets: The folder of LayoutVLM assets.
+        truth: The capture with the ground truth of a run.
     """
 
     px_m: float = PX_M
@@ -46,33 +48,37 @@ class How:
 
 
 def read_layouts_of(path: Path, how: How | None = None, name: str = "") -> list[ComparedScene]:
-    """Read the scenes of a file or a folder.
+    """Read the scenes of a layout file or folder.
 
     Args:
-        path: where they are.
-        how: what they do not say.
-        name: of the format; found out where it is empty.
+        path: The file or folder.
+        how: Information that the files do not contain.
+        name: The name of the format. Empty detects it.
 
     Raises:
-        InputError: it is not there, or of no known format. DamagedFileError, LimitError: it is not
-            what its format says. UnknownNameError: no format is so named.
+        InputError: If the path does not exist, or has no known format.
+        DamagedFileError: If the content is not valid in its format.
+        LimitError: If the file is too large.
+        UnknownNameError: If the format is unknown.
     """
     if not path.exists():
-        raise InputError(path, "is not there")
+        raise InputError(path, "not found")
     data = None if path.is_dir() else read_json(path, MAX_BYTES)
     for one in [name] if name else FORMATS.names():
         found = FORMATS.load(one)
         if name or found.is_mine(path, data):
             return _read(found, path, data, how or How())
     known = ", ".join(FORMATS.names())
-    raise InputError(path, f"holds no layout that is known ({known}); --format says which it is")
+    raise InputError(
+        path, f"no layout in a known format found ({known}); name the format with --format"
+    )
 
 
 def _read(found: Any, path: Path, data: Any, how: How) -> list[ComparedScene]:
     try:
         scenes = found.read(path, data, how)
     except READ_ERRORS as error:
-        raise DamagedFileError(path, f"is not what its format says ({why(error)})") from error
+        raise DamagedFileError(path, f"not valid in its format ({why(error)})") from error
     if not scenes:
-        raise DamagedFileError(path, "holds no scene")
+        raise DamagedFileError(path, "the file does not contain any scenes")
     return scenes

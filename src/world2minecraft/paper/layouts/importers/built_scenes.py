@@ -1,4 +1,4 @@
-"""Scenes that ``w2m compare build`` has built: their boxes as they were before."""
+"""Importer of scenes built by ``w2m compare build``, with their boxes before building."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,16 +10,20 @@ if TYPE_CHECKING:
 
 
 class Format:
-    """The format of this module."""
+    """The format of scenes built by ``w2m compare build``."""
 
     @staticmethod
     def is_mine(path: Path, data: Any) -> bool:
-        """Whether a folder was built of a layout."""
+        """Return whether a folder was built from a layout."""
         return path.is_dir() and (path / SCENE_FILE).is_file()
 
     @staticmethod
     def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
-        """Return its one scene. Raises InputError."""
+        """Read the only scene of a folder.
+
+        Raises:
+            InputError: If the file cannot be read.
+        """
         return [read_scene(path / SCENE_FILE if path.is_dir() else path)]
 
 

@@ -1,10 +1,11 @@
-"""I-Design: ``scene_graph.json``, the graph after its solver.
+"""Importer of I-Design's ``scene_graph.json``, the scene graph after its solver.
 
-A list of ``{new_object_id, position {x, y, z}, rotation {z_angle}, size_in_meters {length, width,
-height}, ...}`` in metres, x east, y north, z up, positions of centres. ``z_angle`` is a compass
-bearing of the front: 0 looks north, 90 east. ``length`` runs from side to side, ``width`` from
-front to back. Four walls, the ceiling and the middle of the room are entries too; the room's sides
-come from them. An object without ``position`` is one for which the solver found no place.
+The file is a list of ``{new_object_id, position {x, y, z}, rotation {z_angle}, size_in_meters
+{length, width, height}, ...}`` in metres with x east, y north and z up. Positions are centres.
+``z_angle`` is the compass bearing of the front: 0 faces north, 90 east. ``length`` is measured from
+side to side and ``width`` from front to back. The four walls, the ceiling and the middle of the
+room are entries as well and define the room size. An object without ``position`` is one for which
+the solver found no position.
 """
 
 from pathlib import Path
@@ -33,17 +34,23 @@ SHELL = ("south_wall", "north_wall", "east_wall", "west_wall", CEILING, FLOOR)
 
 
 class Format:
-    """The format of this module."""
+    """The scene graph format of I-Design."""
 
     @staticmethod
     def is_mine(path: Path, data: Any) -> bool:
-        """Whether a JSON is a scene graph of I-Design."""
+        """Return whether JSON data is a scene graph of I-Design."""
         first = data[0] if isinstance(data, list) and data else None
         return isinstance(first, dict) and "new_object_id" in first
 
     @staticmethod
     def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
-        """Return its one scene. Raises ValueError, KeyError, TypeError."""
+        """Read the only scene of a scene graph.
+
+        Raises:
+            ValueError: If a value is invalid.
+            KeyError: If a field is missing.
+            TypeError: If a field has the wrong type.
+        """
         entries = checked_count(data, MAX_OBJECTS, "entries")
         shell = {one["new_object_id"]: one for one in entries if one["new_object_id"] in SHELL}
         objects, unplaced, skipped = [], [], []
@@ -68,11 +75,11 @@ FORMAT = Format()
 
 
 def _sides(shell: dict[str, Any]) -> tuple[float, float, float]:
-    """Return the room's sides: where the far walls and the ceiling are."""
+    """Return the room size from the positions of the far walls and the ceiling."""
     sides = []
     for name, axis in (("east_wall", "x"), ("north_wall", "y"), (CEILING, "z")):
         if name not in shell:
-            raise ValueError(f"has no {name}, so the room's size is not known")
+            raise ValueError(f"{name} is missing, so the room size is unknown")
         sides.append(number(shell[name]["position"][axis], f"{name} {axis}"))
     return sides[0], sides[1], sides[2]
 

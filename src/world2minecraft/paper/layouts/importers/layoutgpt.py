@@ -1,17 +1,19 @@
-"""LayoutGPT: what its script writes to ``llm_output/3D``, read as it is published.
+"""Importer of LayoutGPT's published results in ``llm_output/3D``.
 
-A list of records ``{query_id, iter, prompt, object_list}``. The prompt says ``Room Size: max
-length 270px, max width 252px``; an object is ``[category, {length, width, height, left, top,
-depth, orientation}]``. ``left``, ``top`` and ``depth`` are the centre, sizes are full. ``left``
-runs along 3D-FRONT's x and ``top`` along its z, which seen from above runs down the page; so y is
-the room's width less ``top``, and nothing is mirrored. At 0 degrees a front looks along ``top``:
-so four fifths of the published beds and nightstands have their back to the nearest wall.
+The file is a list of records ``{query_id, iter, prompt, object_list}``. The prompt contains ``Room
+Size: max length 270px, max width 252px``, and an object is ``[category, {length, width, height,
+left, top, depth, orientation}]``. ``left``, ``top`` and ``depth`` are the centre, and sizes are
+full
+extents. ``left`` is 3D-FRONT's x, and ``top`` its z, which points down the page when seen from
+above. Therefore y is the room width minus ``top``, without mirroring. At an orientation of 0
+degrees, the front faces along ``top``: with this convention, four fifths of the published beds and
+nightstands have their back to the nearest wall.
 
-**Pixels.** In the published files the shorter side of a room has 256 pixels. They hold no metres,
-so a scale is assumed: 256 pixels are 3.5 m. With it their desks are 0.75 m high and their chairs
-0.89 m. Files in metres are read as they are. The script's options make two more kinds: by
-``--unit m --normalize`` the shorter side is 1.00 m whatever the room, which is taken for those 256
-pixels; by ``--unit px`` alone nothing is normalised, and some "pixels" are as many metres.
+**Pixels.** In the published files, the shorter side of a room has 256 pixels. The files do not
+contain metres, so 256 pixels are assumed to be 3.5 m, which gives desks 0.75 m and chairs 0.89 m
+high. Files in metres are used unchanged. Two options of the script give other units: with ``--unit
+m --normalize`` the shorter side of every room is 1.00 m, which is interpreted as 256 pixels, and
+with ``--unit px`` alone nothing is normalised, and some "pixels" are metres.
 """
 
 import re
@@ -46,17 +48,23 @@ MAX_ROOM_M = 40.0  # Of a room; what has no more pixels was not normalised.
 
 
 class Format:
-    """The format of this module."""
+    """The record format of LayoutGPT."""
 
     @staticmethod
     def is_mine(path: Path, data: Any) -> bool:
-        """Whether a JSON holds records of LayoutGPT."""
+        """Return whether JSON data contains records of LayoutGPT."""
         first = data[0] if isinstance(data, list) and data else data
         return isinstance(first, dict) and "object_list" in first
 
     @staticmethod
     def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
-        """Return the scene of each record. Raises ValueError, KeyError, TypeError."""
+        """Read the scene of each record.
+
+        Raises:
+            ValueError: If a value is invalid.
+            KeyError: If a field is missing.
+            TypeError: If a field has the wrong type.
+        """
         records = checked_count([data] if isinstance(data, dict) else data, MAX_SCENES, "records")
         return [_scene(record, number, how.px_m) for number, record in enumerate(records)]
 
@@ -84,7 +92,7 @@ def _scene(record: dict[str, Any], count: int, px_m: float) -> ComparedScene:
 
 
 def _unit_m(found: re.Match[str], px_m: float) -> float:
-    """Return the metres of one of a record's numbers, by the sides of its room."""
+    """Return the length of a record's unit in metres, derived from the sides of its room."""
     shorter, longer = sorted(float(found[group]) for group in (1, 3))
     if "m" in (found[2], found[4]):
         return SHORTER_PX * px_m if abs(shorter - 1) <= SLACK else 1.0
@@ -92,12 +100,12 @@ def _unit_m(found: re.Match[str], px_m: float) -> float:
 
 
 def _no_room(record: dict[str, Any], count: int) -> str:
-    """Return why a record is no room: LayoutGPT lays out pictures, too."""
+    """Return why a record is not a room. LayoutGPT can also lay out images."""
     items = record.get("object_list")
     first = items[0] if isinstance(items, list) and items else None
     if isinstance(first, list) and len(first) == 2 and isinstance(first[1], list):
-        return f"record {count} is the layout of a picture; rooms are in LayoutGPT's llm_output/3D"
-    return f"record {count} says no room size: 'max length 270px, max width 252px'"
+        return f"record {count} is an image layout; room layouts are in LayoutGPT's llm_output/3D"
+    return f"record {count} has no room size, such as 'max length 270px, max width 252px'"
 
 
 def _name(item: Any) -> str:
@@ -106,7 +114,7 @@ def _name(item: Any) -> str:
 
 def _object(item: Any, unit_m: float, width_m: float) -> LayoutObject:
     if not (isinstance(item, (list, tuple)) and len(item) == 2 and isinstance(item[1], dict)):
-        raise ValueError("is no [category, {length, width, height, left, top, ...}]")
+        raise ValueError("expected [category, {length, width, height, left, top, ...}]")
     data = item[1]
     length, width, height = (
         number(data[key], key) * unit_m for key in ("length", "width", "height")

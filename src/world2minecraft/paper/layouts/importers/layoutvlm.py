@@ -1,13 +1,13 @@
-"""LayoutVLM: ``layout.json``, and the scene file that it was made from, for room and sizes.
+"""Importer of LayoutVLM's ``layout.json`` and the scene file with its room and asset sizes.
 
-The layout is ``{asset: {position [x, y, z], rotation [x, y, z]}}``: centres in metres, degrees
-about the axes, z up; at 0 a front looks along x. The scene file is ``{task_description, boundary
-{floor_vertices [[x, y, z]], wall_height}, assets {id: {...}}}``. Sizes stand in an asset's
-``assetMetadata.boundingBox``, in the scene file or in ``ID/data.json`` of the folder of assets,
-and as LayoutVLM does, x and y are swapped when they are read: ``y`` is front to back.
+The layout is ``{asset: {position [x, y, z], rotation [x, y, z]}}`` with centres in metres and
+rotations in degrees about the axes, z up. At 0 degrees, the front faces along x. The scene file is
+``{task_description, boundary {floor_vertices [[x, y, z]], wall_height}, assets {id: {...}}}``.
+Sizes are in ``assetMetadata.boundingBox``, either in the scene file or in ``ID/data.json`` in the
+asset folder. As in LayoutVLM, x and y are swapped when sizes are read: ``y`` is front to back.
 
-Its program names the assets of a layout anew, by their categories (``dining_chair-1``,
-``lamp_B-0``); both those and the scene file's own names are known.
+LayoutVLM renames the assets of a layout by category (``dining_chair-1``, ``lamp_B-0``). Both these
+names and those of the scene file are supported.
 """
 
 from collections import Counter
@@ -45,11 +45,11 @@ MAX_ADJACENT_FILES = 200  # Files beside a layout that are looked at.
 
 
 class Format:
-    """The format of this module."""
+    """The layout format of LayoutVLM."""
 
     @staticmethod
     def is_mine(path: Path, data: Any) -> bool:
-        """Whether a JSON is a layout of LayoutVLM, or a folder holds one."""
+        """Return whether JSON data is a layout of LayoutVLM, or a folder contains one."""
         if path.is_dir():
             place = path / LAYOUT_FILE
             data = read_json(place) if place.is_file() else None
@@ -60,11 +60,18 @@ class Format:
 
     @staticmethod
     def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
-        """Return its one scene. Raises InputError, ValueError, KeyError, TypeError."""
+        """Read the only scene of a layout.
+
+        Raises:
+            InputError: If the scene file is missing or invalid.
+            ValueError: If a value is invalid.
+            KeyError: If a field is missing.
+            TypeError: If a field has the wrong type.
+        """
         place = path / LAYOUT_FILE if path.is_dir() else path
         data = read_json(place) if data is None else data
         if len(data) > MAX_OBJECTS:
-            raise ValueError(f"has {len(data):,} objects; at most {MAX_OBJECTS:,} are read")
+            raise ValueError(f"{len(data):,} objects exceed the limit of {MAX_OBJECTS:,}")
         task = _task(place, how.task)
         assets = dict(_assets(task, how.assets))
         objects, skipped = [], []
@@ -85,17 +92,18 @@ FORMAT = Format()
 
 
 def _task(place: Path, stated: Path | None) -> dict[str, Any]:
-    """Return the scene file: the stated one, or the only one beside the layout."""
+    """Return the given scene file, or the only one beside the layout."""
     if stated is not None:
         data = read_json(stated, MAX_TASK_BYTES)
         if not _is_task(data):
-            raise InputError(stated, "is no scene file of LayoutVLM: it has no boundary")
+            raise InputError(stated, "not a LayoutVLM scene file: the boundary is missing")
         return data
     beside = sorted(place.parent.glob("*.json"))[:MAX_ADJACENT_FILES]
     found = [data for one in beside if one != place and _is_task(data := _try(one))]
     if len(found) != 1:
         raise InputError(
-            place, f"has {len(found)} scene files with a boundary beside it; give one with --task"
+            place,
+            f"{len(found)} scene files with a boundary found beside it; choose one with --task",
         )
     return found[0]
 
@@ -115,7 +123,7 @@ def _room(boundary: dict[str, Any]) -> Layout:
     corners = checked_count(boundary["floor_vertices"], MAX_CORNERS, "floor_vertices")
     points = np.array([[number(value, "a corner") for value in one[:2]] for one in corners])
     if points.ndim != 2 or points.shape[1] != 2 or np.abs(points).max() > FARTHEST_M:
-        raise ValueError("floor_vertices must be corners [x, y, z] in metres")
+        raise ValueError("floor_vertices must be a list of corners [x, y, z] in metres")
     if len(points) > 3 and np.allclose(points[0], points[-1]):
         points = points[:-1]
     x, y = points.T
@@ -126,7 +134,7 @@ def _room(boundary: dict[str, Any]) -> Layout:
 
 
 def _assets(task: dict[str, Any], folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield what is known of each asset, under its own name and the one it has in layouts."""
+    """Yield the data of each asset under its own name and under its name in layouts."""
     assets = task.get("assets", {})
     for name, uid in _names(task, folder):
         known = _data(uid, assets.get(uid) or {}, folder)
@@ -135,10 +143,10 @@ def _assets(task: dict[str, Any], folder: Path | None) -> Iterator[tuple[str, di
 
 
 def _names(task: dict[str, Any], folder: Path | None) -> list[tuple[str, str]]:
-    """Return, for each asset of a scene file, the name that LayoutVLM gives it, and its own."""
+    """Return the layout name and the original name of each asset of a scene file."""
     assets = task.get("assets", {})
     if not isinstance(assets, dict) or len(assets) > MAX_OBJECTS:
-        raise ValueError(f"assets must be an object of at most {MAX_OBJECTS:,} names")
+        raise ValueError(f"assets must be an object with at most {MAX_OBJECTS:,} names")
     groups: dict[str, list[str]] = {}
     for key in assets:
         groups.setdefault(_model(key), []).append(key)
@@ -156,13 +164,13 @@ def _names(task: dict[str, Any], folder: Path | None) -> list[tuple[str, str]]:
 
 
 def _model(key: str) -> str:
-    """Return an asset's name without its count."""
+    """Return the name of an asset without its number."""
     head, _, tail = key.rpartition("-")
     return head if head and tail.isdigit() else key
 
 
 def _data(key: str, stated: dict[str, Any], folder: Path | None) -> dict[str, Any]:
-    """Return what a scene file or the folder of assets says of one."""
+    """Return the data of an asset from the scene file or the asset folder."""
     if "assetMetadata" in stated or folder is None:
         return stated
     model = _model(key)
@@ -186,10 +194,10 @@ def _category(known: dict[str, Any], key: str) -> str:
 def _object(key: str, one: dict[str, Any], assets: dict[str, Any]) -> LayoutObject:
     known = assets.get(key)
     if known is None:
-        raise ValueError("is not among the scene file's assets")
+        raise ValueError("not among the assets of the scene file")
     box = (known.get("assetMetadata") or {}).get("boundingBox")
     if not isinstance(box, dict):
-        raise ValueError("has no size; give the folder of assets with --assets")
+        raise ValueError("size is unknown; give the asset folder with --assets")
     x, y, z = (number(value, "position") for value in one["position"])
     side, deep, high = (number(box[axis], f"size {axis}") for axis in "xyz")
     turn = one["rotation"]

@@ -1,9 +1,9 @@
-"""Our own reconstructions: what was placed, in the true rooms where they are known.
+"""Importer of reconstructions by this program, with the true rooms if known.
 
-Without a truth the rooms are those that the run itself found, which flatters it; with one, its
-rooms are carried into the run's frame, and only the openings stay those that the run found.
-Furniture of templates is more than boxes, so beside the boxes their solid parts count too: a chair
-under a table does not meet it.
+Without a ground truth, the rooms are those found by the run, which favours it. With a ground truth,
+its rooms are transformed into the frame of the run, and only the openings are those of the run.
+Because furniture templates are not solid boxes, collisions are also counted between their solid
+parts, so that a chair under a table does not collide.
 """
 
 from dataclasses import replace
@@ -28,29 +28,34 @@ METHOD = "World2Minecraft"
 
 
 class Format:
-    """The format of this module."""
+    """The format of finished runs."""
 
     @staticmethod
     def is_mine(path: Path, data: Any) -> bool:
-        """Whether a folder is that of a finished run."""
+        """Return whether a folder is a finished run."""
         return path.is_dir() and (path / "placements.json").is_file()
 
     @staticmethod
     def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
-        """Return its one scene. Raises InputError."""
+        """Read the only scene of a run.
+
+        Raises:
+            InputError: If the folder is not a run, or has no rooms.
+            ValueError: If the run has too many placements.
+        """
         if not path.is_dir():
-            raise InputError(path, "is no folder of a run")
+            raise InputError(path, "not the folder of a run")
         grid, scan_to_room = read_room(path / "room.npz")
         placed = read_placements(path / "placements.json")
         if len(placed) > MAX_OBJECTS:
-            raise ValueError(f"has {len(placed):,} placements; at most {MAX_OBJECTS:,} are read")
+            raise ValueError(f"{len(placed):,} placements exceed the limit of {MAX_OBJECTS:,}")
         rooms = read_rooms(path, grid)
         if how.truth is not None:
             found = tuple(opening for room in rooms for opening in room.openings)
             rooms = true_rooms(path, how.truth, scan_to_room)
             rooms = (replace(rooms[0], openings=found), *rooms[1:]) if rooms else rooms
         if not rooms:
-            raise InputError(path, "tells of no room; run w2m reconstruct again")
+            raise InputError(path, "the run has no rooms; run w2m reconstruct again")
         met = len(collisions(placed, grid=grid))
         return [ComparedScene(path.name, METHOD, rooms, placed, collided=met)]
 
@@ -59,6 +64,10 @@ FORMAT = Format()
 
 
 def true_rooms(run: Path, truth: Path, scan_to_room: Any) -> tuple[Layout, ...]:
-    """Return the rooms of a truth in the frame of a run. Raises InputError."""
+    """Return the rooms of a ground truth in the frame of a run.
+
+    Raises:
+        InputError: If the ground truth cannot be read.
+    """
     known = truth_of_run(run, truth)
     return in_room(known.layouts, scan_to_room @ known.truth_to_scan)

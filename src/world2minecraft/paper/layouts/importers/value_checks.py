@@ -1,4 +1,4 @@
-"""What all formats share: numbers and names of others, looked at before they are used."""
+"""Validation of numbers and names in layout files of other programs."""
 
 import math
 import re
@@ -24,7 +24,14 @@ _UNIT = re.compile(r"\s*(px|m|met(?:er|re)s?|degrees?|deg|°)?\s*;?\s*$")
 
 @dataclass(frozen=True)
 class Box:
-    """An object as a format gives it: centre and own sizes in metres, where its front looks."""
+    """An object as given in a layout file.
+
+    Attributes:
+        name: The name.
+        center_m: The centre in metres.
+        size_m: The size in metres: front to back, side to side, height.
+        yaw_deg: The direction of the front in degrees.
+    """
 
     name: str
     center_m: tuple[float, float, float]
@@ -33,10 +40,10 @@ class Box:
 
 
 def number(value: Any, what: str) -> float:
-    """Return a finite number, also of a text such as ``40px``.
+    """Convert a value to a finite number, also from a string with a unit such as ``40px``.
 
     Raises:
-        ValueError: it is none.
+        ValueError: If the value is not a finite number.
 
     Example:
         >>> number("40px", "width"), number(1, "width")
@@ -45,37 +52,37 @@ def number(value: Any, what: str) -> float:
     if isinstance(value, str):
         value = _UNIT.sub("", value.strip(), count=1)
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise ValueError(f"{what} is {type(value).__name__}, not a number")
+        raise ValueError(f"{what} must be a number, got {type(value).__name__}")
     try:
         found = float(value)
     except (ValueError, OverflowError):
         found = math.nan
     if not math.isfinite(found):
-        raise ValueError(f"{what} is no finite number")
+        raise ValueError(f"{what} must be a finite number")
     return found
 
 
 def why(error: BaseException) -> str:
-    """Return what is wrong with contents, of one of ``READ_ERRORS``.
+    """Return the description of one of ``READ_ERRORS``.
 
     Example:
         >>> why(KeyError("length")), why(ValueError("has no size")), why(IndexError("out of range"))
-        ("has no 'length'", 'has no size', 'is not of the form (out of range)')
+        ("'length' is missing", 'has no size', 'invalid structure (out of range)')
     """
     if isinstance(error, KeyError):
-        return f"has no {error}"
-    return str(error) if isinstance(error, ValueError) else f"is not of the form ({error})"
+        return f"{error} is missing"
+    return str(error) if isinstance(error, ValueError) else f"invalid structure ({error})"
 
 
 def clean_name(value: Any) -> str:
-    """Return a name that can be shown; ``object`` for none."""
+    """Return a printable name, or ``object`` if there is none."""
     text = value if isinstance(value, str) else ""
     shown = "".join(letter for letter in text if letter.isprintable()).strip()
     return shown[:MAX_NAME_CHARACTERS] or "object"
 
 
 def class_of(name: str) -> int:
-    """Return the class of a thing by its name, ``objs`` for one that nobody knows.
+    """Return the class of an object by its name, or ``objs`` if the name is unknown.
 
     Example:
         >>> [class_of(name) for name in ("double_bed", "tv_stand", "Desk_2", "samovar")]
@@ -86,41 +93,49 @@ def class_of(name: str) -> int:
 
 
 def object_of(box: Box) -> LayoutObject:
-    """Return a box as an object.
+    """Convert a box to a layout object.
 
     Raises:
-        ValueError: it is structure, has no size, or lies beyond all rooms.
+        ValueError: If the box is part of the building structure, has no size, or is too far away.
     """
     kind = class_of(box.name)
     if kind in STRUCTURE_CLASSES:
-        raise ValueError("is structure")
+        raise ValueError("part of the building structure")
     if min(box.size_m) <= 0:
-        raise ValueError(f"has a side of {min(box.size_m):g} m")
+        raise ValueError(f"box side of {min(box.size_m):g} m is too short")
     if max(map(abs, (*box.center_m, *box.size_m))) > FARTHEST_M:
-        raise ValueError(f"reaches over {FARTHEST_M:g} m")
+        raise ValueError(f"extends farther than {FARTHEST_M:g} m from the origin")
     return LayoutObject(
         kind, np.array(box.center_m), np.array(box.size_m), box.yaw_deg % 360, box.name
     )
 
 
 def checked_count(items: Any, most: int, what: str) -> list[Any]:
-    """Return a list of at most ``most`` items. Raises ValueError."""
+    """Return a list of at most ``most`` items.
+
+    Raises:
+        ValueError: If the value is not a list, or has too many items.
+    """
     if not isinstance(items, list):
-        raise ValueError(f"{what} must be a list, not {type(items).__name__}")
+        raise ValueError(f"{what} must be a list, got {type(items).__name__}")
     if len(items) > most:
-        raise ValueError(f"has {len(items):,} {what}; at most {most:,} are read")
+        raise ValueError(f"{len(items):,} {what} exceed the limit of {most:,}")
     return items
 
 
 def rectangle(x_m: float, y_m: float, height_m: float, name: str = "") -> Layout:
-    """Return a room from the frame's origin. Raises ValueError where a side is not above 0."""
+    """Return a rectangular room with a corner at the origin.
+
+    Raises:
+        ValueError: If a side is not positive or is too long.
+    """
     if not (0 < x_m <= FARTHEST_M and 0 < y_m <= FARTHEST_M and 0 < height_m <= FARTHEST_M):
-        raise ValueError(f"a room of {x_m:g} x {y_m:g} x {height_m:g} m is none")
+        raise ValueError(f"room size {x_m:g} x {y_m:g} x {height_m:g} m is out of range")
     corners = np.array([[0, 0], [x_m, 0], [x_m, y_m], [0, y_m]], np.float64)
     return Layout(corners, height_m, name=name)
 
 
 def height_over(objects: Iterable[LayoutObject]) -> float:
-    """Return a height for a room that says none: the usual one, or as high as things reach."""
+    """Return a height for a room without one: the default, or the height of its tallest object."""
     tops = [float(item.center_m[2] + item.size_m[2] / 2) for item in objects]
     return round(max([USUAL_HEIGHT_M, *tops]), 4)
