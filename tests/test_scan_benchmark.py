@@ -111,8 +111,8 @@ def test_the_phase_of_the_grid_is_free_a_wrong_frame_is_not(folder, tmp_path):
         ({"grid_to_scan": np.eye(4) * 2}, "[]", "grid_to_scan must be a rotation and a transl"),
         ({"origin_m": np.zeros(2)}, "[]", "origin_m"),
         ({"voxel_m": 0.0}, "[]", "voxel_m"),
-        ({"voxel_m": 0.01}, "[]", "has cells of 0.01 m, finer than the truth's 0.02"),
-        ({}, "{}", "must hold a list of {class, center_m, size_m, yaw_deg}"),
+        ({"voxel_m": 0.01}, "[]", "voxel size of 0.01 m is smaller than the ground truth's 0.02"),
+        ({}, "{}", "must contain a list of {class, center_m, size_m, yaw_deg}"),
         ({}, '[{"class": "chiar"}]', "row 0 is no {class, center_m, size_m, yaw_deg} (no class is"),
     ],
 )

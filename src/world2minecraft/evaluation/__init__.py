@@ -1,1 +1,1 @@
-"""Scores: metrics, reconstructions against their truth, and the fidelity report."""
+"""Evaluation: metrics, scores of reconstructions against ground truth, and reports."""

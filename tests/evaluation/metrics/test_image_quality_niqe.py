@@ -155,7 +155,9 @@ def test_manners_differ_in_what_they_say_they_differ():
 
 
 def test_a_picture_of_less_than_two_patches_is_refused():
-    with pytest.raises(ValueError, match="NIQE needs two patches of 96 pixels a side; the picture"):
+    with pytest.raises(
+        ValueError, match=("NIQE requires at least two patches of 96 x 96 pixels; the image")
+    ):
         niqe(np.zeros((191, 191), np.uint8), niqe_model())
 
 

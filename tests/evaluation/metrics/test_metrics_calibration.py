@@ -60,7 +60,7 @@ def test_sure_and_always_right_is_off_by_what_is_missing_to_one(confidence):
 
 
 def test_what_is_no_confidence_is_refused():
-    with pytest.raises(ValueError, match="confidence must lie between 0 and 1"):
+    with pytest.raises(ValueError, match="confidence must be between 0 and 1"):
         count_calibration(np.array([1.5]), np.array([True]))
     with pytest.raises(ValueError, match=r"confidence \(1,\) and right \(2,\) differ"):
         count_calibration(np.array([0.5]), np.array([True, False]))

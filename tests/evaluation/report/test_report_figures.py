@@ -129,7 +129,9 @@ def test_a_build_whose_parts_do_not_belong_together_is_refused(tmp_path):
         semantic=np.zeros((2, 2, 2), np.uint8),
         instance=np.zeros((2, 2, 2), np.uint16),
     )
-    with pytest.raises(DamagedFileError, match=r"is not of the room\.schem beside it"):
+    with pytest.raises(
+        DamagedFileError, match=(r"does not belong to the " r"room\.schem in the same folder")
+    ):
         read_built(tmp_path / "a")
 
 

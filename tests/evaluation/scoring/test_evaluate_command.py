@@ -59,7 +59,7 @@ def test_the_stages_are_rows_after_the_run_itself(perfect, capture):
     [
         ("nothing", "is not a folder; w2m reconstruct CAPTURE --out OUT makes one"),
         ("empty", "has no scan.json; finish the run: w2m reconstruct CAPTURE --out "),
-        ("no truth", "truth.npz: is not there; a truth lies beside what `w2m rooms scan` writes"),
+        ("no truth", "truth.npz: ground truth not found; w2m rooms scan writes it"),
     ],
 )
 def test_what_is_missing_is_named_with_what_to_do(what, message, perfect, tmp_path, capsys):

@@ -161,5 +161,5 @@ def test_files_that_do_not_belong_together_are_named(perfect, capture, tmp_path)
     write_json(out / "scan.json", stated | {"frames_used": ["f0", "f99"]})
     with pytest.raises(DamagedFileError, match=r"scan\.json: used frame 'f99', which .* another"):
         evaluate_reconstruction(out, capture)
-    with pytest.raises(InputError, match=r"truth\.npz: is not there; a truth lies beside"):
+    with pytest.raises(InputError, match=r"truth\.npz: ground truth not found"):
         evaluate_reconstruction(perfect, tmp_path)

@@ -242,19 +242,25 @@ def tiny_scene(folder, labels=(2, 2, 2), **files):
 @pytest.mark.parametrize(
     ("files", "message"),
     [
-        ({"txt": None}, f"{NAME}.txt: states no axisAlignment; scenes of the train and val splits"),
+        ({"txt": None}, f"{NAME}.txt: axisAlignment not found; scenes of the train and val splits"),
         ({"txt": "axisAlignment = 1 2 3\n"}, "axisAlignment must be 16 numbers"),
         ({"txt": "axisAlignment = -1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"}, "must be 16 numbers"),
         ({"segments": None}, "--type _vh_clean_2.0.010000.segs.json"),
-        ({"segments": "[]"}, "has no list segIndices; copy it again"),
-        ({"segments": '{"segIndices": [1, 2]}'}, "tells 2 vertices, and the mesh has 3"),
-        ({"segments": '{"segIndices": "abc"}'}, "has segments that are no whole numbers"),
-        ({"groups": None}, "is not there; download-scannet.py --type .aggregation.json"),
-        ({"groups": '{"segGroups": 3}'}, "has no list segGroups; copy it again"),
+        ({"segments": "[]"}, "the list segIndices is missing; copy the file again"),
+        (
+            {"segments": '{"segIndices": [1, 2]}'},
+            ("segIndices has 2 entries, but the mesh has 3 vertices"),
+        ),
+        ({"segments": '{"segIndices": "abc"}'}, "segment IDs must be integers"),
+        (
+            {"groups": None},
+            ("not found; download it with download-scannet.py --type .aggregation.json"),
+        ),
+        ({"groups": '{"segGroups": 3}'}, "the list segGroups is missing; copy the file again"),
         ({"groups": '{"segGroups": [{"label": "a"}]}'}, "group 0 has no segments"),
-        ({"groups": '{"segGroups": [{"segments": [7]}]}'}, "group 0 names segments that"),
+        ({"groups": '{"segGroups": [{"segments": [7]}]}'}, "group 0 refers to segments that"),
         ({"labels": (900, 2, 2)}, "put scannetv2-labels.combined.tsv beside the scene"),
-        ({}, f"holds no frames; put {NAME}.sens or exported color/ depth/ pose/ there"),
+        ({}, f"no frames found; add {NAME}.sens, or the exported folders color, depth and pose"),
     ],
 )
 def test_what_is_damaged_or_missing_is_named_in_one_line(tmp_path, capsys, files, message):
@@ -274,7 +280,7 @@ def test_a_mesh_cut_short_and_a_folder_without_scenes_are_named(tmp_path, capsys
     assert "is cut short or wrong" in capsys.readouterr().err
     (tmp_path / "empty").mkdir()
     assert w2m(["evaluate", "scannet", str(tmp_path / "empty")]) == 3
-    assert "is no ScanNet scene, nor a folder of them" in capsys.readouterr().err
+    assert "give a ScanNet scene, or a folder of scenes" in capsys.readouterr().err
 
 
 def test_raw_ids_are_read_through_the_table(tmp_path):
@@ -296,5 +302,5 @@ def test_openings_are_no_objects(tmp_path, name):
 
 def test_a_truth_whose_surface_lacks_a_classed_voxel_is_refused():
     nowhere, labels = np.zeros((2, 2, 2), bool), np.full((2, 2, 2), 3, np.uint8)
-    with pytest.raises(ValueError, match="surface must hold every cell that has a class"):
+    with pytest.raises(ValueError, match="surface must include every cell that has a class"):
         Truth(Path(), labels, 0.02, np.zeros(3), np.eye(4), (), surface=nowhere)

@@ -31,5 +31,5 @@ def test_a_damaged_truth_is_named(tmp_path):
         truth_room_to_scan=np.eye(4),
     )
     (tmp_path / "truth.json").write_text('{"objects": [{"class": "chair"}]}')
-    with pytest.raises(DamagedFileError, match="is no truth"):
+    with pytest.raises(DamagedFileError, match="not a valid ground truth"):
         read_truth(tmp_path)

@@ -1,6 +1,6 @@
-"""Scores: pure functions over grids, objects and boxes; sums add up over scenes.
+"""Metrics as pure functions over grids, objects and boxes, with counts that can be summed.
 
-``occupancy`` scores labelled cells as SSCMetrics does, ``surface`` two sets of cells with a
-tolerance, ``objects`` found objects, ``layout`` physical sense, and ``truth`` carries a fine truth
-into the frame and the cells in which a reconstruction is scored.
+``occupancy`` computes the scores of SSCMetrics for labelled cells, ``surface_scores`` compares two
+sets of cells with a tolerance, ``objects`` scores detected objects, and ``truth_resampling``
+transforms a fine ground truth into the frame and grid of a reconstruction.
 """

@@ -1,8 +1,8 @@
-"""How well a confidence is calibrated: are cells of confidence 0.9 right nine times in ten?
+"""Calibration of confidences: cells of confidence 0.9 should be correct nine times out of ten.
 
-In: the confidence of each cell and whether its label is right. Out: counts in bins of equal width
-that add up over scenes, the reliability table and the expected calibration error (Naeini et al.,
-"Obtaining Well Calibrated Probabilities Using Bayesian Binning", 2015).
+The counts are collected in bins of equal width and can be summed over scenes. They give the
+reliability table and the expected calibration error (Naeini et al., "Obtaining Well Calibrated
+Probabilities Using Bayesian Binning", 2015).
 """
 
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ BINS = 10
 
 @dataclass(frozen=True, eq=False)
 class CalibrationCounts:
-    """Of each bin: its cells, those that are right, and the sum of their confidences."""
+    """The number of cells, of correct cells, and the sum of confidences in each bin."""
 
     cells: np.ndarray = field(default_factory=lambda: np.zeros(BINS, np.int64))
     right: np.ndarray = field(default_factory=lambda: np.zeros(BINS, np.int64))
@@ -32,12 +32,12 @@ class CalibrationCounts:
 
     @property
     def error(self) -> float:
-        """The expected calibration error: the mean gap between sure and right, by cells."""
+        """The expected calibration error: the mean gap between confidence and accuracy."""
         gaps = np.abs(self.confidence_sum - self.right)
         return ratio(float(gaps.sum()), int(self.cells.sum()))
 
     def rows(self) -> list[dict[str, Any]]:
-        """The reliability table: one row for each bin that has cells."""
+        """Return the reliability table, with a row for each non-empty bin."""
         edges = np.linspace(0, 1, len(self.cells) + 1)
         return [
             {
@@ -57,12 +57,13 @@ def count_calibration(
     """Count the cells of one scene.
 
     Args:
-        confidence: float of any shape, 0 to 1; a bin holds its lower edge, the last both.
-        right: bool of the same shape.
-        bins: how many, of equal width.
+        confidence: The confidences as a float array of any shape, 0 to 1. A bin includes its lower
+            edge, and the last bin also its upper edge.
+        right: Whether each label is correct, as a bool array of the same shape.
+        bins: The number of bins of equal width.
 
     Raises:
-        ValueError: the shapes differ, or a confidence lies outside 0 to 1.
+        ValueError: If the shapes differ, or a confidence is outside 0 to 1.
 
     Example:
         >>> counts = count_calibration(np.array([0.9, 0.9]), np.array([True, False]))
@@ -72,9 +73,12 @@ def count_calibration(
     values = np.asarray(confidence, np.float64).reshape(-1)
     hits = np.asarray(right, bool).reshape(-1)
     if np.shape(confidence) != np.shape(right):
-        raise ValueError(f"confidence {np.shape(confidence)} and right {np.shape(right)} differ")
+        raise ValueError(
+            f"confidence and right must have the same shape, got {np.shape(confidence)} and "
+            f"{np.shape(right)}"
+        )
     if values.size and not (values.min() >= 0 and values.max() <= 1):
-        raise ValueError("confidence must lie between 0 and 1")
+        raise ValueError("confidence must be between 0 and 1")
     # A stored float16 of 0.8 is 0.7998; rounding keeps it in the bin that it was meant for.
     at = np.minimum(np.floor(np.round(values, 3) * bins + 1e-9).astype(np.int64), bins - 1)
     return CalibrationCounts(

@@ -1,8 +1,8 @@
-"""How much work a scene was: operations by kind, active time, and the paper's table of both.
+"""The effort of editing a scene: operations by kind, active time, and the paper's table of both.
 
-An event is what ``effort.jsonl`` of a document holds in a line: ``step`` (``open``, ``do``,
-``undo``, ``redo`` or ``active``, a person at work without an edit), ``time_s``; and of steps
-``kind``, ``counts_as``, ``cells``, ``class_id`` and ``actor``.
+An event is a line of a document's ``effort.jsonl``. It has ``step`` (``open``, ``do``, ``undo``,
+``redo``, or ``active`` for work without an edit) and ``time_s``. Edits also have ``kind``,
+``counts_as``, ``cells``, ``class_id`` and ``actor``.
 """
 
 from collections import Counter
@@ -26,11 +26,19 @@ PAPER_REFINED = {
 
 @dataclass(frozen=True)
 class Effort:
-    """What one scene took.
+    """The editing effort of one scene.
 
-    ``operations`` are all that were done, also those taken back later; ``counted`` says what they
-    count as; ``undone`` and ``redone`` are steps back and forth, which are no operations.
-    ``automatic_s`` is None where it is not known. ``by_class`` and ``by_kind`` count operations.
+    Attributes:
+        name: The name of the scene.
+        operations: The number of operations, including those undone later.
+        counted: The number of operations by counted kind.
+        undone: The number of undo steps, which are not operations.
+        redone: The number of redo steps, which are not operations.
+        cells: The number of edited cells.
+        active_s: The time of active work in seconds.
+        automatic_s: The time of the reconstruction in seconds, or None if unknown.
+        by_kind: The number of operations by kind.
+        by_class: The number of operations by semantic class.
     """
 
     name: str
@@ -46,15 +54,16 @@ class Effort:
 
     @property
     def total_s(self) -> float:
-        """The time in all, in seconds."""
+        """The total time in seconds."""
         return self.active_s + (self.automatic_s or 0.0)
 
 
 def active_s(events: Iterable[Mapping[str, Any]], idle_after_s: float = IDLE_AFTER_S) -> float:
-    """Return for how long someone was at work, in seconds.
+    """Return the time of active work in seconds.
 
-    It is the sum of the gaps between events, each at most ``idle_after_s``; from one session
-    (``open``) to the next there is none. A clock that was set back counts as no time.
+    This is the sum of the gaps between events, each at most ``idle_after_s``, without the gaps
+    between
+    sessions (``open``). Negative gaps, after the clock was set back, count as zero.
     """
     total, last = 0.0, None
     for event in events:
@@ -68,12 +77,12 @@ def active_s(events: Iterable[Mapping[str, Any]], idle_after_s: float = IDLE_AFT
 def effort_of(
     name: str, events: Sequence[Mapping[str, Any]], automatic_s: float | None = None
 ) -> Effort:
-    """Return what a scene took, from its events in order.
+    """Compute the effort of a scene from its events.
 
     Args:
-        name: of the scene.
-        events: as ``effort.jsonl`` holds them.
-        automatic_s: how long the reconstruction took before, in seconds.
+        name: The name of the scene.
+        events: The lines of ``effort.jsonl`` in order.
+        automatic_s: The time of the preceding reconstruction in seconds.
     """
     done = [event for event in events if event["step"] == "do"]
     steps = Counter(event["step"] for event in events)
@@ -93,9 +102,9 @@ def effort_of(
 
 
 def mean_row(efforts: Sequence[Effort]) -> dict[str, float | None]:
-    """Return the means over scenes by the names of the paper's rows; None for what no scene has.
+    """Return the means over scenes by the row names of the paper, with None for missing values.
 
-    The automatic time is the mean of the scenes that have one.
+    The automatic time is averaged over the scenes that have one.
     """
     if not efforts:
         return dict.fromkeys((*PAPER_REFINED, "move", "relabel", "other", "undone"))
@@ -113,7 +122,7 @@ def mean_row(efforts: Sequence[Effort]) -> dict[str, float | None]:
 
 
 def improvement(scratch: float | None, ours: float | None) -> float | None:
-    """Return how many times less ours is; None where either is missing or ours is nothing."""
+    """Return the ratio of both values, or None if either is missing or zero."""
     return scratch / ours if scratch and ours else None
 
 

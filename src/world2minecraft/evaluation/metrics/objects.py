@@ -1,7 +1,8 @@
-"""Object scores: which objects were found where they are, as what they are, and turned right.
+"""Object scores: detection by class and position, and orientation.
 
-In: two lists of objects (ObjectInstance, LayoutObject, Placement or anything with a class and a
-centre). Out: counts that add up over scenes, object F1 and the share of right orientations.
+The input is two lists of objects (ObjectInstance, LayoutObject, Placement or any type with a class
+and a centre). The results are counts that can be summed over scenes, the object F1 and the share of
+correct orientations.
 """
 
 from collections.abc import Sequence
@@ -20,22 +21,30 @@ TURNED_CLASSES = (SemanticClass.CHAIR, SemanticClass.SOFA, SemanticClass.BED)
 
 
 class LocatedObject(Protocol):
-    """What an object must say to be scored."""
+    """The interface of objects that can be scored."""
 
     @property
     def class_id(self) -> int:
-        """The class, 5 to 11."""
+        """The semantic class, 5 to 11."""
         ...
 
     @property
     def center_m(self) -> np.ndarray:
-        """The middle of its box, float64 [3]."""
+        """The centre of the bounding box as float64 [3]."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class ObjectCounts:
-    """Objects found, true and matched, int64 [12] each, and the turns of the matched ones."""
+    """Counts of detected, true and matched objects, and of the orientations of matched ones.
+
+    Attributes:
+        found: The number of detected objects by class, as int64 [12].
+        true: The number of true objects by class, as int64 [12].
+        matched: The number of matches by class, as int64 [12].
+        turns_asked: The number of matched objects whose orientation is scored.
+        turns_right: The number of these with the correct orientation.
+    """
 
     found: np.ndarray = field(default_factory=lambda: np.zeros(CLASS_COUNT, np.int64))
     true: np.ndarray = field(default_factory=lambda: np.zeros(CLASS_COUNT, np.int64))
@@ -54,28 +63,28 @@ class ObjectCounts:
 
     @property
     def precision(self) -> float:
-        """The share of found objects that match a true one."""
+        """The share of detected objects that match a true one."""
         return ratio(int(self.matched.sum()), int(self.found.sum()))
 
     @property
     def recall(self) -> float:
-        """The share of true objects that were found."""
+        """The share of true objects that are detected."""
         return ratio(int(self.matched.sum()), int(self.true.sum()))
 
     @property
     def f1(self) -> float:
-        """Object F1 over all classes together; 0 where there is nothing to find or found."""
+        """The F1 score over all classes, or 0 if there are no objects."""
         return ratio(2 * int(self.matched.sum()), int(self.found.sum() + self.true.sum()))
 
     @property
     def class_f1(self) -> np.ndarray:
-        """F1 of each class, float64 [12]; 0 where the class is in neither list."""
+        """The F1 score of each class as float64 [12], with 0 for absent classes."""
         both = self.found + self.true
         return np.divide(2 * self.matched, both, out=np.zeros(CLASS_COUNT), where=both > 0)
 
     @property
     def orientation_right(self) -> float:
-        """Of the matched chairs, sofas and beds, the share turned right; 0 where there are none."""
+        """The share of correct orientations among matched chairs, sofas and beds, or 0."""
         return ratio(self.turns_right, self.turns_asked)
 
 
@@ -85,17 +94,16 @@ def count_objects(
     *,
     distance_m: float = MATCH_DISTANCE_M,
 ) -> ObjectCounts:
-    """Match the objects of one scene and count.
+    """Match the objects of one scene, and count them.
 
-    Each found object matches at most one true object of its class whose centre lies within
-    ``distance_m``; among all such pairings that with the most matches counts, then that with
-    the least summed distance.
+    Each detected object matches at most one true object of its class within ``distance_m``. The
+    matching
+    maximises the number of matches, then minimises the sum of distances.
 
     Args:
-        found: the objects of the reconstruction. Orientation is read from ``yaw_deg``, or from
-            ``quarter_turns`` where an object has no yaw.
-        true: the objects of the truth, in the same frame.
-        distance_m: how far two centres may lie apart.
+        found: The objects of the reconstruction, with ``yaw_deg`` or ``quarter_turns``.
+        true: The true objects in the same frame.
+        distance_m: The maximum distance of two centres in metres.
     """
     matches = match_objects(found, true, distance_m=distance_m)
     counts = np.zeros((3, CLASS_COUNT), np.int64)
@@ -120,7 +128,7 @@ def match_objects(
     *,
     distance_m: float = MATCH_DISTANCE_M,
 ) -> list[tuple[int, int]]:
-    """Return the pairs (index in ``found``, index in ``true``) that match, sorted."""
+    """Return the matching pairs (index in ``found``, index in ``true``), sorted."""
     if not found or not true:
         return []
     places = np.array([item.center_m for item in found], np.float64)
@@ -137,7 +145,7 @@ def match_objects(
 
 
 def turn_between_deg(yaw_deg: float, other_deg: float) -> float:
-    """Return the angle between two yaws, 0 to 180.
+    """Return the angle between two yaws in degrees, 0 to 180.
 
     Example:
         >>> turn_between_deg(350, 10)

@@ -1,9 +1,9 @@
-"""Semantic occupancy scores: one 12 x 12 table of counts, and all that is read from it.
+"""Semantic occupancy scores from a 12 x 12 confusion matrix.
 
-In: two label grids of the same shape, ids 0 to 11 and 255. Out: the figures of SSCMetrics, which
-MonoScene and all after it use, and which reproduce the paper's tables. Cells whose truth is 255
-are left out, and nothing else is. Counts are summed over a data set before any ratio is taken
-(micro averaging): add the ``OccupancyCounts`` of its scenes.
+The input is two label grids of the same shape, with class IDs 0 to 11 and 255. The scores are those
+of SSCMetrics, which MonoScene and its successors use, and reproduce the paper's tables. Only cells
+with the true label 255 are excluded. Counts are summed over a data set before ratios are computed
+(micro-averaging), by adding the ``OccupancyCounts`` of its scenes.
 """
 
 from dataclasses import dataclass, field
@@ -18,14 +18,16 @@ TABLE_SHAPE = (CLASS_COUNT, CLASS_COUNT)
 
 @dataclass(frozen=True, eq=False)
 class OccupancyCounts:
-    """How often each true class was called each class: ``table[truth, predicted]``, int64."""
+    """A confusion matrix of cells, ``table[truth, predicted]``, as int64 [12, 12]."""
 
     table: np.ndarray = field(default_factory=lambda: np.zeros(TABLE_SHAPE, np.int64))
 
     def __post_init__(self):
         table = np.asarray(self.table)
         if table.shape != (CLASS_COUNT, CLASS_COUNT) or table.min() < 0:
-            raise ValueError(f"table must be {CLASS_COUNT} x {CLASS_COUNT} counts, not {table!r}")
+            raise ValueError(
+                f"table must contain {CLASS_COUNT} x {CLASS_COUNT} counts, got {table!r}"
+            )
         object.__setattr__(self, "table", table.astype(np.int64))
 
     def __add__(self, other: "OccupancyCounts") -> "OccupancyCounts":
@@ -33,70 +35,70 @@ class OccupancyCounts:
 
     @property
     def cells(self) -> int:
-        """The number of cells that were scored."""
+        """The number of scored cells."""
         return int(self.table.sum())
 
     @property
     def true_positives(self) -> int:
-        """Cells occupied in both, whatever their classes."""
+        """The number of cells that are occupied in both grids, regardless of class."""
         return int(self.table[1:, 1:].sum())
 
     @property
     def false_positives(self) -> int:
-        """Cells called occupied that are empty."""
+        """The number of empty cells that are predicted as occupied."""
         return int(self.table[0, 1:].sum())
 
     @property
     def false_negatives(self) -> int:
-        """Occupied cells that were called empty."""
+        """The number of occupied cells that are predicted as empty."""
         return int(self.table[1:, 0].sum())
 
     @property
     def iou(self) -> float:
-        """Geometric IoU of occupied cells, 0 where there are none."""
+        """The geometric IoU of occupied cells, or 0 without any."""
         false = self.false_positives + self.false_negatives
         return ratio(self.true_positives, self.true_positives + false)
 
     @property
     def precision(self) -> float:
-        """The share of cells called occupied that are."""
+        """The share of cells predicted as occupied that are occupied."""
         return ratio(self.true_positives, self.true_positives + self.false_positives)
 
     @property
     def recall(self) -> float:
-        """The share of occupied cells that were called so."""
+        """The share of occupied cells that are predicted as occupied."""
         return ratio(self.true_positives, self.true_positives + self.false_negatives)
 
     @property
     def class_iou(self) -> np.ndarray:
-        """IoU of each class, float64 [12], empty first; a class in neither grid counts 0."""
+        """The IoU of each class as float64 [12], with empty first and 0 for absent classes."""
         same = np.diag(self.table).astype(np.float64)
         either = self.table.sum(axis=0) + self.table.sum(axis=1) - same
         return np.divide(same, either, out=np.zeros(CLASS_COUNT), where=either > 0)
 
     @property
     def present(self) -> np.ndarray:
-        """Which classes the truth holds, bool [12]."""
+        """Whether each class occurs in the ground truth, as bool [12]."""
         return self.table.sum(axis=1) > 0
 
     @property
     def miou(self) -> float:
-        """The paper's mIoU: the mean over the 11 classes, absent ones counted as 0."""
+        """The paper's mIoU: the mean over the 11 classes, where absent classes count as 0."""
         return float(self.class_iou[1:].mean())
 
     @property
     def miou_present(self) -> float:
-        """The mean over those of the 11 classes that the truth holds, 0 where it holds none."""
+        """The mean IoU over the classes, except empty, that occur in the ground truth, or 0."""
         present = self.present[1:]
         return float(self.class_iou[1:][present].mean()) if present.any() else 0.0
 
     @property
     def label_accuracy(self) -> float:
-        """Of the cells occupied in both, the share that has the right class."""
+        """The share of correct classes among the cells occupied in both grids."""
         return ratio(int(np.diag(self.table)[1:].sum()), self.true_positives)
 
     def figures(self) -> dict[str, float | int | dict[str, float]]:
-        """All figures by name, fractions from 0 to 1, as reports write them."""
+        """Return all scores by name for reports, as fractions from 0 to 1."""
         return {
             "cells": self.cells,
             "iou": self.iou,
@@ -116,18 +118,17 @@ def count_occupancy(
     *,
     unknown_as: Literal["empty", "occupied"] = "empty",
 ) -> OccupancyCounts:
-    """Count one scene.
+    """Count the cells of one scene.
 
     Args:
-        predicted: uint8, any shape, ids 0 to 11 or 255.
-        truth: uint8 of the same shape; cells of 255 are left out.
-        mask: bool of the same shape: the cells to score, all by default.
-        unknown_as: what a predicted 255 counts as. The paper's networks say a class for every
-            cell; the maths of SSCMetrics, given 255, takes it for ``occupied`` and of no class
-            (counted here as objs).
+        predicted: The predicted labels as uint8 of any shape, 0 to 11 or 255.
+        truth: The true labels as uint8 of the same shape. Cells with 255 are excluded.
+        mask: The cells to score as bool of the same shape. None scores all.
+        unknown_as: How a predicted 255 counts. The paper's networks predict a class for every cell.
+            SSCMetrics would treat 255 as ``occupied`` without a class, which counts as objs here.
 
     Raises:
-        ValueError: the shapes differ, or a grid holds another id.
+        ValueError: If the shapes differ, or a grid contains another ID.
 
     Example:
         >>> truth = np.array([0, 2, 2, 255], np.uint8)
@@ -138,14 +139,14 @@ def count_occupancy(
     for name, labels in (("predicted", predicted), ("truth", truth)):
         if labels.shape != truth.shape or labels.dtype != np.uint8:
             raise ValueError(
-                f"{name} must be uint8 of shape {truth.shape}, not {labels.dtype} {labels.shape}"
+                f"{name} must be uint8 with shape {truth.shape}, got {labels.dtype} {labels.shape}"
             )
         if np.any((labels >= CLASS_COUNT) & (labels != UNKNOWN)):
-            raise ValueError(f"{name} must hold class ids 0 to 11 or 255")
+            raise ValueError(f"{name} must contain only class IDs 0 to 11 or 255")
     scored = truth != UNKNOWN
     if mask is not None:
         if mask.shape != truth.shape:
-            raise ValueError(f"mask must have shape {truth.shape}, not {mask.shape}")
+            raise ValueError(f"mask must have shape {truth.shape}, got {mask.shape}")
         scored &= mask.astype(bool)
     predictions = predicted[scored].astype(np.int64)
     predictions[predictions == UNKNOWN] = 0 if unknown_as == "empty" else CLASS_COUNT - 1
@@ -155,7 +156,7 @@ def count_occupancy(
 
 
 def iou_of_precision_recall(precision: float, recall: float) -> float:
-    """Return the IoU that a precision and a recall over the same cells stand for.
+    """Return the IoU that corresponds to a precision and a recall over the same cells.
 
     Example:
         >>> round(100 * iou_of_precision_recall(0.4854, 0.7146), 2)
@@ -167,5 +168,5 @@ def iou_of_precision_recall(precision: float, recall: float) -> float:
 
 
 def ratio(part: float, whole: float) -> float:
-    """Return ``part / whole``, or 0 where the whole is 0."""
+    """Return ``part / whole``, or 0 if the whole is 0."""
     return part / whole if whole else 0.0

@@ -1,12 +1,13 @@
-"""Which cells a published occupancy score counts, and what it makes of unknown ones.
+"""Protocols of published occupancy scores: which cells they count, and how they treat unknown ones.
 
-In: the prediction of a frame and what is known of its cells. Out: ``ProtocolCounts``, which add up
-over frames. Two scores of one network may differ by ten points through the protocol alone, so a
-score is named by it. ``PROTOCOLS`` holds them; what each counts is said in its ``cells`` and
-``unknown``. ``evaluation.metrics.score_aggregation`` makes tables of many frames.
+The scores of one network can differ by ten points between protocols, so each score states its
+protocol. ``PROTOCOLS`` contains them, and ``cells`` and ``unknown`` describe what they count. The
+``ProtocolCounts`` of frames can be summed, and ``evaluation.metrics.score_aggregation`` creates
+tables from many frames.
 
-``ssc`` is the one whose two figures count different cells. SSCNet's paper scores completion (IoU,
-precision, recall) where the camera's surface hides the cell, and classes there and on the surface.
+Only ``ssc`` counts different cells for its two kinds of scores. As in SSCNet's paper, completion
+(IoU, precision, recall) is scored on cells hidden behind the visible surface, and classes are
+scored on these cells and on the surface.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,7 +23,14 @@ from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_
 
 @dataclass(frozen=True, eq=False)
 class KnownCells:
-    """What is true of a frame's cells, all [X, Y, Z]; masks that nobody knows are None."""
+    """The ground truth of a frame's cells, each array [X, Y, Z]. Unknown masks are None.
+
+    Attributes:
+        labels: The labels as uint8, 0 to 11 or 255.
+        in_frustum: Whether the centre of the cell is within the image, as bool.
+        seen: Whether the cell is the first one that some pixel sees, as bool.
+        free: Whether the cell is empty and crossed by some pixel's ray, as bool.
+    """
 
     labels: np.ndarray  # uint8, 0 to 11 or 255
     in_frustum: np.ndarray | None = None  # bool, the centre falls into the picture
@@ -34,13 +42,18 @@ class KnownCells:
             mask = getattr(self, name)
             if mask is not None and (mask.shape != self.labels.shape or mask.dtype != np.bool_):
                 raise ValueError(
-                    f"{name} must be bool of shape {self.labels.shape}, "
-                    f"not {mask.dtype} {mask.shape}"
+                    f"{name} must be bool with shape {self.labels.shape}, got {mask.dtype} "
+                    f"{mask.shape}"
                 )
 
 
 class CellMasks(NamedTuple):
-    """The cells over which a frame is scored; None stands for all of them."""
+    """The cells on which a frame is scored. None stands for all cells.
+
+    Attributes:
+        geometry: The cells for IoU, precision and recall.
+        classes: The cells for class IoU and mIoU.
+    """
 
     geometry: np.ndarray | None  # for IoU, precision and recall
     classes: np.ndarray | None  # for the IoU of each class and its mean
@@ -48,7 +61,17 @@ class CellMasks(NamedTuple):
 
 @dataclass(frozen=True)
 class Protocol:
-    """One way to count."""
+    """A protocol for counting cells.
+
+    Attributes:
+        name: The name.
+        cells: A description of the counted cells.
+        unknown: A description of the treatment of label 255.
+        masks: A function from the known cells of a frame to the scored cells.
+        needs: The masks of ``KnownCells`` that the protocol requires.
+        true_unknown: How a true 255 counts.
+        said_unknown: How a predicted 255 counts.
+    """
 
     name: str
     cells: str  # Which cells are counted, in words.
@@ -61,9 +84,11 @@ class Protocol:
 
 @dataclass(frozen=True, eq=False)
 class ProtocolCounts:
-    """The counts of some frames. ``geometry`` gives IoU, precision, recall; ``classes`` the rest.
+    """The counts of one or several frames.
 
-    They are of the same cells but for ``ssc``. The IoU of class empty is that of ``geometry``.
+    Attributes:
+        geometry: The counts for IoU, precision, recall and the IoU of the class empty.
+        classes: The counts for all other scores. They differ from ``geometry`` only for ``ssc``.
     """
 
     geometry: OccupancyCounts = field(default_factory=OccupancyCounts)
@@ -74,14 +99,18 @@ class ProtocolCounts:
 
     @property
     def class_iou(self) -> np.ndarray:
-        """IoU of each class, float64 [12], empty first; a class that is nowhere counts 0."""
+        """The IoU of each class as float64 [12], with empty first and 0 for absent classes."""
         values = self.classes.class_iou
         values[0] = self.geometry.class_iou[0]
         return values
 
 
 def protocol_named(name: str) -> Protocol:
-    """Return a protocol. Raises UnknownNameError where there is none of the name."""
+    """Return a protocol by its name.
+
+    Raises:
+        UnknownNameError: If the protocol is unknown.
+    """
     if name not in PROTOCOLS:
         raise UnknownNameError("protocol", name, PROTOCOLS)
     return PROTOCOLS[name]
@@ -90,16 +119,16 @@ def protocol_named(name: str) -> Protocol:
 def count_frame(
     protocol: Protocol, predicted: np.ndarray, known: KnownCells, within: np.ndarray | None = None
 ) -> ProtocolCounts:
-    """Count one frame.
+    """Count the cells of one frame.
 
     Args:
-        protocol: see ``PROTOCOLS``.
-        predicted: uint8 [X, Y, Z], 0 to 11 or 255.
-        known: the truth of the same cells.
-        within: bool [X, Y, Z], cells outside of which nothing is counted.
+        protocol: One of ``PROTOCOLS``.
+        predicted: The predicted labels as uint8 [X, Y, Z], 0 to 11 or 255.
+        known: The ground truth of the same cells.
+        within: The cells to which counting is limited, as bool [X, Y, Z].
 
     Raises:
-        UsageError: the protocol needs a mask that is not known.
+        UsageError: If the protocol requires a mask that is unknown.
 
     Example:
         >>> known = KnownCells(np.array([[[0, 2, 255]]], np.uint8))
@@ -111,8 +140,9 @@ def count_frame(
     missing = [name for name in protocol.needs if getattr(known, name) is None]
     if missing:
         raise UsageError(
-            f"protocol {protocol.name} needs {', '.join(missing)} of each frame, which follow "
-            f"from depth; score a set with depth, or choose monoscene or iso"
+            f"protocol {protocol.name} requires {', '.join(missing)} for each frame, which "
+            "are computed from depth; score a set with depth, or choose the protocol "
+            "monoscene or iso"
         )
     truth = known.labels
     if protocol.true_unknown == "empty":
@@ -129,12 +159,12 @@ def count_frame(
 def count_scene(
     predicted: np.ndarray, truth: np.ndarray, seen_by_frames: Sequence[np.ndarray]
 ) -> ProtocolCounts:
-    """Count a whole scene as EmbodiedOcc does: where any of its frames looked.
+    """Count the cells of a scene as EmbodiedOcc does, limited to those that any frame observed.
 
     Args:
-        predicted: uint8 [X, Y, Z] of the scene, 0 to 11 or 255.
-        truth: uint8 of the same cells; 255 is left out.
-        seen_by_frames: bool [X, Y, Z] each, the cells that a frame's box and picture hold.
+        predicted: The predicted labels of the scene as uint8 [X, Y, Z], 0 to 11 or 255.
+        truth: The true labels as uint8 [X, Y, Z]. Cells with 255 are excluded.
+        seen_by_frames: The cells within each frame's box and image, each as bool [X, Y, Z].
     """
     union = np.zeros(truth.shape, bool)
     for mask in seen_by_frames:
@@ -153,7 +183,7 @@ def _all_cells(known: KnownCells) -> CellMasks:
 
 
 def _hidden_and_surface(known: KnownCells) -> CellMasks:
-    """Occluded cells; these and the surface. Both are in the picture, as rays see no others."""
+    """Return the occluded cells for geometry, and these with the surface for classes."""
     inside, seen, free = (_of(known, name) for name in ("in_frustum", "seen", "free"))
     hidden = inside & ~seen & ~free
     return CellMasks(hidden, hidden | (inside & seen))
@@ -175,36 +205,36 @@ PROTOCOLS: dict[str, Protocol] = {
     for one in (
         Protocol(
             "monoscene",
-            "all cells of the box, in the picture or not",
-            "a true 255 is left out; a predicted 255 is empty",
+            "all cells of the box, whether in the image or not",
+            "a true 255 is excluded; a predicted 255 counts as empty",
             _all_cells,
         ),
         Protocol(
             "iso",
-            "all cells of the box, in the picture or not",
-            "a true 255 is empty; a predicted 255 is empty",
+            "all cells of the box, whether in the image or not",
+            "a true 255 counts as empty; a predicted 255 counts as empty",
             _all_cells,
             true_unknown="empty",
         ),
         Protocol(
             "embodied",
-            "of a frame all cells of the box; of a scene those that any frame has in view",
-            "a true 255 is left out; a predicted 255 is occupied, and of no class",
+            "all cells of the box for a frame; for a scene those that any frame has in view",
+            "a true 255 is excluded; a predicted 255 counts as occupied without a class",
             _all_cells,
             said_unknown="occupied",
         ),
         Protocol(
             "ssc",
-            "in the picture; IoU where the surface hides the cell, classes there and on it",
-            "a true 255, which is what lies outside the room, is left out; a predicted 255 is "
-            "empty",
+            "cells in the image; IoU on cells hidden by the surface, classes on these and "
+            "the surface",
+            "a true 255, which is outside the room, is excluded; a predicted 255 counts as empty",
             _hidden_and_surface,
             _OF_DEPTH,
         ),
         Protocol(
             "visible",
-            "that some pixel sees first, or whose ray went through them",
-            "a true 255 is left out; a predicted 255 is empty",
+            "cells that some pixel sees first, or that its ray crosses",
+            "a true 255 is excluded; a predicted 255 counts as empty",
             _looked_at,
             ("seen", "free"),
         ),

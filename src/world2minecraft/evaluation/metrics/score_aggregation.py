@@ -1,11 +1,12 @@
-"""The scores of many frames: summed, averaged, and how sure they are.
+"""Aggregation of the scores of many frames, with confidence intervals.
 
-- **micro**: counts of all frames are added, then ratios are taken; what papers print.
-- **macro**: each figure is taken of each frame, then their mean. A class counts in the frames whose
-  truth holds it, as the line of DDRNet averages; classes that no frame holds count 0. A frame in
-  which nothing is occupied and nothing said to be has no IoU and is left out of the mean.
-- **interval**: of the micro figures, by a bootstrap over scenes: frames of one scene are alike, so
-  scenes are drawn, not frames. The middle 95 % of the draws; none for a single scene.
+- **micro**: Ratios of the counts summed over all frames, as reported in papers.
+- **macro**: Means of the scores of each frame. As in DDRNet's line of work, a class only counts in
+  frames whose ground truth contains it, and classes that no frame contains count as 0. Frames
+  without any true or predicted occupied cell have no IoU and are excluded.
+- **interval**: Intervals of the micro scores from a bootstrap over scenes, because frames of one
+  scene are similar. An interval contains the middle 95 % of the samples. There is none for a single
+  scene.
 """
 
 from collections.abc import Callable, Sequence
@@ -25,23 +26,24 @@ FIGURES = ("iou", "precision", "recall", "miou")
 
 @dataclass(frozen=True, eq=False)
 class FrameScore:
-    """The counts of one frame, and the scene that it is of."""
+    """The counts of one frame, with the ID of its scene."""
 
     scene_id: str
     counts: ProtocolCounts
 
 
 def summarise(frames: Sequence[FrameScore], *, draws: int = DRAWS, seed: int = 0) -> dict[str, Any]:
-    """Return micro, macro and interval figures, fractions from 0 to 1.
+    """Return micro and macro scores and intervals, as fractions from 0 to 1.
 
     Args:
-        frames: of one protocol.
-        draws: how many times scenes are drawn.
-        seed: the same seed, the same interval.
+        frames: The counts of frames for one protocol.
+        draws: The number of bootstrap samples.
+        seed: The random seed of the bootstrap.
 
     Returns:
-        ``frames``, ``scenes``, ``cells``; ``micro`` and ``macro`` with iou, precision, recall,
-        miou, miou_present_classes and class_iou; ``interval`` with [low, high] of each figure and
+        ``frames``, ``scenes`` and ``cells``; ``micro`` and ``macro`` with iou, precision, recall,
+        miou, miou_present_classes and class_iou; and ``interval`` with [low, high] for each score
+        and
         class, or None.
     """
     tables = scene_tables(frames)
@@ -57,7 +59,7 @@ def summarise(frames: Sequence[FrameScore], *, draws: int = DRAWS, seed: int = 0
 
 
 def micro_figures(counts: ProtocolCounts) -> dict[str, Any]:
-    """Return the figures of summed counts, as papers print them."""
+    """Return the scores of summed counts, as reported in papers."""
     geometry, classes = counts.geometry, counts.classes
     return {
         "iou": geometry.iou,
@@ -70,7 +72,7 @@ def micro_figures(counts: ProtocolCounts) -> dict[str, Any]:
 
 
 def macro_figures(frames: Sequence[FrameScore]) -> dict[str, Any]:
-    """Return the means over frames."""
+    """Return the mean scores over frames."""
     geometry = [frame.counts.geometry for frame in frames]
     classes = [frame.counts.classes for frame in frames]
     occupied = [one for one in geometry if one.table.sum() > one.table[0, 0]]
@@ -90,7 +92,7 @@ def macro_figures(frames: Sequence[FrameScore]) -> dict[str, Any]:
 
 
 def scene_tables(frames: Sequence[FrameScore]) -> list[ProtocolCounts]:
-    """Return the summed counts of each scene, in the order of their names."""
+    """Return the summed counts of each scene, sorted by scene ID."""
     scenes: dict[str, ProtocolCounts] = {}
     for frame in frames:
         scenes[frame.scene_id] = scenes.get(frame.scene_id, ProtocolCounts()) + frame.counts
@@ -100,7 +102,7 @@ def scene_tables(frames: Sequence[FrameScore]) -> list[ProtocolCounts]:
 def bootstrap(
     scenes: Sequence[ProtocolCounts], *, draws: int = DRAWS, seed: int = 0
 ) -> dict[str, Any]:
-    """Return [low, high] of each micro figure over redrawn scenes.
+    """Return the bootstrap interval [low, high] of each micro score over scenes.
 
     Example:
         >>> table = np.zeros((12, 12), np.int64)

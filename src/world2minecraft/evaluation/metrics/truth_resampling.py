@@ -1,9 +1,9 @@
-"""A fine truth carried into the frame and the cells in which a reconstruction is scored.
+"""Resampling of a fine ground truth to the frame and grid of a reconstruction.
 
-In: a label grid of small cells (2 cm) with its own frame. Out: a label grid of the estimated
-room's cells. The estimated frame differs from the true one by a small turn and shift, so each
-coarse cell is sampled at the centres of as many sub-cells as fine cells fit in it; then the rule by
-which SSCNet made its labels decides, as in the paper's data.
+The input is a label grid of small cells (2 cm) in its own frame, and the result is a label grid in
+the frame of the estimated room, which differs by a small rotation and translation. Each coarse cell
+is sampled at the centres of as many sub-cells as fine cells fit into it. SSCNet's labelling rule is
+then applied, as in the paper's data.
 """
 
 import numpy as np
@@ -27,30 +27,33 @@ def carry_truth(
     grid_origin_m: np.ndarray,
     grid_voxel_m: float,
 ) -> np.ndarray:
-    """Return the truth in the cells of a reconstruction.
+    """Resample the ground truth to the cells of a reconstruction.
 
-    SSCNet's rule: a cell of 4 x 4 x 4 fine ones is occupied where at least 4 of the 64 are; it
-    takes the class with most of them (the lowest id of a tie). Else it is empty where empty
-    outnumber unknown ones, and 255 where not. Beyond the truth's grid all is unknown.
+    By SSCNet's rule, a cell of 4 x 4 x 4 fine cells is occupied if at least 4 of the 64 are, and
+    takes
+    their most frequent class (the lowest ID in a tie). Otherwise it is empty if there are more
+    empty
+    than unknown fine cells, and 255 if not. Everything outside the ground truth's grid is unknown.
 
     Args:
-        labels_fine: uint8 [A, B, C], ids 0 to 11 or 255.
-        voxel_m: its cell.
-        origin_m: float [3], its minimum corner in the truth's frame.
-        truth_to_room: 4x4 rigid transform from the truth's frame to the room's.
-        grid_shape: cells of the result along x, y and z.
-        grid_origin_m: float [3], its minimum corner in the room frame.
-        grid_voxel_m: its cell, at least ``voxel_m``.
+        labels_fine: The fine labels as uint8 [A, B, C], 0 to 11 or 255.
+        voxel_m: The size of a fine cell in metres.
+        origin_m: The minimum corner of the fine grid in its frame, as float [3].
+        truth_to_room: The 4x4 rigid transform from the frame of the ground truth to that of the
+            room.
+        grid_shape: The number of cells of the result along x, y and z.
+        grid_origin_m: The minimum corner of the result in the room frame, as float [3].
+        grid_voxel_m: The size of a cell of the result in metres, at least ``voxel_m``.
 
     Returns:
-        uint8 ``grid_shape``, ids 0 to 11 or 255.
+        The labels as uint8 of shape ``grid_shape``, 0 to 11 or 255.
 
     Raises:
-        ValueError: a shape or an id is wrong, or the grid's cell is smaller than the truth's.
+        ValueError: If a shape or a label is invalid, or the cells of the result are too small.
     """
     fine = check_labels("labels_fine", labels_fine, (None, None, None))
     if not 0 < voxel_m <= grid_voxel_m * (1 + 1e-9):
-        raise ValueError(f"voxel_m must be above 0 and at most {grid_voxel_m}, not {voxel_m}")
+        raise ValueError(f"voxel_m must be above 0 and at most {grid_voxel_m}, got {voxel_m}")
     # The centre of sub-cell (i, j, k) of the grid, in fine cells: one affine map for all.
     per_side = max(round(grid_voxel_m / voxel_m), 1)
     room_to_truth = invert_rigid(transform("truth_to_room", truth_to_room))
@@ -63,18 +66,19 @@ def carry_truth(
 
 
 def scored_cells(truth: np.ndarray, source: np.ndarray) -> np.ndarray:
-    """Return the cells on which a reconstruction is scored: reached by it and known to the truth.
+    """Return the cells to score, which the reconstruction reached and the ground truth knows.
 
     Args:
-        truth: uint8 [X, Y, Z] from ``carry_truth``.
-        source: uint8 [X, Y, Z] of the OccupancyGrid; completed cells count as reached.
+        truth: The result of ``carry_truth`` as uint8 [X, Y, Z].
+        source: The ``source`` of the OccupancyGrid as uint8 [X, Y, Z]. Completed cells count as
+            reached.
     """
     return (source != UNSEEN) & (truth != UNKNOWN)
 
 
 @njit
 def _resample(fine, sub_cell_to_fine, grid_shape, per_side):
-    """Sample ``fine`` at every sub-cell and apply SSCNet's rule; see ``carry_truth``."""
+    """Sample ``fine`` at every sub-cell, and apply SSCNet's rule as ``carry_truth`` describes."""
     result = np.empty((grid_shape[0], grid_shape[1], grid_shape[2]), np.uint8)
     counts = np.zeros(CLASS_COUNT + 1, np.int64)
     whole = per_side**3
@@ -101,7 +105,7 @@ def _resample(fine, sub_cell_to_fine, grid_shape, per_side):
 
 @njit
 def _decide(counts, whole):
-    """Return a coarse cell's label from the counts of its fine ones, unknown counted last."""
+    """Return the label of a coarse cell from the counts of its fine labels, unknown last."""
     empty, unknown = counts[0], counts[CLASS_COUNT]
     if empty + unknown > EMPTY_SHARE * whole:
         return np.uint8(0) if empty > unknown else np.uint8(UNKNOWN)

@@ -1,7 +1,7 @@
-"""The fidelity report of one scene: ``report.html`` (self-contained), ``report.json``, a picture.
+"""The fidelity report of a scene: a self-contained ``report.html``, ``report.json`` and an image.
 
-It tells a person at a glance whether the room came out right, and a program in figures. A run
-without photos has a brief one.
+The page shows whether a reconstruction is correct, and the JSON file contains the scores. Runs
+without photos have a brief report.
 """
 
 from world2minecraft.evaluation.report.writer import write_brief_report, write_report

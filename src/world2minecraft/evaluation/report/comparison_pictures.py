@@ -1,4 +1,4 @@
-"""The pictures of the report: photos beside the built world from the same place."""
+"""The images of the report: photos beside the built world from the same pose."""
 
 import base64
 import io
@@ -20,7 +20,15 @@ AGREES_M = 0.25  # One block at the default scale.
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """A view's photo, the world from its pose, and how far their depths lie apart."""
+    """The photo of a view, the world rendered from its pose, and their depth difference.
+
+    Attributes:
+        name: The name of the view.
+        photo: The photo as uint8 [H, W, 3], or None.
+        built: The rendered world as uint8 [H, W, 3].
+        depth_error_m: The median absolute depth difference in metres, or None without depth.
+        depth_agrees: The share of pixels whose depths differ by at most ``AGREES_M``, or None.
+    """
 
     name: str
     photo: np.ndarray | None  # uint8 [H, W, 3]
@@ -30,7 +38,7 @@ class Pair:
 
 
 def make_pairs(scan: Scan, volume: BlockVolume) -> list[Pair]:
-    """Return six pairs, spread evenly over the frames used."""
+    """Return up to six pairs, spread evenly over the frames used."""
     used = [name for name in scan.frames_used]
     count = min(PAIRS, len(used))
     chosen = {used[int((n + 0.5) * len(used) / count)] for n in range(count)}
@@ -41,7 +49,7 @@ def make_pairs(scan: Scan, volume: BlockVolume) -> list[Pair]:
 def _pair(view: View, scan: Scan, scene) -> Pair:
     camera = view.colour_camera or view.depth_camera
     if camera is None:
-        raise ValueError(f"view {view.name} has neither colour nor depth")
+        raise ValueError(f"view {view.name} has neither a colour nor a depth image")
     small = camera.resized(WIDTH_PX, round(WIDTH_PX * camera.height_px / camera.width_px))
     camera_to_room = scan.scan_to_room @ view.camera_to_scan
     picture = render_volume(scene, small, camera_to_room, light=NEUTRAL, samples=SAMPLES)
@@ -51,12 +59,12 @@ def _pair(view: View, scan: Scan, scene) -> Pair:
         size = (small.width_px, small.height_px)
         photo = np.asarray(Image.fromarray(view.colour).resize(size, Image.Resampling.LANCZOS))
     if picture.colour is None:
-        raise RuntimeError("the renderer gave no colour")
+        raise RuntimeError("the renderer returned no colour image")
     return Pair(view.name, photo, picture.colour, error_m, agrees)
 
 
 def _depth_apart(view: View, scan: Scan, scene) -> tuple[float | None, float | None]:
-    """Return the median difference of depths and the share that agrees, on a coarse raster."""
+    """Return the median depth difference and the share of agreeing pixels, on a coarse raster."""
     if view.depth_m is None or view.depth_camera is None:
         return None, None
     step = max(view.depth_camera.width_px // 160, 1)
@@ -81,7 +89,7 @@ def _depth_apart(view: View, scan: Scan, scene) -> tuple[float | None, float | N
 
 
 def as_data_uri(image: np.ndarray, *, lossless: bool = False) -> str:
-    """Return an image uint8 [H, W, 3] as a ``data:`` URI, JPEG or PNG."""
+    """Encode an image, uint8 [H, W, 3], as a ``data:`` URI in JPEG or PNG format."""
     buffer = io.BytesIO()
     picture = Image.fromarray(image)
     if lossless:
@@ -93,7 +101,7 @@ def as_data_uri(image: np.ndarray, *, lossless: bool = False) -> str:
 
 
 def as_png(image: np.ndarray) -> bytes:
-    """Return an image uint8 [H, W, 3] as the bytes of a PNG."""
+    """Encode an image, uint8 [H, W, 3], as PNG."""
     buffer = io.BytesIO()
     Image.fromarray(image).save(buffer, "PNG", compress_level=6)
     return buffer.getvalue()

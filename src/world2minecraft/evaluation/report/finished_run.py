@@ -1,4 +1,4 @@
-"""All files of one finished run, read back: what the report and its figures are made from."""
+"""Reading of the files of a finished run for reports and figures."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,7 +24,7 @@ from world2minecraft.minecraft.schematics.sponge import read_schem
 
 @dataclass(frozen=True, eq=False)
 class FinishedScene:
-    """What a reconstruction left on disk."""
+    """The results of a reconstruction, as read from its folder."""
 
     folder: Path
     grid: OccupancyGrid
@@ -40,7 +40,7 @@ def read_finished(folder: Path) -> FinishedScene:
     """Read the files of a finished run.
 
     Raises:
-        InputError: one is missing or damaged.
+        InputError: If a file is missing or damaged.
     """
     grid, _ = read_room(folder / "room.npz")
     return FinishedScene(
@@ -56,15 +56,18 @@ def read_finished(folder: Path) -> FinishedScene:
 
 
 def read_built(folder: Path) -> BlockVolume:
-    """Read a build back from its schematic and its scene files.
+    """Read a build from its schematic and its scene files.
 
     Raises:
-        InputError: a file is missing or damaged.
+        InputError: If a file is missing or damaged.
     """
     scene = read_scene(folder)
     volume = read_schem(folder / "room.schem")
     if volume.states.shape != scene.semantic.shape:
-        raise DamagedFileError(folder / "scene.npz", "is not of the room.schem beside it")
+        raise DamagedFileError(
+            folder / "scene.npz",
+            "does not belong to the room.schem in the same folder; run w2m reconstruct again",
+        )
     return replace(
         volume,
         semantic=scene.semantic,

@@ -1,9 +1,9 @@
-"""Compile what draws the report's pictures, by a second process beside the first stages.
+"""Compilation of the report's rendering kernels in a second process, parallel to the first stages.
 
-After an installation a third of a run would wait for these kernels, at its very end. The process is
-``python -m world2minecraft.evaluation.report.jit_warmup``: it draws a box of a few blocks as the
-report draws a room, and what numba then keeps in its folder is found there by the run. Where it
-fails, the run compiles for itself.
+Without this, a third of the first run after an installation would be spent waiting for these
+kernels. The process, ``python -m world2minecraft.evaluation.report.jit_warmup``, renders a small
+box of blocks with the functions of the report, and numba caches the kernels for the run. If the
+process fails, the run compiles the kernels itself.
 """
 
 import subprocess
@@ -28,9 +28,9 @@ PATIENCE_S = 120.0  # For the process to end by itself, once the run needs what 
 
 @contextmanager
 def compile_pictures_meanwhile() -> Iterator[None]:
-    """Compile what the report needs while the body runs, once after an installation.
+    """Compile the kernels of the report while the body runs, once after an installation.
 
-    A machine with one core has nobody to do it. If the body fails, the process is ended.
+    Nothing happens on a machine with a single core. If the body fails, the process is terminated.
     """
     if is_compiled(LAST) or usable_cores() < 2:
         yield
@@ -49,7 +49,7 @@ def compile_pictures_meanwhile() -> Iterator[None]:
 
 
 def draw_box() -> None:
-    """Draw a box of blocks in all the ways in which the report draws a room."""
+    """Render a box of blocks with all functions that the report uses for a room."""
     volume = _box()
     make_pairs(_look_at_it(), volume)
     plan_view(volume, px_per_block=2)
@@ -57,7 +57,7 @@ def draw_box() -> None:
 
 
 def _box() -> BlockVolume:
-    """Return a room of 6x4x6 blocks with a stair, a metre a block."""
+    """Return a room of 6 x 4 x 6 blocks with a stair, at one block per metre."""
     states = np.zeros((6, 4, 6), np.uint16)
     states[:, 0], states[0], states[:, :, 0] = 1, 1, 1
     states[3, 1, 3] = 2
@@ -69,7 +69,7 @@ def _box() -> BlockVolume:
 
 
 def _look_at_it() -> Scan:
-    """Return one view of the box, with colour and depth."""
+    """Return a view of the box with colour and depth."""
     camera = Camera(64, 48, 40.0, 40.0, 31.5, 23.5)
     pose = look_at(np.array([5.0, 1.0, 3.0]), np.array([3.0, 3.0, 1.0]))
     colour, depth_m = np.zeros((48, 64, 3), np.uint8), np.ones((48, 64), np.float32)

@@ -1,6 +1,7 @@
-"""Figures of the report that need no truth: pure functions of a finished scene.
+"""Measures of the report that require no ground truth, as functions of a finished scene.
 
-What collides, lies outside, hangs in the air or got lost, and what was seen, filled and placed.
+They count collisions, objects out of bounds, floating parts and lost objects, as well as observed,
+completed and placed cells.
 """
 
 from typing import Any
@@ -25,11 +26,12 @@ NEIGHBOURS = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).re
 
 
 def layout_facts(scene: FinishedScene) -> dict[str, Any]:
-    """Return the layout's figures; ``furniture.layout_checks`` says what each means.
+    """Return the layout measures that ``furniture.layout_checks`` defines.
 
-    ``floaters`` are parts of the built blocks, ``floaters_seen`` of the room's cells.
-    ``semantic_integrity`` compares the world with what was found: its ``categories``, and the
-    share of ``objects`` whose blocks still show them.
+    ``floaters`` counts parts of the built blocks, and ``floaters_seen`` parts of the room's cells.
+    ``semantic_integrity`` compares the world with the detected objects: the preserved
+    ``categories``,
+    and the share of ``objects`` whose blocks still show them.
     """
     placed = scene.placements
     outside = out_of_rooms(placed, scene.rooms)
@@ -54,12 +56,12 @@ def layout_facts(scene: FinishedScene) -> dict[str, Any]:
 
 
 def built_categories(scene: FinishedScene) -> set[int]:
-    """Return the object classes that stand in the world."""
+    """Return the object classes that occur in the built world."""
     return set(np.unique(scene.volume.semantic).tolist()) & set(OBJECT_CLASSES)
 
 
 def room_rows(scene: FinishedScene) -> list[dict[str, Any]]:
-    """Return one row for each room: its floor, its height, what it holds and its openings."""
+    """Return a row for each room with its floor area, height, objects and openings."""
     rows = []
     for number, room in enumerate(scene.rooms, 1):
         inside = set(range(len(scene.placements))) - set(out_of_rooms(scene.placements, [room]))
@@ -79,7 +81,7 @@ def room_rows(scene: FinishedScene) -> list[dict[str, Any]]:
 
 
 def confidence_facts(scene: FinishedScene) -> dict[str, Any]:
-    """Return how sure the labels are: of all reached cells, and by class."""
+    """Return the mean label confidence of occupied cells, in total and by class."""
     reached = scene.grid.source != UNSEEN
     confidence = scene.grid.confidence.astype(np.float64)
     rows = {}
@@ -101,7 +103,7 @@ def _area_m2(room: Layout) -> float:
 
 
 def scene_facts(scene: FinishedScene) -> dict[str, Any]:
-    """Return every figure of ``report.json`` that needs no truth."""
+    """Return all values of ``report.json`` that require no ground truth."""
     planes = scene_planes(scene)
     floors = [plane for plane in planes if plane.class_id == 2]
     largest = max(floors, key=lambda plane: plane.area_m2, default=None)
@@ -129,7 +131,7 @@ def scene_facts(scene: FinishedScene) -> dict[str, Any]:
 
 
 def scene_planes(scene: FinishedScene) -> tuple[HorizontalPlane, ...]:
-    """Return the level surfaces of the fused room, their heights finer than a cell."""
+    """Return the horizontal surfaces of the fused room, with heights at sub-cell precision."""
     evidence = scene.evidence
     layers = np.arange(evidence.hits.shape[2])
     middle_m = evidence.origin_m[2] + (layers + 0.5) * evidence.voxel_m
@@ -139,7 +141,7 @@ def scene_planes(scene: FinishedScene) -> tuple[HorizontalPlane, ...]:
 
 
 def voxel_counts(scene: FinishedScene) -> dict[str, dict[str, int]]:
-    """Return, for each class and for unknown, how many cells were observed and completed."""
+    """Return the number of observed and completed cells by class, including unknown."""
     labels, source = scene.grid.labels, scene.grid.source
     rows = {
         name: {
@@ -152,7 +154,7 @@ def voxel_counts(scene: FinishedScene) -> dict[str, dict[str, int]]:
 
 
 def surface_explained(scene: FinishedScene) -> dict[str, float]:
-    """Return the share of observed surface cells that stand in a block, and within one cell."""
+    """Return the share of observed surface cells inside a block, exactly and within one cell."""
     grid = scene.grid
     cells = np.argwhere(grid.occupied & (grid.source == OBSERVED))
     if not len(cells):
@@ -166,9 +168,9 @@ def surface_explained(scene: FinishedScene) -> dict[str, float]:
 
 
 def in_solid_block(volume: BlockVolume, points_m: np.ndarray) -> np.ndarray:
-    """Return which room points [N, 3] lie in a block that stands for something.
+    """Return which room points [N, 3] are inside a block that has a class.
 
-    Invisible lights and barriers have no class, and do not count.
+    Invisible lights and barriers have no class and do not count.
     """
     blocks = np.floor(apply(invert(volume.block_to_room), points_m) - volume.corner + 1e-9)
     shape = np.array(volume.states.shape)
@@ -178,7 +180,7 @@ def in_solid_block(volume: BlockVolume, points_m: np.ndarray) -> np.ndarray:
 
 
 def object_rows(scene: FinishedScene) -> list[dict[str, Any]]:
-    """Return one row for each object, with the templates put in its place."""
+    """Return a row for each object, with the templates that were placed for it."""
     rows = []
     for instance in scene.instances:
         mine = [p for p in scene.placements if p.object_id == instance.id]
@@ -197,7 +199,7 @@ def object_rows(scene: FinishedScene) -> list[dict[str, Any]]:
 
 
 def built_shares(scene: FinishedScene) -> dict[str, float]:
-    """Return the share of placements built by a template and from their own cells."""
+    """Return the shares of placements built from a template and from their own cells."""
     own = sum(placement.template == "cells" for placement in scene.placements)
     total = max(len(scene.placements), 1)
     return {"own_cells": round(own / total, 4), "template": round((total - own) / total, 4)}

@@ -1,4 +1,4 @@
-"""The frames that a finished run was made of, each where its camera stood in the room."""
+"""The frames used by a finished run, with their corrected camera poses in the room."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -18,9 +18,12 @@ from world2minecraft.formats.scan_record import read_poses
 
 @dataclass(frozen=True, eq=False)
 class PlacedFrame:
-    """One frame: ``camera`` is that of its colour, of its depth where it has none.
+    """A frame with its camera pose in the room.
 
-    ``camera_to_room`` is float64 [4, 4] with OpenCV axes, as the run corrected it.
+    Attributes:
+        frame: The files of the frame.
+        camera: The colour camera, or the depth camera if there is no colour image.
+        camera_to_room: The pose as corrected by the run, as float64 [4, 4] with OpenCV axes.
     """
 
     frame: FrameFiles
@@ -29,10 +32,10 @@ class PlacedFrame:
 
 
 def judge_capture_of(run: Path, capture: Path) -> ValidatedCapture:
-    """Return what can be used of a run's capture, read with the options that the run was given.
+    """Validate the capture of a run, using the run's capture options.
 
     Raises:
-        CaptureError: the capture cannot be read.
+        CaptureError: If the capture cannot be read.
     """
     options = {} if capture == computed(run) else _options_of(run)
     return validate_capture(capture, parse_options(options))
@@ -41,12 +44,12 @@ def judge_capture_of(run: Path, capture: Path) -> ValidatedCapture:
 def placed_frames(
     run: Path, judged: ValidatedCapture, scan_to_room: np.ndarray
 ) -> Iterator[PlacedFrame]:
-    """Yield the posed frames that a run used, all posed ones where it does not say which.
+    """Yield the posed frames that a run used, or all posed frames if it does not list them.
 
     Args:
-        run: the run's folder; its ``poses.npz`` says how poses were corrected.
-        judged: its capture.
-        scan_to_room: float64 [4, 4].
+        run: The folder of the run, whose ``poses.npz`` contains the pose corrections.
+        judged: The validated capture.
+        scan_to_room: The transform from scan to room as float64 [4, 4].
     """
     changes, used = _changes_of(run), used_by(run)
     for frame in judged.frames:
@@ -58,7 +61,7 @@ def placed_frames(
 
 
 def used_by(run: Path) -> frozenset[str]:
-    """Return the names of the frames that a run used; empty where it does not say."""
+    """Return the names of the frames that a run used, or an empty set if it does not list them."""
     try:
         used = read_json(run / "scan.json")["frames_used"]
         return frozenset(str(name) for name in used)
@@ -67,7 +70,7 @@ def used_by(run: Path) -> frozenset[str]:
 
 
 def _changes_of(run: Path) -> dict[str, np.ndarray]:
-    """Return how a run corrected poses, by frame; nothing where it did not."""
+    """Return the pose corrections of a run by frame, or an empty mapping if there are none."""
     try:
         found = read_poses(run / "poses.npz")
     except InputError:

@@ -1,8 +1,8 @@
-"""Write the report of a run: ``report.html``, ``report.json`` and its pictures.
+"""Writing of a run's report: ``report.html``, ``report.json`` and its images.
 
-``write_report`` compares the world with the photos. A run without photos, from a plan or of
-several joined rooms, has no evidence to compare with: ``write_brief_report`` shows what was built,
-what is in it, and how it came about.
+``write_report`` compares the world with the photos. Runs without photos, made from a floor plan or
+from several rooms, have no evidence for a comparison. ``write_brief_report`` shows their build,
+their contents and their sources.
 """
 
 from collections.abc import Sequence
@@ -42,15 +42,15 @@ NAMES = dict(zip(CLASS_NAMES, CLASS_DISPLAY_NAMES, strict=True)) | {"unknown": "
 def write_brief_report(
     folder: Path, scan: Scan, links: Sequence[tuple[str, str]] = ()
 ) -> dict[str, Any]:
-    """Write ``report.html``, ``report.json`` and ``preview.png`` of a run without photos.
+    """Write ``report.html``, ``report.json`` and ``preview.png`` for a run without photos.
 
     Args:
-        folder: the run's folder, built.
-        scan: what is known of it: source, name, size and notes.
-        links: names and addresses of further reports, such as each room's own.
+        folder: The folder of the finished run.
+        scan: The source, name, size and notes of the run.
+        links: The names and addresses of further reports, such as those of single rooms.
 
     Returns:
-        What ``report.json`` holds.
+        The content of ``report.json``.
     """
     volume = read_built(folder / "build")
     rooms = read_layouts(folder / "layout.json")
@@ -115,16 +115,16 @@ def _area_m2(polygon: np.ndarray) -> float:
 def write_report(
     folder: Path, scan: Scan, *, truth: Path | None = None, progress: Progress = no_progress
 ) -> dict[str, Any]:
-    """Write ``report.html``, ``report.json`` and ``preview.png`` of a finished run.
+    """Write ``report.html``, ``report.json`` and ``preview.png`` for a finished run.
 
     Args:
-        folder: the run's folder.
-        scan: its scan; six of its views are shown.
-        truth: a capture's folder with ``truth.npz``, to be scored against.
-        progress: called at each step.
+        folder: The folder of the run.
+        scan: The scan of the run, of which six views are shown.
+        truth: The folder of a capture with ``truth.npz`` to score against. None skips the scores.
+        progress: Called at each step.
 
     Returns:
-        What ``report.json`` holds.
+        The content of ``report.json``.
     """
     scene = read_finished(folder)
     progress("report", 0, 3, "measurements")
@@ -137,7 +137,7 @@ def write_report(
             ),
             4,
         )
-    progress("report", 1, 3, "pictures")
+    progress("report", 1, 3, "images")
     pairs = make_pairs(scan, scene.volume)
     facts["views"] = [
         {"view": p.name, "depth_error_m": p.depth_error_m, "depth_agrees": p.depth_agrees}

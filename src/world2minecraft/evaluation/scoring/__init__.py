@@ -1,7 +1,7 @@
-"""A finished reconstruction against the truth of the room that was scanned virtually.
+"""Scoring of a finished reconstruction against the ground truth of a virtually scanned room.
 
-``evaluate_reconstruction`` scores the files of a run. What is scored, and why those cells, is in
-docs/metrics.md.
+``evaluate_reconstruction`` scores the files of a run. docs/metrics.md describes the scores and the
+choice of scored cells.
 """
 
 from world2minecraft.evaluation.scoring.score import evaluate_reconstruction

@@ -1,7 +1,7 @@
-"""Score the objects of a run: against those of the truth, and for physical sense.
+"""Scores of a run's objects against the ground truth, and of its layout.
 
-Objects are matched with the true ones: found where they are, as what they are, and turned. The
-layout is judged by collisions, bounds and the classes that got lost.
+Objects are matched to true objects by class and position, and their orientation is compared. The
+layout is assessed by collisions, bounds and missing classes.
 """
 
 import math
@@ -25,7 +25,13 @@ from world2minecraft.furniture.layout_checks import category_integrity, collisio
 
 @dataclass(frozen=True, eq=False)
 class TrueObjects:
-    """The true objects in the estimated room frame, and which of them a ray met."""
+    """The true objects in the estimated room frame.
+
+    Attributes:
+        objects: The objects.
+        seen: Whether a ray met each object, as bool [N].
+        have_fronts: Whether the orientation of chairs, sofas and beds is known.
+    """
 
     objects: tuple[LayoutObject, ...]
     seen: np.ndarray  # bool [N]
@@ -33,7 +39,7 @@ class TrueObjects:
 
 
 def true_objects(truth: Truth, truth_to_room: np.ndarray, reached: Reached) -> TrueObjects:
-    """Carry the objects into the room and tell which of them were seen."""
+    """Transform the true objects to the room frame, and determine which were seen."""
     turn = math.degrees(math.atan2(truth_to_room[1, 0], truth_to_room[0, 0]))
     moved = tuple(
         replace(
@@ -49,7 +55,7 @@ def true_objects(truth: Truth, truth_to_room: np.ndarray, reached: Reached) -> T
 
 
 def object_counts(found: Sequence[Any], true: TrueObjects) -> ObjectCounts:
-    """Count the objects of a run; nobody asks for those that no ray met."""
+    """Count the objects of a run, ignoring true objects that no ray met and nothing matches."""
     matched = {n for _, n in match_objects(found, true.objects)}
     expected = [item for n, item in enumerate(true.objects) if bool(true.seen[n]) or n in matched]
     counts = count_objects(found, expected)
@@ -57,7 +63,7 @@ def object_counts(found: Sequence[Any], true: TrueObjects) -> ObjectCounts:
 
 
 def object_facts(counts: ObjectCounts) -> dict[str, Any]:
-    """Return the object scores by name, and those of each class that is there or was found."""
+    """Return the object scores by name, and by class for classes with any object."""
     rows = {
         CLASS_NAMES[n]: {
             "found": int(counts.found[n]),
@@ -85,17 +91,18 @@ def object_facts(counts: ObjectCounts) -> dict[str, Any]:
 def layout_facts(
     out: Path, grid: OccupancyGrid, true_rooms: Sequence[Layout], objects: TrueObjects
 ) -> dict[str, Any]:
-    """Return the counts of the placements of a run; empty where it was not furnished.
+    """Return the layout counts of a run, or an empty mapping if it was not furnished.
 
-    ``out_of_bounds`` is judged by the rooms that the run itself found, ``out_of_true_rooms`` by
-    the true ones; an object may stand in any of several rooms. ``semantic_integrity`` is the
-    share of the object classes that were seen in the true room and were placed.
+    ``out_of_bounds`` uses the rooms found by the run, and ``out_of_true_rooms`` the true rooms. An
+    object may be in any of several rooms. ``semantic_integrity`` is the share of the seen true
+    object
+    classes that were placed.
 
     Args:
-        out: the folder of the run.
-        grid: its ``room.npz``.
-        true_rooms: the true rooms in the room frame.
-        objects: the true objects.
+        out: The folder of the run.
+        grid: The occupancy grid from ``room.npz``.
+        true_rooms: The true rooms in the room frame.
+        objects: The true objects.
     """
     if not (out / "placements.json").is_file():
         return {}
@@ -113,7 +120,7 @@ def layout_facts(
 
 
 def in_room(layouts: Sequence[Layout], truth_to_room: np.ndarray) -> tuple[Layout, ...]:
-    """Carry the outlines of true rooms into the estimated frame; their openings stay behind."""
+    """Transform the outlines of true rooms to the estimated frame, without openings."""
     moved = []
     for layout in layouts:
         heights = np.full((len(layout.floor_polygon_m), 1), layout.floor_z_m)
@@ -128,5 +135,5 @@ def in_room(layouts: Sequence[Layout], truth_to_room: np.ndarray) -> tuple[Layou
 
 
 def _outside(placements: Sequence[Any], rooms: Sequence[Layout]) -> int:
-    """Return how many placements lie wholly within none of the rooms, where any are known."""
+    """Return the number of placements that are not completely within any room."""
     return len(out_of_rooms(placements, rooms)) if rooms else 0

@@ -1,9 +1,9 @@
-"""Which cells of the room a noise-free ray of a used frame reached or crossed.
+"""The cells of the room that a noise-free ray of a used frame reached or crossed.
 
-Nobody can know the others, so they are not scored. A ray reaches two cells, most often one: the
-cell in which the surface of the fine voxel that it meets lies, pushed 1 mm in, and the cell that
-holds that voxel's middle. Only the second would miss a wall's front, only the first the wall
-behind a cell's edge, where the rule of 4 in 64 calls its first millimetres empty.
+The other cells cannot be observed, so they are not scored. A ray reaches at most two cells, usually
+the same one: the cell of the surface point on the fine voxel, moved 1 mm inward, and the cell of
+the voxel's centre. The centre alone could miss the front of a wall. The surface alone could miss a
+wall behind a cell boundary, where the rule of 4 in 64 leaves the first millimetres empty.
 """
 
 from collections.abc import Callable, Sequence
@@ -30,7 +30,14 @@ Believed = Callable[[UsedFrame, np.ndarray], np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """What rays did in each cell of a box of the estimated room."""
+    """The ray observations in a box of cells of the estimated room.
+
+    Attributes:
+        flags: Combinations of CROSSED and MET, or 0, as uint8 [X, Y, Z].
+        low: The room cell at index (0, 0, 0), as int64 [3].
+        voxel_m: The cell size in metres.
+        voxels: The ascending flat indices of the fine voxels that rays met, as int64 [N].
+    """
 
     flags: np.ndarray  # uint8 [X, Y, Z]: CROSSED, MET, both or 0
     low: np.ndarray  # int64 [3], the room cell at index (0, 0, 0)
@@ -39,12 +46,12 @@ class Reached:
 
     @property
     def scored(self) -> np.ndarray:
-        """The cells that a ray reached or crossed, bool [X, Y, Z]."""
+        """The cells that a ray reached or crossed, as bool [X, Y, Z]."""
         return self.flags != 0
 
     @property
     def met(self) -> np.ndarray:
-        """The cells in which a ray met a surface, bool [X, Y, Z]."""
+        """The cells in which a ray met a surface, as bool [X, Y, Z]."""
         return self.flags & MET > 0
 
 
@@ -56,16 +63,18 @@ def reached_cells(
     rays_wide: int = RAYS_WIDE,
     believed: Believed | None = None,
 ) -> Reached:
-    """Cast the rays of all frames into the truth and mark the cells of the estimated room.
+    """Cast the rays of all frames into the ground truth, and mark the cells of the estimated room.
 
     Args:
-        truth: the room.
-        frames: where the cameras truly stood.
-        truth_to_room: 4x4 rigid, from the truth's frame to the estimated room's.
-        voxel_m: the estimated room's cell.
-        rays_wide: rays across a picture; fewer where the camera has fewer pixels.
-        believed: which rays count, bool [H, W], by the frame and how deep they end, float32
-            [H, W] in metres; all by default.
+        truth: The ground truth.
+        frames: The frames with their true camera poses.
+        truth_to_room: The rigid 4x4 transform from the frame of the ground truth to that of the
+            room.
+        voxel_m: The cell size of the estimated room in metres.
+        rays_wide: The number of rays across an image, at most the width of the image in pixels.
+        believed: A function that selects the rays that count, as bool [H, W], from the frame and
+            the
+            ray depths, float32 [H, W] in metres. None counts all rays.
     """
     truth_to_cells = truth_to_room.copy()
     truth_to_cells[:3] /= voxel_m
@@ -99,7 +108,10 @@ def reached_cells(
 
 
 def pinhole(camera: Camera, rays_wide: int) -> Camera:
-    """Return the pinhole camera whose rays are cast: distortion bends few rays out of a cell."""
+    """Return the undistorted pinhole camera for ray casting.
+
+    Distortion is ignored because it moves few rays to another cell.
+    """
     wide = min(rays_wide, camera.width_px)
     camera = camera.resized(wide, max(round(wide * camera.height_px / camera.width_px), 1))
     return Camera(
@@ -115,7 +127,7 @@ def pinhole(camera: Camera, rays_wide: int) -> Camera:
 def _box(
     truth: Truth, frames: Sequence[UsedFrame], truth_to_cells: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest cell and the empty flags of a box that holds the truth and the cameras."""
+    """Return the lowest cell and empty flags of a box around the ground truth and the cameras."""
     corners = np.array(list(np.ndindex(2, 2, 2))) * truth.labels.shape * truth.voxel_m
     cameras = [frame.camera_to_truth[:3, 3] for frame in frames]
     points = apply(
@@ -125,14 +137,15 @@ def _box(
     shape = np.ceil(points.max(axis=0)).astype(np.int64) + 1 - low
     if np.prod(shape, dtype=np.float64) > MAX_CELLS:
         raise LimitError(
-            truth.folder / "truth.npz", f"its rays span {' x '.join(map(str, shape))} cells"
+            truth.folder / "truth.npz",
+            f"rays span {' x '.join(map(str, shape))} cells, more than the limit",
         )
     return low, np.zeros(shape, np.uint8)
 
 
 @njit
 def _mark(depth_m, index, face, rays, camera_to_cells, voxel_to_cells, fine, normals, low, flags):
-    """Mark the cells of one picture's rays, in place."""
+    """Mark the cells of one image's rays in place."""
     eye = camera_to_cells[:, 3]
     middle = np.empty(3)
     surface = np.empty(3)
@@ -162,14 +175,14 @@ def _mark(depth_m, index, face, rays, camera_to_cells, voxel_to_cells, fine, nor
 
 @njit
 def _meet(point, flags):
-    """Mark the cell that holds a point given in cells of the box."""
+    """Mark the cell that contains a point, given in cells of the box."""
     i, j, k = int(np.floor(point[0])), int(np.floor(point[1])), int(np.floor(point[2]))
     flags[i, j, k] |= MET
 
 
 @njit
 def _cross(eye, target, low, flags):
-    """Mark the cells on the way from ``eye`` to ``target``, the one it ends in only if entered."""
+    """Mark the cells that a ray from ``eye`` to ``target`` crosses."""
     cell, step = np.empty(3, np.int64), np.empty(3, np.int64)
     at, gap = np.empty(3), np.empty(3)
     length = 0.0

@@ -1,4 +1,4 @@
-"""Windows, doors and doorways that were found, against those of the true rooms."""
+"""Scores of detected windows, doors and doorways against those of the true rooms."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,17 +20,18 @@ STEP_M = 0.04  # Points on an opening's face, two a default cell.
 def opening_facts(
     found: Sequence[Layout], true: Sequence[Layout], truth_to_room: np.ndarray, reached: Reached
 ) -> dict[str, Any]:
-    """Return F1, precision and recall of the openings of all rooms together, and by kind.
+    """Return F1, precision and recall of the openings, in total and by kind.
 
-    A found opening matches at most one true one of its kind whose middle lies within 0.3 m. A
-    door between two rooms is told by both of them, and counts once. True openings that rays
-    hardly came to are not asked for.
+    A found opening matches at most one true opening of its kind whose centre is within 0.3 m. A
+    door
+    between two rooms occurs in both rooms but counts once. True openings that few rays reached are
+    ignored.
 
     Args:
-        found: the rooms of the run, in the room frame.
-        true: the true rooms, in the truth's frame.
-        truth_to_room: 4x4 rigid.
-        reached: where rays came.
+        found: The rooms of the run in the room frame.
+        true: The true rooms in the frame of the ground truth.
+        truth_to_room: The rigid 4x4 transform from ground truth to room.
+        reached: The cells that rays reached.
     """
     reported = _once(_middles(found, np.eye(4)))
     there = _once(_middles(true, truth_to_room))
@@ -62,7 +63,7 @@ def _rates(counts: np.ndarray) -> dict[str, Any]:
 
 
 def _middles(rooms: Sequence[Layout], to_room: np.ndarray) -> list[tuple[str, np.ndarray, Any]]:
-    """Return the kind, the middle [3] and points of the face [N, 3] of each opening."""
+    """Return the kind, the centre [3] and points on the face [N, 3] of each opening."""
     rows = []
     for room in rooms:
         for opening in room.openings:
@@ -81,7 +82,7 @@ def _middles(rooms: Sequence[Layout], to_room: np.ndarray) -> list[tuple[str, np
 
 
 def _once(rows: list[tuple[str, np.ndarray, Any]]) -> list[tuple[str, np.ndarray, Any]]:
-    """Leave out an opening that another room has told already, from the wall's other side."""
+    """Remove openings that another room already contains, from the other side of the wall."""
     unique: list[tuple[str, np.ndarray, Any]] = []
     for row in rows:
         if not any(
@@ -92,7 +93,7 @@ def _once(rows: list[tuple[str, np.ndarray, Any]]) -> list[tuple[str, np.ndarray
 
 
 def _matched(found_m: np.ndarray, true_m: np.ndarray) -> list[tuple[int, int]]:
-    """Return the pairs that match: the most, then those with the least distance."""
+    """Return the matching pairs, maximising their number, then minimising the distances."""
     if not (len(found_m) and len(true_m)):
         return []
     distance = np.linalg.norm(found_m[:, None] - true_m[None], axis=2)
@@ -104,7 +105,7 @@ def _matched(found_m: np.ndarray, true_m: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _seen(face_m: np.ndarray, reached: Reached) -> bool:
-    """Tell whether rays came to at least half of the cells of an opening's face."""
+    """Return whether rays reached at least half of the cells of an opening's face."""
     cells = np.floor(face_m / reached.voxel_m).astype(np.int64) - reached.low
     inside = ((cells >= 0) & (cells < reached.flags.shape)).all(axis=1)
     return bool((reached.flags[tuple(cells[inside].T)] > 0).sum() >= ASKED_SHARE * len(cells))

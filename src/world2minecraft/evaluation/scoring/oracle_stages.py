@@ -1,9 +1,9 @@
-"""Oracles of the stages: truth put in after fusion, labels, instances and templates.
+"""Oracle stages: ground truth in place of fusion, labels, instances or templates.
 
-After fusion the geometry is true, with the votes and colours of the real pictures: each cell that a
-noise-free ray reached or crossed is occupied or free as the truth says, and each pixel of the 2D
-labels votes, right or wrong, for the cell in which its ray truly ends. So a labeller that is given
-this evidence shows what geometry alone still costs.
+After oracle fusion, the geometry is correct but the votes and colours are those of the real images.
+Each cell that a noise-free ray reached or crossed is occupied or free as in the ground truth, and
+each pixel of the 2D labels votes for the cell where its ray truly ends, whether its label is right
+or wrong. The result shows what the labelling stage can achieve with correct geometry.
 """
 
 from collections.abc import Iterable
@@ -47,7 +47,7 @@ OWN_CELLS = "cells"
 
 @dataclass(eq=False)
 class _Sums:
-    """What pixels add to the cells of a box: flat arrays, a row a cell."""
+    """The pixel sums of the cells of a box, as flat arrays with a row per cell."""
 
     votes: np.ndarray  # float32 [C, 12]
     colour: np.ndarray  # float64 [C, 3]
@@ -59,9 +59,9 @@ def true_evidence(room: TrueRoom, views: Iterable[View], scan_to_room: np.ndarra
     """Return the evidence that perfect geometry would give.
 
     Args:
-        room: the truth in the frame of ``scan_to_room``.
-        views: the capture's; their colours and labels are read, their depths and poses are not.
-        scan_to_room: the 4x4 that is written into the evidence.
+        room: The ground truth in the frame of ``scan_to_room``.
+        views: The views of the capture, of which only colours and labels are used.
+        scan_to_room: The 4x4 transform to store in the evidence.
     """
     shape = room.labels.shape
     occupied = room.reached.scored & (room.labels > 0) & (room.labels != UNKNOWN)
@@ -102,7 +102,7 @@ def _add_view(
     camera_to_truth: np.ndarray,
     occupied: np.ndarray,
 ) -> None:
-    """Add the pixels of one view to the cells in which their rays truly end."""
+    """Add the pixels of one view to the cells where their rays truly end."""
     camera = pinhole(stated, RAYS_WIDE)
     hits = cast_voxels(scene, camera, camera_to_truth)
     rows, columns = np.nonzero(hits.voxel_index >= 0)
@@ -130,10 +130,10 @@ def _add_view(
 
 
 def _ends(room, camera, camera_to_truth, hits, rows, columns, occupied):
-    """Return where rays end, in metres of the room [N, 3], and the flat index of the cell or -1.
+    """Return the end points of rays in metres of the room [N, 3], and their flat cell indices.
 
-    It is the cell of the surface, or of the middle of the voxel that is met, whichever the truth
-    calls occupied; where it calls neither so, there is none.
+    The cell is that of the surface, or else of the centre of the voxel, if it is truly occupied. If
+    neither is, the index is -1.
     """
     truth, reached = room.truth, room.reached
     z = hits.depth_m[rows, columns].astype(np.float64)
@@ -152,7 +152,7 @@ def _ends(room, camera, camera_to_truth, hits, rows, columns, occupied):
 
 
 def _pixels(stated: Camera, camera: Camera, rows: np.ndarray, columns: np.ndarray):
-    """Return the pixels of the full picture in which the middles of coarse pixels lie."""
+    """Return the pixels of the full image that contain the centres of coarse pixels."""
     across, down = stated.width_px / camera.width_px, stated.height_px / camera.height_px
     return (
         ((rows + 0.5) * down).astype(np.int64),
@@ -161,7 +161,7 @@ def _pixels(stated: Camera, camera: Camera, rows: np.ndarray, columns: np.ndarra
 
 
 def _fill(sums: _Sums, occupied: np.ndarray) -> None:
-    """Give occupied cells in which no ray ends what the nearest one that has a ray says."""
+    """Copy values to occupied cells without rays from the nearest cell with rays."""
     bare = occupied & (sums.hits.reshape(occupied.shape) == 0)
     if not bare.any() or not sums.hits.any():
         return
@@ -174,7 +174,7 @@ def _fill(sums: _Sums, occupied: np.ndarray) -> None:
 
 
 def put_true_labels(out: Path, room: TrueRoom) -> None:
-    """Give the cells of ``room.npz`` that rays came to their true labels, and no objects yet."""
+    """Replace the labels of the reached cells in ``room.npz`` by the true ones, without objects."""
     grid, scan_to_room = read_room(out / "room.npz")
     known = room.reached.scored & (room.labels != UNKNOWN)
     labels = np.where(known, room.labels, np.uint8(UNKNOWN))
@@ -194,9 +194,9 @@ def put_true_labels(out: Path, room: TrueRoom) -> None:
 
 
 def put_true_objects(out: Path, room: TrueRoom) -> None:
-    """Give the object cells of ``room.npz`` the true instances, and ``objects.json`` their boxes.
+    """Write the true instances to ``room.npz``, and the true boxes to ``objects.json``.
 
-    The labels of ``room.npz`` are true already.
+    ``room.npz`` must already contain the true labels.
     """
     grid, scan_to_room = read_room(out / "room.npz")
     instance = carry_instances(room, grid)
@@ -220,9 +220,9 @@ def put_true_objects(out: Path, room: TrueRoom) -> None:
 
 
 def carry_instances(room: TrueRoom, grid: OccupancyGrid) -> np.ndarray:
-    """Return uint16 [X, Y, Z]: of each object cell, the true object that most of it belongs to.
+    """Return the true object that owns most of each object cell, as uint16 [X, Y, Z], or 0.
 
-    Only objects of the cell's own class stand for election; 0 where there is none.
+    Only objects with the class of the cell are considered.
     """
     truth = room.truth
     fine_instance = read_instances(truth)
@@ -248,7 +248,7 @@ def carry_instances(room: TrueRoom, grid: OccupancyGrid) -> np.ndarray:
 
 
 def _majority(votes: np.ndarray, count: int) -> np.ndarray:
-    """Return for each row of votes [N, S] the number other than 0 with most; the lowest of ties."""
+    """Return the most frequent non-zero number in each row of votes [N, S], the lowest in a tie."""
     row = np.repeat(np.arange(len(votes)), votes.shape[1])
     pairs, times = np.unique(row * count + votes.reshape(-1), return_counts=True)
     owner, number = pairs // count, pairs % count
@@ -260,10 +260,11 @@ def _majority(votes: np.ndarray, count: int) -> np.ndarray:
 
 
 def put_true_placements(out: Path, room: TrueRoom) -> None:
-    """Move the furniture of ``placements.json`` to where the true objects stand, as they are.
+    """Move the furniture in ``placements.json`` to the true objects.
 
-    Of several pieces that stand for one object the largest one with a template does. A template
-    that cannot be as large as the object leaves it to its own cells.
+    If several pieces belong to one object, the largest one with a template is used. If a template
+    does
+    not support the size of the object, the object is built from its own cells.
     """
     grid, _ = read_room(out / "room.npz")
     chosen = read_placements(out / "placements.json")

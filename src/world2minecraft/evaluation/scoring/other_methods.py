@@ -1,15 +1,15 @@
-"""What another method made of a capture, scored as a run of ours is.
+"""Scoring of another method's result for a capture.
 
-In: ``labels.npz`` and, beside it, ``objects.json``::
+The input is ``labels.npz`` and, in the same folder, ``objects.json``::
 
-    labels        uint8 [X, Y, Z]: class ids 0 to 11, 255 where it knows nothing
-    voxel_m       the side of a cell, 0.08 where it is left out
-    origin_m      float [3], the minimum corner of cell (0, 0, 0), 0 where it is left out
-    grid_to_scan  float [4, 4], from the grid's frame (z up) to that of the capture's poses
-    confidence    float [X, Y, Z], 0 to 1, where the method tells one
+    labels        uint8 [X, Y, Z]: class IDs 0 to 11, or 255 for unknown
+    voxel_m       the cell size in metres, 0.08 by default
+    origin_m      float [3], the minimum corner of cell (0, 0, 0), 0 by default
+    grid_to_scan  float [4, 4], from the frame of the grid (z up) to that of the capture's poses
+    confidence    float [X, Y, Z], 0 to 1, optional
 
-``labels.npy`` holds the labels alone. ``objects.json`` is a list of ``{class, center_m, size_m,
-yaw_deg}`` in the grid's frame; a method that finds none leaves it out.
+``labels.npy`` contains only the labels. ``objects.json`` is a list of ``{class, center_m, size_m,
+yaw_deg}`` in the frame of the grid, and can be omitted by a method without object detection.
 """
 
 from dataclasses import dataclass, replace
@@ -38,7 +38,14 @@ OPTIONAL = ("voxel_m", "origin_m", "grid_to_scan", "confidence")
 
 @dataclass(frozen=True, eq=False)
 class ForeignResult:
-    """A grid whose origin is a whole multiple of its cell, and objects in the same frame."""
+    """A result of another method.
+
+    Attributes:
+        grid: The labels, shifted so that the origin is a multiple of the cell size.
+        scan_to_room: The transform from the capture's poses to the grid, as float64 [4, 4].
+        objects: The objects in the frame of the grid.
+        tells_confidence: Whether the method provides confidences.
+    """
 
     grid: OccupancyGrid
     scan_to_room: np.ndarray  # float64 [4, 4]
@@ -47,7 +54,7 @@ class ForeignResult:
 
 
 def foreign_file(place: Path) -> Path | None:
-    """Return the labels of another method that lie at a place; None where it is a run of ours."""
+    """Return the label file of another method at a path, or None for a run of this program."""
     if place.is_file():
         return place
     found = (place / name for name in LABELS if (place / name).is_file())
@@ -55,13 +62,14 @@ def foreign_file(place: Path) -> Path | None:
 
 
 def read_foreign(path: Path) -> ForeignResult:
-    """Read labels, and the objects beside them.
+    """Read labels, and the objects in the same folder.
 
     Raises:
-        InputError: the file is missing or of another kind. DamagedFileError: a value is wrong.
+        InputError: If the file is missing or not a label array.
+        DamagedFileError: If a value is invalid.
     """
     if path.suffix not in (".npz", ".npy"):
-        raise InputError(path, f"is no array of labels; give {' or '.join(LABELS)}")
+        raise InputError(path, f"not a label array; expected {' or '.join(LABELS)}")
     arrays = _arrays(path)
     try:
         voxel_m = positive("voxel_m", float(arrays.get("voxel_m", DEFAULT_VOXEL_M)))
@@ -76,7 +84,7 @@ def read_foreign(path: Path) -> ForeignResult:
             stated = np.where(grid.labels == UNKNOWN, 0, arrays["confidence"]).astype(np.float16)
             grid = replace(grid, confidence=stated)
     except (ValueError, TypeError) as error:
-        raise DamagedFileError(path, f"is no result ({error})") from error
+        raise DamagedFileError(path, f"not a valid result ({error})") from error
     objects = tuple(
         replace(item, center_m=item.center_m + moved[:3, 3])
         for item in _objects(path.parent / OBJECTS)
@@ -87,20 +95,23 @@ def read_foreign(path: Path) -> ForeignResult:
 def evaluate_foreign(path: Path, truth: Path) -> dict[str, Any]:
     """Return the scores of another method's labels and objects.
 
-    They are those of ``evaluate_reconstruction`` that need neither poses nor furniture nor blocks,
-    on the cells that rays of **all** frames came to. Calibration is there where a confidence is.
+    The scores are those of ``evaluate_reconstruction`` that require no poses, furniture or blocks,
+    on
+    the cells that rays of **all** frames reached. Calibration is included if there are confidences.
 
     Args:
-        path: ``labels.npz`` or ``labels.npy``.
-        truth: the folder of ``truth.npz`` and ``truth.json``.
+        path: The file ``labels.npz`` or ``labels.npy``.
+        truth: The folder of ``truth.npz`` and ``truth.json``.
 
     Raises:
-        InputError: a file is missing or damaged.
+        InputError: If a file is missing or damaged.
     """
     known, made = read_truth(truth), read_foreign(path)
     if made.grid.voxel_m < known.voxel_m:
         raise InputError(
-            path, f"has cells of {made.grid.voxel_m:g} m, finer than the truth's {known.voxel_m:g}"
+            path,
+            f"voxel size of {made.grid.voxel_m:g} m is smaller than the ground truth's "
+            f"{known.voxel_m:g} m; resample the result to a coarser grid",
         )
     room = see_truth(known, all_frames(known), made.scan_to_room, made.grid.voxel_m)
     facts = cell_facts(made.grid, room)
@@ -124,7 +135,7 @@ def _objects(path: Path) -> tuple[LayoutObject, ...]:
         return ()
     rows = read_json(path)
     if not isinstance(rows, list):
-        raise DamagedFileError(path, "must hold a list of {class, center_m, size_m, yaw_deg}")
+        raise DamagedFileError(path, "must contain a list of {class, center_m, size_m, yaw_deg}")
     objects = []
     for number, row in enumerate(rows):
         try:
@@ -132,6 +143,6 @@ def _objects(path: Path) -> tuple[LayoutObject, ...]:
             number_of_class = class_id(str(row["class"]))
             objects.append(LayoutObject(number_of_class, row["center_m"], row["size_m"], yaw_deg))
         except (KeyError, TypeError, ValueError, AttributeError, UnknownNameError) as error:
-            reason = f"row {number} is no {{class, center_m, size_m, yaw_deg}} ({error})"
+            reason = f"row {number} is not a valid {{class, center_m, size_m, yaw_deg}} ({error})"
             raise DamagedFileError(path, reason) from error
     return tuple(objects)

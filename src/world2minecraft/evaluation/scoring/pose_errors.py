@@ -1,6 +1,6 @@
-"""Measure errors of poses, depth scales and the room frame, as stated and as corrected.
+"""Errors of camera poses, depth scales and the room frame, before and after correction.
 
-An error of the frame is told apart from errors of occupancy.
+The error of the room frame is reported separately from the errors of the occupancy.
 """
 
 import math
@@ -20,16 +20,19 @@ STRAIGHT_DEG = 10.0  # A wall of the truth that runs along an axis of the estima
 
 
 def frame_error(truth_to_room: np.ndarray, layouts: Sequence[Layout] = ()) -> dict[str, float]:
-    """Return how far an estimated frame is off, whatever quarter turn and corner it chose.
-
-    ``tilt_deg`` is the angle between the two ups, ``yaw_deg`` that to the nearest quarter turn,
-    ``floor_m`` the height that it gives the true floor's origin. ``walls_x_m`` and ``walls_y_m``,
-    given where ``layouts`` are, say where the true wall lies that stands nearest to the frame's
-    own corner.
+    """Return the error of an estimated frame, regardless of its quarter turn and corner.
 
     Args:
-        truth_to_room: 4x4 rigid, from the truth's frame to the estimated one.
-        layouts: the true rooms, in the truth's frame.
+        truth_to_room: The rigid 4x4 transform from the frame of the ground truth to the estimated
+            one.
+        layouts: The true rooms in the frame of the ground truth.
+
+    Returns:
+        ``tilt_deg`` is the angle between the up directions, ``yaw_deg`` the angle to the nearest
+        quarter turn, and ``floor_m`` the estimated height of the true floor's origin. With
+        ``layouts``, ``walls_x_m`` and ``walls_y_m`` are the positions of the true walls nearest to
+        the
+        corner of the estimated frame.
     """
     rotation = truth_to_room[:3, :3]
     up = np.clip(rotation[2, 2], -1.0, 1.0)
@@ -49,7 +52,7 @@ def frame_error(truth_to_room: np.ndarray, layouts: Sequence[Layout] = ()) -> di
 def wall_lines(
     truth_to_room: np.ndarray, layouts: Sequence[Layout]
 ) -> tuple[list[float], list[float]]:
-    """Return where true walls cross the estimated x and y axes: the means of their two ends."""
+    """Return the positions of the true walls along the estimated x and y axes in metres."""
     lines: tuple[list[float], list[float]] = ([], [])
     for layout in layouts:
         heights = np.full((len(layout.floor_polygon_m), 1), layout.floor_z_m)
@@ -63,7 +66,7 @@ def wall_lines(
 
 
 def pose_facts(out: Path, truth: Truth, frames: Sequence[UsedFrame]) -> dict[str, Any]:
-    """Return the errors of poses and depth scales; empty where the truth tells no poses."""
+    """Return the errors of poses and depth scales, or nothing if the true poses are unknown."""
     if not truth.camera_to_truth or not frames:
         return {}
     true = [truth.truth_to_scan @ frame.camera_to_truth for frame in frames]
@@ -83,10 +86,11 @@ def pose_facts(out: Path, truth: Truth, frames: Sequence[UsedFrame]) -> dict[str
 
 
 def pose_error(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> dict[str, float]:
-    """Return the mean distance and angle between poses [4, 4] of the same frames.
+    """Return the mean distance and angle between given and true poses [4, 4].
 
-    ``mean_mm`` and ``mean_deg`` are in the scan's frame; the ``apart`` ones are what is left once
-    all poses were moved by one common turn and shift, which is the frame's own error.
+    ``mean_mm`` and ``mean_deg`` are measured in the frame of the scan. ``apart_mm`` and
+    ``apart_deg``
+    remain after the best common rigid transform, which removes the error of the frame itself.
     """
     common = common_move(true, given)
     together = [common @ t for t in true]
@@ -99,10 +103,10 @@ def pose_error(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> dict[
 
 
 def scale_error(left: Sequence[float]) -> dict[str, float]:
-    """Return by how many per cent depths are still wrong: their root mean square, and the mean.
+    """Return the root mean square and the mean of the remaining depth errors in percent.
 
     Args:
-        left: of each frame, what true depth is multiplied by once all corrections are made.
+        left: The remaining scale factor of each frame's depth after all corrections.
     """
     off = 100 * (np.asarray(left, np.float64) - 1)
     return {

@@ -1,8 +1,8 @@
-"""A finished run against its truth: every figure that needs one.
+"""Scores of a finished run against its ground truth.
 
-Scored are the cells that a noise-free ray of a used frame reached or crossed, because nobody can
-know the others. Truth becomes occupancy by SSCNet's rule in the estimated frame; the frame's own
-error is told apart.
+Only the cells that a noise-free ray of a used frame reached or crossed are scored, because the
+others cannot be observed. The ground truth is converted to occupancy in the estimated frame by
+SSCNet's rule. The error of the frame itself is reported separately.
 """
 
 from collections.abc import Sequence
@@ -44,21 +44,21 @@ from world2minecraft.formats.world_labels import Scene, read_scene
 NEAR = np.array(list(np.ndindex(3, 3, 3))) - 1
 
 HOW = (
-    "Scored on the cells that a noise-free ray of a used frame reached or crossed; truth occupied "
-    "by SSCNet's rule (4 of 64 sub-cells). Objects match within 0.3 m."
+    "Scored on the cells that a noise-free ray of a used frame reached or crossed. True "
+    "occupancy follows SSCNet's rule (4 of 64 sub-cells). Objects match within 0.3 m."
 )
 
 
 def world_facts(out: Path, true_labels: np.ndarray, reached: Reached) -> dict[str, Any]:
-    """Return the shares of seen true surface that blocks stand for; empty where none were built.
+    """Return the shares of the seen true surface that blocks represent, if blocks were built.
 
-    ``explained`` cells lie within one cell of a block of any class, ``right_class`` ones within
-    one cell of a block of their own.
+    ``explained`` is the share of cells within one cell of any block, and ``right_class`` the share
+    within one cell of a block of their own class.
 
     Args:
-        out: the folder of the run.
-        true_labels: uint8 [X, Y, Z] in the box of ``reached``.
-        reached: where rays came; only cells in which one met a surface are asked for.
+        out: The folder of the run.
+        true_labels: The true labels in the box of ``reached``, as uint8 [X, Y, Z].
+        reached: The cells that rays reached. Only those in which a ray met a surface are used.
     """
     if not (out / "build" / "scene.json").is_file():
         return {}
@@ -77,7 +77,7 @@ def world_facts(out: Path, true_labels: np.ndarray, reached: Reached) -> dict[st
 
 
 def class_at(scene: Scene, points_m: np.ndarray) -> np.ndarray:
-    """Return the class of the block that holds each room point [N, 3]; 0 where there is none."""
+    """Return the class of the block at each room point [N, 3], or 0 without a block."""
     blocks = np.floor(apply(invert(scene.block_to_room), points_m) - scene.corner + 1e-9)
     inside = np.asarray(((blocks >= 0) & (blocks < scene.semantic.shape)).all(axis=1))
     at = np.where(inside[:, None], blocks, 0).astype(np.int64)
@@ -86,7 +86,16 @@ def class_at(scene: Scene, points_m: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class TrueRoom:
-    """The truth as it looks in the estimated frame, in a box of cells that holds all of it."""
+    """The ground truth in the estimated frame, in a box of cells that contains all of it.
+
+    Attributes:
+        truth: The ground truth.
+        frames: The frames used.
+        truth_to_room: The transform to the estimated frame as float64 [4, 4].
+        reached: The cells that rays reached.
+        labels: The true labels as uint8 of the shape of ``reached.flags``.
+        objects: The true objects in the estimated frame.
+    """
 
     truth: Truth
     frames: tuple[UsedFrame, ...]
@@ -97,14 +106,14 @@ class TrueRoom:
 
 
 def evaluate_reconstruction(out: Path, truth: Path) -> dict[str, Any]:
-    """Return the scores of a finished run, and the few of them that a page shows first.
+    """Return the scores of a finished run, with a headline of the most important ones.
 
     Args:
-        out: the folder of the run.
-        truth: the folder of the capture with its ``truth.npz`` and ``truth.json``.
+        out: The folder of the run.
+        truth: The folder of the capture with ``truth.npz`` and ``truth.json``.
 
     Raises:
-        InputError: a file of the run or of the truth is missing or damaged.
+        InputError: If a file of the run or of the ground truth is missing or damaged.
     """
     known = truth_of_run(out, truth)
     grid, scan_to_room = read_room(out / "room.npz")
@@ -114,13 +123,13 @@ def evaluate_reconstruction(out: Path, truth: Path) -> dict[str, Any]:
 def see_truth(
     truth: Truth, frames: Sequence[UsedFrame], scan_to_room: np.ndarray, voxel_m: float
 ) -> TrueRoom:
-    """Carry the truth into an estimated frame.
+    """Transform the ground truth to an estimated frame.
 
     Args:
-        truth: the room.
-        frames: the used ones, whose rays tell which cells can be known.
-        scan_to_room: 4x4 rigid, as the run estimated it.
-        voxel_m: the cells to carry it into.
+        truth: The ground truth.
+        frames: The frames used, whose rays determine the observable cells.
+        scan_to_room: The rigid 4x4 transform that the run estimated.
+        voxel_m: The cell size in metres.
     """
     truth_to_room = scan_to_room @ truth.truth_to_scan
     reached = reached_cells(truth, frames, truth_to_room, voxel_m)
@@ -139,7 +148,7 @@ def see_truth(
 
 
 def score_run(out: Path, room: TrueRoom) -> dict[str, Any]:
-    """Return the scores of a run whose truth was already carried into its frame."""
+    """Return the scores of a run, given the ground truth in its frame."""
     grid, _ = read_room(out / "room.npz")
     facts = cell_facts(grid, room)
     instances = read_objects(out / "objects.json", grid)
@@ -158,7 +167,7 @@ def score_run(out: Path, room: TrueRoom) -> dict[str, Any]:
 
 
 def cell_facts(grid: OccupancyGrid, room: TrueRoom) -> dict[str, Any]:
-    """Return the scores of a grid's cells."""
+    """Return the scores of the cells of a grid."""
     labels = placed(grid.labels, grid, room.reached, UNKNOWN)
     source = placed(grid.source, grid, room.reached, 0)
     confidence = placed(grid.confidence, grid, room.reached, 0)
@@ -190,9 +199,10 @@ def cell_facts(grid: OccupancyGrid, room: TrueRoom) -> dict[str, Any]:
 
 
 def error_facts(labels: np.ndarray, true: np.ndarray, scored: np.ndarray) -> dict[str, Any]:
-    """Return where exact IoU is lost: how many scored cells were missed and added, by class.
+    """Return the number of missed and added cells, in total and by class.
 
-    A missed cell was called free or left unknown; an added one is empty and was called occupied.
+    A missed cell is occupied but was predicted as free or unknown. An added cell is empty but was
+    predicted as occupied.
     """
     missed = scored & (true > 0) & ((labels == 0) | (labels == UNKNOWN))
     added = scored & (true == 0) & (labels > 0) & (labels != UNKNOWN)
@@ -206,7 +216,7 @@ def error_facts(labels: np.ndarray, true: np.ndarray, scored: np.ndarray) -> dic
 
 
 def _by_class(labels: np.ndarray) -> dict[str, int]:
-    """Return how many of some labels are of each class; classes without any are left out."""
+    """Return the number of labels of each class, without absent classes."""
     counts = np.bincount(labels, minlength=CLASS_COUNT)
     return {CLASS_NAMES[n]: int(counts[n]) for n in range(1, CLASS_COUNT) if counts[n]}
 
@@ -217,9 +227,9 @@ def _calibration(confidence: np.ndarray, right: np.ndarray) -> dict[str, Any]:
 
 
 def placed(values: np.ndarray, grid: OccupancyGrid, reached: Reached, fill: int) -> np.ndarray:
-    """Return values [X, Y, Z] of a grid in the box of ``reached``; ``fill`` where it has none.
+    """Copy values [X, Y, Z] of a grid to the box of ``reached``, padded with ``fill``.
 
-    Cells of the grid outside of the box are left out: no ray came there.
+    Cells of the grid outside the box are dropped, because no ray reached them.
     """
     result = np.full(reached.flags.shape, fill, values.dtype)
     start = np.round(grid.origin_m / grid.voxel_m).astype(np.int64) - reached.low
@@ -233,7 +243,7 @@ def placed(values: np.ndarray, grid: OccupancyGrid, reached: Reached, fill: int)
 
 
 def headline(facts: dict[str, Any]) -> dict[str, str]:
-    """Return the few scores that a page shows first, as text."""
+    """Return the most important scores as text."""
     surface, occupancy, objects = (
         facts[name] for name in ("surface_within_one_voxel", "occupancy", "objects")
     )

@@ -1,9 +1,11 @@
-"""What each stage loses: the same scan with truth put in after each, the rest of the way real.
+"""Losses of each reconstruction stage, measured by inserting ground truth after it.
 
-After **alignment**: true poses, true depth scales and the true room frame. After **fusion**: true
-geometry, with the votes of the real label images. After **labels**: true labels on those cells.
-After **instances**: the true objects' cells and boxes. After **templates**: furniture of the true
-boxes and turns. A stage costs what the run before it scores less than the run after it.
+After **alignment**, the poses, depth scales and room frame are true. After **fusion**, the geometry
+is true, with votes from the real label images. After **labels**, the labels of these cells are
+true.
+After **instances**, the cells and boxes of objects are true. After **templates**, furniture has the
+true boxes and orientations. The later stages run normally. The loss of a stage is the difference of
+scores with ground truth inserted after it and after the preceding stage.
 """
 
 import tempfile
@@ -41,20 +43,21 @@ AFTER = ("alignment", "fusion", "labels", "instances", "templates")
 
 
 def recorded_parameters(out: Path) -> Parameters:
-    """Return the parameters of the run in ``out``; what it did not know of has its default.
+    """Return the recorded parameters of a run, with defaults for missing ones.
 
     Raises:
-        InputError: there is no manifest. DamagedFileError: it holds no parameters.
+        InputError: If the manifest is missing.
+        DamagedFileError: If the manifest contains no valid parameters.
     """
     path = out / "manifest.json"
     try:
         return _restored(Parameters(), read_json(path)["parameters"])
     except (KeyError, TypeError, ValueError, UsageError) as error:
-        raise DamagedFileError(path, f"holds no parameters ({error})") from error
+        raise DamagedFileError(path, f"does not contain valid parameters ({error})") from error
 
 
 def _restored(default: Any, stated: dict[str, Any]) -> Any:
-    """Return a dataclass with the values that JSON states of it, inner ones too."""
+    """Return a dataclass with the values from JSON data, including nested ones."""
     changes = {}
     for entry in fields(default):
         if entry.name in stated:
@@ -69,17 +72,17 @@ def _restored(default: Any, stated: dict[str, Any]) -> Any:
 
 @dataclass(eq=False)
 class TrueViews:
-    """A capture's views with the poses and the depth scales that they truly have."""
+    """The views of a capture with their true poses and depth scales."""
 
     views: Any
     truth: Truth
 
     def __len__(self) -> int:
-        """The number of views."""
+        """Return the number of views."""
         return len(self.views)
 
     def __iter__(self) -> Iterator[View]:
-        """Read the views from the first."""
+        """Iterate over the views from the first one."""
         poses, scales = self.truth.camera_to_truth or {}, self.truth.depth_scale or {}
         for view in self.views:
             true = poses.get(view.name)
@@ -91,19 +94,18 @@ class TrueViews:
 
 
 def stage_losses(out: Path, truth: Path, *, progress: Progress = no_progress) -> dict[str, Any]:
-    """Return the scores of the run in ``out`` with truth put in after each stage.
+    """Return the scores of a run with ground truth inserted after each stage.
 
     Args:
-        out: the folder of a finished run; it is left as it is.
-        truth: the folder of the capture with its truth.
-        progress: called with the stage ``truth``.
+        out: The folder of a finished run, which is not modified.
+        truth: The folder of the capture with its ground truth.
+        progress: Called with the stage ``truth``.
 
     Returns:
-        The facts of ``score_run`` by the name of the stage after which truth was put in, in the
-        order of the stages.
+        The results of ``score_run`` by the stage after which the ground truth was inserted.
 
     Raises:
-        InputError: a file of the run or of the truth is missing or damaged.
+        InputError: If a file of the run or of the ground truth is missing or damaged.
     """
     case = open_case(out, truth)
     facts = {}
@@ -118,9 +120,10 @@ def stage_losses(out: Path, truth: Path, *, progress: Progress = no_progress) ->
 
 
 def allowed_cells(out: Path, truth: Path) -> dict[str, Any]:
-    """Return the cell scores that the truth's own geometry allows the labeller of a run.
+    """Return the cell scores that a run's labelling stage achieves with true geometry.
 
-    It is what ``stage_losses`` says of truth put in after fusion, without the stages after labels.
+    The result equals that of ``stage_losses`` after fusion, without running the stages after
+    labels.
     """
     case = open_case(out, truth)
     with tempfile.TemporaryDirectory() as name:
@@ -133,7 +136,13 @@ def allowed_cells(out: Path, truth: Path) -> dict[str, Any]:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A run whose truth is put in: its parameters, its scan in the true frame, the true room."""
+    """A run prepared for the insertion of ground truth.
+
+    Attributes:
+        parameters: The parameters of the run.
+        scan: The scan in the true frame.
+        room: The ground truth.
+    """
 
     parameters: Parameters
     scan: Scan
@@ -141,7 +150,11 @@ class Case:
 
 
 def open_case(out: Path, truth: Path) -> Case:
-    """Open the capture of a run in the true frame. Raises InputError."""
+    """Open the capture of a run in the true frame.
+
+    Raises:
+        InputError: If a file of the run or of the ground truth is missing or damaged.
+    """
     known = truth_of_run(out, truth)
     parameters = recorded_parameters(out)
     frames = used_frames(out, known)
@@ -159,7 +172,7 @@ def open_case(out: Path, truth: Path) -> Case:
 
 
 def _true_size(truth: Truth, otherwise: np.ndarray) -> np.ndarray:
-    """Return the sides of the box that holds all true rooms, from the frame's origin."""
+    """Return the size of the box around all true rooms, from the origin of the frame."""
     if not truth.layouts:
         return otherwise
     corners = np.concatenate([layout.floor_polygon_m for layout in truth.layouts])
@@ -212,7 +225,7 @@ _PUT_IN: dict[str, Callable[[Case, Path], None]] = {
 
 
 def _go_on(case: Case, work: Path, first: str) -> None:
-    """Run the real stages from ``first`` on."""
+    """Run the real stages, starting with ``first``."""
     names = list(FILE_STAGES)
     for name in names[names.index(first) :]:
         FILE_STAGES[name](work, case.parameters)

@@ -1,7 +1,7 @@
-"""``truth.npz`` and ``truth.json``: what a scan should have given, and no sensor knows.
+"""Reading of the ground truth files ``truth.npz`` and ``truth.json``.
 
-They lie beside a virtual scan, or anywhere else where ``truth.json`` says where the scan is
-(``capture``, a path from its own folder).
+The files are in the folder of a virtual scan, or in another folder if ``truth.json`` contains the
+path of the scan (``capture``, relative to that folder).
 """
 
 from dataclasses import dataclass
@@ -21,14 +21,27 @@ ARRAYS = ("labels", "voxel_m", "origin_m", "truth_room_to_scan")
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """The room that was scanned, in its own frame; ``truth_to_scan`` carries it to the capture's.
+    """The ground truth of a scanned room in its own frame.
 
-    ``camera_to_truth`` holds the true pose of each frame by name; it is empty for truths written
-    before poses were kept, and the stated poses stand for them then.
+    With ``surface``, the ground truth is a scanned surface, such as the mesh of a data set, instead
+    of a
+    generated room. Such a ground truth is partial: cells with 255 are unknown and not scored, and
+    orientations, openings and rooms are unknown.
 
-    ``surface`` is there where the truth is a scanned surface, such as a data set's mesh, and not a
-    room that was generated. Such a truth is partial: cells that are 255 are known by nobody and
-    not looked at, and it tells no fronts, no openings and no rooms.
+    Attributes:
+        folder: The folder of the files.
+        labels: The labels as uint8 [A, B, C].
+        voxel_m: The cell size in metres.
+        origin_m: The minimum corner of the grid as float64 [3].
+        truth_to_scan: The transform to the frame of the capture as float64 [4, 4].
+        objects: The true objects.
+        layouts: The true rooms.
+        camera_to_truth: The true pose of each frame by name. None in old files, for which the
+            recorded
+            poses are used.
+        depth_scale: The depth scale error of each frame by name, or None.
+        surface: The surface cells as bool [A, B, C], or None for a generated room.
+        capture: The folder of the capture.
     """
 
     folder: Path
@@ -53,16 +66,19 @@ class Truth:
             shape = self.labels.shape
             put(self, "surface", checks.array("surface", self.surface, np.bool_, shape))
             if ((self.labels > 0) & (self.labels != UNKNOWN) & ~self.surface).any():
-                raise ValueError("surface must hold every cell that has a class")
+                raise ValueError("surface must include every cell that has a class")
 
     @property
     def is_partial(self) -> bool:
-        """Whether it knows a scanned surface alone."""
+        """Whether only a scanned surface is known."""
         return self.surface is not None
 
     @property
     def solid(self) -> np.ndarray:
-        """What rays end at: uint8 [A, B, C], 0 where they pass; surface without a class is objs."""
+        """The cells that stop rays, as uint8 [A, B, C] with 0 for free cells.
+
+        Surface cells without a class have the class objs.
+        """
         if self.surface is None:
             return self.labels
         solid = np.where(self.surface, self.labels, np.uint8(0))
@@ -71,17 +87,18 @@ class Truth:
 
 
 def read_truth(folder: Path) -> Truth:
-    """Read ``truth.npz`` and ``truth.json`` of a capture.
+    """Read ``truth.npz`` and ``truth.json`` from a folder.
 
     Raises:
-        InputError: a file is missing. DamagedFileError: it is no truth.
+        InputError: If a file is missing.
+        DamagedFileError: If a file is not a valid ground truth.
     """
     path = folder / "truth.npz"
     if not path.is_file():
         raise InputError(
             path,
-            "is not there; a truth lies beside what `w2m rooms scan` writes, and `w2m evaluate "
-            "scannet` makes one of a ScanNet scene",
+            "ground truth not found; w2m rooms scan writes it, and w2m evaluate scannet "
+            "creates it for a ScanNet scene",
         )
     stated = read_json(folder / "truth.json")
     try:
@@ -89,7 +106,9 @@ def read_truth(folder: Path) -> Truth:
         layouts = _layouts(stated)
         capture = folder / str(stated.get("capture", ""))
     except (KeyError, TypeError, ValueError, AttributeError, UnknownNameError) as error:
-        raise DamagedFileError(folder / "truth.json", f"is no truth ({error})") from error
+        raise DamagedFileError(
+            folder / "truth.json", f"not a valid ground truth ({error})"
+        ) from error
     arrays = read_npz(path, ARRAYS)
     try:
         return Truth(
@@ -106,19 +125,21 @@ def read_truth(folder: Path) -> Truth:
             capture=capture,
         )
     except (TypeError, ValueError) as error:
-        raise DamagedFileError(path, f"is no truth ({error})") from error
+        raise DamagedFileError(path, f"not a valid ground truth ({error})") from error
 
 
 def read_instances(truth: Truth) -> np.ndarray:
-    """Return uint16 [A, B, C]: 0 or n for the n-th of ``truth.objects``; read when asked for.
+    """Read the true instances as uint16 [A, B, C]: n for the n-th of ``truth.objects``, or 0.
 
     Raises:
-        DamagedFileError: there is none, or it has another shape than the labels.
+        DamagedFileError: If the array is missing, or its shape differs from that of the labels.
     """
     path = truth.folder / "truth.npz"
     instance = read_npz(path, ("instance",))["instance"]
     if instance.shape != truth.labels.shape:
-        raise DamagedFileError(path, f"instance {instance.shape} is not of the labels' shape")
+        raise DamagedFileError(
+            path, f"instance has shape {instance.shape}, which differs from the shape of the labels"
+        )
     return instance
 
 
@@ -129,7 +150,7 @@ def _object(row: dict[str, Any]) -> LayoutObject:
 
 
 def _layouts(stated: dict[str, Any]) -> tuple[Layout, ...]:
-    """Return the rooms; an old truth states the sides of its one room alone."""
+    """Return the rooms. Old files only contain the size of a single room."""
     if "layouts" in stated:
         return tuple(layout_from_json(row) for row in stated["layouts"])
     if "size_m" not in stated:
@@ -144,12 +165,12 @@ def _surface(path: Path) -> np.ndarray | None:
 
 
 def _by_frame(path: Path, key: str, shape: tuple[int, ...]) -> Any:
-    """Return an array [F, ...] of the truth as a dictionary by frame; None where it has none."""
+    """Return an array [F, ...] as a mapping by frame, or None if it is missing."""
     names = npz_array_names(path)
     if key not in names or "frame_names" not in names:
         return None
     arrays = read_npz(path, ("frame_names", key))
     frames, values = [str(name) for name in arrays["frame_names"]], arrays[key]
     if values.shape != (len(frames), *shape) or not np.isfinite(values).all():
-        raise ValueError(f"{key} must be one of {shape} for each of {len(frames)} frames")
+        raise ValueError(f"{key} must have shape {shape} for each of the {len(frames)} frames")
     return dict(zip(frames, values.astype(np.float64), strict=True))

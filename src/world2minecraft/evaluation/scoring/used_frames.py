@@ -1,4 +1,4 @@
-"""The frames that a run used: their cameras, where they truly stood, and where it was said."""
+"""The frames used by a run, with their cameras, true poses and recorded poses."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +19,15 @@ MIN_POSED = 3
 
 @dataclass(frozen=True, eq=False)
 class UsedFrame:
-    """One frame; the camera is that of the depth, or of the colour where there is no depth."""
+    """A frame with its camera poses, all as float64 [4, 4].
+
+    Attributes:
+        name: The name of the frame.
+        camera: The depth camera, or the colour camera if there is no depth.
+        camera_to_truth: The true pose of ``camera``.
+        colour_to_truth: The true pose of the colour camera.
+        camera_to_scan: The pose of ``camera`` as recorded in the capture.
+    """
 
     name: str
     camera: Camera
@@ -29,32 +37,36 @@ class UsedFrame:
 
 
 def used_frames(out: Path, truth: Truth) -> tuple[UsedFrame, ...]:
-    """Return the frames that the run in ``out`` used, in its order.
+    """Return the frames that a run used, in order.
 
     Raises:
-        InputError: ``out`` has no ``scan.json``. CaptureError: no capture lies beside the truth.
-        DamagedFileError: the run used a frame that the capture does not have.
+        InputError: If the run has no ``scan.json``.
+        CaptureError: If the capture of the ground truth is not found.
+        DamagedFileError: If the run used a frame that the capture does not contain.
     """
     path = out / "scan.json"
     try:
         names = [str(name) for name in read_json(path)["frames_used"]]
     except (KeyError, TypeError) as error:
-        raise DamagedFileError(path, f"has no list frames_used ({error})") from error
+        raise DamagedFileError(
+            path, f"the list frames_used is missing or not valid ({error})"
+        ) from error
     frames = {frame.name: frame for frame in find_capture(computed(out) or truth.capture).frames}
     strange = [name for name in names if name not in frames]
     if strange:
         raise DamagedFileError(
             path,
-            f"used frame {strange[0]!r}, which {truth.capture} does not have; another capture?",
+            f"frame {strange[0]!r} was used, but {truth.capture} does not contain it; "
+            "score against the capture of this run",
         )
     return tuple(_used(frames[name], truth) for name in names)
 
 
 def all_frames(truth: Truth) -> tuple[UsedFrame, ...]:
-    """Return every frame of a truth's capture that has a camera and a pose.
+    """Return all frames with a camera and a pose in the capture of a ground truth.
 
     Raises:
-        CaptureError: no capture lies where the truth says.
+        CaptureError: If the capture is not found.
     """
     true = truth.camera_to_truth or {}
     return tuple(
@@ -67,18 +79,20 @@ def all_frames(truth: Truth) -> tuple[UsedFrame, ...]:
 
 
 def computed(out: Path) -> Path | None:
-    """Return the capture that a run completed before it read it, None where it had all."""
+    """Return the capture that a run completed before reading it, or None."""
     return out / COMPUTED if (out / COMPUTED / "capture.json").is_file() else None
 
 
 def truth_of_run(out: Path, folder: Path) -> Truth:
-    """Return the truth of a run, in the frame that its poses are in.
+    """Return the ground truth of a run in the frame of its poses.
 
-    Poses that were computed from photos have a frame of their own; the truth is laid upon it by a
-    turn and a shift, so that a wrong scale stays a fault.
+    Poses computed from photos have their own frame. The ground truth is aligned to it by a rotation
+    and
+    a translation only, so that a wrong scale remains an error.
 
     Raises:
-        InputError: a file is missing. DamagedFileError: it is no truth, or of other photos.
+        InputError: If a file is missing.
+        DamagedFileError: If a file is not a valid ground truth, or belongs to other photos.
     """
     known, place = read_truth(folder), computed(out)
     if place is None:
@@ -86,14 +100,16 @@ def truth_of_run(out: Path, folder: Path) -> Truth:
     true = known.camera_to_truth or {}
     posed = [f for f in find_capture(place).frames if f.name in true]
     if len(posed) < MIN_POSED:
-        raise DamagedFileError(folder / "truth.npz", "tells no poses of the photos that were used")
+        raise DamagedFileError(
+            folder / "truth.npz", "poses of the used photos are missing; scan the room again"
+        )
     stated = [np.asarray(frame.camera_to_world, np.float64) for frame in posed]
     common = common_move([true[frame.name] for frame in posed], stated)
     return replace(known, truth_to_scan=common)
 
 
 def common_move(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the rigid 4x4 that carries poses [4, 4] of one frame to another best on average."""
+    """Return the rigid 4x4 transform between two sequences of poses [4, 4], best on average."""
     between = np.mean([b[:3, :3] @ a[:3, :3].T for a, b in zip(one, other, strict=True)], axis=0)
     left, _, right = np.linalg.svd(between)
     move = np.eye(4)

@@ -1,8 +1,8 @@
-"""Quality of a single picture without a reference: NIQE, PIQE and the variance of its Laplacian.
+"""No-reference image quality: NIQE, PIQE and the variance of the Laplacian.
 
-All take uint8 pictures, [H, W] or [H, W, 3] in sRGB, and return one number. None knows rendered
-pictures: NIQE and PIQE are models of photographs, and the Laplacian counts the edges of blocks as
-sharpness.
+All functions accept uint8 images, [H, W] or [H, W, 3] in sRGB, and return one number. None of them
+was designed for rendered images: NIQE and PIQE are models of photographs, and the Laplacian counts
+the edges of blocks as sharpness.
 """
 
 from world2minecraft.evaluation.metrics.image_quality.laplacian import laplacian, laplacian_variance

@@ -1,9 +1,9 @@
-"""LV, the variance of the Laplacian: how much fine detail a picture has, noise included.
+"""The variance of the Laplacian (LV), a measure of fine detail including noise.
 
-The value depends on the kernel (a photo's at ksize 5 is some 800 times that at ksize 1) and on the
-resolution, so neither may be left out where it is told. The paper names none; of the usual
-kernels only ksize 5 makes its values those of pictures (57,369 for NYUv2; at ksize 1 or 3 that
-would be white noise).
+The value depends on the kernel (for a photo, ksize 5 gives about 800 times the value of ksize 1)
+and on the resolution, so both must be reported. The paper does not state the kernel. Of the usual
+ones, only ksize 5 is consistent with its values (57,369 for NYUv2, which at ksize 1 or 3 would be
+white noise).
 """
 
 import numpy as np
@@ -23,20 +23,21 @@ _KERNELS = {
 
 
 def laplacian(picture: np.ndarray, kernel_size: int = PAPER_KERNEL_SIZE) -> np.ndarray:
-    """Return a picture's Laplacian, float64 [H, W] of whole numbers.
+    """Return the Laplacian of an image as float64 [H, W] with integer values.
 
-    It equals ``cv2.Laplacian(grey, cv2.CV_64F, ksize=kernel_size)``, whose border mirrors the
-    picture without its outermost pixels (``BORDER_REFLECT_101``).
+    The result equals ``cv2.Laplacian(grey, cv2.CV_64F, ksize=kernel_size)``, which mirrors the
+    image at
+    its border without repeating the outermost pixels (``BORDER_REFLECT_101``).
 
     Args:
-        picture: uint8 [H, W] or [H, W, 3], sRGB.
+        picture: The image as uint8 [H, W] or [H, W, 3] in sRGB.
         kernel_size: 1, 3, 5 or 7.
 
     Raises:
-        ValueError: another kernel size, shape or type.
+        ValueError: If the kernel size, shape or type is not supported.
     """
     if kernel_size not in _KERNELS:
-        raise ValueError(f"kernel_size is one of {KERNEL_SIZES}, not {kernel_size!r}")
+        raise ValueError(f"kernel_size must be one of {KERNEL_SIZES}, got {kernel_size!r}")
     smooth, second = _KERNELS[kernel_size]
     values = to_grey(picture).astype(np.int32)  # The largest sum is 255 * 64 * 16: no overflow.
     along_y = _across(_across(values, second, axis=0), smooth, axis=1)
@@ -45,7 +46,14 @@ def laplacian(picture: np.ndarray, kernel_size: int = PAPER_KERNEL_SIZE) -> np.n
 
 
 def laplacian_variance(picture: np.ndarray, kernel_size: int = PAPER_KERNEL_SIZE) -> float:
-    """Return the variance of a picture's Laplacian. Arguments and errors are ``laplacian``'s.
+    """Return the variance of the Laplacian of an image.
+
+    Args:
+        picture: The image as uint8 [H, W] or [H, W, 3] in sRGB.
+        kernel_size: 1, 3, 5 or 7.
+
+    Raises:
+        ValueError: If the kernel size, shape or type is not supported.
 
     Example:
         >>> laplacian_variance(np.full((8, 8), 7, np.uint8))

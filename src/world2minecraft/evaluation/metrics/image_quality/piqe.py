@@ -1,9 +1,10 @@
-"""PIQE: the share of a picture's lively blocks that is distorted, 0 to 100. Lower is better.
+"""PIQE: the share of distorted blocks in an image, 0 to 100. Lower is better.
 
 N. Venkatanath, D. Praneeth, M. C. Bh, S. S. Channappayya, S. S. Medasani: Blind image quality
-evaluation using perception based features, National Conference on Communications, 2015. Blocks of
-16 pixels that are lively enough are looked at; one with an even stretch on its rim counts as
-blocky, one whose middle is no steadier than its surround as noisy. No training is involved.
+evaluation using perception based features, National Conference on Communications, 2015. Only blocks
+of 16 x 16 pixels with sufficient variance are assessed. A block with a uniform segment at its edge
+counts as blocky, and a block whose centre varies as much as its surround counts as noisy. The
+method requires no training.
 """
 
 from typing import NamedTuple
@@ -20,7 +21,14 @@ STRETCH_PX = 6
 
 
 class BlockFaults(NamedTuple):
-    """What was found of each block, [rows, columns]."""
+    """The assessment of each block, [rows, columns].
+
+    Attributes:
+        variance: The variance as float64.
+        lively: Whether the block has sufficient variance to be assessed, as bool.
+        blocky: Whether the block is blocky, as bool.
+        noisy: Whether the block is noisy, as bool.
+    """
 
     variance: np.ndarray  # float64
     lively: np.ndarray  # bool: the block is looked at
@@ -29,13 +37,13 @@ class BlockFaults(NamedTuple):
 
 
 def piqe(picture: np.ndarray) -> float:
-    """Return a picture's PIQE. A picture without any lively block has 100.
+    """Return the PIQE score of an image, which is 100 without any block of sufficient variance.
 
     Args:
-        picture: uint8 [H, W] or [H, W, 3], sRGB.
+        picture: The image as uint8 [H, W] or [H, W, 3] in sRGB.
 
     Raises:
-        ValueError: the shape or type is another.
+        ValueError: If the shape or type is not supported.
 
     Example:
         >>> piqe(np.zeros((32, 32), np.uint8))
@@ -48,10 +56,15 @@ def piqe(picture: np.ndarray) -> float:
 
 
 def block_faults(picture: np.ndarray) -> BlockFaults:
-    """Return which blocks of a picture are lively, blocky and noisy.
+    """Assess the blocks of an image.
 
-    Blocks that reach over the right or lower edge are filled up by mirroring. Arguments and errors
-    are ``piqe``'s.
+    Incomplete blocks at the right and the bottom are padded by mirroring.
+
+    Args:
+        picture: The image as uint8 [H, W] or [H, W, 3] in sRGB.
+
+    Raises:
+        ValueError: If the shape or type is not supported.
     """
     grey = to_grey(picture)
     over = [(0, -side % BLOCK_PX) for side in grey.shape]
@@ -74,10 +87,11 @@ def _has_even_rim(blocks: np.ndarray) -> np.ndarray:
 
 
 def _is_noisy(blocks: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """Compare the deviation of a block with that of its two middle columns against the others.
+    """Compare the deviation of a block's two middle columns with that of its other columns.
 
-    The authors take the two middle columns out one after the other, so that the second removal
-    hits the column after; their scores, and so ours, contain that.
+    The authors' code removes the middle columns one after the other, so that the second removal
+    affects
+    the following column. This is reproduced here in order to obtain the same scores.
     """
     middle = BLOCK_PX // 2 - 1
     centre = blocks[..., middle : middle + 2].std(axis=(2, 3), ddof=1)

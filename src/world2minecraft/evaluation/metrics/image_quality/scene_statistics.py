@@ -1,11 +1,11 @@
-"""Natural scene statistics, the common ground of NIQE, PIQE and BRISQUE.
+"""Natural scene statistics, which NIQE, PIQE and BRISQUE share.
 
-``to_grey`` makes grey of colour as OpenCV does, to the last bit. ``normalise`` gives the
-mean-subtracted, contrast-normalised coefficients: the local mean and deviation are weighted by a
-7x7 Gaussian of sigma 7/6; in photographs what is left is close to a normal distribution, and
-distortions move it away (Mittal et al., 2013, eq. 1). An asymmetric generalised Gaussian describes
-a set of coefficients by four numbers, by moment matching after Lasmar, Stitou and Berthoumieu
-(2009).
+``to_grey`` converts colour to grey exactly as OpenCV does. ``normalise`` computes mean-subtracted,
+contrast-normalised coefficients with a local mean and deviation weighted by a 7x7 Gaussian of sigma
+7/6. In photographs, these coefficients have nearly a normal distribution, from which distortions
+deviate (Mittal et al., 2013, eq. 1). ``fit_asymmetric`` describes a set of coefficients by an
+asymmetric generalised Gaussian with four parameters, fitted by moment matching after Lasmar, Stitou
+and Berthoumieu (2009).
 """
 
 from typing import Literal, NamedTuple
@@ -33,15 +33,15 @@ _RATIOS = gamma(2 / _SHAPES) ** 2 / (gamma(1 / _SHAPES) * gamma(3 / _SHAPES))  #
 
 
 def to_grey(picture: np.ndarray) -> np.ndarray:
-    """Return the luma of a picture, uint8 [H, W]; a grey one is returned as it is.
+    """Return the luma of an image as uint8 [H, W]. A grey image is returned unchanged.
 
-    It equals ``cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)``.
+    The result equals ``cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)``.
 
     Args:
-        picture: uint8 [H, W] or [H, W, 3], sRGB.
+        picture: The image as uint8 [H, W] or [H, W, 3] in sRGB.
 
     Raises:
-        ValueError: the shape or type is another, or there is no pixel.
+        ValueError: If the shape or type is not supported, or the image is empty.
 
     Example:
         >>> to_grey(np.array([[[255, 0, 0], [0, 255, 0], [0, 0, 255]]], np.uint8)).tolist()
@@ -49,7 +49,7 @@ def to_grey(picture: np.ndarray) -> np.ndarray:
     """
     picture = np.asarray(picture)
     if not picture.size:
-        raise ValueError(f"picture must have a pixel, not shape {picture.shape}")
+        raise ValueError(f"an image must have at least one pixel, got shape {picture.shape}")
     if picture.ndim == 2:
         return checks.array("picture", picture, np.uint8, (None, None))
     checks.array("picture", picture, np.uint8, (None, None, 3))
@@ -61,11 +61,14 @@ Edges = Literal["nearest", "constant"]
 
 
 def normalise(grey: np.ndarray, edges: Edges = "nearest") -> tuple[np.ndarray, np.ndarray]:
-    """Return the coefficients and the local deviation of a picture, both float64 [H, W].
+    """Return the normalised coefficients and the local deviation of an image.
 
     Args:
-        grey: [H, W] of 0 to 255, any number type.
-        edges: what lies outside the picture: its ``nearest`` pixel, or black (``constant``).
+        grey: The image as [H, W] of any numeric type, 0 to 255.
+        edges: The padding outside the image: the ``nearest`` pixel, or black (``constant``).
+
+    Returns:
+        The coefficients and the deviation, both as float64 [H, W].
     """
     values = grey.astype(np.float64)
     mean = _smooth(values, edges)
@@ -81,7 +84,16 @@ def _smooth(values: np.ndarray, edges: Edges) -> np.ndarray:
 
 
 class Fitted(NamedTuple):
-    """What the fits of P sets gave, float64 [P] each; not finite where a set has only one sign."""
+    """The parameters of P fitted distributions, each as float64 [P].
+
+    The parameters are not finite if a set of coefficients has only one sign.
+
+    Attributes:
+        shape: The shape, 2 for a normal distribution and 1 for a Laplacian.
+        mean: The mean.
+        left: The scale of the negative values.
+        right: The scale of the positive values.
+    """
 
     shape: np.ndarray  # 2 for a normal distribution, 1 for a Laplacian
     mean: np.ndarray
@@ -90,11 +102,11 @@ class Fitted(NamedTuple):
 
 
 def fit_asymmetric(values: np.ndarray, zero_is_right: bool = False) -> Fitted:
-    """Fit one distribution to each row of ``values``, float64 [P, N].
+    """Fit an asymmetric generalised Gaussian to each row of ``values``.
 
     Args:
-        values: P sets of N coefficients.
-        zero_is_right: whether zeros count among the values over 0; else they count on no side.
+        values: P sets of N coefficients as float64 [P, N].
+        zero_is_right: Whether zeros count as positive values. If False, they count on neither side.
     """
     squares = values * values
     left = _root_mean(squares, values < 0)
@@ -110,13 +122,13 @@ def fit_asymmetric(values: np.ndarray, zero_is_right: bool = False) -> Fitted:
 
 
 def _root_mean(squares: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-    """Return the root of the mean over the chosen values of each row, nan where none is."""
+    """Return the root mean square of the selected values in each row, or nan if there are none."""
     sums = np.where(chosen, squares, 0.0).sum(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.sqrt(sums / chosen.sum(axis=1))
 
 
 def _nearest(ratios: np.ndarray) -> np.ndarray:
-    """Return the index of the nearest of ``_RATIOS`` for each."""
+    """Return the index of the nearest entry of ``_RATIOS`` for each value."""
     after = np.clip(np.searchsorted(_RATIOS, ratios), 1, len(_RATIOS) - 1)
     return after - (ratios - _RATIOS[after - 1] <= _RATIOS[after] - ratios)

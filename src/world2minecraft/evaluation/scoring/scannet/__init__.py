@@ -1,7 +1,8 @@
-"""A ScanNet scene's labelled mesh as a truth that a reconstruction of the scene is scored by.
+"""Ground truth from the labelled mesh of a ScanNet scene.
 
-``write_scannet_truth`` writes ``truth.npz`` and ``truth.json``. A mesh knows surfaces alone, so the
-truth is partial: what no camera saw through is 255 and not scored (docs/scan-benchmark.md).
+``write_scannet_truth`` writes ``truth.npz`` and ``truth.json``. Because a mesh contains only
+surfaces, this ground truth is partial: cells that no camera saw through have the label 255 and are
+not scored (docs/scan-benchmark.md).
 """
 
 from world2minecraft.evaluation.scoring.scannet.scannet_truth import (

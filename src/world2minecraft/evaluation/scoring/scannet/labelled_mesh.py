@@ -1,9 +1,9 @@
-"""What ScanNet publishes of a scene's truth: the labelled mesh, its segments, their groups.
+"""Reading of ScanNet's annotations of a scene: the labelled mesh, its segments and their groups.
 
-In: a folder with ``SCENE_vh_clean_2.labels.ply`` (``label`` of each vertex is an NYU40 number),
-``SCENE_vh_clean_2.0.010000.segs.json`` (``segIndices``: the segment of each vertex),
-``SCENE.aggregation.json`` (``segGroups``: which segments are one thing) and ``SCENE.txt``
-(``axisAlignment``). Out: one value, upright, with the floor at z = 0.
+The folder of a scene must contain ``SCENE_vh_clean_2.labels.ply`` (the NYU40 ``label`` of each
+vertex), ``SCENE_vh_clean_2.0.010000.segs.json`` (``segIndices``, the segment of each vertex),
+``SCENE.aggregation.json`` (``segGroups``, the segments of each object) and ``SCENE.txt``
+(``axisAlignment``). The result is upright, with the floor at z = 0.
 """
 
 from dataclasses import dataclass
@@ -39,10 +39,16 @@ OPENINGS = ("door", "doorframe", "doorway", "window")
 
 @dataclass(frozen=True, eq=False)
 class LabelledMesh:
-    """A scene's surface in the truth's frame: z up, walls along the axes, the floor at z = 0.
+    """The labelled surface of a scene: z up, walls along the axes, floor at z = 0.
 
-    ``instance`` is 0, or n for the n-th of ``objects``. Objects are boxes along the axes around
-    what was scanned of them; which way they look, nobody knows.
+    Attributes:
+        name: The name of the scene.
+        vertices_m: The vertices in metres as float64 [V, 3].
+        triangles: The vertex indices of the triangles as int64 [T, 3].
+        classes: The class of each vertex as uint8 [V], or 255 without an annotation.
+        instance: The number of each vertex's object in ``objects`` from 1, or 0, as uint16 [V].
+        objects: The axis-aligned boxes around the scanned parts of objects, without orientation.
+        truth_to_scan: The transform to the frame of the scan as float64 [4, 4].
     """
 
     name: str
@@ -55,25 +61,28 @@ class LabelledMesh:
 
 
 def labelled_meshes(scene: Path) -> list[Path]:
-    """Return the labelled meshes of a folder, none where it is no scene."""
+    """Return the labelled meshes in a folder."""
     return sorted(scene.glob(f"*{LABELLED}")) if scene.is_dir() else []
 
 
 def read_labelled_mesh(scene: Path) -> LabelledMesh:
-    """Read a scene's labelled mesh and its objects.
+    """Read the labelled mesh of a scene, and its objects.
 
     Raises:
-        InputError: a file is missing. DamagedFileError: two of them do not belong together.
-        CaptureError: the scene states no ``axisAlignment``, or labels that are not known.
+        InputError: If a file is missing.
+        DamagedFileError: If a file is invalid, or files do not belong together.
+        CaptureError: If the scene has no ``axisAlignment``, or has unknown labels.
     """
     path = _the_mesh(scene)
     name = path.name.removesuffix(LABELLED)
     file = read_ply(path)
     if not len(file.triangles):
-        raise DamagedFileError(path, "has no faces; copy it again")
+        raise DamagedFileError(path, "the mesh has no faces; copy the file again")
     places = np.stack([file.vertex[axis] for axis in "xyz"], axis=1).astype(np.float64)
     if not np.isfinite(places).all():
-        raise DamagedFileError(path, "has places that are no numbers (NaN, infinity)")
+        raise DamagedFileError(
+            path, "the mesh has vertex positions that are NaN or infinite; copy the file again"
+        )
     classes = _classes(path, scene, file.vertex)
     scan_to_truth = _alignment(scene / f"{name}.txt")
     upright = apply(scan_to_truth, places)
@@ -95,15 +104,20 @@ def _the_mesh(scene: Path) -> Path:
     if len(found) != 1:
         held = "several" if found else "no"
         raise InputError(
-            scene, f"holds {held} *{LABELLED}; give one scene of ScanNet's train or val split"
+            scene,
+            f"found {held} *{LABELLED} files, expected one; give a scene of ScanNet's "
+            "train or val split",
         )
     return found[0]
 
 
 def _classes(path: Path, scene: Path, columns: dict[str, np.ndarray]) -> np.ndarray:
-    """Return uint8 [V] classes: of NYU40 numbers, or of raw ids through ScanNet's table."""
+    """Return the classes as uint8 [V], from NYU40 numbers or from raw IDs with ScanNet's table."""
     if "label" not in columns:
-        raise DamagedFileError(path, "has no column label; take the mesh that ends with labels.ply")
+        raise DamagedFileError(
+            path,
+            "the vertices have no property 'label'; use the mesh whose name ends with labels.ply",
+        )
     values = np.nan_to_num(np.asarray(columns["label"], np.float64), nan=0, posinf=0, neginf=0)
     numbers = np.clip(values, 0, 65_535).astype(np.int64)
     most = int(numbers.max(initial=0))
@@ -112,7 +126,9 @@ def _classes(path: Path, scene: Path, columns: dict[str, np.ndarray]) -> np.ndar
     table = find_label_table([scene, scene.parent, scene.parent.parent])
     if table is None:
         raise CaptureError(
-            path, f"has labels up to {most}, ScanNet's raw ids: put {LABEL_TABLE} beside the scene"
+            path,
+            f"labels up to {most} are raw ScanNet IDs: put {LABEL_TABLE} beside the scene "
+            "to map them",
         )
     return raw_id_classes(table)[numbers]
 
@@ -121,51 +137,57 @@ def _alignment(path: Path) -> np.ndarray:
     found = axis_alignment(path, read_scene_info(path))
     if found is None:
         raise CaptureError(
-            path, "states no axisAlignment; scenes of the train and val splits have one"
+            path, "axisAlignment not found; scenes of the train and val splits contain it"
         )
     return found
 
 
 def _groups(scene: Path, name: str, vertices: int) -> list[tuple[str, np.ndarray]]:
-    """Return each group's name and its vertices, bool [V]."""
+    """Return the name of each group, and its vertices as bool [V]."""
     segments_path, groups_path = _segments_file(scene, name), scene / f"{name}.aggregation.json"
     for path in (segments_path, groups_path):
         if not path.is_file():
             raise InputError(
-                path, f"is not there; download-scannet.py --type {path.name.removeprefix(name)}"
+                path,
+                "not found; download it with download-scannet.py --type "
+                f"{path.name.removeprefix(name)}",
             )
     segment = _whole_numbers(segments_path, _field(segments_path, read_json(segments_path)))
     if len(segment) != vertices:
         raise DamagedFileError(
-            segments_path, f"tells {len(segment):,} vertices, and the mesh has {vertices:,}"
+            segments_path,
+            f"segIndices has {len(segment):,} entries, but the mesh has {vertices:,} vertices",
         )
     stated = read_json(groups_path)
     rows = stated.get("segGroups") if isinstance(stated, dict) else None
     if not isinstance(rows, list) or len(rows) > MAX_OBJECTS:
-        raise DamagedFileError(groups_path, "has no list segGroups; copy it again")
+        raise DamagedFileError(groups_path, "the list segGroups is missing; copy the file again")
     groups = []
     for number, row in enumerate(rows):
         held = row.get("segments") if isinstance(row, dict) else None
         if held is None:
-            raise DamagedFileError(groups_path, f"group {number} has no segments; copy it again")
+            raise DamagedFileError(
+                groups_path, f"group {number} has no segments; copy the file again"
+            )
         own = np.isin(segment, _whole_numbers(groups_path, held))
         if len(held) and not own.any():
             raise DamagedFileError(
-                groups_path, f"group {number} names segments that {segments_path.name} lacks"
+                groups_path,
+                f"group {number} refers to segments that {segments_path.name} does not contain",
             )
         groups.append((str(row.get("label", "")), own))
     return groups
 
 
 def _segments_file(scene: Path, name: str) -> Path:
-    """Return the segments of the labelled mesh; the number in its name is how they were cut."""
+    """Return the segments file of the labelled mesh."""
     found = sorted(scene.glob(f"{name}_vh_clean_2.*.segs.json"))
     return found[0] if found else scene / f"{name}_vh_clean_2.0.010000.segs.json"
 
 
 def _field(path: Path, stated: Any) -> Any:
     if not isinstance(stated, dict) or "segIndices" not in stated:
-        raise DamagedFileError(path, "has no list segIndices; copy it again")
+        raise DamagedFileError(path, "the list segIndices is missing; copy the file again")
     return stated["segIndices"]
 
 
@@ -173,13 +195,13 @@ def _whole_numbers(path: Path, values: Any) -> np.ndarray:
     try:
         return np.asarray(values, np.int64).reshape(-1)
     except (ValueError, TypeError, OverflowError) as error:
-        raise DamagedFileError(path, "has segments that are no whole numbers") from error
+        raise DamagedFileError(path, "segment IDs must be integers") from error
 
 
 def _objects(
     groups: list[tuple[str, np.ndarray]], places_m: np.ndarray, classes: np.ndarray
 ) -> tuple[np.ndarray, tuple[LayoutObject, ...]]:
-    """Return the object of each vertex, uint16 [V], and the objects; structure is none."""
+    """Return the object of each vertex as uint16 [V], and the objects without structure."""
     instance, objects = np.zeros(len(classes), np.uint16), []
     for name, own in groups:
         known = classes[own & (classes != UNKNOWN)]

@@ -1,14 +1,15 @@
-"""Make ``truth.npz`` and ``truth.json`` of a ScanNet scene.
+"""Creation of ``truth.npz`` and ``truth.json`` for a ScanNet scene.
 
-The labelled surface becomes fine voxels, each with the class and the object of most of it: a
-triangle is cut into pieces smaller than a voxel, and the middle of each, half a voxel deep in the
-matter, says which voxel it fills. So a wall whose face lies between two voxels fills the one behind
-it, as a solid wall does. Which way the matter lies is known by the order of a triangle's corners;
-the floor, whose matter lies below, shows whether a file counts them the other way round.
+The labelled surface is converted to fine voxels with the most frequent class and object in each.
+Triangles are divided into pieces smaller than a voxel, and the point half a voxel behind the centre
+of each piece determines the voxel to fill. A wall whose face is between two voxels therefore fills
+the rear one, like a solid wall. The order of a triangle's corners determines its rear side. Because
+the solid side of the floor is below it, the floor shows whether a file uses the opposite order.
 
-Free is what the cameras saw through. A ray counts where the mesh and the depth image agree on where
-it ends: where the sensor saw nothing (a screen, a window), or the mesh has a hole, nobody knows
-what the ray passed.
+Free voxels are those that the cameras saw through. A ray only counts if the mesh and the depth
+image
+agree on its end. Where the sensor measured nothing (a screen, a window) or the mesh has a hole, the
+free space along the ray is unknown.
 """
 
 from collections.abc import Iterator, Mapping
@@ -57,7 +58,14 @@ VOXEL_M = 0.02  # As the truth of generated rooms: a quarter of a cell.
 
 @dataclass(frozen=True, eq=False)
 class SurfaceVoxels:
-    """Voxels of a surface: its classes (255 none), which they are, and their objects."""
+    """The voxels of a surface.
+
+    Attributes:
+        labels: The classes as uint8 [A, B, C], or 255 without a surface or a class.
+        surface: The surface voxels as bool [A, B, C].
+        instance: The objects as uint16 [A, B, C].
+        origin_m: The minimum corner in metres, a multiple of the voxel size, as float64 [3].
+    """
 
     labels: np.ndarray  # uint8 [A, B, C], 255 where there is no surface or no class
     surface: np.ndarray  # bool [A, B, C]
@@ -66,21 +74,21 @@ class SurfaceVoxels:
 
 
 def surface_voxels(mesh: LabelledMesh, voxel_m: float) -> SurfaceVoxels:
-    """Return the voxels that a mesh fills.
+    """Convert a mesh to surface voxels.
 
     Args:
-        mesh: upright, in metres.
-        voxel_m: the side of a voxel.
+        mesh: The upright mesh in metres.
+        voxel_m: The voxel size in metres.
 
     Raises:
-        LimitError: it spans more voxels than are kept.
+        LimitError: If the mesh spans too many voxels.
     """
     low = np.floor(mesh.vertices_m.min(axis=0) / voxel_m).astype(np.int64) - MARGIN
     high = np.ceil(mesh.vertices_m.max(axis=0) / voxel_m).astype(np.int64) + MARGIN
     shape = high - low
     if np.prod(shape, dtype=np.float64) > MAX_CELLS:
         sides = " x ".join(f"{side * voxel_m:.0f}" for side in shape)
-        raise LimitError(mesh.name, f"spans {sides} m; that is no room")
+        raise LimitError(mesh.name, f"mesh spans {sides} m, too large for a single room")
     first, second, third = mesh.triangles.T
     chosen = np.where(mesh.classes[second] == mesh.classes[third], second, first)
     classes, instance = mesh.classes[chosen], mesh.instance[chosen]
@@ -102,22 +110,22 @@ def surface_voxels(mesh: LabelledMesh, voxel_m: float) -> SurfaceVoxels:
 
 
 class _Votes:
-    """Counts of values by voxel, summed up chunk by chunk."""
+    """Counts of values by voxel, collected in chunks."""
 
     def __init__(self) -> None:
         self.keys: list[np.ndarray] = []
         self.counts: list[np.ndarray] = []
 
     def add(self, at: np.ndarray, values: np.ndarray) -> None:
-        """Count values [N], under ``MAX_VALUES``, of the voxels with flat indices [N]."""
+        """Count the values [N], less than ``MAX_VALUES``, at the flat voxel indices [N]."""
         keys, counts = np.unique(at * MAX_VALUES + values, return_counts=True)
         self.keys.append(keys)
         self.counts.append(counts)
 
     def winners(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the flat indices of the voxels, and the value of each with most votes.
+        """Return the flat indices of the voxels, and the most frequent value of each.
 
-        The lowest of a tie wins.
+        In a tie, the lowest value is returned.
         """
         keys, group = np.unique(np.concatenate(self.keys), return_inverse=True)
         counts = np.bincount(group, np.concatenate(self.counts)).astype(np.int64)
@@ -128,7 +136,7 @@ class _Votes:
 
 
 def _normals(mesh: LabelledMesh, classes: np.ndarray) -> np.ndarray:
-    """Return unit normals float64 [T, 3] that look away from the matter; 0 of empty triangles."""
+    """Return outward unit normals as float64 [T, 3], with 0 for degenerate triangles."""
     corners = mesh.vertices_m[mesh.triangles]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     if cross[classes == SemanticClass.FLOOR, 2].sum() < 0:
@@ -137,7 +145,7 @@ def _normals(mesh: LabelledMesh, classes: np.ndarray) -> np.ndarray:
 
 
 def _pieces(corners: np.ndarray, longest_m: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield the middles float64 [P, 3] of small pieces and the triangles int64 [P] they are of."""
+    """Yield the centres of small pieces, float64 [P, 3], and their triangle indices, int64 [P]."""
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     chunk = (np.linalg.norm(cross, axis=1) / 2).cumsum() // CHUNK_M2
     starts = np.append(np.flatnonzero(np.diff(chunk, prepend=-1)), len(corners))
@@ -146,7 +154,7 @@ def _pieces(corners: np.ndarray, longest_m: float) -> Iterator[tuple[np.ndarray,
 
 
 def _cut(corners: np.ndarray, owner: np.ndarray, longest_m: float) -> tuple[np.ndarray, np.ndarray]:
-    """Halve triangles [T, 3, 3] at their longest sides until all are short."""
+    """Halve triangles [T, 3, 3] at their longest sides until all sides are short enough."""
     middles, owners = [], []
     while len(corners):
         sides = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
@@ -163,19 +171,21 @@ def _cut(corners: np.ndarray, owner: np.ndarray, longest_m: float) -> tuple[np.n
 
 
 def seen_free(truth: Truth, progress: Progress = no_progress) -> np.ndarray:
-    """Return bool [A, B, C]: the voxels of a truth that rays of its own capture passed.
+    """Return the voxels that rays of the capture passed through, as bool [A, B, C].
 
     Args:
-        truth: a scanned surface, whose ``capture`` has depth images and poses.
-        progress: called with the stage ``seen``.
+        truth: A scanned surface whose ``capture`` has depth images and poses.
+        progress: Called with the stage ``seen``.
 
     Raises:
-        CaptureError: the capture has no frame with a pose and depth.
+        CaptureError: If the capture has no frame with a pose and depth.
     """
     judged = validate_capture(truth.capture, ScanOptions())
     usable = [f for f in judged.frames if f.depth_path and f.camera_to_world is not None]
     if not usable:
-        raise CaptureError(truth.capture, "has no depth images with poses: give the scene's .sens")
+        raise CaptureError(
+            truth.capture, "no depth images with camera poses found; provide the scene's .sens file"
+        )
     frames = {frame.name: frame for frame in evenly_spaced(usable, MAX_FRAMES)}
     scan_to_truth = invert_rigid(truth.truth_to_scan)
     used = [_used(frame, scan_to_truth) for frame in frames.values()]
@@ -191,7 +201,7 @@ def _used(frame: FrameFiles, scan_to_truth: np.ndarray) -> UsedFrame:
     depth_to_scan = colour_to_scan @ frame.depth_to_colour
     camera = frame.depth_camera
     if camera is None:
-        raise CaptureError(frame.name, "has a depth image without a camera")
+        raise CaptureError(frame.name, "a depth image has no camera")
     truly = scan_to_truth @ depth_to_scan
     return UsedFrame(frame.name, camera, truly, scan_to_truth @ colour_to_scan, depth_to_scan)
 
@@ -199,7 +209,7 @@ def _used(frame: FrameFiles, scan_to_truth: np.ndarray) -> UsedFrame:
 def _agreed(
     frames: Mapping[str, FrameFiles], encoding: DepthEncoding, progress: Progress
 ) -> Believed:
-    """Return the question whether rays end where the depth image of their frame says."""
+    """Return a function that selects the rays that agree with the depth image of their frame."""
     done = {"frames": 0}
 
     def agreed(used: UsedFrame, depth_m: np.ndarray) -> np.ndarray:
@@ -223,7 +233,16 @@ def _agreed(
 
 @dataclass(frozen=True)
 class TruthMade:
-    """What a truth holds: sides in metres, surface in voxels, and how much of it has a class."""
+    """A summary of a ground truth.
+
+    Attributes:
+        name: The name of the scene.
+        size_m: The size of the surface in metres.
+        surface: The number of surface voxels.
+        annotated_share: The share of surface voxels that have a class.
+        free: The number of free voxels.
+        objects: The number of objects.
+    """
 
     name: str
     size_m: tuple[float, float, float]
@@ -234,10 +253,10 @@ class TruthMade:
 
 
 def scenes_in(place: Path) -> list[Path]:
-    """Return the scene at a place, or the scenes in it, by name.
+    """Return a ScanNet scene, or the scenes in a folder, sorted by name.
 
     Raises:
-        InputError: there are none.
+        InputError: If there are no scenes.
     """
     if labelled_meshes(place):
         return [place]
@@ -245,7 +264,7 @@ def scenes_in(place: Path) -> list[Path]:
     found = [folder for folder in inner if labelled_meshes(folder)]
     if not found:
         raise InputError(
-            place, "is no ScanNet scene, nor a folder of them: no *_vh_clean_2.labels.ply is there"
+            place, "no *_vh_clean_2.labels.ply found; give a ScanNet scene, or a folder of scenes"
         )
     return found
 
@@ -253,23 +272,24 @@ def scenes_in(place: Path) -> list[Path]:
 def write_scannet_truth(
     scene: Path, out: Path | None = None, progress: Progress = no_progress
 ) -> TruthMade:
-    """Write the truth of a scene.
+    """Create and write the ground truth of a ScanNet scene.
 
     Args:
-        scene: the folder with the ``.sens`` or exported frames and the labelled mesh.
-        out: where to write; None for the scene's own folder.
-        progress: called with the stages ``mesh`` and ``seen``.
+        scene: The folder with the labelled mesh, and the ``.sens`` file or exported frames.
+        out: The output folder. None uses the folder of the scene.
+        progress: Called with the stages ``mesh`` and ``seen``.
 
     Raises:
-        InputError: a file of the scene is missing or damaged. OutputError: ``out`` cannot be
-            written.
+        InputError: If a file of the scene is missing or damaged.
+        OutputError: If the output folder cannot be written.
     """
     progress("mesh", 0, 1, scene.name)
     mesh = read_labelled_mesh(scene)
     # Asked first: a mesh alone is a capture too, of another kind.
     if not any(SOURCES.load(name)().recognise(scene) for name in RECORDINGS):
         raise CaptureError(
-            scene, f"holds no frames; put {mesh.name}.sens or exported color/ depth/ pose/ there"
+            scene,
+            f"no frames found; add {mesh.name}.sens, or the exported folders color, depth and pose",
         )
     voxels = surface_voxels(mesh, VOXEL_M)
     progress("mesh", 1, 1, scene.name)
