@@ -341,7 +341,15 @@ class VlnScene:
         light: LightSettings = DAY,
         threads: int = 1,
     ) -> Picture:
-        """Render the view at a stance."""
+        """Render the view at a stance.
+
+        Args:
+            stance: The position and viewing direction.
+            camera: The camera.
+            outputs: The images to render, such as "colour", "depth", "semantic" or "instance".
+            light: The lighting.
+            threads: The number of rendering threads.
+        """
         pose = self.camera_to_room(stance)
         return render_volume(
             self.render_scene, camera, pose, outputs=outputs, light=light, threads=threads

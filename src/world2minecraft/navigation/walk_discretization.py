@@ -133,8 +133,8 @@ def _end_mismatch(follower: "_CornerFollower", end_m: np.ndarray, yaw_deg: float
     away_m = float(np.linalg.norm(follower.place_m - end_m))
     turn_deg = abs(float(wrap_deg(yaw_deg - follower.stance.yaw_deg)))
     if away_m > follower.step_m / 2 + SLACK_M:
-        return "ends elsewhere"
-    return "looks elsewhere" if turn_deg > follower.turn_deg / 2 + 1e-6 else ""
+        return "ends at another position"
+    return "ends with another heading" if turn_deg > follower.turn_deg / 2 + 1e-6 else ""
 
 
 class _CornerFollower:
@@ -197,10 +197,10 @@ class _CornerFollower:
 
     def _make(self, move: Move) -> None:
         if self.refusal or len(self.moves) >= MAX_MOVES:
-            self.refusal = self.refusal or f"takes over {MAX_MOVES} moves"
+            self.refusal = self.refusal or f"more than {MAX_MOVES} moves"
             return
         stance, collided = self._walker(self.stance, move)
         if collided:
-            self.refusal = "meets something"
+            self.refusal = "collision"
         self.moves.append(move)
         self.stances.append(stance)

@@ -119,13 +119,13 @@ def protocol_named(name: str) -> Protocol:
 def count_frame(
     protocol: Protocol, predicted: np.ndarray, known: KnownCells, within: np.ndarray | None = None
 ) -> ProtocolCounts:
-    """Count the cells of one frame.
+    """Count the cells of one frame by a protocol.
 
     Args:
         protocol: One of ``PROTOCOLS``.
         predicted: The predicted labels as uint8 [X, Y, Z], 0 to 11 or 255.
         known: The ground truth of the same cells.
-        within: The cells to which counting is limited, as bool [X, Y, Z].
+        within: The cells to which counting is limited, as bool [X, Y, Z]. None counts all.
 
     Raises:
         UsageError: If the protocol requires a mask that is unknown.

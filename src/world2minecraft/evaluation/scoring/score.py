@@ -255,5 +255,5 @@ def headline(facts: dict[str, Any]) -> dict[str, str]:
         "object F1": f"{objects['f1']:.2f}",
     }
     if objects["orientation_asked"]:
-        shown["orientation right"] = f"{objects['orientation_right']:.2f}"
+        shown["correct orientation"] = f"{objects['orientation_right']:.2f}"
     return shown

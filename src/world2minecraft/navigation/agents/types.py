@@ -60,10 +60,13 @@ class Task:
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """What an agent sees when it is asked to decide.
+    """The input of an agent for one decision.
 
-    ``done`` are the moves since it decided last, each with whether something was in the way;
-    ``stance`` is where it stands, as odometry without error reports it.
+    Attributes:
+        step: The number of moves made so far.
+        colour: The current view as uint8 [H, W, 3].
+        stance: The current position and heading, as reported by error-free odometry.
+        done: The moves since the last decision, each with whether it collided.
     """
 
     step: int  # moves made so far
@@ -74,11 +77,15 @@ class Observation:
 
 @dataclass(frozen=True)
 class Decision:
-    """What an agent decides: moves, made in turn, and why.
+    """The moves that an agent decides to make, with its reasoning.
 
-    ``outcome`` is ``moves``, or ``invalid`` where a model said nothing that can be read, or
-    ``failed`` where its server did not answer; then there are no moves, and none are made up.
-    ``details`` is for the trace, JSON.
+    Attributes:
+        moves: The moves in order. Empty unless ``outcome`` is "moves".
+        thought: The agent's reasoning.
+        progress: The agent's summary of its progress.
+        outcome: "moves", "invalid" if a model reply could not be parsed, or "failed" if the server
+            did not answer.
+        details: JSON data for the trace.
     """
 
     moves: tuple[Move, ...]

@@ -25,12 +25,20 @@ CHUNK_MOVES = 4  # So many next moves a keyframe tells: what agents are asked fo
 MAX_FORWARD_M = 1.0  # A guess: the next picture still shows what this one does.
 TURN_AROUND_DEG = 140.0  # Who turns farther turns around, by the left or by the right.
 MAX_TURN_DEG = 60.0  # Less than the width of a picture, for the same reason.
-NO_MOVEMENT = "goes nowhere"
+NO_MOVEMENT = "no movement"
 
 
 @dataclass(frozen=True)
 class KeyframeMark:
-    """A keyframe before it has a picture: its place among the moves and what follows."""
+    """A keyframe before its image is rendered.
+
+    Attributes:
+        at: The number of moves made before the keyframe.
+        stance: The position and heading.
+        move: The move of the following run, or STOP at the end.
+        run: The number of moves in the following run.
+        chunk: The next moves, at most ``CHUNK_MOVES``.
+    """
 
     at: int  # of the moves: this many were made
     stance: Stance
@@ -140,7 +148,7 @@ def path_fault(
     if not how.min_path_m <= path_m <= how.max_path_m:
         return "too short" if path_m < how.min_path_m else "too long"
     if apart_m < how.min_distance_m:
-        return "ends where it began"
+        return "ends near its start"
     if len(marks) < how.min_keyframes:
         return "too few keyframes"
     return "too many keyframes" if len(marks) > how.max_keyframes else ""
@@ -158,9 +166,9 @@ def picture_fault(
     """
     how = rule or ValidityRule()
     if min(means, default=0.0) < how.min_mean:
-        return "black picture"
+        return "black image"
     distances = [hash_distance(a, b) for a, b in pairwise(hashes)]
-    return "twice the same picture" if min(distances, default=64) < how.min_hash_bits else ""
+    return "repeated image" if min(distances, default=64) < how.min_hash_bits else ""
 
 
 def path_length_m(marks: Sequence[KeyframeMark], blocks_per_metre: float) -> float:

@@ -31,7 +31,16 @@ def vln_camera(width_px: int = SIZE[0], height_px: int = SIZE[1]) -> Camera:
 
 @dataclass(frozen=True, eq=False)
 class EncodedPicture:
-    """A picture in memory with what tells it from others."""
+    """A JPEG image in memory with the features for comparing it to others.
+
+    Attributes:
+        jpeg: The encoded image.
+        sha256: The SHA-256 of the JPEG.
+        mean: The mean grey value, 0 to 255.
+        dhash: The 64-bit difference hash.
+        detail: The standard deviation of the downscaled grey image.
+        small: The grey image as uint8, downscaled to ``COARSE_PX``.
+    """
 
     jpeg: bytes
     sha256: str
@@ -77,7 +86,7 @@ RenderViews = Callable[[Sequence[Stance]], list[EncodedPicture]]
 
 @dataclass(frozen=True)
 class StoredPicture:
-    """A picture of a set: where it lies, where it was taken and what tells it from others."""
+    """An image file of a set, with its stance and the features for comparing it to others."""
 
     image: str  # beside the records, POSIX
     stance: Stance

@@ -41,7 +41,7 @@ NO_REPLY, NO_BUDGET = "no reply", "no budget left"
 
 @dataclass(frozen=True)
 class NavigationSet:
-    """The records of a set, and the names of things in each scene."""
+    """The records of a set, and the names of the objects in each scene."""
 
     items: list[Item]
     trajectories: list[Trajectory]

@@ -61,7 +61,17 @@ MAX_TOURS = 60  # A scene that gives too little in so many gives no more.
 
 @dataclass(frozen=True)
 class SceneRule:
-    """How a scene is worked. ``levels`` are the shares of goal, route and landmark."""
+    """The options for building the items of a scene.
+
+    Attributes:
+        trajectories: The number of trajectories.
+        views: The maximum number of Next-View questions per trajectory.
+        move_set: The name of the move set.
+        levels: The shares of goal, route and landmark instructions.
+        balanced: Whether each trajectory has one Next-Action question per action.
+        size_px: The image size, width and height.
+        seed: The random seed.
+    """
 
     trajectories: int = 24
     views: int = 3  # Next-View questions of a trajectory, at most
@@ -74,7 +84,10 @@ class SceneRule:
 
 @dataclass
 class SceneItems:
-    """What came of a scene. Questions and pictures are by the trajectory's id."""
+    """The trajectories, questions and episodes of a scene.
+
+    Questions and images are grouped by trajectory ID.
+    """
 
     scene_id: str
     composition: str

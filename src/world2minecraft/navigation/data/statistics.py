@@ -122,7 +122,7 @@ def _evenness(items: Sequence[Item], task: str) -> float:
 def statistics_text(statistics: SetStatistics, leaks: Leaks) -> str:
     """Format the statistics: lengths beside those of the paper, splits, balance and leaks."""
     head = ("count", "mean", "std", "min", "25%", "50%", "75%", "max")
-    lines = [f"{'characters, by item':28}" + "".join(f"{word:>7}" for word in head)]
+    lines = [f"{'characters per item':28}" + "".join(f"{word:>7}" for word in head)]
     for task in TASKS[::-1]:
         for part in PARTS:
             own = tuple(asdict(statistics.characters[task, part]).values())
@@ -155,12 +155,13 @@ def _balance(statistics: SetStatistics) -> list[str]:
     for task in TASKS[::-1]:
         counts_line = _counts_text(statistics.letters[task])
         p = statistics.letter_p[task]
-        lines.append(f"{_TITLES[task] + ' answers':28}{counts_line}  (even by chance: p = {p:.2f})")
-    lines.append(f"{'right actions':28}{_counts_text(statistics.actions)}")
-    lines.append(f"{'wrong pictures':28}{_counts_text(statistics.kinds)}")
+        test = f"chi-squared test for uniformity: p = {p:.2f}"
+        lines.append(f"{_TITLES[task] + ' answers':28}{counts_line}  ({test})")
+    lines.append(f"{'correct actions':28}{_counts_text(statistics.actions)}")
+    lines.append(f"{'distractor kinds':28}{_counts_text(statistics.kinds)}")
     lines.append(f"{'grades':28}{_counts_text(statistics.grades)}")
-    lines.append(f"{'nearer than the right one':28}{_counts_text(statistics.ranks)}")
-    lines.append(f"{'levels of instructions':28}{_counts_text(statistics.levels)}")
+    lines.append(f"{'nearer distractors':28}{_counts_text(statistics.ranks)}")
+    lines.append(f"{'instruction levels':28}{_counts_text(statistics.levels)}")
     return lines
 
 
@@ -170,10 +171,10 @@ def _counts_text(counts: Mapping[str, int]) -> str:
 
 def _leaks(leaks: Leaks) -> list[str]:
     counts_line = (
-        f"{len(leaks.images)} pictures, {len(leaks.scenes)} scenes, "
+        f"{len(leaks.images)} images, {len(leaks.scenes)} scenes, "
         f"{len(leaks.trajectories)} walks, {len(leaks.instructions)} instructions"
     )
-    word = "train shares with the rest" if leaks.is_clean else "LEAK: train shares"
+    word = "shared with training" if leaks.is_clean else "LEAK: shared with training"
     return [f"{word:28}{counts_line}"]
 
 

@@ -112,7 +112,7 @@ class TrajectoryBuilder:
         return Candidate(name, tour_id, walk, tuple(marks), way, instructions, length, clear)
 
     def _is_clear(self, marks: Sequence[KeyframeMark], step: int, way: Route) -> bool:
-        """Return whether the instruction determines the next action, which is no unclear turn."""
+        """Return whether the instruction determines the next action of a keyframe."""
         mark, turn_deg = marks[step], self._move_set.turn_deg
         if mark.move in (Move.FORWARD, Move.STOP):
             return True

@@ -63,7 +63,7 @@ def rewrite(
     if not text or len(text) > MAX_CHARACTERS:
         return Rewriting(None, "empty" if not text else "too long")
     if not text.isprintable() or find_reserved_token(text):
-        return Rewriting(None, "strange marks")
+        return Rewriting(None, "invalid characters")
     found = parse_instruction(text, known)
     if found.turns != expected.turns:
         return Rewriting(None, "other turns")

@@ -67,7 +67,7 @@ class Route:
     corners_m: tuple[tuple[float, float], ...] = ()  # where each turn is, the last one's too
 
     def tells_turn(self, place_m: np.ndarray, side: str) -> bool:
-        """Return whether a turn to a side at a position [2] of the room is mentioned."""
+        """Return whether the route describes a turn to a side at a position [2] of the room."""
         every = [one.turn_deg for one in self.stretches] + [self.last_turn_deg]
         return any(
             abs(turn) >= TURN_DEG

@@ -189,7 +189,7 @@ def _caption(
         lines.append(("", f"now: {MOVE_NAMES[move]}"))
     return lines + [
         (name, text)
-        for name, text in (("thinks", decision.thought), ("has done", decision.progress))
+        for name, text in (("thought", decision.thought), ("progress", decision.progress))
         if text
     ]
 

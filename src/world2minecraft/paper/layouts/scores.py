@@ -166,7 +166,7 @@ def score_scene(scene: ComparedScene, margins: Margins = USUAL) -> SceneScores:
 
 
 def structure_of(rooms: Sequence[Layout]) -> frozenset[int]:
-    """Return the structural classes that rooms contain."""
+    """Return the structural classes of rooms, with windows only if there is one."""
     windows = any(one.kind == "window" for room in rooms for one in room.openings)
     shell = {SemanticClass.FLOOR, SemanticClass.WALL, SemanticClass.CEILING}
     return frozenset(int(one) for one in shell | ({SemanticClass.WINDOW} if windows else set()))

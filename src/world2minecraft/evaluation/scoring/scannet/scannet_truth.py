@@ -117,7 +117,7 @@ class _Votes:
         self.counts: list[np.ndarray] = []
 
     def add(self, at: np.ndarray, values: np.ndarray) -> None:
-        """Count the values [N], less than ``MAX_VALUES``, at the flat voxel indices [N]."""
+        """Add values [N] below ``MAX_VALUES`` for the voxels with flat indices [N]."""
         keys, counts = np.unique(at * MAX_VALUES + values, return_counts=True)
         self.keys.append(keys)
         self.counts.append(counts)
