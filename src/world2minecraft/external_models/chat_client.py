@@ -46,8 +46,7 @@ class ChatModel:
     """A chat model behind a server, with its reply cache and its budget. It is thread-safe.
 
     ``rung`` is the strictness with which a reply format is enforced. ``structured_replies`` lowers
-    it
-    permanently if the server rejects a stricter one.
+    it permanently if the server rejects a stricter one.
     """
 
     def __init__(

@@ -146,7 +146,7 @@ def _check_address(address: str) -> str:
 
 
 class BusyServerError(ServerError):
-    """The server is busy, slow or unreachable. The same question may be answered later."""
+    """An error for a server that is busy, slow or unreachable, so that a retry may succeed."""
 
     def __init__(self, text: str, retry_after_s: float | None = None, *, may_cost: bool = False):
         super().__init__(text)
@@ -154,11 +154,11 @@ class BusyServerError(ServerError):
 
 
 class RefusedQuestionError(ServerError):
-    """The server rejects the question. A different format may be accepted."""
+    """An error for a question that the server rejects, but may accept in another format."""
 
 
 class UselessReplyError(ServerError):
-    """The reply of the server is too large or does not follow the protocol."""
+    """An error for a reply that is too large or does not follow the protocol."""
 
     may_cost = True
 

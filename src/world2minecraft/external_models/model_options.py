@@ -14,8 +14,7 @@ class ModelOptions:
     """Options of a language model on a server.
 
     Every reply is recorded in ``replies.jsonl`` in the output folder. A repeated question is
-    answered
-    from this file at no cost.
+    answered from this file at no cost.
 
     Attributes:
         model: The model on the server, if the agent does not name one.

@@ -42,8 +42,7 @@ class ReplyStore:
     """A reply cache in a file, keyed by question.
 
     The mode ``record`` returns known replies and adds new ones. The mode ``replay`` only returns
-    known
-    replies.
+    known replies.
     """
 
     def __init__(self, path: str | Path, mode: str = "record"):

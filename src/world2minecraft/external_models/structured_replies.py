@@ -26,7 +26,7 @@ Value = TypeVar("Value")
 
 
 class UnreadableError(Exception):
-    """A reply does not have the requested format. The message tells the model why."""
+    """An error for a reply without the requested format, with a description for the model."""
 
 
 @dataclass(frozen=True)
@@ -97,8 +97,7 @@ def ask_structured(
     """Query a model for a value in a given format.
 
     If a rung is rejected and the next one is accepted, the model does not try the rejected one
-    again
-    (``model.rung``). This does not count as a repair.
+    again (``model.rung``). This does not count as a repair.
 
     Args:
         model: The model.

@@ -122,6 +122,15 @@ def random_episode(
 ) -> Episode:
     """Sample one episode to a random target.
 
+    Args:
+        scene: The scene.
+        rng: The random generator.
+        targets: The possible targets.
+        episode_id: The ID of the new episode.
+        move_set: The name of the move set.
+        span_m: The minimum and maximum path length in metres.
+        split: The split of the new episode.
+
     Raises:
         UsageError: If no start and target with a path of this length are found.
     """

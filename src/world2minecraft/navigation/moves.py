@@ -84,7 +84,7 @@ def move_body(solid, corner, x, y, z, dx, dz, size, sliding):
 
 @njit
 def _ground_at(solid, corner, x, y, z, px, pz, size):
-    """Return whether a body can make a piece of a step, and the height of its feet then."""
+    """Test a piece of a step, and return whether it succeeds and the height of the feet."""
     at_x, at_y, at_z = x + px - corner[0], y - corner[1], z + pz - corner[2]
     if px == 0.0 and pz == 0.0:
         return True, y

@@ -101,10 +101,17 @@ def build_floor_table(graph: WalkGraph) -> FloorTable:
 
 @njit
 def distance_from_field(floor, field, x, y, z):
-    """Look up the distance in metres from a position in a distance field over nodes, float64 [N].
+    """Look up the walking distance of a position in a distance field over walk graph nodes.
+
+    Args:
+        floor: The ``FloorTable`` of the walk graph.
+        field: The distance of each node in metres as float64 [N].
+        x: The x coordinate of the feet in world blocks.
+        y: The y coordinate of the feet.
+        z: The z coordinate of the feet.
 
     Returns:
-        The distance, or inf if the position is not on the floor.
+        The distance in metres, or inf if the position is not on the floor.
     """
     i = int(np.floor((x - floor.origin[0]) / floor.spacing))
     k = int(np.floor((z - floor.origin[1]) / floor.spacing))

@@ -1,8 +1,8 @@
 """The paper's figures for a run: photos beside the reconstruction, and a walk.
 
 Each row shows a photo, the world from the same pose, the predicted cells in class colours, and the
-construction, the latter two from outside without the ceiling and near walls. If a walk is given,
-a strip below shows the views of its agent.
+construction, the latter two from outside without the ceiling and near walls. If a walk is given, a
+strip below shows the views of its agent.
 """
 
 from collections.abc import Iterator, Sequence
@@ -57,8 +57,7 @@ def views_of_walk(run: Path, walk: Path, most: int) -> list[np.ndarray]:
     """Return the views of an agent's walk, including the first and the last.
 
     Recorded views are used if the agent had any. Otherwise, as for the oracle, the views are
-    rendered
-    from the recorded positions.
+    rendered from the recorded positions.
 
     Args:
         run: The reconstruction in which the agent walked.

@@ -76,8 +76,7 @@ class Ours:
         data: The data on which the values were measured.
         command: The command that measures them.
         page: The documentation file that states the values. Empty for values from the program or
-            the
-            user.
+            the user.
         line: The line of the page that states the values.
         label: The label of a row that the published table does not have.
     """

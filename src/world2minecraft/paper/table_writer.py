@@ -219,8 +219,7 @@ def _blocks(rows: list[list[str]], left: int) -> list[tuple[list[list[list[str]]
     """Split a table into blocks no wider than the page, each with its number of text columns.
 
     Text columns are wrapped first. If that is not enough, the remaining numeric columns continue in
-    a
-    block below, with the same labels.
+    a block below, with the same labels.
     """
     whole = _folded(rows)
     if _total(whole) <= PAGE_WIDTH or left == len(rows[0]):

@@ -62,8 +62,7 @@ def active_s(events: Iterable[Mapping[str, Any]], idle_after_s: float = IDLE_AFT
     """Return the time of active work in seconds.
 
     This is the sum of the gaps between events, each at most ``idle_after_s``, without the gaps
-    between
-    sessions (``open``). Negative gaps, after the clock was set back, count as zero.
+    between sessions (``open``). Negative gaps, after the clock was set back, count as zero.
     """
     total, last = 0.0, None
     for event in events:

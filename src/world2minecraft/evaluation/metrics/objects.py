@@ -97,8 +97,7 @@ def count_objects(
     """Match the objects of one scene, and count them.
 
     Each detected object matches at most one true object of its class within ``distance_m``. The
-    matching
-    maximises the number of matches, then minimises the sum of distances.
+    matching maximises the number of matches, then minimises the sum of distances.
 
     Args:
         found: The objects of the reconstruction, with ``yaw_deg`` or ``quarter_turns``.
@@ -128,7 +127,16 @@ def match_objects(
     *,
     distance_m: float = MATCH_DISTANCE_M,
 ) -> list[tuple[int, int]]:
-    """Return the matching pairs (index in ``found``, index in ``true``), sorted."""
+    """Match objects of the same class by the distance of their centres.
+
+    Args:
+        found: The objects of the reconstruction.
+        true: The true objects in the same frame.
+        distance_m: The maximum distance of two centres in metres.
+
+    Returns:
+        The matching pairs (index in ``found``, index in ``true``), sorted.
+    """
     if not found or not true:
         return []
     places = np.array([item.center_m for item in found], np.float64)

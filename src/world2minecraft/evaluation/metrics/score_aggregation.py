@@ -43,8 +43,7 @@ def summarise(frames: Sequence[FrameScore], *, draws: int = DRAWS, seed: int = 0
     Returns:
         ``frames``, ``scenes`` and ``cells``; ``micro`` and ``macro`` with iou, precision, recall,
         miou, miou_present_classes and class_iou; and ``interval`` with [low, high] for each score
-        and
-        class, or None.
+        and class, or None.
     """
     tables = scene_tables(frames)
     total = sum((frame.counts for frame in frames), ProtocolCounts())
@@ -103,6 +102,11 @@ def bootstrap(
     scenes: Sequence[ProtocolCounts], *, draws: int = DRAWS, seed: int = 0
 ) -> dict[str, Any]:
     """Return the bootstrap interval [low, high] of each micro score over scenes.
+
+    Args:
+        scenes: The summed counts of each scene.
+        draws: The number of bootstrap samples.
+        seed: The random seed.
 
     Example:
         >>> table = np.zeros((12, 12), np.int64)

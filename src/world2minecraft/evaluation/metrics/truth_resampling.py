@@ -30,10 +30,9 @@ def carry_truth(
     """Resample the ground truth to the cells of a reconstruction.
 
     By SSCNet's rule, a cell of 4 x 4 x 4 fine cells is occupied if at least 4 of the 64 are, and
-    takes
-    their most frequent class (the lowest ID in a tie). Otherwise it is empty if there are more
-    empty
-    than unknown fine cells, and 255 if not. Everything outside the ground truth's grid is unknown.
+    takes their most frequent class (the lowest ID in a tie). Otherwise it is empty if there are
+    more empty than unknown fine cells, and 255 if not. Everything outside the ground truth's grid
+    is unknown.
 
     Args:
         labels_fine: The fine labels as uint8 [A, B, C], 0 to 11 or 255.

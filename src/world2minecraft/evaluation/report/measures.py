@@ -30,8 +30,7 @@ def layout_facts(scene: FinishedScene) -> dict[str, Any]:
 
     ``floaters`` counts parts of the built blocks, and ``floaters_seen`` parts of the room's cells.
     ``semantic_integrity`` compares the world with the detected objects: the preserved
-    ``categories``,
-    and the share of ``objects`` whose blocks still show them.
+    ``categories``, and the share of ``objects`` whose blocks still show them.
     """
     placed = scene.placements
     outside = out_of_rooms(placed, scene.rooms)

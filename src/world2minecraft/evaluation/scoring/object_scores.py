@@ -39,7 +39,14 @@ class TrueObjects:
 
 
 def true_objects(truth: Truth, truth_to_room: np.ndarray, reached: Reached) -> TrueObjects:
-    """Transform the true objects to the room frame, and determine which were seen."""
+    """Transform the true objects to the room frame, and determine which were seen.
+
+    Args:
+        truth: The ground truth.
+        truth_to_room: The rigid 4x4 transform from the frame of the ground truth to that of the
+            room.
+        reached: The cells and voxels that rays reached.
+    """
     turn = math.degrees(math.atan2(truth_to_room[1, 0], truth_to_room[0, 0]))
     moved = tuple(
         replace(
@@ -95,8 +102,7 @@ def layout_facts(
 
     ``out_of_bounds`` uses the rooms found by the run, and ``out_of_true_rooms`` the true rooms. An
     object may be in any of several rooms. ``semantic_integrity`` is the share of the seen true
-    object
-    classes that were placed.
+    object classes that were placed.
 
     Args:
         out: The folder of the run.

@@ -73,8 +73,7 @@ def reached_cells(
         voxel_m: The cell size of the estimated room in metres.
         rays_wide: The number of rays across an image, at most the width of the image in pixels.
         believed: A function that selects the rays that count, as bool [H, W], from the frame and
-            the
-            ray depths, float32 [H, W] in metres. None counts all rays.
+            the ray depths, float32 [H, W] in metres. None counts all rays.
     """
     truth_to_cells = truth_to_room.copy()
     truth_to_cells[:3] /= voxel_m

@@ -23,9 +23,8 @@ def opening_facts(
     """Return F1, precision and recall of the openings, in total and by kind.
 
     A found opening matches at most one true opening of its kind whose centre is within 0.3 m. A
-    door
-    between two rooms occurs in both rooms but counts once. True openings that few rays reached are
-    ignored.
+    door between two rooms occurs in both rooms but counts once. True openings that few rays reached
+    are ignored.
 
     Args:
         found: The rooms of the run in the room frame.

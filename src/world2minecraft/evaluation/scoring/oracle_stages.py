@@ -263,8 +263,7 @@ def put_true_placements(out: Path, room: TrueRoom) -> None:
     """Move the furniture in ``placements.json`` to the true objects.
 
     If several pieces belong to one object, the largest one with a template is used. If a template
-    does
-    not support the size of the object, the object is built from its own cells.
+    does not support the size of the object, the object is built from its own cells.
     """
     grid, _ = read_room(out / "room.npz")
     chosen = read_placements(out / "placements.json")

@@ -96,8 +96,8 @@ def evaluate_foreign(path: Path, truth: Path) -> dict[str, Any]:
     """Return the scores of another method's labels and objects.
 
     The scores are those of ``evaluate_reconstruction`` that require no poses, furniture or blocks,
-    on
-    the cells that rays of **all** frames reached. Calibration is included if there are confidences.
+    on the cells that rays of **all** frames reached. Calibration is included if there are
+    confidences.
 
     Args:
         path: The file ``labels.npz`` or ``labels.npy``.

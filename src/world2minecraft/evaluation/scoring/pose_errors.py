@@ -31,8 +31,7 @@ def frame_error(truth_to_room: np.ndarray, layouts: Sequence[Layout] = ()) -> di
         ``tilt_deg`` is the angle between the up directions, ``yaw_deg`` the angle to the nearest
         quarter turn, and ``floor_m`` the estimated height of the true floor's origin. With
         ``layouts``, ``walls_x_m`` and ``walls_y_m`` are the positions of the true walls nearest to
-        the
-        corner of the estimated frame.
+        the corner of the estimated frame.
     """
     rotation = truth_to_room[:3, :3]
     up = np.clip(rotation[2, 2], -1.0, 1.0)
@@ -66,7 +65,15 @@ def wall_lines(
 
 
 def pose_facts(out: Path, truth: Truth, frames: Sequence[UsedFrame]) -> dict[str, Any]:
-    """Return the errors of poses and depth scales, or nothing if the true poses are unknown."""
+    """Return the errors of poses and depth scales of a run.
+
+    The result is empty if the true poses are unknown.
+
+    Args:
+        out: The folder of the run.
+        truth: The ground truth.
+        frames: The frames used.
+    """
     if not truth.camera_to_truth or not frames:
         return {}
     true = [truth.truth_to_scan @ frame.camera_to_truth for frame in frames]
@@ -89,8 +96,8 @@ def pose_error(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> dict[
     """Return the mean distance and angle between given and true poses [4, 4].
 
     ``mean_mm`` and ``mean_deg`` are measured in the frame of the scan. ``apart_mm`` and
-    ``apart_deg``
-    remain after the best common rigid transform, which removes the error of the frame itself.
+    ``apart_deg`` remain after the best common rigid transform, which removes the error of the frame
+    itself.
     """
     common = common_move(true, given)
     together = [common @ t for t in true]

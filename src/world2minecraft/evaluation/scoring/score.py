@@ -203,6 +203,11 @@ def error_facts(labels: np.ndarray, true: np.ndarray, scored: np.ndarray) -> dic
 
     A missed cell is occupied but was predicted as free or unknown. An added cell is empty but was
     predicted as occupied.
+
+    Args:
+        labels: The predicted labels as uint8 [X, Y, Z].
+        true: The true labels as uint8 [X, Y, Z].
+        scored: The cells to score as bool [X, Y, Z].
     """
     missed = scored & (true > 0) & ((labels == 0) | (labels == UNKNOWN))
     added = scored & (true == 0) & (labels > 0) & (labels != UNKNOWN)
@@ -227,9 +232,15 @@ def _calibration(confidence: np.ndarray, right: np.ndarray) -> dict[str, Any]:
 
 
 def placed(values: np.ndarray, grid: OccupancyGrid, reached: Reached, fill: int) -> np.ndarray:
-    """Copy values [X, Y, Z] of a grid to the box of ``reached``, padded with ``fill``.
+    """Copy values of a grid to the box of ``reached``.
 
     Cells of the grid outside the box are dropped, because no ray reached them.
+
+    Args:
+        values: The values of the grid's cells as [X, Y, Z].
+        grid: The grid.
+        reached: The cells that rays reached, which define the box.
+        fill: The value for cells of the box outside the grid.
     """
     result = np.full(reached.flags.shape, fill, values.dtype)
     start = np.round(grid.origin_m / grid.voxel_m).astype(np.int64) - reached.low

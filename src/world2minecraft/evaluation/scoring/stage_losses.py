@@ -2,10 +2,9 @@
 
 After **alignment**, the poses, depth scales and room frame are true. After **fusion**, the geometry
 is true, with votes from the real label images. After **labels**, the labels of these cells are
-true.
-After **instances**, the cells and boxes of objects are true. After **templates**, furniture has the
-true boxes and orientations. The later stages run normally. The loss of a stage is the difference of
-scores with ground truth inserted after it and after the preceding stage.
+true. After **instances**, the cells and boxes of objects are true. After **templates**, furniture
+has the true boxes and orientations. The later stages run normally. The loss of a stage is the
+difference of scores with ground truth inserted after it and after the preceding stage.
 """
 
 import tempfile

@@ -24,9 +24,8 @@ class Truth:
     """The ground truth of a scanned room in its own frame.
 
     With ``surface``, the ground truth is a scanned surface, such as the mesh of a data set, instead
-    of a
-    generated room. Such a ground truth is partial: cells with 255 are unknown and not scored, and
-    orientations, openings and rooms are unknown.
+    of a generated room. Such a ground truth is partial: cells with 255 are unknown and not scored,
+    and orientations, openings and rooms are unknown.
 
     Attributes:
         folder: The folder of the files.
@@ -37,8 +36,7 @@ class Truth:
         objects: The true objects.
         layouts: The true rooms.
         camera_to_truth: The true pose of each frame by name. None in old files, for which the
-            recorded
-            poses are used.
+            recorded poses are used.
         depth_scale: The depth scale error of each frame by name, or None.
         surface: The surface cells as bool [A, B, C], or None for a generated room.
         capture: The folder of the capture.

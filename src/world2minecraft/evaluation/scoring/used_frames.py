@@ -87,8 +87,7 @@ def truth_of_run(out: Path, folder: Path) -> Truth:
     """Return the ground truth of a run in the frame of its poses.
 
     Poses computed from photos have their own frame. The ground truth is aligned to it by a rotation
-    and
-    a translation only, so that a wrong scale remains an error.
+    and a translation only, so that a wrong scale remains an error.
 
     Raises:
         InputError: If a file is missing.

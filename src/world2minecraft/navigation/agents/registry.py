@@ -36,9 +36,15 @@ def make_agent(
     map_kind: MapKind = "none",
     max_px: int = MAX_PX,
 ) -> Agent:
-    """Return an agent by its name.
+    """Return an agent by its name, or a ``VlmAgent`` if the name is a model endpoint.
 
-    A model endpoint as the name gives a ``VlmAgent`` for the model that ``chat`` opens.
+    Args:
+        text: The name of an agent, or an endpoint such as "gemini".
+        chat: A function that opens the model of an endpoint.
+        chunk: The maximum number of moves per reply of a model.
+        history: The number of previous views to show to a model.
+        map_kind: The map to show to a model: "none", "text" or "plan".
+        max_px: The maximum number of pixels of an image for a model.
 
     Raises:
         UnknownNameError: If the agent, endpoint or map kind is unknown.

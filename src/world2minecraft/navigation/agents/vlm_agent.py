@@ -1,9 +1,9 @@
 """An agent that queries a vision-language model for its moves.
 
-A reply that is still invalid after two repair attempts gives an invalid decision without moves,
-and a server that does not answer gives a failed one. Neither is replaced by another move. The agent
-can show the model its past positions, as text with distances from the start that odometry provides,
-or as a floor plan of the building.
+A reply that is still invalid after two repair attempts gives an invalid decision without moves, and
+a server that does not answer gives a failed one. Neither is replaced by another move. The agent can
+show the model its past positions, as text with distances from the start that odometry provides, or
+as a floor plan of the building.
 """
 
 import math
@@ -111,8 +111,7 @@ class VlmAgent:
         chunk: The maximum number of moves per reply, 1 to 4.
         history: The number of previous views to show, 0 to 8.
         map_kind: "none", "text" for a description of the visited positions, or "plan" for a floor
-            plan
-            of the building with the path so far, which contains more than the agent has seen.
+            plan of the building with the path so far, which contains more than the agent has seen.
         max_px: The maximum number of pixels of an image. Larger images are downscaled.
     """
 

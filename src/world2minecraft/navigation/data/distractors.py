@@ -46,8 +46,7 @@ class RankBalancer:
     """A sampler that balances how many distractors are more similar to the current view.
 
     It prefers the ranks of the correct option that have occurred least often, so that the rank does
-    not
-    reveal the answer.
+    not reveal the answer.
     """
 
     def __init__(self, rng: np.random.Generator):
@@ -65,10 +64,12 @@ class RankBalancer:
 
 @dataclass(frozen=True)
 class DistractorSlot:
-    """A rendered distractor, or the kind that is still to be rendered.
+    """A rendered distractor, or a request for one of a certain kind.
 
-    ``nearer`` is True if the distractor resembles the current view more than the correct option
-    does.
+    Attributes:
+        kind: The kind of distractor.
+        nearer: Whether the distractor resembles the current view more than the correct option does.
+        picture: The rendered image, or None for a request.
     """
 
     kind: str

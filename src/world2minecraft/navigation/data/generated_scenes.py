@@ -50,8 +50,7 @@ def make_scenes(
         folder: The output folder. Scenes are written to subfolders such as ``bed_01`` and
             ``house_01``, with a suffix such as ``_s7`` for seeds other than 0.
         rooms: The number of rooms. The kinds of rooms alternate, and a longer series starts with
-            the
-            same rooms as a shorter one.
+            the same rooms as a shorter one.
         houses: The number of houses.
         seed: The random seed.
         workers: The number of worker processes.

@@ -1,7 +1,7 @@
 """Recorded walks: tour files, recordings from the game, and walks of agents and people.
 
-Positions are snapped to the floor of the scene, because a camera height alone does not define
-where the feet were. Tours receive generated names, because names from files could contain paths.
+Positions are snapped to the floor of the scene, because a camera height alone does not define where
+the feet were. Tours receive generated names, because names from files could contain paths.
 """
 
 from collections.abc import Sequence

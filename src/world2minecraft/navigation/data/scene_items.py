@@ -293,8 +293,7 @@ def _episode(
     """Return the episode of a candidate.
 
     A goal-level instruction accepts any position in front of the landmark, others only the end of
-    the
-    walk.
+    the walk.
     """
     end = candidate.walk.stances[-1].feet
     goals, name = (end,), candidate.way.stop

@@ -24,8 +24,7 @@ def scene_splits(
     """Assign each scene to the split train or val_unseen.
 
     The scenes of each composition are sorted by a hash of seed and name. The first ones, rounded to
-    the
-    share but at least one of three or more, are held out.
+    the share but at least one of three or more, are held out.
 
     Args:
         compositions: "base" or "extend" by the name of the scene.
@@ -53,7 +52,14 @@ def scene_splits(
 def split_of_tour(
     tour_id: str, scene_split: str, seed: int = 0, seen_share: float = SEEN_SHARE
 ) -> str:
-    """Return a tour's split: that of its scene, or val_seen for some training tours."""
+    """Return a tour's split: that of its scene, or val_seen for some training tours.
+
+    Args:
+        tour_id: The ID of the tour.
+        scene_split: The split of the scene.
+        seed: The seed of the hash.
+        seen_share: The share of training tours to assign to val_seen.
+    """
     if scene_split != "train":
         return scene_split
     return "val_seen" if _sum(seed, f"tour {tour_id}") / 2**64 < seen_share else "train"

@@ -72,8 +72,7 @@ def action_steps(
         clear: The keyframes whose next action follows from the instruction.
         rng: The random generator.
         balanced: Whether to return one keyframe per action, or none if an action is missing. If
-            False,
-            all clear keyframes are returned.
+            False, all clear keyframes are returned.
     """
     if not balanced:
         return list(clear)

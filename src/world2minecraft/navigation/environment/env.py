@@ -50,8 +50,7 @@ class VlnEnv(gymnasium.Env):
         move_set: The discrete move set: "vlnce", "rxr", "block", or "macro" for runs of moves.
         sliding: Whether the agent slides along obstacles instead of stopping.
         observations: Some of rgb, depth, semantic, instance, pose and instruction. The default is
-            rgb
-            and pose, which every trainer supports. ``info["instruction"]`` contains the
+            rgb and pose, which every trainer supports. ``info["instruction"]`` contains the
             instruction.
         eyes: The size, field of view and lighting of the images, and the number of rendering
             threads.
@@ -123,8 +122,7 @@ class VlnEnv(gymnasium.Env):
         """Start an episode. The class describes the options.
 
         The same seed samples the same new episode. With given episodes, seed N continues from the
-        N-th
-        one, so that parallel environments play different episodes.
+        N-th one, so that parallel environments play different episodes.
 
         Raises:
             UsageError: If an option is unknown, or no such episode can be sampled.
@@ -171,8 +169,7 @@ class VlnEnv(gymnasium.Env):
 
         Returns:
             The image as uint8 [H, W, 3] for "rgb_array". None if the view is shown in the browser,
-            or if
-            rendering is disabled.
+            or if rendering is disabled.
 
         Raises:
             gymnasium.error.ResetNeeded: If no episode has started.

@@ -9,8 +9,7 @@ The output folder contains::
     images/...                             if ``images`` are paths
 
 EasyR1's loader splits a rendered prompt at ``<image>``, joins paths to ``image_dir``, silently
-drops
-prompts that are too long, and drops the last incomplete batch.
+drops prompts that are too long, and drops the last incomplete batch.
 """
 
 import io
@@ -48,7 +47,12 @@ ROWS_A_GROUP = 256  # Of parquet: embedded pictures of so many rows are in memor
 
 
 def max_prompt_tokens(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> int:
-    """Return the maximum number of prompt tokens of a group.
+    """Return the maximum number of prompt tokens of a group of items.
+
+    Args:
+        part: The group of items.
+        pictures: The images of the set.
+        rule: The export options.
 
     Raises:
         MissingExtraError: If pyarrow is not installed.

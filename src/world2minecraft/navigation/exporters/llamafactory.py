@@ -50,7 +50,12 @@ TAGS = {
 
 
 def max_row_tokens(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> int:
-    """Return the maximum number of tokens of a group's rows.
+    """Return the maximum number of tokens of the rows of a group of items.
+
+    Args:
+        part: The group of items.
+        pictures: The images of the set.
+        rule: The export options.
 
     Raises:
         UsageError: If a row exceeds the limit of the recipe.

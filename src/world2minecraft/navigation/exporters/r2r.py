@@ -7,9 +7,8 @@ The output folder contains::
     viewpoints.json        the position and the images of each viewpoint
 
 A viewpoint is a position where an image was taken. Turns on the spot share one viewpoint. As in
-R2R,
-heading 0 is north, and headings increase clockwise in radians. Positions are in metres from the
-world's origin, with x east, y north and z up.
+R2R, heading 0 is north, and headings increase clockwise in radians. Positions are in metres from
+the world's origin, with x east, y north and z up.
 """
 
 import math

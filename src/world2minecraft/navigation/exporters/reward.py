@@ -25,7 +25,13 @@ def answered(response: str) -> str:
 def score(
     response: str, ground_truth: str, format_weight: float = FORMAT_WEIGHT
 ) -> dict[str, float]:
-    """Return the reward ``overall`` with its parts ``format`` and ``accuracy``, each 0 to 1."""
+    """Return the reward ``overall`` with its parts ``format`` and ``accuracy``, each 0 to 1.
+
+    Args:
+        response: The reply of the model.
+        ground_truth: The letter of the correct option.
+        format_weight: The weight of the format reward.
+    """
     accuracy = float(answered(response) == ground_truth.strip().upper())
     form = float(_FORM.fullmatch(response) is not None)
     overall = (1 - format_weight) * accuracy + format_weight * form

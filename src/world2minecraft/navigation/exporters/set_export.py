@@ -63,8 +63,7 @@ def export_set(
 
     Args:
         folder: The folder of the set with ``items.jsonl`` and ``images/``, and ``episodes.jsonl``
-            for
-            vlnce or ``trajectories.jsonl`` for r2r.
+            for vlnce or ``trajectories.jsonl`` for r2r.
         format: "llamafactory", "easyr1", "trl", "vlnce" or "r2r".
         out: The output folder, which must be new, empty, or an export with the same options.
         rule: The options. None uses the defaults.

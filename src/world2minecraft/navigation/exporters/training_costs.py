@@ -29,8 +29,7 @@ class GrpoPlan:
     """The batch size and step counts of GRPO training.
 
     The loader shuffles the rows in each epoch and drops the incomplete last batch, so the dropped
-    rows
-    change from epoch to epoch.
+    rows change from epoch to epoch.
 
     Attributes:
         batch: The number of prompts per step.
@@ -61,9 +60,8 @@ def grpo_plan(rows: int, gpus: int) -> GrpoPlan:
     """Return the batch size and steps of EasyR1's GRPO training.
 
     The loader drops incomplete batches, and EasyR1's default batch size of 512 would leave no batch
-    of
-    the paper's Base set. The batch size is therefore the paper's 128, or less for fewer rows, and a
-    multiple of the number of GPUs.
+    of the paper's Base set. The batch size is therefore the paper's 128, or less for fewer rows,
+    and a multiple of the number of GPUs.
 
     Raises:
         UsageError: If there are fewer rows than GPUs.
@@ -113,6 +111,13 @@ def row_tokens(
 ) -> int:
     """Return an upper bound of the number of tokens of an item's row.
 
+    Args:
+        item: The item.
+        question: The question of the item.
+        pictures: The images of the set.
+        max_pixels: The number of pixels above which the trainer downscales an image.
+        more_text: Additional text of the row.
+
     Raises:
         InputError: If an image is missing or has changed.
     """
@@ -126,6 +131,11 @@ def check_longest(lengths: Iterable[tuple[Item, int]], limit: int, what: str) ->
     """Return the maximum row length in tokens.
 
     Trainers silently truncate or drop rows that exceed the limit.
+
+    Args:
+        lengths: The number of tokens of each item.
+        limit: The maximum number of tokens of a row.
+        what: The name of the limit for the error message.
 
     Raises:
         UsageError: If a row exceeds the limit.

@@ -114,8 +114,7 @@ def describe_route(walk: ObservedWalk, landmarks: Sequence[Landmark], target: st
         walk: The stances and the visible landmarks.
         landmarks: The landmarks to mention, which should have unambiguous names.
         target: The intended landmark, if known. It becomes the end if the walk stops in front of
-            it.
-            Otherwise the nearest visible landmark does.
+            it. Otherwise the nearest visible landmark does.
     """
     corners = _merge_corners(walk.places_m, list(simplify_path(walk.places_m, CORNER_M)))
     yaws = np.unwrap(walk.yaws_deg, period=360.0)  # Who turns left by 190 degrees turns left.

@@ -77,7 +77,14 @@ def write_walks_result(
     beside: dict[str, list[EpisodeWalk]],
     facts: dict[str, Any],
 ) -> dict[str, Any]:
-    """Write ``result.json``, and return its content."""
+    """Write ``result.json``, and return its content.
+
+    Args:
+        folder: The output folder.
+        walks: The walks of the agent.
+        beside: The walks of the reference agents by name.
+        facts: Additional values for the result.
+    """
     result = {
         "kind": "walks",
         "agent": walks[0].agent,

@@ -58,7 +58,13 @@ class AnsweredItem:
 def evaluate(
     items: Sequence[Item], answerer: Answerer, *, jobs: int = 1, progress: Progress | None = None
 ) -> list[AnsweredItem]:
-    """Answer all items, ``jobs`` at a time, and return the answers in the order of the items.
+    """Answer all items, and return the answers in the order of the items.
+
+    Args:
+        items: The items.
+        answerer: The answerer.
+        jobs: The number of concurrent queries.
+        progress: Called after each item.
 
     Raises:
         UsageError: If there are no items, or ``jobs`` is less than 1.

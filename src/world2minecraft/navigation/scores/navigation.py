@@ -131,8 +131,7 @@ def summarise(scores: Sequence[EpisodeScore]) -> dict[str, Any]:
     """Return mean scores by name, and success rates with confidence intervals.
 
     If the goal cannot be reached from an episode's end, its NE is infinite. Such episodes are
-    excluded
-    from the mean NE and counted in ``unreachable_ends``.
+    excluded from the mean NE and counted in ``unreachable_ends``.
 
     Raises:
         ValueError: If there are no episodes.

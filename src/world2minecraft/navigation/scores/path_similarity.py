@@ -40,9 +40,12 @@ def dtw_m(path_m: np.ndarray, reference_m: np.ndarray) -> float:
 def ndtw(path_m: np.ndarray, reference_m: np.ndarray, threshold_m: float = THRESHOLD_M) -> float:
     """Return the normalised dynamic time warping score, 0 to 1, which is 1 for identical paths.
 
-    The score is ``exp(-DTW / (|reference| threshold))``. ``reference_m`` must be the dense path,
-    not
-    just its corners.
+    The score is ``exp(-DTW / (|reference| threshold))``.
+
+    Args:
+        path_m: The walked path in metres as float64 [N, 3].
+        reference_m: The dense reference path as float64 [M, 3], not just its corners.
+        threshold_m: The success threshold in metres.
     """
     total = dtw_m(without_repeats(path_m), reference_m)
     return float(np.exp(-total / (len(reference_m) * threshold_m)))
@@ -52,8 +55,12 @@ def cls(path_m: np.ndarray, reference_m: np.ndarray, threshold_m: float = THRESH
     """Return the coverage weighted by length score (CLS), 0 to 1.
 
     The coverage of a reference point decays with its distance to the path. The score is reduced if
-    the
-    path is longer or shorter than the covered reference.
+    the path is longer or shorter than the covered reference.
+
+    Args:
+        path_m: The walked path in metres as float64 [N, 3].
+        reference_m: The reference path in metres as float64 [M, 3].
+        threshold_m: The distance in metres over which coverage decays.
     """
     path, reference = _checked(path_m), _checked(reference_m)
     nearest = np.linalg.norm(reference[:, None] - path[None], axis=2).min(axis=1)

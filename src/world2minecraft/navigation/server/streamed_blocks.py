@@ -51,8 +51,7 @@ def read_blocks(ask: Ask, box: Box, version: str) -> BlockVolume:
 
     Args:
         ask: A function that requests ``blocks`` from ``low`` to ``high`` (inclusive) within one
-            chunk
-            column.
+            chunk column.
         box: The box to read.
         version: The game version of the server.
 

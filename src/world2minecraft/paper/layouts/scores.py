@@ -194,8 +194,7 @@ def summary_of(
 
     Returns:
         Rates from 0 to 1 and counts per scene. Rates are over all objects, and shares of scenes
-        have
-        ``scenes`` in their names. ``interval`` is the 95 percent Wilson interval.
+        have ``scenes`` in their names. ``interval`` is the 95 percent Wilson interval.
 
     Raises:
         UsageError: If there are no scenes.

@@ -26,8 +26,7 @@ def laplacian(picture: np.ndarray, kernel_size: int = PAPER_KERNEL_SIZE) -> np.n
     """Return the Laplacian of an image as float64 [H, W] with integer values.
 
     The result equals ``cv2.Laplacian(grey, cv2.CV_64F, ksize=kernel_size)``, which mirrors the
-    image at
-    its border without repeating the outermost pixels (``BORDER_REFLECT_101``).
+    image at its border without repeating the outermost pixels (``BORDER_REFLECT_101``).
 
     Args:
         picture: The image as uint8 [H, W] or [H, W, 3] in sRGB.

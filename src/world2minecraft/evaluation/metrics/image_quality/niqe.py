@@ -1,10 +1,9 @@
 """NIQE: the distance of an image's statistics from those of good photographs. Lower is better.
 
-A. Mittal, R. Soundararajan, A. C. Bovik: Making a "completely blind" image quality analyzer,
-IEEE Signal Processing Letters 20(3), 2013. Each patch of 96 x 96 pixels gives 18 features at full
-and 18 at half resolution. The score is the distance between two normal distributions of features,
-that of the image and that of a model fitted to photographs. Scores of different models are not
-comparable.
+A. Mittal, R. Soundararajan, A. C. Bovik: Making a "completely blind" image quality analyzer, IEEE
+Signal Processing Letters 20(3), 2013. Each patch of 96 x 96 pixels gives 18 features at full and 18
+at half resolution. The score is the distance between two normal distributions of features, that of
+the image and that of a model fitted to photographs. Scores of different models are not comparable.
 
 Our own model was fitted to the few free photographs in two Python packages
 (``tools/make_niqe_model.py``) and has no dependencies. The other two models were used for published
@@ -269,8 +268,7 @@ def fit_niqe(photos: Iterable[np.ndarray], name: str, sharp: float = SHARP) -> N
     """Fit a NIQE model to the sharp patches of photographs.
 
     Each photo is divided four times, with grids offset by half a patch, in order to obtain more
-    patches
-    from few photos.
+    patches from few photos.
 
     Args:
         photos: The photos as uint8 [H, W] or [H, W, 3] in sRGB, at least 240 pixels on each side.

@@ -90,8 +90,7 @@ def _is_noisy(blocks: np.ndarray, variance: np.ndarray) -> np.ndarray:
     """Compare the deviation of a block's two middle columns with that of its other columns.
 
     The authors' code removes the middle columns one after the other, so that the second removal
-    affects
-    the following column. This is reproduced here in order to obtain the same scores.
+    affects the following column. This is reproduced here in order to obtain the same scores.
     """
     middle = BLOCK_PX // 2 - 1
     centre = blocks[..., middle : middle + 2].std(axis=(2, 3), ddof=1)

@@ -7,9 +7,8 @@ the rear one, like a solid wall. The order of a triangle's corners determines it
 the solid side of the floor is below it, the floor shows whether a file uses the opposite order.
 
 Free voxels are those that the cameras saw through. A ray only counts if the mesh and the depth
-image
-agree on its end. Where the sensor measured nothing (a screen, a window) or the mesh has a hole, the
-free space along the ray is unknown.
+image agree on its end. Where the sensor measured nothing (a screen, a window) or the mesh has a
+hole, the free space along the ray is unknown.
 """
 
 from collections.abc import Iterator, Mapping

@@ -3,8 +3,7 @@
 The file is a list of records ``{query_id, iter, prompt, object_list}``. The prompt contains ``Room
 Size: max length 270px, max width 252px``, and an object is ``[category, {length, width, height,
 left, top, depth, orientation}]``. ``left``, ``top`` and ``depth`` are the centre, and sizes are
-full
-extents. ``left`` is 3D-FRONT's x, and ``top`` its z, which points down the page when seen from
+full extents. ``left`` is 3D-FRONT's x, and ``top`` its z, which points down the page when seen from
 above. Therefore y is the room width minus ``top``, without mirroring. At an orientation of 0
 degrees, the front faces along ``top``: with this convention, four fifths of the published beds and
 nightstands have their back to the nearest wall.
