@@ -201,9 +201,7 @@ def test_names_of_scenes(tmp_path):
 def test_mistakes_are_told(tmp_path, foreign):
     with pytest.raises(InputError, match="is not there"):
         open_scene_source(tmp_path / "none")
-    with pytest.raises(
-        UsageError, match=("a box must be x0 y0 z0 x1 y1 z1 with the second corner greater")
-    ):
+    with pytest.raises(UsageError, match="a box is x0 y0 z0 x1 y1 z1, each second corner beyond"):
         open_scene_source(foreign, box=(1, 2, 3, 1, 5, 6))
     with pytest.raises(UsageError, match="above 0 and up to 64, not 0"):
         open_scene_source(foreign, blocks_per_metre=0)

@@ -159,7 +159,7 @@ def test_any_backbone_of_transformers(backbones, name):
 
 
 def test_what_is_no_backbone_says_so(tmp_path):
-    with pytest.raises(InputError, match="neither a folder nor a model name of the form ORG/NAME"):
+    with pytest.raises(InputError, match="neither a folder nor the name of a model, ORG/NAME"):
         make_backbone("hf:/no/such/folder!", "tiny", 6, (1,))
     (tmp_path / "config.json").write_text("{}")
     with pytest.raises(InputError, match="no backbone of transformers"):

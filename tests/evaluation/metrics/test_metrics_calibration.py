@@ -62,5 +62,5 @@ def test_sure_and_always_right_is_off_by_what_is_missing_to_one(confidence):
 def test_what_is_no_confidence_is_refused():
     with pytest.raises(ValueError, match="confidence must be between 0 and 1"):
         count_calibration(np.array([1.5]), np.array([True]))
-    with pytest.raises(ValueError, match=r"confidence \(1,\) and right \(2,\) differ"):
+    with pytest.raises(ValueError, match=r"must have the same shape, got \(1,\) and \(2,\)"):
         count_calibration(np.array([0.5]), np.array([True, False]))
