@@ -113,7 +113,11 @@ def test_the_phase_of_the_grid_is_free_a_wrong_frame_is_not(folder, tmp_path):
         ({"voxel_m": 0.0}, "[]", "voxel_m"),
         ({"voxel_m": 0.01}, "[]", "voxel size of 0.01 m is smaller than the ground truth's 0.02"),
         ({}, "{}", "must contain a list of {class, center_m, size_m, yaw_deg}"),
-        ({}, '[{"class": "chiar"}]', "row 0 is not a valid {class, center_m, size_m, yaw_deg} (no class is"),
+        (
+            {},
+            '[{"class": "chiar"}]',
+            "row 0 is not a valid {class, center_m, size_m, yaw_deg} (no class is",
+        ),
     ],
 )
 def test_a_result_that_is_none_is_told_in_one_line(

@@ -31,8 +31,8 @@ text-align:center}}img{{image-rendering:pixelated;
 width:min(100%,{width}px);max-height:72vh;object-fit:contain}}
 #said{{white-space:pre-line;font-size:1.25em;min-height:3.6em;margin:0.5em}}#keys{{color:#999}}</style>
 <p id="said" role="status"></p>
-<img src="/frames?token={token}" alt="what the agent sees">
-<p id="keys">Arrow keys or W, A, D walk and turn; space says that you are there.</p>
+<img src="/frames?token={token}" alt="View of the agent">
+<p id="keys">Use the arrow keys or W, A and D to walk and turn, and press space at the goal.</p>
 <script>
 addEventListener("keydown", e => {{
   if (e.repeat || e.ctrlKey || e.metaKey || e.altKey) return

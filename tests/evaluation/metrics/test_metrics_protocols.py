@@ -109,7 +109,9 @@ def test_given_region_narrows_that_of_a_protocol():
 
 
 def test_missing_masks_and_names_are_told():
-    with pytest.raises(UsageError, match="protocol ssc requires in_frustum, seen, free for each frame"):
+    with pytest.raises(
+        UsageError, match="protocol ssc requires in_frustum, seen, free for each frame"
+    ):
         count_frame(PROTOCOLS["ssc"], line(SAID), KnownCells(line(TRUTH)))
     with pytest.raises(UnknownNameError, match="did you mean 'monoscene'"):
         protocol_named("monoscen")

@@ -159,7 +159,9 @@ def test_files_that_do_not_belong_together_are_named(perfect, capture, tmp_path)
     out = copied(perfect, tmp_path)
     stated = read_json(out / "scan.json")
     write_json(out / "scan.json", stated | {"frames_used": ["f0", "f99"]})
-    with pytest.raises(DamagedFileError, match=r"scan\.json: frame 'f99' was used, but .* does not contain it"):
+    with pytest.raises(
+        DamagedFileError, match=r"scan\.json: frame 'f99' was used, but .* does not contain it"
+    ):
         evaluate_reconstruction(out, capture)
     with pytest.raises(InputError, match=r"truth\.npz: ground truth not found"):
         evaluate_reconstruction(perfect, tmp_path)
