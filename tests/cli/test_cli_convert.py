@@ -203,7 +203,7 @@ def test_what_is_lost_is_told(volume, tmp_path, capsys):
     write_volume(held, tmp_path / "a.glb")
     assert convert(tmp_path / "a.glb", tmp_path / "b.mcstructure") == 0
     assert capsys.readouterr().out.splitlines()[1:] == [
-        "not written to b.mcstructure: 1 blocks of tmeo:shafa_1x_2, which Bedrock has not",
+        "not written to b.mcstructure: 1 blocks of tmeo:shafa_1x_2, which Bedrock does not have",
         "not written to b.mcstructure: 1 entities",
         "not written to b.mcstructure: 8 labels of blocks (class and object)",
     ]

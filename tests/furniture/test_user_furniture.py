@@ -205,8 +205,11 @@ def _changed(**changes):
         ({"blocks_per_metre": 1e9}, "blocks_per_metre must be a number from 0.1 to 64"),
         ({"blocks": {"size": [10**9, 1, 1]}}, "size must be a whole number from 1 to 32"),
         ({"blocks": {"size": [32, 32, 32]}}, "size must hold 8,192 blocks at most, not 32,768"),
-        ({"blocks": {"palette": ["a b"]}}, "block name 'a b' must be like minecraft:oak_log"),
-        ({"blocks": {"palette": ["stone; op me"]}}, "must be like minecraft:oak_log"),
+        (
+            {"blocks": {"palette": ["a b"]}},
+            "block name 'a b' is invalid; expected a name such as minecraft:oak_log",
+        ),
+        ({"blocks": {"palette": ["stone; op me"]}}, "is invalid; expected a name such as"),
         ({"blocks": {"runs": [[1, 10**9]]}}, "the length of a run must be a whole number"),
         ({"blocks": {"runs": [[0, 4]]}}, "runs must hold 4 blocks, not all of them air"),
         ({"blocks": {"runs": [[9, 4]]}}, "the number of a run must be a whole number from 0 to 3"),

@@ -254,9 +254,9 @@ def test_the_rest_is_counted_by_name(tmp_path):
     )
     found, written, _ = there_and_back(volume, tmp_path)
     assert written == {
-        "blocks of tmeo:shafa, which Bedrock has not": 1,
-        "blocks with a state that Bedrock does not tell": 1,
-        "data of blocks (furnace)": 1,
+        "blocks of tmeo:shafa, which Bedrock does not have": 1,
+        "blocks with properties that Bedrock cannot represent": 1,
+        "block entity data (furnace)": 1,
         "entities": 1,
     }
     assert state_texts(found)[0, 0, 0] == AIR
@@ -275,7 +275,7 @@ def test_a_block_that_java_has_not_keeps_its_name(tmp_path):
     losses = Losses()
     found = read_blocks(tmp_path / "b.mcstructure", losses)
     assert "minecraft:camera" in found.palette
-    assert dict(losses) == {"blocks of minecraft:camera, which Java has not": 1}
+    assert dict(losses) == {"blocks of minecraft:camera, which Java does not have": 1}
 
 
 def test_data_that_java_keeps_otherwise_is_counted(tmp_path):
@@ -293,7 +293,7 @@ def test_data_that_java_keeps_otherwise_is_counted(tmp_path):
     losses = Losses()
     found = read_mcstructure(tmp_path / "a.mcstructure", losses)
     assert state_texts(found)[0, 0, 0] == "minecraft:barrel[facing=up,open=false]"
-    assert dict(losses) == {"data of blocks (Barrel)": 1}
+    assert dict(losses) == {"block entity data (Barrel)": 1}
 
 
 def test_the_same_volume_gives_the_same_bytes(tmp_path):
@@ -358,11 +358,11 @@ def read_mcstructure_bytes(raw: bytes):
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"size": np.array([1, 1], np.int32)}, "is no Bedrock structure"),
-        ({"size": np.array([5, 5, 5], np.int32)}, "says 125 blocks and its layers hold others"),
+        ({"size": np.array([1, 1], np.int32)}, "is not a valid Bedrock structure"),
+        ({"size": np.array([5, 5, 5], np.int32)}, "declares 125 blocks, but a block layer has"),
         ({"size": np.array([0, 1, 1], np.int32)}, "says 0 x 1 x 1 blocks"),
-        ({"structure": {}}, "is no Bedrock structure ('block_indices' is missing)"),
-        ({"structure": 3}, "is no Bedrock structure"),
+        ({"structure": {}}, "is not a valid Bedrock structure ('block_indices' is missing)"),
+        ({"structure": 3}, "is not a valid Bedrock structure"),
     ],
 )
 def test_what_is_wrong_is_named(change, reason, tmp_path):
@@ -382,7 +382,7 @@ def test_what_is_wrong_is_named(change, reason, tmp_path):
 
 
 def test_an_empty_volume_is_refused(tmp_path):
-    with pytest.raises(UsageError, match="1 to 12 million blocks, not 0"):
+    with pytest.raises(UsageError, match="1 to 12 million blocks, got 0"):
         write_mcstructure(volume_of(np.zeros((0, 1, 1)), (AIR,), (0, 0, 0)), tmp_path / "a")
 
 
@@ -415,13 +415,13 @@ def test_a_tree_comes_back_from_little_endian_nbt(tree):
 
 
 def test_bounds_hold_before_memory_is_taken():
-    with pytest.raises(DamagedFileError, match="says 2,000,000,000 values and holds fewer"):
+    with pytest.raises(DamagedFileError, match="2,000,000,000 values are declared"):
         read_little(b"\x0a\0\0\x09\x01\0a\x03" + struct.pack("<i", 2_000_000_000), "a")
     deep = b"\x0a\0\0" + b"\x0a\x01\0a" * 300
-    with pytest.raises(InputError, match="nests deeper than 100 tags"):
+    with pytest.raises(InputError, match="limit of 100 nested tags"):
         read_little(deep, "a")
     wide = write_little({"a": [Byte(0)] * 1000})
-    with pytest.raises(InputError, match="holds more than 100 values"):
+    with pytest.raises(InputError, match="limit of 100 NBT values"):
         read_little(wide, "a", NbtLimits(values=100))
 
 

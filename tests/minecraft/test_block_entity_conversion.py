@@ -15,7 +15,7 @@ SWORD = {"id": "minecraft:iron_sword", "Slot": Byte(3)}
 OLD = {**SWORD, "Count": Byte(1), "tag": {"Damage": 7}}
 NEW = {**SWORD, "count": 1, "components": {"minecraft:damage": 7}}
 MANY = {"id": "minecraft:dirt", "count": 500}
-LOST = "things whose names, wear and the like the game keeps otherwise"
+LOST = "names, enchantments and other data of item stacks"
 
 
 def volume_with(*stacks):

@@ -51,10 +51,12 @@ def test_a_text_that_is_no_state_is_refused(text):
 
 def test_what_the_errors_say():
     cases = {
-        "oak_log[axis": "block state 'oak_log[axis' must be like minecraft:oak_log[axis=y]",
-        "Stone": "block name 'Stone' must be like minecraft:oak_log: lower case letters, digits,"
-        " and _ . - / after the colon",
-        "stone[a=B]": "property a=B of minecraft:stone must be lower case letters, digits and _",
+        "oak_log[axis": "block state 'oak_log[axis' is invalid; expected text such as"
+        " minecraft:oak_log[axis=y]",
+        "Stone": "block name 'Stone' is invalid; expected a name such as minecraft:oak_log"
+        " with lower-case letters, digits and _ . - /",
+        "stone[a=B]": "property a=B of minecraft:stone is invalid; use lower-case letters,"
+        " digits and _",
     }
     for text, message in cases.items():
         with pytest.raises(UsageError) as caught:
@@ -83,7 +85,7 @@ def test_unknown_blocks_and_values_suggest_the_nearest():
     for text, message in {
         "oak_stair": "no block is named 'minecraft:oak_stair'; did you mean 'minecraft:oak_stairs'",
         "oak_slab[typ=top]": "property of minecraft:oak_slab is named 'typ'; did you mean 'type'",
-        "oak_slab[type=tops]": "no type of minecraft:oak_slab is named 'tops'; did you mean 'top'",
+        "oak_slab[type=tops]": "no type value of minecraft:oak_slab is named 'tops'; did you mean 'top'",
     }.items():
         with pytest.raises(UnknownNameError, match=message):
             check_state(parse_state(text))

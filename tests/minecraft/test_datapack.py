@@ -290,7 +290,7 @@ def size_pack_paths() -> list[str]:
 
 @pytest.mark.parametrize("name", ["My Room", "", "a/b", "minecraft"])
 def test_a_name_that_is_no_namespace_is_refused(name):
-    with pytest.raises(UsageError, match="must be lower case letters"):
+    with pytest.raises(UsageError, match="must contain only lower-case letters"):
         datapack_files(furnished_volume(), OLD, name)
 
 

@@ -148,7 +148,7 @@ def test_an_old_game_is_refused_with_what_to_do_instead():
     check_displays(replace(furnished(), entities=()), old)
     check_displays(furnished(), game_version("1.20.1"))
     expected = (
-        "Minecraft 1.19.3 has no display entities, which came with 1.19.4; choose "
+        "Minecraft 1.19.3 does not support display entities (new in 1.19.4); use "
         "build.style=blocks or another --mc-version"
     )
     with pytest.raises(UsageError) as told:

@@ -56,14 +56,16 @@ def test_every_format_of_the_registry_loads():
 
 
 def test_what_is_not_there_or_unknown_is_refused(tmp_path):
-    with pytest.raises(InputError, match="is not there"):
+    with pytest.raises(InputError, match="not found"):
         read_blocks(tmp_path / "missing.schem")
     (tmp_path / "a.txt").write_text("blocks")
     with pytest.raises(InputError, match="is no block file that is read"):
         read_blocks(tmp_path / "a.txt")
     with pytest.raises(InputError, match="is no block file that is read"):
         read_blocks(tmp_path)
-    with pytest.raises(UsageError, match="no block format ends so; known: a world folder, .schem"):
+    with pytest.raises(
+        UsageError, match="unknown file suffix for blocks; use one of: a world folder, .schem"
+    ):
         write_blocks(VOLUME, tmp_path / "a.obj")
     with pytest.raises(UsageError, match="schem_version must be 1, 2 or 3"):
         write_blocks(VOLUME, tmp_path / "a.schem", WriteOptions(schem_version=4))

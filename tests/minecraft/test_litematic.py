@@ -284,10 +284,13 @@ DAMAGED = {
         tree_with(region_with(BlockStatePalette=[])),
         "has a block of number 0, which its palette lacks",
     ),
-    "a palette of numbers": (tree_with(region_with(BlockStatePalette=[1])), "has a palette with"),
+    "a palette of numbers": (
+        tree_with(region_with(BlockStatePalette=[1])),
+        "contains an invalid palette entry",
+    ),
     "a name that is none": (
         tree_with(region_with(BlockStatePalette=[{"Name": "Rock & Roll"}])),
-        "has a palette with block name 'Rock & Roll' must be like",
+        "contains an invalid palette entry: block name 'Rock & Roll' is invalid",
     ),
     "an entity without a place": (
         tree_with(region_with(Entities=[{"id": "a"}])),

@@ -153,7 +153,7 @@ def test_a_build_below_an_old_games_floor_is_refused(tmp_path):
 
 
 def test_data_packs_are_not_written_for_old_games(tmp_path):
-    with pytest.raises(UsageError, match=r"data packs are written for 1.20 and later, not 1.16.5"):
+    with pytest.raises(UsageError, match=r"data packs require Minecraft 1.20 or later, got 1.16.5"):
         write_datapack(VOLUME, tmp_path / "a.zip", version=game_version("1.16.5"))
 
 
@@ -231,12 +231,12 @@ def test_blocks_that_a_game_does_not_know_are_counted():
     volume = volume_of(np.array([0, 1, 1, 2, 3, 4]).reshape(6, 1, 1), palette, (0, 0, 0))
     losses = Losses()
     count_unknown_blocks(volume, game_version("1.16.5"), losses)
-    assert list(losses) == [("blocks minecraft:light, which Minecraft 1.16.5 does not know", 3)]
+    assert list(losses) == [("blocks minecraft:light, which Minecraft 1.16.5 does not have", 3)]
     count_unknown_blocks(volume, game_version("1.17"), losses)
     assert len(losses) == 1
     told = Losses()
     count_unknown_blocks(furnished_volume(), game_version("1.19.3"), told)
-    assert list(told) == [("display entities, which Minecraft 1.19.3 does not know", 1)]
+    assert list(told) == [("display entities, which Minecraft 1.19.3 does not support", 1)]
     count_unknown_blocks(furnished_volume(), game_version("1.19.4"), told)
     assert len(told) == 1
     assert is_unknown("minecraft:stone_slab", 1631) and not is_unknown("minecraft:stone", 1519)

@@ -280,7 +280,7 @@ def test_a_file_that_is_no_schematic_is_refused(tmp_path):
     assert "cannot be read" in refused(path)
     for data in (b"", b"PK\3\4 a zip", json.dumps({"a": 1}).encode(), gzip.compress(b"text")):
         path.write_bytes(data)
-        assert "is no valid NBT" in refused(path)
+        assert "is not valid NBT" in refused(path)
 
 
 def test_a_file_cut_short_is_refused(tmp_path):

@@ -284,7 +284,7 @@ PACK_DAMAGE = {
     ),
     "a piece that is text": (
         lambda files: {n: b"text" if n.endswith(".nbt") else data for n, data in files.items()},
-        "is no valid NBT",
+        "is not valid NBT",
     ),
 }
 
@@ -390,7 +390,7 @@ DAMAGED = {
     "a block that is a number": (tree_with(blocks=[1]), "has a block without place and number"),
     "blocks that are text": (tree_with(blocks="a"), "has a block without place and number"),
     "no palettes": (tree_with(palettes=[]), "has 0 palettes; 1 to 1,000 are read"),
-    "a palette of texts": (tree_with(palette=["stone"]), "has a palette with"),
+    "a palette of texts": (tree_with(palette=["stone"]), "contains an invalid palette entry"),
     "an entity without a place": (
         tree_with(entities=[{"nbt": {"id": "a"}}]),
         "is no structure file ('pos' is missing)",

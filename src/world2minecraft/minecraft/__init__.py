@@ -1,1 +1,1 @@
-"""The game: block states, their shapes, and its file formats, read and written."""
+"""Block states, block shapes, game physics and file formats of Minecraft."""

@@ -1,9 +1,9 @@
-"""Kernels that pack and unpack block numbers: sections, gapless arrays, varints, old blocks.
+"""Kernels that pack and unpack block indices in chunk sections, schematics and legacy files.
 
-A section of 16 x 16 x 16 blocks is packed in 64-bit words. Since 1.16 no number goes over from one
-word to the next, and there are as few bits as the palette needs, four at least. Before 1.16, and in
-Litematica, numbers lie without gaps ("straddled"): number i takes the bits from i * bits on, lowest
-first. Both before and since, a file may keep more bits than it needs.
+A chunk section has 16 x 16 x 16 blocks, whose palette indices are packed in 64-bit words. Since
+1.16, no index crosses a word boundary, and each index has as few bits as the palette requires, but
+at least four. Before 1.16, and in Litematica files, indices are packed without gaps ("straddled"):
+index i starts at bit i * bits, lowest bit first. Files may use more bits than the palette requires.
 """
 
 import numpy as np
@@ -17,17 +17,17 @@ MIN_BITS, MAX_BITS = 4, 16
 
 @njit
 def pack_section(states, origin, numbers, palette, words):  # pragma: no cover
-    """Gather one section of a volume, make its own palette and pack it as the game does.
+    """Extract one section of a volume, build its palette and pack its indices as the game does.
 
     Args:
-        states: uint16 [X, Y, Z] in block axes.
-        origin: int64 [3], where the section's first cell lies in ``states``; cells outside are 0.
-        numbers: int32 [palette size], all -1 on entry and on return.
-        palette: uint16 [4096] out, the states met, in order of first appearance.
-        words: uint64 [1024] out, LSB first, no value across two words.
+        states: Volume of states as uint16 [X, Y, Z] in block axes.
+        origin: Position of the section's first cell in ``states``, int64 [3]. Cells outside are 0.
+        numbers: Scratch array, int32 [palette size], filled with -1 on entry and on return.
+        palette: Output, uint16 [4096]: the states found, in order of first appearance.
+        words: Output, uint64 [1024], lowest bit first. No index crosses a word boundary.
 
     Returns:
-        The count of states met and the count of words, 0 where one state fills the section.
+        The number of states found and the number of words, which is 0 for a uniform section.
     """
     size_x, size_y, size_z = states.shape
     cells = np.zeros(SECTION, np.uint16)
@@ -69,16 +69,16 @@ def pack_section(states, origin, numbers, palette, words):  # pragma: no cover
 
 @njit
 def unpack_section(words, numbers, out, origin):  # pragma: no cover
-    """Unpack one section into a volume; the inverse of ``pack_section``.
+    """Unpack one section into a volume, the inverse of ``pack_section``.
 
     Args:
-        words: uint64 [N], or of length 0 where one state fills the section.
-        numbers: uint16 [palette size], the volume's number of each state of the section.
-        out: uint16 [X, Y, Z], written where the section lies in it.
-        origin: int64 [3], where the section's first cell lies in ``out``; may be outside.
+        words: Packed indices, uint64 [N], or an empty array for a uniform section.
+        numbers: The volume's index of each state in the section palette, uint16 [palette size].
+        out: Output volume, uint16 [X, Y, Z]. Only cells of the section are written.
+        origin: Position of the section's first cell in ``out``, int64 [3]. May be outside ``out``.
 
     Returns:
-        False where a cell points outside the palette, and then ``out`` is half written.
+        True on success; False if an index exceeds the palette, in which case ``out`` is incomplete.
     """
     size_x, size_y, size_z = out.shape
     bits = 4
@@ -104,7 +104,7 @@ def unpack_section(words, numbers, out, origin):  # pragma: no cover
 
 @njit
 def write_varints(values, out):  # pragma: no cover
-    """Write uint16 values [N] as LEB128 into uint8 ``out`` [3 N]; return the bytes used."""
+    """Encode uint16 values [N] as LEB128 in ``out``, uint8 [3 N], and return the byte count."""
     at = 0
     for value in values:
         rest = np.uint32(value)
@@ -119,16 +119,16 @@ def write_varints(values, out):  # pragma: no cover
 
 @njit
 def read_varints(data, lookup, out):  # pragma: no cover
-    """Read LEB128 numbers from uint8 ``data`` and write what ``lookup`` has for each.
+    """Decode LEB128 numbers and map each through a lookup table.
 
     Args:
-        data: uint8 [N].
-        lookup: int32 [M], -1 for a number that means nothing.
-        out: uint16 [Y, Z, X] out, filled whole, the last axis fastest.
+        data: Encoded bytes, uint8 [N].
+        lookup: Value for each number, int32 [M]. -1 marks invalid numbers.
+        out: Output, uint16 [Y, Z, X], last axis fastest. Every cell is written.
 
     Returns:
-        The bytes used, or -1 where the data ends too early, or -2 where a number has more than
-        four bytes, or -3 - n where the number n is not in ``lookup``.
+        The number of bytes read; -1 if the data ends too early; -2 if a number has more than four
+        bytes; -3 - n if the number n is not in ``lookup``.
     """
     at = 0
     size_y, size_z, size_x = out.shape
@@ -162,14 +162,15 @@ def read_varints(data, lookup, out):  # pragma: no cover
 
 @njit
 def read_legacy_keys(numbers, values, more, out, counts):  # pragma: no cover
-    """Read the blocks of a schematic from before 1.13 as number * 16 + data value.
+    """Read the blocks of a schematic from before 1.13 as keys of block ID * 16 + data value.
 
     Args:
-        numbers: uint8 [N], the low bytes of the block numbers.
-        values: uint8 [N], the data values, of which four bits count.
-        more: uint8 [N / 2] with four more bits of each number, the first one's low; or [0].
-        out: uint16 [Y, Z, X] out, N cells, the last axis fastest.
-        counts: int64 [65536], to which 1 is added for each cell.
+        numbers: Low bytes of the block IDs, uint8 [N].
+        values: Data values, uint8 [N]. Only the low four bits are used.
+        more: Four additional high bits of each block ID, uint8 [N / 2], or an empty array. The
+            first block of each pair uses the low half of the byte.
+        out: Output keys, uint16 [Y, Z, X] with N cells, last axis fastest.
+        counts: Number of cells of each key, int64 [65536], incremented by this call.
     """
     size_y, size_z, size_x = out.shape
     for y in range(size_y):
@@ -186,15 +187,16 @@ def read_legacy_keys(numbers, values, more, out, counts):  # pragma: no cover
 
 @njit
 def skip_text_compounds(data, at, ends):  # pragma: no cover
-    """Find where each of ``len(ends)`` compounds of texts and of compounds of texts ends.
+    """Find the ends of consecutive NBT compounds that contain only strings and such compounds.
 
     Args:
-        data: uint8 [N], NBT.
-        at: where the first compound's content begins.
-        ends: int64 out, the byte after each compound's end.
+        data: NBT bytes, uint8 [N].
+        at: Offset of the first compound's content.
+        ends: Output, int64: offset of the first byte after each compound. Its length is the number
+            of compounds to skip.
 
     Returns:
-        False where something else is there, or the data ends too early.
+        True on success; False if another tag is found or the data ends too early.
     """
     for index in range(len(ends)):
         depth = 1
@@ -221,18 +223,18 @@ def skip_text_compounds(data, at, ends):  # pragma: no cover
 
 
 def bit_width(count: int, least: int) -> int:
-    """Return how many bits the numbers 0 to ``count`` - 1 take, ``least`` at the least."""
+    """Return the number of bits that represent 0 to ``count`` - 1, and at least ``least``."""
     return max(least, (count - 1).bit_length())
 
 
 def straddled_word_count(count: int, bits: int) -> int:
-    """Return how many words of 64 bits ``count`` numbers of ``bits`` bits take."""
+    """Return the number of 64-bit words that ``count`` gapless numbers of ``bits`` bits occupy."""
     return -(-count * bits // 64)
 
 
 @njit
 def pack_straddled(values, bits, words):  # pragma: no cover
-    """Write uint16 ``values`` [N] into uint64 ``words``, all 0 on entry."""
+    """Pack uint16 ``values`` [N] without gaps into uint64 ``words``, which must be 0 on entry."""
     at = np.int64(0)
     for index in range(len(values)):
         value = np.uint64(values[index])
@@ -245,16 +247,17 @@ def pack_straddled(values, bits, words):  # pragma: no cover
 
 @njit
 def unpack_straddled(words, bits, lookup, out):  # pragma: no cover
-    """Read numbers from ``words`` and write what ``lookup`` has for each.
+    """Unpack numbers that are packed without gaps and map each through a lookup table.
 
     Args:
-        words: uint64, long enough for all of ``out``.
-        bits: 1 to 32.
-        lookup: uint16 [M].
-        out: uint16 [Y, Z, X] out, filled whole where all goes well, the last axis fastest.
+        words: Packed numbers, uint64 [W]. Must have enough bits for every cell of ``out``.
+        bits: Number of bits per number, 1 to 32.
+        lookup: Value for each number, uint16 [M].
+        out: Output, uint16 [Y, Z, X], last axis fastest. Every cell is written on success.
 
     Returns:
-        -1, or a number that ``lookup`` lacks, and then ``out`` is half written.
+        -1 on success; otherwise the first number that is not in ``lookup``, and ``out`` is
+        incomplete.
     """
     mask = np.uint64((1 << bits) - 1)
     size_y, size_z, size_x = out.shape
@@ -274,20 +277,24 @@ def unpack_straddled(words, bits, lookup, out):  # pragma: no cover
 
 
 def word_count(states: int) -> int:
-    """Return how many words a section of so many states has today: none where it is all one."""
+    """Return the number of 64-bit words of a current section with ``states`` palette entries.
+
+    A uniform section has no words.
+    """
     return 0 if states == 1 else _padded_count(bit_width(states, MIN_BITS))
 
 
 def repack_section_words(words: np.ndarray, states: int, *, straddles: bool) -> np.ndarray | None:
-    """Return a section's words as they are packed today.
+    """Convert the words of a section to the current packing.
 
     Args:
-        words: uint64 [N].
-        states: how many states the section's palette has.
-        straddles: whether numbers go over from one word to the next, as before 1.16.
+        words: Packed indices, uint64 [N].
+        states: Number of palette entries of the section.
+        straddles: Whether indices cross word boundaries, as in versions before 1.16.
 
     Returns:
-        uint64 words, or None where they are too few, or no count of bits makes so many.
+        The repacked words as uint64, or None if the number of words is invalid or an index exceeds
+        the palette.
     """
     if states == 1:
         return np.zeros(0, np.uint64)
@@ -303,7 +310,10 @@ def repack_section_words(words: np.ndarray, states: int, *, straddles: bool) -> 
 
 
 def straddle_section_words(words: np.ndarray, states: int) -> np.ndarray:
-    """Return today's words of a section as games before 1.16 packed them; all of one are 0."""
+    """Convert the words of a section from the current packing to the packing used before 1.16.
+
+    The words of a uniform section are all 0.
+    """
     bits = bit_width(states, MIN_BITS)
     if states == 1:
         return np.zeros(straddled_word_count(SECTION, bits), np.uint64)

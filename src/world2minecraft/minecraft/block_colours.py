@@ -1,10 +1,9 @@
-"""Average colours of blocks, and the blocks nearest to a colour.
+"""Average colours of blocks, and search for the block that is nearest to a colour.
 
-The table ``data/block_colours.json`` holds our own estimates of the mean sRGB colour of the
-blocks of 1.20.1 and of newer games. Slabs, stairs, fences and the like take the colour of what they
-are made of; a block that neither the table nor a rule knows (of a mod) takes the colour of the wood
-or dye that its name begins with, else one of its own that depends on its name alone, so that it
-stays recognisable from picture to picture.
+The file ``data/block_colours.json`` contains estimates of the mean sRGB colour of blocks in 1.20.1
+and later. Derived blocks such as slabs, stairs and fences have the colour of their material. A mod
+block that is not in the table has the colour of the wood or dye that its name starts with, or else
+a colour computed from its name, so that it looks the same in every image.
 """
 
 import json
@@ -90,10 +89,10 @@ def _table() -> dict[str, tuple[int, int, int]]:
 
 @cache
 def colour_of(state: str) -> tuple[int, int, int]:
-    """Return the mean sRGB colour, bytes, of a block state such as ``minecraft:oak_slab[...]``.
+    """Return the mean sRGB colour of a block state as three bytes.
 
-    Properties do not matter, and the namespace may be left out. A block that is not known gets
-    a stable colour made from its name.
+    Properties are ignored and the namespace is optional. An unknown block has a fixed colour
+    computed from its name.
 
     Example:
         >>> colour_of("minecraft:red_carpet") == colour_of("red_wool")
@@ -140,22 +139,24 @@ def _name_colour(name: str) -> tuple[int, int, int]:
 
 
 def colours_of(states: Sequence[str]) -> np.ndarray:
-    """Return the colours, uint8 [N, 3], of N block states."""
+    """Return the mean sRGB colours of N block states as uint8 [N, 3]."""
     return np.array([colour_of(state) for state in states], np.uint8).reshape(-1, 3)
 
 
 def nearest_block(rgb: np.ndarray, candidates: Sequence[str]) -> np.ndarray:
-    """Return which candidate comes nearest to each colour in Oklab; the first of equals wins.
+    """Find the block whose colour is nearest to each given colour in Oklab.
+
+    If several candidates are equally near, the first is used.
 
     Args:
-        rgb: uint8 [N, 3].
-        candidates: block states or names, at least one.
+        rgb: sRGB colours, uint8 [N, 3].
+        candidates: Block states or block names, at least one.
 
     Returns:
-        intp [N], indices into ``candidates``.
+        Indices into ``candidates``, intp [N].
 
     Raises:
-        ValueError: there are no candidates.
+        ValueError: If ``candidates`` is empty.
     """
     if not candidates:
         raise ValueError("nearest_block needs at least one candidate block")
@@ -163,7 +164,7 @@ def nearest_block(rgb: np.ndarray, candidates: Sequence[str]) -> np.ndarray:
 
 
 def nearest_oklab(colours: np.ndarray, candidates: np.ndarray) -> np.ndarray:
-    """Return the index, intp [N], of the candidate [M, 3] nearest to each colour [N, 3]."""
+    """Return the index of the candidate [M, 3] nearest to each colour [N, 3], as intp [N]."""
     nearest = np.empty(len(colours), np.intp)
     for start in range(0, len(colours), _NEAREST_CHUNK):
         chunk = colours[start : start + _NEAREST_CHUNK, None, :]

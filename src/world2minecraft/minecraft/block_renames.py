@@ -1,8 +1,8 @@
-"""Names of blocks in versions of the game. Volumes use those of 1.20.1, the table's version.
+"""Conversion of block names between game versions.
 
-A file names its blocks as the game that wrote it: readers bring the names to those of 1.20.1 and
-writers to those of the game that is written for, so that a volume means the same whatever it came
-from. Blocks that a game does not know stay as they are, and are counted as lost.
+Volumes use the block names of 1.20.1. Readers convert names from the version of the file, and
+writers convert names to the target version. Blocks that the target version does not have keep their
+names and are counted as losses.
 """
 
 import json
@@ -35,11 +35,11 @@ _SIDES = ("east", "north", "south", "west")
 
 @lru_cache(maxsize=1 << 16)
 def read_state(text: str, data_version: int) -> str:
-    """Return a state as 1.20.1 calls it.
+    """Convert the block state of a file to the names of 1.20.1.
 
     Args:
-        text: the canonical text of a state in a file.
-        data_version: that of the game that wrote the file.
+        text: The canonical text of the block state.
+        data_version: The data version of the game that wrote the file.
 
     Example:
         >>> read_state("minecraft:short_grass", 3700), read_state("minecraft:sign", 1519)
@@ -66,7 +66,7 @@ def read_state(text: str, data_version: int) -> str:
 
 @lru_cache(maxsize=1 << 16)
 def write_state(text: str, data_version: int) -> str:
-    """Return a state of 1.20.1 as another version of the game calls it.
+    """Convert a block state of 1.20.1 to the names of another game version.
 
     Example:
         >>> write_state("minecraft:grass", 3700), write_state("minecraft:oak_sign", 1519)
@@ -89,15 +89,15 @@ def write_state(text: str, data_version: int) -> str:
 
 
 def count_unknown_blocks(volume: BlockVolume, version: GameVersion, losses: Losses) -> None:
-    """Count the blocks and displays of a volume that a version of the game does not know yet.
+    """Count the blocks and display entities of a volume that a game version does not have.
 
-    They are written by their names; the game puts air in their place, or nothing. What things in
-    chests carry is counted where the game keeps it in another form.
+    Such blocks are written with their names, and the game replaces them with air. Item data that
+    the game version stores in a different form is counted too.
     """
     count_lost_data(volume, version.data_version, losses)
     if version.data_version < FIRST_DISPLAYS:
         shown = sum(entity.id in DISPLAYS for entity in volume.entities)
-        losses.add(f"display entities, which Minecraft {version.name} does not know", shown)
+        losses.add(f"display entities, which Minecraft {version.name} does not support", shown)
     unknown = [is_unknown(state, version.data_version) for state in volume.palette]
     if not any(unknown):
         return
@@ -105,11 +105,11 @@ def count_unknown_blocks(volume: BlockVolume, version: GameVersion, losses: Loss
     for state, count, is_lost in zip(volume.palette, counts.tolist(), unknown, strict=True):
         if is_lost:
             name = state.partition("[")[0]
-            losses.add(f"blocks {name}, which Minecraft {version.name} does not know", count)
+            losses.add(f"blocks {name}, which Minecraft {version.name} does not have", count)
 
 
 def count_mod_blocks(volume: BlockVolume) -> dict[str, int]:
-    """Return how many blocks are of each mod: they are carried by their names alone."""
+    """Return the number of blocks of each mod, by namespace."""
     counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))
     found: dict[str, int] = {}
     for state, count in zip(volume.palette, counts.tolist(), strict=True):
@@ -120,7 +120,7 @@ def count_mod_blocks(volume: BlockVolume) -> dict[str, int]:
 
 
 def is_unknown(state: str, data_version: int) -> bool:
-    """Whether a block of the game came with a later version. Blocks of mods count as known."""
+    """Return whether a vanilla block is newer than a game version. Mod blocks are never unknown."""
     name = write_state(state, data_version).partition("[")[0]
     if state.startswith("minecraft:stone_slab") and data_version < FIRST_1_14:
         return True  # What has this name there is another slab.

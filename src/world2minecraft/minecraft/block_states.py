@@ -1,6 +1,6 @@
-"""Block states as text and as values.
+"""Block states as text and as Python values.
 
-The canonical text names the namespace and sorts the properties:
+The canonical text includes the namespace and sorts the properties:
 ``minecraft:oak_stairs[facing=east,half=bottom,shape=straight,waterlogged=false]``.
 """
 
@@ -19,7 +19,7 @@ _WORD = re.compile(r"[a-z0-9_]+")
 
 @dataclass(frozen=True)
 class BlockState:
-    """A block's name and the properties that are stated, sorted by name.
+    """A block name and its explicit properties, sorted by name.
 
     Example:
         >>> str(BlockState("oak_log", {"axis": "y"}))
@@ -36,13 +36,14 @@ class BlockState:
         full = name if ":" in name else f"minecraft:{name}"
         if not _NAME.fullmatch(full):
             raise UsageError(
-                f"block name {name!r} must be like minecraft:oak_log: lower case letters, "
-                "digits, and _ . - / after the colon"
+                f"block name {name!r} is invalid; expected a name such as minecraft:oak_log with "
+                "lower-case letters, digits and _ . - /"
             )
         for key, value in pairs:
             if not (_WORD.fullmatch(key) and _WORD.fullmatch(value)):
                 raise UsageError(
-                    f"property {key}={value} of {full} must be lower case letters, digits and _"
+                    f"property {key}={value} of {full} is invalid; use lower-case letters, digits "
+                    "and _"
                 )
         object.__setattr__(self, "name", full)
         object.__setattr__(self, "properties", pairs)
@@ -53,20 +54,20 @@ class BlockState:
         return f"{self.name}[{','.join(f'{key}={value}' for key, value in self.properties)}]"
 
     def get(self, key: str, default: str = "") -> str:
-        """Return the value of a property, or ``default`` where it is not stated."""
+        """Return the value of a property, or ``default`` if the property is not set."""
         return dict(self.properties).get(key, default)
 
     def having(self, **changed: str) -> "BlockState":
-        """Return the state with some properties changed or added."""
+        """Return a copy of the state with some properties changed or added."""
         return BlockState(self.name, {**dict(self.properties), **changed})
 
 
 @lru_cache(maxsize=1 << 16)
 def parse_state(text: str) -> BlockState:
-    """Read the text of a block state. The namespace ``minecraft:`` may be left out.
+    """Parse the text of a block state. The namespace ``minecraft:`` is optional.
 
     Raises:
-        UsageError: the text is no block state, or names a property twice.
+        UsageError: If the text is not a valid block state or repeats a property.
 
     Example:
         >>> parse_state("oak_stairs[half=top,facing=east]").get("facing")
@@ -75,23 +76,25 @@ def parse_state(text: str) -> BlockState:
     name, bracket, rest = text.partition("[")
     if len(text) > MAX_TEXT or (bracket and not rest.endswith("]")):
         shown = text if len(text) <= 80 else text[:77] + "..."
-        raise UsageError(f"block state {shown!r} must be like minecraft:oak_log[axis=y]")
+        raise UsageError(
+            f"block state {shown!r} is invalid; expected text such as minecraft:oak_log[axis=y]"
+        )
     properties: dict[str, str] = {}
     for part in rest[:-1].split(",") if rest[:-1] else ():
         key, equals, value = part.partition("=")
         key, value = key.strip(), value.strip()
         if not equals or key in properties:
-            raise UsageError(f"block state {text!r} has a bad or repeated property {part!r}")
+            raise UsageError(f"block state {text!r} has an invalid or repeated property {part!r}")
         properties[key] = value
     return BlockState(name, properties)
 
 
 @lru_cache(maxsize=1 << 16)
 def complete(state: BlockState) -> BlockState:
-    """Fill in the properties that the state leaves out with the defaults of its block.
+    """Add the default value of each property that a block state leaves out.
 
-    A block that the table does not know (a mod's, or a newer game's) stays as it is, and so do
-    properties that the table does not know.
+    A block that is not in the table (from a mod or a newer game) is returned unchanged. Properties
+    that are not in the table are kept.
     """
     block = block_table().blocks.get(state.name)
     if block is None:
@@ -100,10 +103,10 @@ def complete(state: BlockState) -> BlockState:
 
 
 def check_state(state: BlockState) -> BlockState:
-    """Return the state if the game knows its block, its properties and their values.
+    """Return a block state after checking its block name, properties and property values.
 
     Raises:
-        UnknownNameError: it does not; the message suggests the nearest name.
+        UnknownNameError: If a name or value does not exist. The message suggests the nearest one.
     """
     blocks = block_table().blocks
     if state.name not in blocks:
@@ -114,20 +117,20 @@ def check_state(state: BlockState) -> BlockState:
         if key not in known:
             raise UnknownNameError(f"property of {state.name}", key, known)
         if value not in known[key]:
-            raise UnknownNameError(f"{key} of {state.name}", value, known[key])
+            raise UnknownNameError(f"{key} value of {state.name}", value, known[key])
     return state
 
 
 def known_blocks() -> tuple[str, ...]:
-    """The full names of all blocks of the table, sorted."""
+    """Return the full names of all blocks in the table, sorted."""
     return tuple(block_table().blocks)
 
 
 def states_of(name: str) -> list[BlockState]:
-    """All states of a known block, in the game's order.
+    """Return all states of a known block, in the game's order.
 
     Raises:
-        UnknownNameError: the table has no such block.
+        UnknownNameError: If the block is not in the table.
     """
     full = check_state(BlockState(name)).name
     block = block_table().blocks[full]

@@ -1,8 +1,8 @@
-"""The game's own table of blocks: properties, default states and collision boxes of 1.20.1.
+"""The table of blocks of Minecraft 1.20.1: properties, default states and collision boxes.
 
-The data file is a subset of the public package ``minecraft-data``; see its notice beside it.
-A state's index counts its property values with the last property fastest; a boolean's first value
-is true.
+The data file is a subset of the public package ``minecraft-data``; see the notice in the data
+folder. The index of a state counts property values with the last property varying fastest. The
+first value of a boolean property is true.
 """
 
 import gzip
@@ -18,23 +18,23 @@ TABLE_FILE = "data/blocks.json.gz"
 
 @dataclass(frozen=True)
 class BlockType:
-    """One kind of block: its properties in the game's order and the shape of each state."""
+    """A kind of block, with its properties in the game's order and the shape of each state."""
 
     name: str
     properties: tuple[tuple[str, tuple[str, ...]], ...]
     default: int
-    shapes: tuple[int, ...]  # one index for all states, or one a state
+    shapes: tuple[int, ...]  # One index for all states, or one index per state.
 
     @property
     def state_count(self) -> int:
-        """The number of states that the block can take."""
+        """The number of states of the block."""
         count = 1
         for _, values in self.properties:
             count *= len(values)
         return count
 
     def values_at(self, index: int) -> dict[str, str]:
-        """Return the property values of the state ``index``, in the game's order."""
+        """Return the property values of the state with the given index, in the game's order."""
         found: dict[str, str] = {}
         for name, values in reversed(self.properties):
             index, place = divmod(index, len(values))
@@ -42,7 +42,7 @@ class BlockType:
         return {name: found[name] for name, _ in self.properties}
 
     def index_of(self, values: dict[str, str]) -> int:
-        """Return the index of a state; missing or strange values count as the default's."""
+        """Return the index of a state. Missing or invalid values count as the default value."""
         defaults = self.values_at(self.default)
         index = 0
         for name, known in self.properties:
@@ -51,13 +51,13 @@ class BlockType:
         return index
 
     def shape_at(self, index: int) -> int:
-        """Return the number of the shape of state ``index``."""
+        """Return the shape number of the state with the given index."""
         return self.shapes[index if len(self.shapes) > 1 else 0]
 
 
 @dataclass(frozen=True)
 class BlockTable:
-    """All blocks by full name, and all shapes as float32 [N, 6] boxes in block units."""
+    """All blocks by full name, and all collision shapes as float32 [N, 6] boxes in block units."""
 
     version: str
     blocks: dict[str, BlockType]
@@ -66,7 +66,7 @@ class BlockTable:
 
 @cache
 def block_table() -> BlockTable:
-    """Read the shipped table, once."""
+    """Load the bundled block table. The result is cached."""
     packed = files("world2minecraft.minecraft").joinpath(TABLE_FILE).read_bytes()
     raw = json.loads(gzip.decompress(packed))
     properties = [(name, tuple(values)) for name, values in raw["properties"]]

@@ -1,4 +1,4 @@
-"""The collision boxes of block states, from the public table."""
+"""Collision boxes of block states."""
 
 from functools import lru_cache
 
@@ -36,16 +36,17 @@ def boxes_of(state: str) -> np.ndarray:
     """Return the collision boxes of a block state.
 
     Args:
-        state: its text; missing properties count as the defaults. A block that the table does
-            not know has the shape of one whose name ends alike and that has all the properties
-            which are stated (a mod's stairs are stairs); else it is a full cube.
+        state: Text of the block state. Missing properties have their default values. A block that
+            is not in the table uses the shape of a known block with the same name ending, if that
+            block has all properties of the state (the stairs of a mod are stairs). Otherwise the
+            shape is a full cube.
 
     Returns:
-        Read-only float32 [N, 6]: x0 y0 z0 x1 y1 z1 in block units, x east, y up, z south. Fences
-        and walls reach up to 1.5; air, flowers and torches have no box.
+        The boxes as read-only float32 [N, 6] with x0, y0, z0, x1, y1, z1 in block units: x is east,
+        y is up and z is south. Fences and walls are 1.5 high. Air, flowers and torches have no box.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
 
     Example:
         >>> boxes_of("minecraft:oak_slab[type=top]").tolist()
@@ -60,7 +61,11 @@ def boxes_of(state: str) -> np.ndarray:
 
 
 def is_full_cube(state: str) -> bool:
-    """Whether the state fills its whole block and no more. Raises what ``boxes_of`` raises."""
+    """Return whether the collision shape of a block state is exactly one full cube.
+
+    Raises:
+        UsageError: If the text is not a valid block state.
+    """
     return np.array_equal(boxes_of(state), FULL_CUBE)
 
 

@@ -1,12 +1,12 @@
-"""Entities as NBT, and display entities: blocks of any size and turn, drawn by games since 1.19.4.
+"""Conversion of entities to NBT, and block display entities of any size and rotation.
 
-A ``block_display`` draws one block state. Its ``transformation`` carries the unit cube of the
-block: turned by ``right_rotation``, stretched by ``scale``, turned by ``left_rotation``, moved by
-``translation``; then the entity's own ``Rotation`` turns it and its position moves it. All that is
-in block axes: x east, y up, z south.
+A ``block_display`` entity renders one block state in games since 1.19.4. Its ``transformation``
+applies to the block's unit cube in this order: ``right_rotation``, ``scale``, ``left_rotation``,
+``translation``. The entity's ``Rotation`` and position apply last. All axes are block axes: x is
+east, y is up, z is south.
 
-Entities have no collision. What they belong to stands in their tags, so that it lasts through
-files: ``w2m``, ``w2m_object_7`` and ``w2m_class_chair``.
+Entities have no collision boxes. Tags such as ``w2m``, ``w2m_object_7`` and ``w2m_class_chair``
+identify the object that an entity is part of, and are preserved in files.
 """
 
 import hashlib
@@ -31,7 +31,7 @@ DECIMALS = 6  # Of blocks: finer than single precision tells at the edge of a ro
 
 
 def entity_nbt(entity: Entity, number: int) -> dict[str, Any]:
-    """Return an entity's tags; its UUID comes from its number, so that no two are the same."""
+    """Return the NBT of an entity, with a UUID derived from its number so that it is unique."""
     digest = hashlib.sha256(f"{number} {entity.id} {entity.position}".encode()).digest()
     common = {
         "Motion": [0.0, 0.0, 0.0],
@@ -42,7 +42,7 @@ def entity_nbt(entity: Entity, number: int) -> dict[str, Any]:
 
 
 def entity_tags(nbt: Mapping[str, Any]) -> list[str]:
-    """Return the tags by which commands know an entity; none where a file has other things there.
+    """Return the command tags of an entity's NBT, or an empty list if the field is not a list.
 
     Example:
         >>> entity_tags({"Tags": ["chair", 7]}), entity_tags({"Tags": 7})
@@ -54,9 +54,9 @@ def entity_tags(nbt: Mapping[str, Any]) -> list[str]:
 
 @dataclass(frozen=True, eq=False)
 class DisplayCube:
-    """What a display entity draws: a block state, and where its unit cube goes.
+    """The block state that a display entity renders, and the transform of its unit cube.
 
-    ``cube_to_world`` float64 [4, 4] carries [0, 1] cubed to world block coordinates.
+    ``cube_to_world``, float64 [4, 4], maps [0, 1] cubed to world block coordinates.
     """
 
     state: str
@@ -76,21 +76,22 @@ def block_display(
     view_range: float = 1.0,
     light: int | None = None,
 ) -> Entity:
-    """Return an entity that draws a box of one block.
+    """Return a display entity that renders a box with the texture of one block.
 
     Args:
-        state: the block.
-        box: float64 [6], x0 y0 z0 x1 y1 z1 in blocks, from the position, before it is turned.
-        position: where the entity stands, in world block coordinates. The game lights it by the
-            light there.
-        yaw_deg: the turn about the position, counter-clockwise from above.
-        class_id: the class of what it belongs to.
-        instance: the object that it belongs to.
-        view_range: how far it is drawn, in lengths of 64 blocks.
-        light: 0 to 15 where it is drawn as lit by that, whatever the light there is.
+        state: The block state to render.
+        box: x0, y0, z0, x1, y1, z1 in blocks relative to ``position``, before rotation; float64
+            [6].
+        position: The entity's position in world block coordinates. The game uses the light level at
+            this position.
+        yaw_deg: Rotation about the position in degrees, counter-clockwise seen from above.
+        class_id: The class of the object that the entity is part of.
+        instance: The instance number of the object that the entity is part of.
+        view_range: The distance up to which the game renders the entity, in units of 64 blocks.
+        light: A fixed light level from 0 to 15. The default is the light level at the position.
 
     Raises:
-        UsageError: the state is no block state.
+        UsageError: If ``state`` is not a valid block state.
     """
     quarters = int(np.round(yaw_deg / 90.0))
     turned, rest = _rotate_box(np.asarray(box, np.float64), quarters), yaw_deg - 90.0 * quarters
@@ -116,7 +117,7 @@ def block_display(
 
 
 def owner_tags(class_id: int, instance: int) -> list[str]:
-    """Return the tags that tell what an entity belongs to."""
+    """Return the tags that identify the object that an entity is part of."""
     tags = [TAG]
     if class_id:
         tags.append(f"{TAG}_class_{CLASS_NAMES[class_id]}")
@@ -124,7 +125,10 @@ def owner_tags(class_id: int, instance: int) -> list[str]:
 
 
 def owner_of(entity: Entity) -> tuple[int, int]:
-    """Return the class and the object that an entity belongs to: its own, else by its tags."""
+    """Return the class and instance of the object that an entity is part of.
+
+    The tags are used if the entity's own fields are 0.
+    """
     class_id, instance = entity.class_id, entity.instance
     for tag in entity_tags(entity.nbt):
         kind, _, name = tag.removeprefix(f"{TAG}_").partition("_")
@@ -136,22 +140,22 @@ def owner_of(entity: Entity) -> tuple[int, int]:
 
 
 def display_cubes(entities: Iterable[Entity]) -> list[DisplayCube]:
-    """Return what the block displays among entities draw; others, and broken ones, draw nothing."""
+    """Return the cubes that block display entities render, skipping other and invalid entities."""
     found = (_parse_display(entity) for entity in entities if entity.id == BLOCK_DISPLAY)
     return [cube for cube in found if cube is not None]
 
 
 def check_displays(volume: BlockVolume, version: GameVersion) -> None:
-    """Refuse to write display entities for a game that does not know them.
+    """Check that the game version supports the display entities of a volume.
 
     Raises:
-        UsageError: the game is older than 1.19.4, and the volume has display entities.
+        UsageError: If the volume contains display entities and the game is older than 1.19.4.
     """
     if version.data_version < FIRST_VERSION and any(
         entity.id.endswith("_display") for entity in volume.entities
     ):
         raise UsageError(
-            f"Minecraft {version.name} has no display entities, which came with 1.19.4; choose "
+            f"Minecraft {version.name} does not support display entities (new in 1.19.4); use "
             "build.style=blocks or another --mc-version"
         )
 

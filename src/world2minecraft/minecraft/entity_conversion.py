@@ -1,10 +1,10 @@
-"""Convert data of blocks and entities between games: texts of signs, items in chests and frames.
+"""Conversion of block entity and entity data between game versions: sign texts and item stacks.
 
-Until 1.20.4 a stack of things was ``{id, Count, tag}``, since 1.20.5 it is ``{id, count,
-components}``; a game that meets the other form takes the stack for nothing, or for one plain thing.
-A volume keeps stacks as its file had them; writers bring them to the form of the game that is
-written for. What a tag or the components say (names, enchantments, wear) has no general counterpart
-in the other form: it is left out, and counted as lost.
+Up to 1.20.4 an item stack is ``{id, Count, tag}``, and since 1.20.5 ``{id, count, components}``. A
+game that reads the other form loses the stack or its count. A volume keeps item stacks in the form
+of their file, and writers convert them to the form of the target game. ``tag`` and ``components``
+(names, enchantments, wear) cannot be converted in general, so they are dropped and counted as
+losses.
 """
 
 from collections.abc import Iterator, Mapping
@@ -18,11 +18,11 @@ from world2minecraft.minecraft.signs import convert_sign
 
 FIRST_COMPONENTS = 3837  # 1.20.5.
 OLD, NEW = ("Count", "tag"), ("count", "components")
-MAX_OLD_COUNT = 127  # What a byte counts.
+MAX_OLD_COUNT = 127  # The maximum of a signed byte.
 
 
 def convert_volume(volume: BlockVolume, data_version: int) -> BlockVolume:
-    """Return a volume whose block entities and entities hold what they hold as a game keeps it."""
+    """Convert the block entities and entities of a volume to the form of a game version."""
     if not (volume.block_entities or volume.entities):
         return volume
     blocks = tuple(convert_block_entity(entity, data_version) for entity in volume.block_entities)
@@ -34,7 +34,7 @@ def convert_volume(volume: BlockVolume, data_version: int) -> BlockVolume:
 
 
 def convert_block_entity(entity: BlockEntity, data_version: int) -> BlockEntity:
-    """Return a block entity as a game keeps it."""
+    """Convert the data of a block entity to the form of a game version."""
     entity = convert_sign(entity, data_version)
     if not any(_item_stacks(entity.nbt, data_version)):
         return entity
@@ -42,18 +42,18 @@ def convert_block_entity(entity: BlockEntity, data_version: int) -> BlockEntity:
 
 
 def convert_entity(entity: Entity, data_version: int) -> Entity:
-    """Return an entity as a game keeps it."""
+    """Convert the data of an entity to the form of a game version."""
     if not any(_item_stacks(entity.nbt, data_version)):
         return entity
     return replace(entity, nbt=_convert(entity.nbt, data_version))
 
 
 def count_lost_data(volume: BlockVolume, data_version: int, losses: Losses) -> None:
-    """Count the stacks of things of which a game keeps their kind and number alone."""
+    """Count the item stacks that keep only their kind and count in the form of a game version."""
     _, extra = OLD if data_version >= FIRST_COMPONENTS else NEW
     for entity in (*volume.block_entities, *volume.entities):
         lost = sum(bool(stack.get(extra)) for stack in _item_stacks(entity.nbt, data_version))
-        losses.add("things whose names, wear and the like the game keeps otherwise", lost)
+        losses.add("names, enchantments and other data of item stacks", lost)
 
 
 def _item_stacks(value: Any, data_version: int) -> Iterator[Mapping[str, Any]]:

@@ -1,6 +1,6 @@
-"""Shared parts of block formats: files known by suffix, options of writers, and losses.
+"""Shared parts of block formats: the base class of file formats, write options and losses.
 
-``Losses`` counts what a format could not carry; ``w2m convert`` prints it.
+``Losses`` counts what a conversion drops; ``w2m convert`` prints the counts.
 """
 
 from collections import Counter
@@ -11,7 +11,7 @@ from typing import Any
 
 
 class Losses:
-    """Counts of what was left behind on the way from one format to another, by what it is.
+    """Counts of the data that a conversion between formats drops, by description.
 
     Example:
         >>> losses = Losses()
@@ -25,11 +25,11 @@ class Losses:
         self._counts: Counter[str] = Counter()
 
     def add(self, what: str, count: int = 1) -> None:
-        """Count ``count`` more of what was lost; 0 or less counts nothing.
+        """Add to the count of one kind of lost data.
 
         Args:
-            what: a plural, as in ``3 entities``, with its reason where it is not plain.
-            count: how many.
+            what: A plural noun such as ``entities``, with a reason if it is not obvious.
+            count: The number to add. Values of 0 or less are ignored.
         """
         if count > 0:
             self._counts[what] += count
@@ -42,7 +42,7 @@ class Losses:
 
 
 class FileFormat:
-    """A file that is read and written and holds blocks without their labels."""
+    """Base class of single-file formats that can be read and written and do not store labels."""
 
     suffix: str
     can_read = True
@@ -50,13 +50,13 @@ class FileFormat:
     keeps_labels = False
 
     def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
+        """Return whether the path is a file with the suffix of this format."""
         return path.is_file() and path.suffix.lower() == self.suffix
 
 
 @dataclass(frozen=True)
 class WriteOptions:
-    """Options of writers; a format reads those that it needs."""
+    """Options for writing blocks. Each format uses only the options that apply to it."""
 
     mc_version: str = "1.20.1"
     name: str = "room"

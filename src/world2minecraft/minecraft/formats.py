@@ -1,7 +1,7 @@
-"""The formats that hold blocks, found by a file's suffix or a folder's content.
+"""Registry of block formats, which are detected by file suffix or folder content.
 
-A format is one class and one line of ``FORMATS``. A reader and a writer count in ``losses`` what
-they could not carry; ``write_blocks`` itself counts the labels, which no format of the game holds.
+A format is one class and one entry in ``FORMATS``. Readers and writers count in ``losses`` the data
+that they cannot convert; ``write_blocks`` counts the labels, which no game format stores.
 """
 
 from pathlib import Path
@@ -33,11 +33,11 @@ FORMATS = Registry(
 
 
 def default_spawn(volume: BlockVolume) -> tuple[float, float, float]:
-    """Return where feet can stand nearest to the middle of the volume, in world blocks.
+    """Return a standing position near the middle of the volume, in world block coordinates.
 
-    A place is a block whose boxes leave the player's two layers above it free. Places under a
-    roof are taken before others, then the nearest to the middle, then the lowest. Where nothing
-    can be stood on, the place is the middle above the volume.
+    The position is on top of a block with two free layers above it. Positions under a roof are
+    preferred, then those nearest to the middle, then the lowest. If there is no such position, the
+    result is the middle above the volume.
     """
     size_x, size_y, size_z = volume.states.shape
     tops = np.array([_top_height(state) for state in volume.palette])
@@ -70,9 +70,9 @@ def _top_height(state: str) -> float:
 
 
 class BlockFormat(Protocol):
-    """A format that holds blocks. ``suffix`` is empty for a format that is a world folder.
+    """Interface of a block format. ``suffix`` is empty for a world folder.
 
-    ``keeps_labels`` says whether a file holds what its blocks are (class and object).
+    ``keeps_labels`` is whether files store the class and the object of each block.
     """
 
     suffix: str
@@ -81,35 +81,44 @@ class BlockFormat(Protocol):
     keeps_labels: bool
 
     def is_at(self, path: Path) -> bool:
-        """Whether the file or folder at ``path`` is of this format, by its name or content."""
+        """Return whether the file or folder at ``path`` has this format, by its name or content."""
         ...
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read the blocks. Raises ``InputError`` or one of its kinds."""
+        """Read a volume of blocks.
+
+        Raises:
+            InputError: If the file or folder cannot be read.
+        """
         ...
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write the blocks. Raises ``OutputError`` or ``UsageError``."""
+        """Write a volume of blocks.
+
+        Raises:
+            OutputError: If the file or folder cannot be written.
+            UsageError: If the format cannot store the volume.
+        """
         ...
 
 
 def read_blocks(path: str | Path, losses: Losses | None = None) -> BlockVolume:
-    """Read blocks from any known format.
+    """Read blocks from a file or folder of any known format.
 
     Args:
-        path: a file or a folder.
-        losses: what the file holds and the volume cannot is counted here.
+        path: The file or folder to read.
+        losses: Counts of the data that a volume cannot store, updated by this call.
 
     Raises:
-        InputError: nothing is there or no format knows it, or one of its kinds from the reader.
+        InputError: If the path is not found, has an unknown format or cannot be read.
     """
     source = Path(path)
     if not source.exists():
-        raise InputError(source, "is not there")
+        raise InputError(source, "not found")
     for format_ in block_formats():
         if format_.can_read and format_.is_at(source):
             return format_.read(source, Losses() if losses is None else losses)
-    raise InputError(source, f"is no block file that is read; known: {list_suffixes('read')}")
+    raise InputError(source, f"is not in a supported format; expected: {list_suffixes('read')}")
 
 
 def write_blocks(
@@ -118,16 +127,19 @@ def write_blocks(
     options: WriteOptions | None = None,
     losses: Losses | None = None,
 ) -> None:
-    """Write blocks in the format that the path's suffix names; without one, as a world folder.
+    """Write blocks in the format that the path's suffix selects.
+
+    A path without a suffix is written as a world folder.
 
     Args:
-        volume: the blocks.
-        path: the file or folder to write.
-        options: the game's version and more.
-        losses: what the volume holds and the file cannot is counted here.
+        volume: The blocks to write.
+        path: The file or folder to write.
+        options: The target game version and other options.
+        losses: Counts of the data that the format cannot store, updated by this call.
 
     Raises:
-        UsageError: no format has this suffix. OutputError: the path cannot be written.
+        UsageError: If no format has this suffix.
+        OutputError: If the path cannot be written.
     """
     target = Path(path)
     format_ = format_for_path(target)
@@ -138,31 +150,33 @@ def write_blocks(
 
 
 def format_for_path(path: str | Path) -> BlockFormat:
-    """Return the format that a path's suffix names.
+    """Return the format that a path's suffix selects for writing.
 
     Raises:
-        UsageError: no format that is written has it.
+        UsageError: If no writable format has this suffix.
     """
     suffix = Path(path).suffix.lower()
     for format_ in block_formats():
         if format_.can_write and suffix == format_.suffix:
             return format_
-    raise UsageError(f"{path}: no block format ends so; known: {list_suffixes('write')}")
+    raise UsageError(
+        f"{path}: unknown file suffix for blocks; use one of: {list_suffixes('write')}"
+    )
 
 
 def block_formats() -> list[BlockFormat]:
-    """Return all formats, the program's own first."""
+    """Return an instance of every block format, with the built-in formats first."""
     return [FORMATS.load(name)() for name in FORMATS.names()]
 
 
 def list_suffixes(verb: Literal["read", "write"]) -> str:
-    """Return the suffixes that are read or written, as an error's end."""
+    """Return the suffixes that can be read or written as text for an error message."""
     able = [f for f in block_formats() if (f.can_read if verb == "read" else f.can_write)]
     return ", ".join(f.suffix or "a world folder" for f in able)
 
 
 class WorldFormat:
-    """A world folder."""
+    """The world format, a folder with a ``level.dat`` file."""
 
     suffix = ""
     can_read = True
@@ -170,17 +184,17 @@ class WorldFormat:
     keeps_labels = False
 
     def is_at(self, path: Path) -> bool:
-        """Whether a ``level.dat`` is there."""
+        """Return whether the folder contains a ``level.dat`` file."""
         return (path / "level.dat").is_file()
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read the overworld."""
+        """Read the overworld of a world folder."""
         from world2minecraft.minecraft.worlds.world_writer import read_world  # noqa: PLC0415  # It needs numba.
 
         return read_world(path)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write a world whose player starts at ``spawn``, or on top of the middle."""
+        """Write a world folder. The default spawn position is on top of a block near the middle."""
         from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
         from world2minecraft.minecraft.worlds.world_writer import write_world  # noqa: PLC0415  # numba.
@@ -197,26 +211,26 @@ class WorldFormat:
 
 
 class SchemFormat(FileFormat):
-    """A Sponge schematic."""
+    """The Sponge schematic format, ``.schem``."""
 
     suffix = ".schem"
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read version 1, 2 or 3."""
+        """Read a schematic of version 1, 2 or 3."""
         from world2minecraft.minecraft.schematics.sponge import read_schem  # noqa: PLC0415  # It needs numba.
 
         return read_schem(path, losses)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write version 2, or 1 or 3 where the options say so."""
+        """Write a schematic of version 2, or of the version in ``options``."""
         from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.sponge import write_schem  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         if options.schem_version not in (1, 2, 3):
-            raise UsageError(f"schem_version must be 1, 2 or 3, not {options.schem_version}")
+            raise UsageError(f"schem_version must be 1, 2 or 3, got {options.schem_version}")
         if options.schem_version == 1:
-            losses.add("entities, which version 1 has no place for", len(volume.entities))
+            losses.add("entities, which schematic version 1 cannot store", len(volume.entities))
         count_unknown_blocks(volume, game_version(options.mc_version), losses)
         write_schem(
             volume,
@@ -227,7 +241,7 @@ class SchemFormat(FileFormat):
 
 
 class DatapackFormat:
-    """A data pack of build commands; read where this program wrote it."""
+    """The data pack format, a ``.zip`` of build commands. Only this program's packs are read."""
 
     suffix = ".zip"
     can_read = True
@@ -235,11 +249,11 @@ class DatapackFormat:
     keeps_labels = False
 
     def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
+        """Return whether the path has the suffix ``.zip``."""
         return path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read what its function ``build`` sets."""
+        """Read the blocks that a data pack's ``build`` function or structures place."""
         from world2minecraft.minecraft.commands.parser import read_datapack  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.structure_pack import (  # noqa: PLC0415
             is_structure_pack,
@@ -251,7 +265,7 @@ class DatapackFormat:
         return read_datapack(path, losses)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write the pack under the namespace that the options' name makes."""
+        """Write a data pack with a namespace derived from the name in ``options``."""
         from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.commands.datapack import (  # noqa: PLC0415  # numba.
             to_namespace,

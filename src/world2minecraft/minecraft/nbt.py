@@ -1,13 +1,14 @@
-"""NBT, the game's binary tree format, read strictly and within bounds, and written.
+"""Strict, bounded reading and writing of NBT, the game's binary tree format.
 
-Python values and tags: ``Byte Short Long Float`` are the small classes below, a plain ``int`` is
-an Int, a plain ``float`` a Double, ``bool`` a Byte, ``str`` a String, ``dict`` a Compound, a list
-a List of one kind, and an array of int8, int32 or int64 the array tag of that size.
+Python values map to tags as follows: ``Byte``, ``Short``, ``Long`` and ``Float`` are the classes in
+this module, ``int`` is an Int, ``float`` a Double, ``bool`` a Byte, ``str`` a String, ``dict`` a
+Compound, a list a List of one type, and an array of int8, int32 or int64 the array tag of that
+size.
 
-A file is refused where it ends early, has bytes after its end, nests deeper, holds more values or
-unpacks to more bytes than ``NbtLimits`` allows. Counts are checked against the bytes that are left
-before anything is allocated. Gzip is written without a time, so that bytes depend on values alone.
-``minecraft.bedrock.nbt_little_endian`` overrides what differs in Bedrock's dialect.
+The reader rejects data that ends early, has bytes after its end, or exceeds the depth, number of
+values or size in ``NbtLimits``. It checks counts against the remaining bytes before it allocates
+memory. Gzip output has no timestamp, so that the bytes depend only on the values.
+``minecraft.bedrock.nbt_little_endian`` overrides the parts that differ in Bedrock Edition.
 """
 
 import struct
@@ -30,30 +31,38 @@ _MIN_VALUE_BYTES = (0, 1, 2, 4, 8, 4, 8, 4, 2, 5, 1, 4, 4)
 
 
 class Byte(int):
-    """A number of one byte."""
+    """An 8-bit integer."""
 
 
 class Short(int):
-    """A number of two bytes."""
+    """A 16-bit integer."""
 
 
 class Long(int):
-    """A number of eight bytes."""
+    """A 64-bit integer."""
 
 
 class Float(float):
-    """A number in single precision."""
+    """A single-precision floating-point number."""
 
 
 def number_layouts(order: str) -> dict[int, tuple[struct.Struct, Any]]:
-    """Return by tag how a number is packed, and what it becomes; ``order`` is ``>`` or ``<``."""
+    """Return the binary layout and Python type of each number tag.
+
+    Args:
+        order: The byte order, ``>`` for big-endian or ``<`` for little-endian.
+    """
     kinds = {BYTE: ("b", Byte), SHORT: ("h", Short), INT: ("i", int), LONG: ("q", Long)}
     kinds |= {FLOAT: ("f", Float), DOUBLE: ("d", float)}
     return {tag: (struct.Struct(order + code), kind) for tag, (code, kind) in kinds.items()}
 
 
 def array_layouts(order: str) -> dict[int, np.dtype]:
-    """Return by tag how the numbers of an array lie; ``order`` is ``>`` or ``<``."""
+    """Return the element dtype of each array tag.
+
+    Args:
+        order: The byte order, ``>`` for big-endian or ``<`` for little-endian.
+    """
     return {
         tag: np.dtype(order + code) for tag, code in ((BYTES, "i1"), (INTS, "i4"), (LONGS, "i8"))
     }
@@ -75,16 +84,16 @@ _TAG_OF_TYPE: tuple[tuple[type, int], ...] = (
 
 
 def write_nbt(root: Mapping[str, Any], name: str = "") -> bytes:
-    """Return the bytes of an NBT tree, keys in the order of the mapping, not compressed.
+    """Return an NBT tree as uncompressed bytes, with keys in the order of the mapping.
 
     Raises:
-        UsageError: a value has no tag, a number does not fit its tag, or a list mixes kinds.
+        UsageError: If a value has no NBT tag, a number does not fit its tag, or a list mixes types.
     """
     return NbtWriter().root(root, name)
 
 
 class NbtWriter:
-    """The bytes of a tree as they grow; ``write_nbt`` is its use."""
+    """A writer that collects the bytes of an NBT tree. Use ``write_nbt`` to write a tree."""
 
     numbers, arrays = number_layouts(">"), array_layouts(">")
     uint16, int32 = struct.Struct(">H"), struct.Struct(">i")
@@ -93,14 +102,17 @@ class NbtWriter:
         self.out = bytearray()
 
     def root(self, root: Mapping[str, Any], name: str = "") -> bytes:
-        """Return the bytes of a whole tree; see ``write_nbt``."""
+        """Return the bytes of a whole tree, as ``write_nbt`` does."""
         self.out.append(COMPOUND)
         self.put_string(name)
         self.put(COMPOUND, root)
         return bytes(self.out)
 
     def encoded(self, text: str) -> bytes:
-        """Return Java's modified UTF-8: a zero as two bytes, other planes as two surrogates."""
+        """Encode a string as Java's modified UTF-8.
+
+        A zero becomes two bytes, and a character outside the basic plane becomes two surrogates.
+        """
         if text.isascii() and "\0" not in text:
             return text.encode("ascii")
         units = np.frombuffer(text.encode("utf-16-le"), "<u2")
@@ -108,27 +120,37 @@ class NbtWriter:
         return packed.replace(b"\0", b"\xc0\x80")
 
     def tag_of_array(self, value: np.ndarray) -> int:
-        """Return the tag of an array."""
+        """Return the tag of an array.
+
+        Raises:
+            UsageError: If no tag exists for the shape or dtype.
+        """
         if value.ndim == 1 and value.dtype in _ARRAY_TAGS:
             return _ARRAY_TAGS[value.dtype]
-        raise UsageError(f"an array of {value.dtype} with shape {value.shape} has no NBT tag")
+        raise UsageError(
+            f"NBT arrays must be int8, int32 or int64 [N], got {value.dtype} {value.shape}"
+        )
 
     def tag_of(self, value: Any) -> int:
-        """Return the tag of any value."""
+        """Return the tag of a Python value.
+
+        Raises:
+            UsageError: If the type has no tag.
+        """
         if isinstance(value, np.ndarray):
             return self.tag_of_array(value)
         for kind, tag in _TAG_OF_TYPE:
             if isinstance(value, kind):
                 return tag
-        raise UsageError(f"a value of type {type(value).__name__} has no NBT tag")
+        raise UsageError(f"NBT cannot store a value of type {type(value).__name__}")
 
     def put(self, tag: int, value: Any) -> None:
-        """Add a value of the kind ``tag``."""
+        """Append a value with the given tag type."""
         if tag in self.numbers:
             try:
                 self.out += self.numbers[tag][0].pack(value)
             except (struct.error, OverflowError) as error:
-                raise UsageError(f"the number {value} does not fit its NBT tag") from error
+                raise UsageError(f"number {value} is out of range for its NBT tag") from error
         elif tag == STRING:
             self.put_string(value)
         elif tag == COMPOUND:
@@ -139,7 +161,7 @@ class NbtWriter:
             self.put_array(self.arrays[tag], value)
 
     def put_compound(self, values: Mapping[str, Any]) -> None:
-        """Add values with their names."""
+        """Append the named values of a compound."""
         for name, held in values.items():
             kind = self.tag_of(held)
             self.out.append(kind)
@@ -148,15 +170,15 @@ class NbtWriter:
         self.out.append(END)
 
     def put_array(self, dtype: np.dtype, values: np.ndarray) -> None:
-        """Add an array, its count before it."""
+        """Append an array, preceded by its length."""
         self.out += self.int32.pack(len(values))
         self.out += values.astype(dtype).tobytes()
 
     def put_list(self, values: Any) -> None:
-        """Add a list of one kind."""
+        """Append a list whose values have the same type."""
         kinds = {self.tag_of(value) for value in values}
         if len(kinds) > 1:
-            raise UsageError("a list in NBT must hold values of one kind")
+            raise UsageError("an NBT list must contain values of a single type")
         kind = kinds.pop() if kinds else END
         self.out.append(kind)
         self.out += self.int32.pack(len(values))
@@ -164,22 +186,23 @@ class NbtWriter:
             self.put(kind, value)
 
     def put_string(self, text: str) -> None:
-        """Add a text."""
+        """Append a string."""
         try:
             raw = self.encoded(text)
         except UnicodeError as error:
-            raise UsageError(f"text {text[:40]!r} cannot be written as NBT") from error
+            raise UsageError(f"text {text[:40]!r} cannot be encoded as NBT") from error
         if len(raw) > 0xFFFF:
-            raise UsageError(f"a text of {len(raw):,} bytes is too long for NBT; at most 65,535")
+            raise UsageError(f"text has {len(raw):,} bytes, but an NBT string can have 65,535")
         self.out += self.uint16.pack(len(raw))
         self.out += raw
 
 
 def unpack(data: bytes, path: str | Path, limit: int = MAX_BYTES) -> bytes:
-    """Undo gzip or zlib where the bytes begin so; other bytes come back as they are.
+    """Decompress gzip or zlib data. Other data is returned unchanged.
 
     Raises:
-        DamagedFileError: the stream is broken. LimitError: it holds more than ``limit`` bytes.
+        DamagedFileError: If the compressed stream is damaged.
+        LimitError: If the decompressed data has more than ``limit`` bytes.
     """
     if data[:2] == b"\x1f\x8b":
         kind, window = "gzip", 31
@@ -199,18 +222,18 @@ def unpack(data: bytes, path: str | Path, limit: int = MAX_BYTES) -> bytes:
             size += len(part)
             parts = [*parts, part] if size <= _CHUNK_BYTES else []
         if size > limit:
-            raise LimitError(path, f"unpacks to more than {limit:,} bytes; at most that is read")
+            raise LimitError(path, f"exceeds the limit of {limit:,} bytes after decompression")
         if not stream.eof or stream.unused_data or at < len(data):
             where = "has bytes after its end" if stream.eof else "ends too early"
-            raise DamagedFileError(path, f"its {kind} stream {where}")
+            raise DamagedFileError(path, f"the {kind} stream {where}")
         # Much of it goes into one buffer of its size: one that grows takes twice its memory.
         return b"".join(parts) if parts or not size else zlib.decompress(data, window, size)
     except zlib.error as error:
-        raise DamagedFileError(path, f"is no whole {kind} stream ({error})") from error
+        raise DamagedFileError(path, f"is not a valid {kind} stream ({error})") from error
 
 
 def pack_gzip(data: bytes, level: int = 6) -> bytes:
-    """Return ``data`` as gzip without a time or a name, so that the bytes depend on it alone."""
+    """Compress data as gzip without a timestamp or name, so that equal data gives equal bytes."""
     packer = zlib.compressobj(level, zlib.DEFLATED, -15)
     body = packer.compress(data) + packer.flush()
     head = b"\x1f\x8b\x08\0\0\0\0\0\0\xff"
@@ -219,7 +242,7 @@ def pack_gzip(data: bytes, level: int = 6) -> bytes:
 
 @dataclass(frozen=True)
 class NbtLimits:
-    """What a file may ask for. The defaults hold for every file that the program writes."""
+    """Limits on an NBT tree. Every file that the program writes is within the defaults."""
 
     depth: int = 100  # The game allows 512; real files stay below 20.
     values: int = 500_000  # About 100 MB of Python objects, read in a second.
@@ -233,24 +256,25 @@ DEFAULT_LIMITS = NbtLimits()
 def read_nbt(
     data: bytes, path: str | Path, limits: NbtLimits = DEFAULT_LIMITS
 ) -> tuple[str, dict[str, Any]]:
-    """Read one unpacked NBT tree whose root is a Compound.
+    """Read one uncompressed NBT tree whose root is a Compound.
 
     Args:
-        data: the bytes; use ``unpack`` first where they may be compressed.
-        path: the file that errors name.
-        limits: what the tree may ask for.
+        data: The bytes of the tree. Call ``unpack`` first if they may be compressed.
+        path: The file path for error messages.
+        limits: The limits on the tree.
 
     Returns:
-        The root's name and its values.
+        The name of the root and its values.
 
     Raises:
-        DamagedFileError: the bytes are no NBT. LimitError: they ask for too much.
+        DamagedFileError: If the bytes are not valid NBT.
+        LimitError: If the tree exceeds ``limits``.
     """
     return NbtReader(data, path, limits).root()
 
 
 def tree_bytes(value: Any) -> int:
-    """Return about how much memory a value of NBT takes, to bound what is held of many files."""
+    """Estimate the memory in bytes that an NBT value occupies in Python."""
     if isinstance(value, dict):
         return 200 + sum(100 + len(key) + tree_bytes(held) for key, held in value.items())
     if isinstance(value, list):
@@ -261,7 +285,7 @@ def tree_bytes(value: Any) -> int:
 
 
 class NbtReader:
-    """A position in the bytes, and how much the tree has requested; ``read_nbt`` is its use."""
+    """A reader of one NBT tree that enforces limits. Use ``read_nbt`` to read a tree."""
 
     must_end = True  # Whether bytes after the tree are refused.
     dialect, encoding = "NBT", "modified UTF-8"  # As errors name them.
@@ -275,50 +299,49 @@ class NbtReader:
         self.values_left, self.text_left = limits.values, limits.text_bytes
 
     def root(self) -> tuple[str, dict[str, Any]]:
-        """Read the whole tree; see ``read_nbt``."""
+        """Read the whole tree, as ``read_nbt`` does."""
         try:
             if not self.data or self.data[0] != COMPOUND:
-                raise self.damaged("does not begin with a compound tag")
+                raise self.damaged("the root is not a compound tag")
             self.at = 1
             name = self.string()
             root = self.compound(1)
         except (struct.error, IndexError) as error:
-            raise self.damaged("ends too early") from error
+            raise self.damaged("the data ends too early") from error
         except RecursionError as error:  # The caller's own stack was deep already.
-            raise LimitError(self.path, "nests too deep to be read") from error
+            raise LimitError(self.path, "contains NBT that is nested too deep to read") from error
         if self.must_end and self.at != len(self.data):
-            raise self.damaged(f"has {len(self.data) - self.at} bytes after its end")
+            raise self.damaged(f"{len(self.data) - self.at} extra bytes follow the end")
         return name, root
 
     def damaged(self, reason: str) -> DamagedFileError:
-        """Return the error to raise at this place."""
-        return DamagedFileError(
-            self.path, f"is no valid {self.dialect}: at byte {self.at} it {reason}"
-        )
+        """Return an error that describes a problem at the current position."""
+        reason = f"is not valid {self.dialect}: {reason} (at byte {self.at})"
+        return DamagedFileError(self.path, reason)
 
     def string(self) -> str:
-        """Read a text."""
+        """Read a string."""
         start = self.at + 2
         end = start + self.uint16.unpack_from(self.data, self.at)[0]
         if end > len(self.data):
-            raise self.damaged("ends too early")
+            raise self.damaged("the data ends too early")
         self.at = end
         self.text_left -= end - start
         if self.text_left < 0:
-            reason = f"holds more than {self.limits.text_bytes:,} bytes of text"
-            raise LimitError(self.path, f"{reason}; at most that is read")
+            reason = f"exceeds the limit of {self.limits.text_bytes:,} bytes of text"
+            raise LimitError(self.path, reason)
         raw = self.data[start:end]
         try:
             return raw.decode("ascii") if raw.isascii() else self.decoded(raw)
         except UnicodeError as error:
-            raise self.damaged(f"has a string that is no {self.encoding}") from error
+            raise self.damaged(f"a string is not valid {self.encoding}") from error
 
     def decoded(self, raw: bytes) -> str:
-        """Return a text that is not plain ASCII."""
+        """Decode a string that is not plain ASCII."""
         return _decode(raw)
 
     def value(self, tag: int, depth: int) -> Any:
-        """Read a value of the kind ``tag``."""
+        """Read a value of the given tag type."""
         if tag in self.numbers:
             layout, kind = self.numbers[tag]
             number = layout.unpack_from(self.data, self.at)[0]
@@ -329,23 +352,23 @@ class NbtReader:
         if tag in self.arrays:
             return self.array(self.arrays[tag])
         if depth > self.limits.depth:
-            reason = f"nests deeper than {self.limits.depth} tags; at most that is read"
+            reason = f"exceeds the limit of {self.limits.depth} nested tags"
             raise LimitError(self.path, reason)
         if tag == COMPOUND:
             return self.compound(depth)
         if tag == LIST:
             return self.items(depth)
-        raise self.damaged(f"has a tag of the unknown kind {tag}")
+        raise self.damaged(f"unknown tag type {tag}")
 
     def compound(self, depth: int) -> dict[str, Any]:
-        """Read a compound, the names of which must differ."""
+        """Read a compound, in which every name must be unique."""
         result: dict[str, Any] = {}
         while tag := self.data[self.at]:
             self._take(1)
             self.at += 1
             name = self.string()
             if name in result:
-                raise self.damaged(f"names {name[:40]!r} twice")
+                raise self.damaged(f"duplicate name {name[:40]!r}")
             self.key = name
             result[name] = self.value(tag, depth + 1)
         self.at += 1
@@ -357,7 +380,7 @@ class NbtReader:
         count = self.int32.unpack_from(self.data, self.at + 1)[0]
         self.at += 5
         if tag > LONGS or (tag == END and count > 0):
-            raise self.damaged(f"has a list of {count} tags of kind {tag}")
+            raise self.damaged(f"invalid list of {count} tags of type {tag}")
         if count <= 0:
             return []
         self._hold(count, _MIN_VALUE_BYTES[tag])
@@ -365,11 +388,11 @@ class NbtReader:
         return self.elements(tag, count, depth)
 
     def elements(self, tag: int, count: int, depth: int) -> list[Any]:
-        """Read the values of a list, after its head."""
+        """Read the values of a list, after its header."""
         return [self.value(tag, depth + 1) for _ in range(count)]
 
     def array(self, dtype: np.dtype) -> np.ndarray:
-        """Read an array, its count before it."""
+        """Read an array and the length before it."""
         count = self.int32.unpack_from(self.data, self.at)[0]
         self.at += 4
         self._hold(count, dtype.itemsize)
@@ -379,12 +402,12 @@ class NbtReader:
 
     def _hold(self, count: int, size: int) -> None:
         if count < 0 or count * size > len(self.data) - self.at:
-            raise self.damaged(f"says {count:,} values and holds fewer")
+            raise self.damaged(f"{count:,} values are declared, but fewer follow")
 
     def _take(self, count: int) -> None:
         self.values_left -= count
         if self.values_left < 0:
-            reason = f"holds more than {self.limits.values:,} values; at most that is read"
+            reason = f"exceeds the limit of {self.limits.values:,} NBT values"
             raise LimitError(self.path, reason)
 
 

@@ -1,1 +1,1 @@
-"""Structures of the Bedrock Edition, and the table between its states and Java's."""
+"""Reading and writing of Bedrock structures, and conversion to and from Java block states."""

@@ -1,7 +1,8 @@
-"""Block data that Bedrock keeps in block entities and Java in names or in another form.
+"""Conversion of block entities between Bedrock Edition and Java Edition.
 
-Colours of beds and banners, plants in pots, kinds of heads: a name in Java. Text of signs: JSON
-lines in Java, one text in Bedrock.
+Java Edition encodes the colour of a bed or banner, the plant in a pot and the kind of a head in the
+block name; Bedrock Edition stores them in block entities. Java Edition stores sign text as JSON
+lines, Bedrock Edition as a single string.
 """
 
 import json
@@ -29,12 +30,12 @@ MAX_LINES = 4
 def bedrock_data(
     state: str, java: tuple[str, Mapping[str, Any]] | None = None, place: Place = (0, 0, 0)
 ) -> dict[str, Any] | None:
-    """Return the Bedrock block entity of a Java block, or None where it has none.
+    """Return the Bedrock block entity of a Java block, or None if Bedrock stores none for it.
 
     Args:
-        state: the Java block state.
-        java: the id and the data of its Java block entity, where it has one.
-        place: where it stands in the world.
+        state: The Java block state.
+        java: The ID and NBT data of the Java block entity, or None if the block has none.
+        place: The block position in the world as (x, y, z).
     """
     parsed = parse_state(state)
     data = _data_from_state(parsed, java[1] if java else {}, place)
@@ -79,7 +80,7 @@ def _partner_side(state: BlockState) -> str:
 
 
 def java_state(state: str, data: Mapping[str, Any]) -> str:
-    """Return the Java state of a Bedrock block whose block entity says more."""
+    """Refine the Java state of a Bedrock block with the data of its block entity."""
     parsed = parse_state(state)
     name, kind = parsed.name.partition(":")[2], data.get("id")
     if kind == "Bed" and name.endswith("_bed"):
@@ -107,7 +108,10 @@ def java_state(state: str, data: Mapping[str, Any]) -> str:
 
 
 def java_data(data: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
-    """Return id and data of the Java block entity of a sign or a banner; None for others."""
+    """Return the ID and NBT data of the Java block entity for a Bedrock sign or banner.
+
+    Other block entities return None.
+    """
     kind = data.get("id")
     if kind in SIGNS.values():
         java = next(ours for ours, theirs in SIGNS.items() if theirs == kind)
@@ -127,17 +131,20 @@ def java_data(data: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
 
 
 def is_in_state(data: Mapping[str, Any]) -> bool:
-    """Whether Java keeps all that a Bedrock block entity says: things in a chest it does not."""
+    """Return whether the Java block keeps all data of a Bedrock block entity.
+
+    Items in a container are not kept.
+    """
     return data.get("id") in KINDS and not _list(data.get("Items"))
 
 
 def palette_entry(name: str, states: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a block as palettes and pots of Bedrock keep it."""
+    """Return a block in the form that Bedrock uses in palettes and flower pots."""
     return {"name": name, "states": dict(states), "version": bedrock_table().version}
 
 
 def java_from_entry(entry: Mapping[str, Any]) -> str | None:
-    """Return the Java state of an entry of a palette; None where the table has none."""
+    """Return the Java state of a Bedrock palette entry, or None if the table does not have it."""
     states = entry.get("states", {})
     return bedrock_to_java(str(entry["name"]), states if isinstance(states, Mapping) else {})
 
@@ -179,7 +186,7 @@ def _sign_side(data: Mapping[str, Any], side: str) -> dict[str, Any]:
 
 
 def plain_text(line: Any) -> str:
-    r"""Return the letters of a line of a sign: JSON in Java, or plain.
+    r"""Return the plain text of one sign line, which may be JSON, NBT or plain text.
 
     Example:
         >>> plain_text('{"text":"my ","extra":["room"]}')

@@ -1,8 +1,9 @@
-"""Write and read Bedrock's structure file, ``.mcstructure``, by a mapping of states.
+"""Reading and writing of Bedrock structure files (``.mcstructure``).
 
-Uncompressed little-endian NBT: ``size``, two layers of palette numbers in the order x, y, z with z
-running fastest (-1 leaves what is there), a palette of names and states, and block entities by
-place. The second layer holds the water that blocks stand in. Entities of Java have no counterpart.
+A structure file is uncompressed little-endian NBT. It contains the size, two layers of palette
+indices in the order x, y, z (z varies fastest; -1 leaves the existing block), a palette of block
+names and states, and block entities by cell index. The second layer contains the water of
+waterlogged blocks. Java entities are not converted.
 """
 
 from collections.abc import Iterable, Mapping
@@ -39,17 +40,20 @@ NOTHING = -1
 
 
 def write_mcstructure(volume: BlockVolume, path: str | Path, losses: Losses | None = None) -> None:
-    """Write a volume for Bedrock 1.20 and later; ``structure_world_origin`` is its corner.
+    """Write a volume as a structure file for Bedrock 1.20 and later.
 
-    A block that Bedrock does not have becomes air and is counted in ``losses``, by its name.
+    The volume's corner is written as ``structure_world_origin``. Blocks that do not exist in
+    Bedrock Edition become air and are counted by name in ``losses``.
 
     Raises:
-        UsageError: the volume is empty or larger than is read back.
-        OutputError: it cannot be written.
+        UsageError: If the volume is empty, or larger than the reader accepts.
+        OutputError: If the file cannot be written.
     """
     counted = Losses() if losses is None else losses
     if not volume.states.size or volume.states.size * 8 > MAX_BYTES - (1 << 20):
-        raise UsageError(f"a .mcstructure holds 1 to 12 million blocks, not {volume.states.size:,}")
+        raise UsageError(
+            f".mcstructure files contain 1 to 12 million blocks, got {volume.states.size:,}"
+        )
     _count_losses(volume, counted)
     palette, numbers, is_wet = _bedrock_palette(volume.palette)
     cells = np.ascontiguousarray(volume.states).ravel()  # x, y, z with z fastest, as ours are.
@@ -76,13 +80,15 @@ def write_mcstructure(volume: BlockVolume, path: str | Path, losses: Losses | No
 
 
 def read_mcstructure(path: str | Path, losses: Losses | None = None) -> BlockVolume:
-    """Read a structure of Bedrock 1.17 to 1.26, without labels and with one block a metre.
+    """Read a structure file of Bedrock 1.17 to 1.26 as a volume without labels.
 
-    A block that Java does not have keeps its Bedrock name and is counted in ``losses``.
+    The scale of the volume is one block per metre. Blocks that do not exist in Java Edition keep
+    their Bedrock names and are counted in ``losses``.
 
     Raises:
-        InputError: there is no file. DamagedFileError: it is no structure.
-        LimitError: it is larger than the program reads.
+        InputError: If the file is not found.
+        DamagedFileError: If the file is not a valid structure.
+        LimitError: If the file exceeds the size limit.
     """
     counted, source = Losses() if losses is None else losses, Path(path)
     tree = read_little(read_bytes(source, MAX_BYTES), source, LIMITS)
@@ -90,20 +96,20 @@ def read_mcstructure(path: str | Path, losses: Losses | None = None) -> BlockVol
         return _volume_of(tree, source, counted)
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is no Bedrock structure{missing}") from error
+        raise DamagedFileError(source, f"is not a valid Bedrock structure{missing}") from error
 
 
 class McstructureFormat(FileFormat):
-    """A structure of Bedrock Edition."""
+    """The Bedrock structure format, ``.mcstructure``."""
 
     suffix = ".mcstructure"
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read it."""
+        """Read a Bedrock structure file."""
         return read_mcstructure(path, losses)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write it; the version of Java does not matter."""
+        """Write a Bedrock structure file. The Java version in ``options`` is ignored."""
         write_mcstructure(volume, path, losses)
 
 
@@ -160,17 +166,17 @@ def _count_losses(volume: BlockVolume, losses: Losses) -> None:
     for state, count in zip(volume.palette, counts.tolist(), strict=True):
         bedrock = java_to_bedrock(state)
         if bedrock is None:
-            losses.add(f"blocks of {parse_state(state).name}, which Bedrock has not", count)
+            losses.add(f"blocks of {parse_state(state).name}, which Bedrock does not have", count)
             continue
         back = bedrock_to_java(*bedrock) or AIR
         back = java_state(back, bedrock_data(state) or {})
         if not is_preserved(state, back):
-            losses.add("blocks with a state that Bedrock does not tell", count)
+            losses.add("blocks with properties that Bedrock cannot represent", count)
     state_at = _states_by_place(volume)
     for entity in volume.block_entities:
         data = bedrock_data(state_at.get(entity.block_pos, AIR), (entity.id, entity.nbt))
         if data is None and entity.nbt:
-            losses.add(f"data of blocks ({entity.id.removeprefix('minecraft:')})")
+            losses.add(f"block entity data ({entity.id.removeprefix('minecraft:')})")
     losses.add("entities", len(volume.entities))
 
 
@@ -193,11 +199,12 @@ def _volume_of(tree: Mapping[str, Any], source: Path, losses: Losses) -> BlockVo
     layers = [np.asarray(layer) for layer in structure["block_indices"]]
     count = int(np.prod(shape))
     if not layers or any(layer.shape != (count,) for layer in layers[:2]):
-        raise DamagedFileError(source, f"says {count:,} blocks and its layers hold others")
+        reason = f"declares {count:,} blocks, but a block layer has a different length"
+        raise DamagedFileError(source, reason)
     held = structure["palette"]["default"]
     entries = held["block_palette"]
     if any(layer.size and not -1 <= layer.min() <= layer.max() < len(entries) for layer in layers):
-        raise DamagedFileError(source, "has a block of a number that its palette lacks")
+        raise DamagedFileError(source, "contains a block index that is not in its palette")
     texts = [_java_text(entry, source) for entry in entries]
     _count_unknown(entries, layers[0], losses)
     x, y, z = (int(value) for value in tree.get("structure_world_origin", (0, 0, 0)))
@@ -216,7 +223,7 @@ def _volume_of(tree: Mapping[str, Any], source: Path, losses: Losses) -> BlockVo
         states[cell] = number_of[_is_wet(state) if wet[number] else state]
         java = java_data(data)
         if not is_in_state(data):
-            losses.add(f"data of blocks ({str(data.get('id'))[:30]})")
+            losses.add(f"block entity data ({str(data.get('id'))[:30]})")
         if java is not None:
             place = tuple(int(c) + low for c, low in zip(cell, (x, y, z), strict=True))
             block_entities.append(BlockEntity(place, *java))  # type: ignore[arg-type]
@@ -248,14 +255,14 @@ def _java_text(entry: Mapping[str, Any], source: Path) -> str:
     try:
         return str(parse_state(str(entry["name"])))
     except UsageError as error:
-        raise DamagedFileError(source, f"has a palette with {error}") from error
+        raise DamagedFileError(source, f"contains an invalid palette entry: {error}") from error
 
 
 def _count_unknown(entries: list[Any], cells: np.ndarray, losses: Losses) -> None:
     counts = np.bincount(cells[cells >= 0], minlength=len(entries))
     for entry, count in zip(entries, counts.tolist(), strict=True):
         if java_from_entry(entry) is None:
-            losses.add(f"blocks of {str(entry['name'])[:60]}, which Java has not", count)
+            losses.add(f"blocks of {str(entry['name'])[:60]}, which Java does not have", count)
 
 
 def _wet_cells(layers: list[np.ndarray], texts: list[str]) -> np.ndarray:
@@ -279,7 +286,8 @@ def _with_data(
     result = {}
     for key, row in stated.items():
         if not key.isdecimal() or int(key[:12]) >= len(cells):
-            raise DamagedFileError(source, f"has data for a block of number {key[:20]!r}")
+            reason = f"contains block entity data for the invalid block index {key[:20]!r}"
+            raise DamagedFileError(source, reason)
         data = row.get("block_entity_data") if isinstance(row, Mapping) else None
         if isinstance(data, Mapping):
             result[int(key)] = (java_state(names[cells[int(key)]], data), data)

@@ -1,8 +1,8 @@
-"""NBT in Bedrock's dialect: little-endian, plain UTF-8, read strictly and within bounds.
+"""Strict, bounded reading and writing of little-endian NBT, as used by Bedrock Edition.
 
-Values are those of ``minecraft.nbt``, with one difference: an int32 array stands for a List of Int,
-which is how Bedrock keeps its block numbers, and such a list comes back as an array, taken from the
-file's bytes without a copy.
+Strings are plain UTF-8. Python values map to tags as in ``minecraft.nbt``, with one exception: a
+List of Int is represented by an int32 array. Bedrock stores block indices this way, and the reader
+returns such a list as an array that shares the memory of the file's bytes.
 """
 
 import struct
@@ -27,10 +27,10 @@ from world2minecraft.minecraft.nbt import (
 
 
 def write_little(root: Mapping[str, Any]) -> bytes:
-    """Return the bytes of a tree, keys in the order of the mapping.
+    """Return an NBT tree as little-endian bytes, with keys in the order of the mapping.
 
     Raises:
-        UsageError: a value has no tag, a number does not fit its tag, or a list mixes kinds.
+        UsageError: If a value has no NBT tag, a number does not fit its tag, or a list mixes types.
     """
     return _LittleWriter().root(root)
 
@@ -38,10 +38,11 @@ def write_little(root: Mapping[str, Any]) -> bytes:
 def read_little(
     data: bytes, path: str | Path, limits: NbtLimits = DEFAULT_LIMITS
 ) -> dict[str, Any]:
-    """Read one tree whose root is a Compound.
+    """Read one little-endian NBT tree whose root is a Compound.
 
     Raises:
-        DamagedFileError: the bytes are no NBT. LimitError: they ask for too much.
+        DamagedFileError: If the bytes are not valid NBT.
+        LimitError: If the tree exceeds ``limits``.
     """
     return _LittleReader(data, path, limits).root()[1]
 
@@ -84,6 +85,7 @@ class _LittleWriter(NbtWriter):
         if not isinstance(values, np.ndarray):
             return super().put_list(values)
         if values.ndim != 1 or values.dtype != np.int32:
-            raise UsageError(f"an array of {values.dtype} with shape {values.shape} is no list")
+            shape = tuple(values.shape)
+            raise UsageError(f"NBT list array must be int32 [N], got {values.dtype} {shape}")
         self.out.append(INT)
         return self.put_array(self.arrays[INTS], values)

@@ -1,8 +1,8 @@
-"""Convert Java block states to Bedrock's and back, by one table of all blocks of Java 1.20.1.
+"""Conversion between Java and Bedrock block states, with a table of all blocks of Java 1.20.1.
 
-The table is made by ``tools/make_bedrock_table.py`` from the public package ``minecraft-data``; see
-its notice beside it. States are written as Bedrock 1.20.0 has them, which every later game
-upgrades, and read as any Bedrock from 1.17 to 1.26 has them.
+``tools/make_bedrock_table.py`` builds the table from the public package ``minecraft-data``; see the
+notice in the data folder. States are written in the form of Bedrock 1.20.0, which every later game
+upgrades. States of Bedrock 1.17 to 1.26 can be read.
 """
 
 import gzip
@@ -22,17 +22,17 @@ TABLE_FILE = "data/bedrock_states.json.gz"
 
 @dataclass(frozen=True)
 class BedrockTable:
-    """The table as stored; see the tool that makes it."""
+    """The stored table of Bedrock and Java block states."""
 
-    version: int  # what entries of a palette carry
+    version: int  # The version number in each palette entry.
     states: tuple[str, ...]
-    written: Mapping[str, Any]  # Java name to the number of a Bedrock state, or one a state
-    read: Mapping[str, Any]  # Bedrock key to Java name and number of its state
+    written: Mapping[str, Any]  # Java name to a Bedrock state index, or one index per Java state.
+    read: Mapping[str, Any]  # Bedrock key to Java name and state index.
 
 
 @cache
 def bedrock_table() -> BedrockTable:
-    """Read the shipped table, once."""
+    """Load the bundled table of Bedrock states. The result is cached."""
     packed = files("world2minecraft.minecraft").joinpath(TABLE_FILE).read_bytes()
     raw = json.loads(gzip.decompress(packed))
     return BedrockTable(raw["version"], tuple(raw["states"]), raw["written"], raw["read"])
@@ -40,7 +40,9 @@ def bedrock_table() -> BedrockTable:
 
 @lru_cache(maxsize=1 << 16)
 def java_to_bedrock(state: str) -> tuple[str, dict[str, Any]] | None:
-    """Return the Bedrock block and its states that a Java state becomes; None where none does.
+    """Convert a Java block state to a Bedrock block name and its states.
+
+    Returns None if Bedrock Edition has no such block.
 
     Example:
         >>> java_to_bedrock("minecraft:oak_planks")
@@ -60,10 +62,10 @@ def java_to_bedrock(state: str) -> tuple[str, dict[str, Any]] | None:
 
 
 def bedrock_to_java(name: str, states: Mapping[str, Any]) -> str | None:
-    """Return the Java state that a Bedrock block comes back as; None where the table has none.
+    """Convert a Bedrock block to a Java state, or return None if the table does not have it.
 
-    What Bedrock computes from neighbours (the shape of stairs, the sides of panes) comes back at
-    its default, and colours that it keeps in block entities come back as the first of them.
+    Properties that Bedrock computes from neighbouring blocks, such as the shape of stairs, are set
+    to their defaults. Colours that Bedrock stores in block entities are set to the first colour.
 
     Example:
         >>> bedrock_to_java('minecraft:planks', {'wood_type': 'oak'})
@@ -78,7 +80,10 @@ def bedrock_to_java(name: str, states: Mapping[str, Any]) -> str | None:
 
 
 def is_preserved(state: str, back: str) -> bool:
-    """Whether a Java state that came back from Bedrock is the same but for what games compute."""
+    """Return whether a Java state survives conversion to Bedrock and back.
+
+    Properties that the game computes from neighbouring blocks are ignored.
+    """
     before, after = complete(parse_state(state)), complete(parse_state(back))
     if before.name != after.name:
         return False

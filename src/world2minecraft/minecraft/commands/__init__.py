@@ -1,1 +1,1 @@
-"""Write and read commands of data packs, command lists and RCON."""
+"""Reading and writing of game commands for data packs, command lists and RCON."""

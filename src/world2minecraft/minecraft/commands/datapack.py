@@ -1,7 +1,7 @@
-"""Write a data pack that builds a volume by commands, removes it, and sizes the player.
+"""Data packs with commands that build a volume, remove it, and change the player's size.
 
-``/function NAME:build`` loads the chunks, waits for them, then runs its parts one a tick, each
-short enough for the game's command limit; ``/function NAME:clear`` empties the same box.
+``/function NAME:build`` loads the chunks, waits for them and then runs one part per tick. Each part
+is below the game's command limit. ``/function NAME:clear`` empties the same box.
 """
 
 import json
@@ -41,26 +41,27 @@ def write_datapack(
     version: GameVersion | None = None,
     name: str = "room",
 ) -> None:
-    """Write a volume as the zip of a data pack.
+    """Write a volume as a data pack in a zip archive.
 
-    Full blocks come first and others after them, from below to above, so that what hangs or
-    stands on a block finds it. The blocks stand at the volume's own world position.
+    The commands place full blocks first and then all other blocks from bottom to top, so that
+    attached blocks find their supports. Blocks are placed at the volume's own world position.
 
     Args:
-        volume: the blocks; states are written as they stand in its palette.
-        path: the file, ``.zip``, to be put into ``datapacks`` of a world.
-        version: the game to write for; 1.20.1 where it is left out.
-        name: the namespace of the functions.
+        volume: The volume to build.
+        path: The ``.zip`` file to write. Put it into the ``datapacks`` folder of a world.
+        version: The target game version. The default is 1.20.1.
+        name: The namespace of the functions.
 
     Raises:
-        UsageError: the name is no namespace, or the game is older than what the volume holds.
-        OutputError: the file cannot be written.
+        UsageError: If ``name`` is not a valid namespace, or the game version does not support the
+            contents of the volume.
+        OutputError: If the file cannot be written.
     """
     write_bytes(path, pack_zip(datapack_files(volume, version or game_version(), name)))
 
 
 def to_namespace(name: str) -> str:
-    """Return a name as a pack's namespace may be: what none can hold of it becomes ``_``.
+    """Convert a name to a valid data pack namespace by replacing invalid characters with ``_``.
 
     Example:
         >>> to_namespace("My Room"), to_namespace("minecraft"), to_namespace("")
@@ -71,19 +72,25 @@ def to_namespace(name: str) -> str:
 
 
 def has_packs(version: GameVersion) -> bool:
-    """Whether data packs are written for a version of the game."""
+    """Return whether data packs can be written for a game version."""
     return version in game_versions()
 
 
 def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict[str, str]:
-    """Return the pack's files by path. Raises what ``write_datapack`` raises."""
+    """Return the contents of a data pack's files by path.
+
+    Raises:
+        UsageError: If ``name`` is not a valid namespace, or the game version does not support the
+            contents of the volume.
+    """
     if not _NAMESPACE.fullmatch(name) or name == "minecraft":
-        wanted = "must be lower case letters, digits, _ . or -, and not minecraft"
+        wanted = "must contain only lower-case letters, digits, _ . or -, and not be minecraft"
         raise UsageError(f"data pack name {name!r} {wanted}; try {to_namespace(name)}")
     check_displays(volume, version)
     if not has_packs(version):
         first = game_versions()[0].name
-        raise UsageError(f"data packs are written for {first} and later, not {version.name}")
+        reason = f"data packs require Minecraft {first} or later, got {version.name}"
+        raise UsageError(f"{reason}; choose another --mc-version")
     volume = convert_volume(volume, version.data_version)
     files = {"pack.mcmeta": pack_mcmeta(f"Builds {name}", version)}
     files |= size_functions(volume.blocks_per_metre)
@@ -102,7 +109,7 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
 def build_job_files(
     volume: BlockVolume, name: str, verb: str, commands: list[str], done: str
 ) -> dict[str, str]:
-    """Return the functions of one job: load the chunks, wait, run the parts, let go."""
+    """Return the functions of one job, which loads chunks, waits, runs parts and unloads chunks."""
     rows = chunk_rows(volume)
     parts = [commands[at : at + MAX_COMMANDS] for at in range(0, len(commands), MAX_COMMANDS)]
     wait, text = f"{name}:{verb}/wait", json.dumps({"text": f"{name} is {done}."})

@@ -1,4 +1,4 @@
-"""Cover blocks with few boxes, each of one state, for ``fill`` commands."""
+"""Covering of blocks with few boxes of one state each, for ``fill`` commands."""
 
 import numpy as np
 
@@ -8,16 +8,17 @@ MAX_FILL = 32_768  # The game's default limit of one fill command.
 
 
 def cover_with_boxes(states: np.ndarray, limit: int = MAX_FILL) -> np.ndarray:
-    """Cover every cell that is not 0 with boxes of one state that do not overlap.
+    """Cover all non-zero cells with non-overlapping boxes of one state each.
 
-    Greedy: from each free cell in the order y, z, x, a box grows along x, then z, then y.
+    The algorithm is greedy: in the order y, z, x, it grows a box from each uncovered cell along x,
+    then z, then y.
 
     Args:
-        states: uint16 [X, Y, Z] in block axes.
-        limit: the most cells that a box may hold.
+        states: Volume of states as uint16 [X, Y, Z] in block axes.
+        limit: Maximum number of cells per box.
 
     Returns:
-        int32 [N, 7]: state, x0 y0 z0, x1 y1 z1 with the last cells included.
+        The boxes as int32 [N, 7]: state, x0, y0, z0, x1, y1, z1, with inclusive upper bounds.
     """
     counted = _grow(states, limit, np.empty((0, 7), np.int32))
     boxes = np.empty((counted, 7), np.int32)

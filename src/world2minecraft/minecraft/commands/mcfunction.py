@@ -1,4 +1,4 @@
-"""Write a plain list of commands, ``.mcfunction``, for any tool that runs commands."""
+"""Writing of plain command lists (``.mcfunction``), for any tool that runs commands."""
 
 from pathlib import Path
 
@@ -24,14 +24,15 @@ CHAIN_LIMIT = 65_536  # The most commands that the game runs of one function.
 def write_command_list(
     volume: BlockVolume, path: str | Path, *, version: GameVersion | None = None
 ) -> None:
-    """Write the commands that build a volume where it stands, one a line.
+    """Write the commands that build a volume at its world position, one per line.
 
-    Full blocks come first, so that what hangs or stands on them finds them. The chunks must be
-    loaded; the commands for that stand in remarks at the head.
+    Full blocks come first, so that attached blocks find their supports. The chunks must be loaded
+    before the commands run; comments at the top of the file contain the commands that load them.
 
     Raises:
-        UsageError: the volume has display entities and the game none, or an id is none.
-        OutputError: the file cannot be written.
+        UsageError: If the game version does not support display entities that the volume contains,
+            or if an entity ID is invalid.
+        OutputError: If the file cannot be written.
     """
     version = version or game_version()
     check_displays(volume, version)
@@ -45,23 +46,24 @@ def write_command_list(
     ]
     head = [f"# {len(commands):,} commands for Minecraft {version.name}, made by World2Minecraft."]
     if len(commands) > CHAIN_LIMIT:
-        head.append(f"# A function runs {CHAIN_LIMIT:,} at most; a data pack is cut into parts.")
-    head.append("# The chunks must be loaded a moment before:")
+        limit = f"# The game runs at most {CHAIN_LIMIT:,} commands per function;"
+        head.append(f"{limit} use a data pack instead, which is split into parts.")
+    head.append("# Load the chunks first:")
     head += [f"# forceload add {row}" for row in chunk_rows(volume)]
     write_text(path, "\n".join([*head, *commands]) + "\n")
 
 
 class CommandListFormat(FileFormat):
-    """A plain list of commands."""
+    """The command list format, ``.mcfunction``."""
 
     suffix = ".mcfunction"
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read the blocks that its commands set."""
+        """Read the blocks that the commands of a list set."""
         return read_command_list(path, losses)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write it for the game's version in the options."""
+        """Write a command list for the game version in ``options``."""
         version = game_version(options.mc_version)
         count_unknown_blocks(volume, version, losses)
         write_command_list(volume, path, version=version)

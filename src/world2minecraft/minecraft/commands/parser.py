@@ -1,8 +1,8 @@
-"""Parse commands into the blocks that they set: plain lists, and data packs of this program.
+"""Reading of command lists and of data packs written by this program.
 
-What is read are ``setblock``, ``fill``, ``data merge block`` and ``summon`` with numbers for
-coordinates, or such after ``~``, which count from the corner of the world. Other commands are
-counted as lost.
+Supported commands are ``setblock``, ``fill``, ``data merge block`` and ``summon`` with absolute
+coordinates or coordinates after ``~``, which are taken relative to the world origin. Other commands
+are counted as losses.
 """
 
 import io
@@ -60,38 +60,45 @@ _DATA_OF = {
 
 
 def read_command_list(path: str | Path, losses: Losses | None = None) -> BlockVolume:
-    """Read a list of commands as the volume that they build.
+    """Read a command list as the volume that its commands build.
 
     Raises:
-        InputError: there is no file, or no command that sets a block. DamagedFileError: a command
-        is none. LimitError: there are too many, or they set too large a box.
+        InputError: If the file is not found, or no command sets a block.
+        DamagedFileError: If a command is invalid.
+        LimitError: If there are too many commands, or the commands set too large a box.
     """
     data = read_bytes(path, MAX_BYTES)
     return _build(_lines(data, path), Path(path), Losses() if losses is None else losses)
 
 
 def read_datapack(path: str | Path, losses: Losses | None = None) -> BlockVolume:
-    """Read what the function ``build`` of a data pack of this program builds.
+    """Read the volume that the function ``build`` of a data pack of this program builds.
 
-    Raises: what ``read_command_list`` raises.
+    Raises:
+        InputError: If the file is not found or is not a data pack of this program.
+        DamagedFileError: If the archive cannot be read or a command is invalid.
+        LimitError: If there are too many commands, or the commands set too large a box.
     """
     source = Path(path)
     if not source.is_file():
-        raise InputError(source, "is not there")
+        raise InputError(source, "not found")
     try:
         with zipfile.ZipFile(source) as archive:
             parts = _parts(archive)
             if sum(part.file_size for part in parts) > MAX_BYTES:
-                raise LimitError(source, f"unpacks to more than {MAX_BYTES:,} bytes of commands")
+                reason = f"exceeds the limit of {MAX_BYTES:,} bytes of commands"
+                raise LimitError(source, reason)
             texts = [archive.read(part) for part in parts]
             is_world = any(Path(name).name == "level.dat" for name in archive.namelist())
     except UNREADABLE as error:
-        raise DamagedFileError(source, f"is no readable data pack ({error})") from error
+        raise DamagedFileError(source, f"is not a valid data pack ({error})") from error
     if not texts and is_world:
-        raise InputError(source, "is a world in a zip; unpack it, and give the folder of level.dat")
+        raise InputError(
+            source, "contains a zipped world; extract it and use the folder with level.dat"
+        )
     if not texts:
-        reason = "is no data pack of this program (it has no function build/part_0)"
-        raise InputError(source, f"{reason}; others are not read")
+        reason = "is not a data pack written by World2Minecraft (function build/part_0 is missing)"
+        raise InputError(source, f"{reason}; other data packs are not supported")
     lines = (line for text in texts for line in _lines(text, source))
     return _build(lines, source, Losses() if losses is None else losses)
 
@@ -119,7 +126,7 @@ class _BuildState:
         sides = (b + 1 - a for a, b in zip(low, high, strict=True))
         self.filled += prod(sides)
         if self.filled > MAX_FILLED:
-            raise LimitError(self.path, f"sets more than {MAX_FILLED:,} blocks; at most that")
+            raise LimitError(self.path, f"exceeds the limit of {MAX_FILLED:,} filled blocks")
         self.boxes.extend((*low, *high, number))
         if brace:
             self.merge((low[0], low[1], low[2]), f"{{{rest}")
@@ -132,9 +139,10 @@ class _BuildState:
         """Read data of a block or an entity."""
         value, _ = self.reader.read(text)
         if not isinstance(value, dict):
-            raise UsageError(f"data {text[:40]!r} must be like {{name:value}}")
+            raise UsageError(f"data {text[:40]!r} must have the form {{name:value}}")
         if len(self.data) + len(self.entities) >= MAX_DATA:
-            raise LimitError(self.path, f"has data for more than {MAX_DATA:,} blocks and entities")
+            reason = f"exceeds the limit of {MAX_DATA:,} blocks and entities with data"
+            raise LimitError(self.path, reason)
         return value
 
 
@@ -144,9 +152,9 @@ def _build(lines: Iterable[str], path: Path, losses: Losses) -> BlockVolume:
         try:
             _run_command(site, line)
         except UsageError as error:
-            raise DamagedFileError(path, f"has a line that is no command: {error}") from error
+            raise DamagedFileError(path, f"contains an invalid command: {error}") from error
     if not site.boxes:
-        raise InputError(path, "holds no setblock or fill command; nothing to read")
+        raise InputError(path, "contains no setblock or fill command, so there is nothing to read")
     boxes = np.frombuffer(site.boxes, np.int32).reshape(-1, 7).astype(np.int64)
     low = boxes[:, :3].min(axis=0)
     shape = check_size(boxes[:, 3:6].max(axis=0) + 1 - low, path)
@@ -183,21 +191,21 @@ def _run_command(site: _BuildState, line: str) -> None:
     elif words[0] == "summon":
         _summon(site, rest)
     elif not line.startswith(ORDERING):
-        site.losses.add(f"commands that set no block ({words[0][:20]})")
+        site.losses.add(f"unsupported commands ({words[0][:20]})")
 
 
 def _arguments(rest: str, count: int) -> list[str]:
     """Return as many words and what is left."""
     words = rest.split(" ", count)
     if len(words) <= count:
-        raise UsageError(f"command {rest[:60]!r} needs {count} coordinates and more")
+        raise UsageError(f"command {rest[:60]!r} must have {count} coordinates and a value")
     return words
 
 
 def _whole(words: Iterable[str]) -> tuple[int, ...]:
     found = [_WHOLE.fullmatch(word) for word in words]
     if not all(found):
-        raise UsageError(f"coordinates {' '.join(words)[:60]!r} must be whole numbers")
+        raise UsageError(f"coordinates must be integers, got {' '.join(words)[:60]!r}")
     return tuple(int(match[1] or 0) for match in found if match)
 
 
@@ -208,7 +216,7 @@ def _without_mode(state: str, losses: Losses) -> str:
     mode = mode.strip()
     if mode in ("", "replace", "destroy", "strict"):
         return state[: end + 1] + head
-    losses.add(f"fill and setblock commands with {mode.split(' ')[0][:20]}")
+    losses.add(f"fill and setblock commands with the mode {mode.split(' ')[0][:20]}")
     return ""
 
 
@@ -218,7 +226,8 @@ def _summon(site: _BuildState, rest: str) -> None:
     full = name if ":" in name else f"minecraft:{name}"
     numbers = [_NUMBER.fullmatch(word) for word in place]
     if len(place) != 3 or not all(numbers) or not _ID.fullmatch(full):
-        raise UsageError(f"summon {rest[:60]!r} must be like: summon minecraft:cat 1.0 64.0 2.0")
+        usage = "must have the form: summon minecraft:cat 1.0 64.0 2.0"
+        raise UsageError(f"summon {rest[:60]!r} {usage}")
     x, y, z = (float(match[1] or 0) for match in numbers if match)
     nbt = site.compound(data)
     if isinstance(nbt.get("Tags"), list):
@@ -233,7 +242,7 @@ def _block_entities(
     for place, nbt in sorted(site.data.items()):
         cell = tuple(a - b for a, b in zip(place, corner, strict=True))
         if not all(0 <= c < side for c, side in zip(cell, states.shape, strict=True)):
-            site.losses.add("data of blocks that no command sets")
+            site.losses.add("block data outside the blocks that the commands set")
             continue
         name = parse_state(palette[states[cell]]).name
         plain = name.partition(":")[2].replace("_wall_", "_")
@@ -245,11 +254,11 @@ def _lines(data: bytes, path: str | Path) -> Iterator[str]:
     """Yield the commands: lines that say something and are no remark."""
     for number, raw in enumerate(io.BytesIO(data)):
         if number >= MAX_LINES:
-            raise LimitError(path, f"has more than {MAX_LINES:,} lines")
+            raise LimitError(path, f"exceeds the limit of {MAX_LINES:,} lines")
         try:
             line = raw.decode("utf-8").strip().removeprefix("/")
         except UnicodeError as error:
-            raise DamagedFileError(path, f"is no text ({error})") from error
+            raise DamagedFileError(path, f"is not a UTF-8 text file ({error})") from error
         if line and not line.startswith("#"):
             yield line
 

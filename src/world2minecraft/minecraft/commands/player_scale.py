@@ -1,8 +1,8 @@
-"""The data pack that makes the player as large as the room: functions, in overlays by game.
+"""Data pack functions that scale the player to the size of a room.
 
-The game has had attributes for a body's scale and step height since 1.20.5, and since 1.21.2
-under other names. A function that names an attribute which the game does not know fails to load,
-so each game is shown its own: an older one sees only a line of text.
+The game has attributes for body scale and step height since 1.20.5, and renamed them in 1.21.2. A
+function with an unknown attribute fails to load, so an overlay for each range of versions contains
+the matching names. Older games run a function that only prints a message.
 """
 
 import io
@@ -32,11 +32,14 @@ tag @s[tag=w2m.back] remove w2m.back
 
 
 def size_pack(blocks_per_metre: float, version: GameVersion | None = None) -> bytes:
-    """Return the zip of a data pack with ``w2m:human_size``, ``game_size`` and ``toggle_size``.
+    """Return a zipped data pack with functions that change the player's size.
+
+    The functions are ``w2m:human_size``, ``w2m:game_size`` and ``w2m:toggle_size``.
 
     Args:
-        blocks_per_metre: the scale of the room; a player becomes as many times larger.
-        version: the game whose ``pack_format`` the pack states; all known ones are supported.
+        blocks_per_metre: The scale of the room, by which the player is enlarged.
+        version: The game whose ``pack_format`` the pack declares. The pack works in every known
+            game.
     """
     files = {"pack.mcmeta": pack_mcmeta("The player's size for this room", version)}
     files |= size_functions(blocks_per_metre)
@@ -44,10 +47,10 @@ def size_pack(blocks_per_metre: float, version: GameVersion | None = None) -> by
 
 
 def size_functions(blocks_per_metre: float) -> dict[str, str]:
-    """Return the size functions by their paths in a pack, those of the overlays among them."""
+    """Return the contents of the size functions by path in the pack, including the overlays."""
     scale = min(max(blocks_per_metre, SCALE_LIMITS[0]), SCALE_LIMITS[1])
     step = min(max(STEP_BLOCKS * scale, STEP_LIMITS[0]), STEP_LIMITS[1])
-    text = "This game is older than 1.20.5 and cannot change a player's size."
+    text = "Minecraft 1.20.5 or later is required to change the player's size."
     line = f"tellraw @s {json.dumps({'text': text})}\n"
     files = {}
     sizes = (("human_size", (scale, step), "add"), ("game_size", (1.0, STEP_BLOCKS), "remove"))
@@ -65,16 +68,16 @@ def size_functions(blocks_per_metre: float) -> dict[str, str]:
 
 
 def function_files(namespace: str, name: str, commands: str) -> dict[str, str]:
-    """Return one function under both names that its folder has had."""
+    """Return one function under both the old and the new name of the function folder."""
     return {f"data/{namespace}/{folder}/{name}.mcfunction": commands for folder in FOLDERS}
 
 
 def pack_mcmeta(description: str, version: GameVersion | None = None) -> str:
-    """Return a ``pack.mcmeta`` that all known games accept, with the overlays of the size.
+    """Return a ``pack.mcmeta`` with the size overlays that every known game version accepts.
 
-    Games up to 1.20.1 read ``pack_format`` alone, up to 1.21.8 ``supported_formats``, and later
-    ones ``min_format`` and ``max_format``; the last want the older keys too where older games are
-    supported, and with the same bounds.
+    Games up to 1.20.1 read only ``pack_format``, games up to 1.21.8 read ``supported_formats``, and
+    later games read ``min_format`` and ``max_format``. If older games are supported, the latest
+    games also require the old keys with the same bounds.
     """
     first, last = game_versions()[0], game_versions()[-1]
     entries = [
@@ -90,7 +93,7 @@ def pack_mcmeta(description: str, version: GameVersion | None = None) -> str:
 
 
 def pack_zip(files: Mapping[str, str | bytes]) -> bytes:
-    """Return a zip of texts and bytes, whose bytes depend on the files alone."""
+    """Return a zip archive of text and binary files whose bytes depend only on the files."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         for name in sorted(files):

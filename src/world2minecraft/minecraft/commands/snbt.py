@@ -1,4 +1,4 @@
-"""NBT as text, read: what commands hold. ``commands.snbt`` writes it."""
+"""Parsing of NBT in text form (SNBT), as used in commands. ``commands.writer`` writes it."""
 
 import re
 from typing import Any
@@ -22,17 +22,18 @@ _ARRAYS = {"B": np.int8, "I": np.int32, "L": np.int64}
 
 
 def read_snbt(text: str, start: int = 0) -> tuple[Any, int]:
-    r"""Read one value of NBT from a text.
+    r"""Parse one SNBT value from a text.
 
     Args:
-        text: the text.
-        start: where the value begins.
+        text: The text to parse.
+        start: Offset of the value in the text.
 
     Returns:
-        The value, as ``minecraft.nbt`` gives it, and where it ends.
+        The value, with types as in ``minecraft.nbt``, and the offset after its end.
 
     Raises:
-        UsageError: the text is no NBT, nests deeper than 100 tags or holds too many values.
+        UsageError: If the text is not valid SNBT, nests deeper than 100 tags or contains too many
+            values.
 
     Example:
         >>> read_snbt('{Count:3b, list:[1.5f, 2f], "name":\'my room\'}')[0]
@@ -42,21 +43,21 @@ def read_snbt(text: str, start: int = 0) -> tuple[Any, int]:
 
 
 class SnbtReader:
-    """Reads texts until they hold more values, together, than it allows."""
+    """An SNBT parser with a limit on the total number of values that it reads."""
 
     def __init__(self, values: int = MAX_VALUES) -> None:
         self.values_left = values
 
     def read(self, text: str, start: int = 0) -> tuple[Any, int]:
-        """Read one value; see ``read_snbt``."""
+        """Parse one value, as ``read_snbt`` does."""
         return self._value(text, start, 0)
 
     def _value(self, text: str, at: int, depth: int) -> tuple[Any, int]:
         self.values_left -= 1
         if self.values_left < 0:
-            raise UsageError("NBT text holds too many values")
+            raise UsageError(f"SNBT text exceeds the limit of {MAX_VALUES:,} values")
         if depth > MAX_DEPTH:
-            raise UsageError(f"NBT text nests deeper than {MAX_DEPTH} tags; at most that is read")
+            raise UsageError(f"SNBT text exceeds the limit of {MAX_DEPTH} nested tags")
         at = _skip(text, at)
         first = text[at : at + 1]
         if first == "{":
@@ -102,7 +103,7 @@ def _array(values: Any, kind: type) -> np.ndarray:
     try:
         return np.array(values, kind).reshape(-1)
     except (ValueError, TypeError, OverflowError) as error:
-        raise UsageError(f"NBT text has an array of other things than numbers: {error}") from error
+        raise UsageError(f"SNBT array contains a value that is not an integer: {error}") from error
 
 
 def _key(text: str, at: int) -> tuple[str, int]:
@@ -117,7 +118,7 @@ def _key(text: str, at: int) -> tuple[str, int]:
 def _quoted(text: str, at: int) -> tuple[str, int]:
     found = _QUOTED[text[at]].match(text, at + 1)
     if found is None:
-        raise _unreadable(text, at, "the end of a quoted text")
+        raise _unreadable(text, at, "a closing quote")
     return _ESCAPE.sub(r"\1", found[0][:-1]), found.end()
 
 
@@ -151,4 +152,5 @@ def _expect(text: str, at: int, mark: str) -> int:
 
 
 def _unreadable(text: str, at: int, wanted: str) -> UsageError:
-    return UsageError(f"NBT text needs {wanted} at {text[at : at + MAX_SHOWN]!r}")
+    found = repr(text[at : at + MAX_SHOWN]) if text[at:] else "the end of the text"
+    return UsageError(f"invalid SNBT text: expected {wanted}, got {found}")

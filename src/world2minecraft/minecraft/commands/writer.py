@@ -1,7 +1,7 @@
-"""The commands that set a volume, one line each: what data packs, command lists and RCON share.
+"""Game commands that build a volume, one per line, for data packs, command lists and RCON.
 
-Every name that enters a command was read by ``parse_state`` or matched here, so that no file can
-slip a command of its own in.
+Every name in a command is validated by ``parse_state`` or by a pattern in this module, so that a
+file cannot inject commands.
 """
 
 import math
@@ -27,13 +27,13 @@ _ENTITY_ID = re.compile(r"[a-z0-9_.-]+:[a-z0-9_./-]+")
 
 
 def block_commands(volume: BlockVolume, version: GameVersion) -> list[str]:
-    """Return ``setblock`` and ``fill`` commands for every block that is not air.
+    """Return ``setblock`` and ``fill`` commands for all blocks except air.
 
-    Full blocks come first and others after them, from below to above, so that what hangs or
-    stands on a block finds it. Each ``fill`` stays within the game's limit of volume.
+    Full blocks come first and all other blocks follow from bottom to top, so that attached blocks
+    find their supports. Each ``fill`` command is within the game's volume limit.
 
     Raises:
-        UsageError: a state of the palette is no block state.
+        UsageError: If a palette entry is not a valid block state.
     """
     boxes = cover_with_boxes(volume.states)
     is_solid = np.array([is_full_cube(state) for state in volume.palette])
@@ -51,13 +51,13 @@ def block_commands(volume: BlockVolume, version: GameVersion) -> list[str]:
 
 
 def air_commands(volume: BlockVolume, mask: np.ndarray) -> list[str]:
-    """Return the commands that empty the cells of a mask, bool [X, Y, Z], of a volume's box."""
+    """Return ``fill`` commands that empty the masked cells of a volume, given as bool [X, Y, Z]."""
     boxes = cover_with_boxes(mask.astype(np.uint16))[:, 1:] + np.tile(volume.corner, 2)
     return [f"fill {' '.join(map(str, box))} minecraft:air" for box in boxes.tolist()]
 
 
 def data_commands(volume: BlockVolume) -> list[str]:
-    """Return a ``data merge`` command for each block entity that says something."""
+    """Return a ``data merge`` command for each block entity that contains data."""
     return [
         f"data merge block {x} {y} {z} {snbt(held.nbt)}"
         for held in volume.block_entities
@@ -67,15 +67,16 @@ def data_commands(volume: BlockVolume) -> list[str]:
 
 
 def entity_commands(volume: BlockVolume) -> list[str]:
-    """Return a ``summon`` command for each entity, tagged so that all can be taken away again.
+    """Return a ``summon`` command for each entity, with a tag by which all of them can be removed.
 
     Raises:
-        UsageError: an entity's id is no id.
+        UsageError: If an entity ID is invalid.
     """
     commands = []
     for entity in volume.entities:
         if not _ENTITY_ID.fullmatch(entity.id):
-            raise UsageError(f"entity id {entity.id!r} must be like minecraft:block_display")
+            reason = f"entity ID {entity.id!r} is invalid"
+            raise UsageError(f"{reason}; expected an ID such as minecraft:block_display")
         x, y, z = entity.position
         tags = [*entity_tags(entity.nbt), entity_tag(volume)]
         place = f"{x:.6f} {y:.6f} {z:.6f}"
@@ -84,7 +85,7 @@ def entity_commands(volume: BlockVolume) -> list[str]:
 
 
 def clear_commands(volume: BlockVolume) -> list[str]:
-    """Return the commands that empty the volume's box, one box of at most a ``fill`` each."""
+    """Return ``fill`` commands that empty the volume's box, each within the game's limit."""
     commands = [f"kill @e[tag={entity_tag(volume)}]"] if volume.entities else []
     size_x, size_y, size_z = volume.states.shape
     step_x, step_z = min(size_x, 128), min(size_z, 128)
@@ -102,7 +103,7 @@ def clear_commands(volume: BlockVolume) -> list[str]:
 
 
 def chunk_rows(volume: BlockVolume) -> list[str]:
-    """Return the box in blocks as corners x0 z0 x1 z1, cut so that each holds few enough chunks."""
+    """Split the volume's box into ``forceload`` areas, each given as "x0 z0 x1 z1" in blocks."""
     x, _, z = volume.corner
     size_x, _, size_z = volume.states.shape
     side = 16 * int(MAX_LOADED_CHUNKS**0.5)
@@ -115,17 +116,21 @@ def chunk_rows(volume: BlockVolume) -> list[str]:
 
 
 def entity_tag(volume: BlockVolume) -> str:
-    """Return the tag of the entities of a volume at its place."""
+    """Return the entity tag of a volume, which contains the volume's corner position."""
     return "w2m_{}_{}_{}".format(*volume.corner)
 
 
 def state_in_version(state: str, version: GameVersion) -> str:
-    """Return a block state as a version of the game writes it. Raises what ``parse_state`` does."""
+    """Return the text of a block state with the names of a game version.
+
+    Raises:
+        UsageError: If the text is not a valid block state.
+    """
     return write_state(str(parse_state(state)), version.data_version)
 
 
 def snbt(value: Any) -> str:
-    r"""Return NBT as the text that commands take.
+    r"""Return an NBT value as SNBT text for use in commands.
 
     Example:
         >>> snbt({"Id": Byte(1), "list": [1.5, 2.0], "text": "it's"})
