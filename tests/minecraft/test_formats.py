@@ -59,9 +59,9 @@ def test_what_is_not_there_or_unknown_is_refused(tmp_path):
     with pytest.raises(InputError, match="not found"):
         read_blocks(tmp_path / "missing.schem")
     (tmp_path / "a.txt").write_text("blocks")
-    with pytest.raises(InputError, match="is no block file that is read"):
+    with pytest.raises(InputError, match="is not in a supported format"):
         read_blocks(tmp_path / "a.txt")
-    with pytest.raises(InputError, match="is no block file that is read"):
+    with pytest.raises(InputError, match="is not in a supported format"):
         read_blocks(tmp_path)
     with pytest.raises(
         UsageError, match="unknown file suffix for blocks; use one of: a world folder, .schem"

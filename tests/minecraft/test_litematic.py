@@ -224,7 +224,7 @@ def test_files_made_by_others_come_back_as_they_are(shared_data, tmp_path):
 def test_what_was_left_behind_is_told(shared_data):
     losses = Losses()
     read_litematic(shared_data / "litemapy_litematics" / "Lite.litematic", losses)
-    assert list(losses) == [("names of regions", 4), ("preview pictures", 1)]
+    assert list(losses) == [("names of regions", 4), ("preview images", 1)]
 
 
 # Damaged files.
@@ -249,13 +249,13 @@ def tree_with(region: dict | None = None, **changes) -> dict:
 
 HUGE = {"x": 2**31 - 1, "y": -(2**31), "z": 2**31 - 1}
 DAMAGED = {
-    "no regions": (tree_with(Regions={}), "has 0 regions; 1 to 4,096 are"),
-    "regions that are a list": (tree_with(Regions=[1]), "is no Litematica file"),
-    "nothing": ({}, "is no Litematica file ('Version' is missing)"),
-    "a version of 1.12": (tree_with(Version=3), "of version 3; 4 to 7 are read"),
-    "a version to come": (tree_with(Version=99), "of version 99; 4 to 7 are read"),
-    "a version that is text": (tree_with(Version="six"), "of version six; 4 to 7 are read"),
-    "no size": (tree_with(region_with(Size=None)), "is no Litematica file ('Size' is missing)"),
+    "no regions": (tree_with(Regions={}), "has 0 regions; expected 1 to 4,096"),
+    "regions that are a list": (tree_with(Regions=[1]), "is not a valid Litematica file"),
+    "nothing": ({}, "is not a valid Litematica file ('Version' is missing)"),
+    "a version of 1.12": (tree_with(Version=3), "version 3; supported: 4 to 7"),
+    "a version to come": (tree_with(Version=99), "version 99; supported: 4 to 7"),
+    "a version that is text": (tree_with(Version="six"), "version six; supported: 4 to 7"),
+    "no size": (tree_with(region_with(Size=None)), "is not a valid Litematica file ('Size' is missing)"),
     "a size of nothing": (tree_with(region_with(Size={"x": 0, "y": 1, "z": 1})), "says 0 x 1 x 1"),
     "a huge size": (tree_with(region_with(Size=HUGE)), "blocks; 1 to 67,108,864 are read"),
     "regions far apart": (
@@ -269,20 +269,20 @@ DAMAGED = {
     ),
     "too few words": (
         tree_with(region_with(BlockStates=np.zeros(0, np.int64))),
-        "says 4 blocks and holds fewer",
+        "declares 4 blocks but contains fewer",
     ),
     "words of another kind": (
         tree_with(region_with(BlockStates=np.zeros(9, np.int32))),
-        "says 4 blocks and holds fewer",
+        "declares 4 blocks but contains fewer",
     ),
-    "words that are text": (tree_with(region_with(BlockStates="a")), "is no Litematica file"),
+    "words that are text": (tree_with(region_with(BlockStates="a")), "is not a valid Litematica file"),
     "a number out of range": (
         tree_with(region_with(BlockStates=np.array([3], np.int64))),
-        "has a block of number 3, which its palette lacks",
+        "contains the block index 3, which is not in the palette",
     ),
     "an empty palette": (
         tree_with(region_with(BlockStatePalette=[])),
-        "has a block of number 0, which its palette lacks",
+        "contains the block index 0, which is not in the palette",
     ),
     "a palette of numbers": (
         tree_with(region_with(BlockStatePalette=[1])),
@@ -294,11 +294,11 @@ DAMAGED = {
     ),
     "an entity without a place": (
         tree_with(region_with(Entities=[{"id": "a"}])),
-        "is no Litematica file ('Pos' is missing)",
+        "is not a valid Litematica file ('Pos' is missing)",
     ),
     "a block entity without a place": (
         tree_with(region_with(TileEntities=[{"id": "a"}])),
-        "is no Litematica file ('x' is missing)",
+        "is not a valid Litematica file ('x' is missing)",
     ),
     "a corner of two": (
         tree_with(World2Minecraft={"Corner": [1, 2]}),
@@ -322,12 +322,12 @@ def test_nested_regions_too_large_together_are_refused(tmp_path, monkeypatch):
     write_regions({"a": small, "b": small}, tmp_path / "a.litematic")
     assert len(read_regions(tmp_path / "a.litematic")) == 2
     monkeypatch.setattr(litematic, "MAX_CELLS", 2 * small.states.size - 1)
-    with pytest.raises(LimitError, match="its regions have 120 blocks together; at most 119 are"):
+    with pytest.raises(LimitError, match="has regions with 120 blocks in total, the limit is 119"):
         read_regions(tmp_path / "a.litematic")
 
 
 def test_an_empty_volume_is_refused(tmp_path):
-    with pytest.raises(UsageError, match="one region or more, and at least a block each"):
+    with pytest.raises(UsageError, match="at least one region, each with blocks"):
         write_litematic(volume_of(np.zeros((0, 1, 1)), (AIR,), (0, 0, 0)), tmp_path / "a")
     with pytest.raises(UsageError, match="one region or more"):
         write_regions({}, tmp_path / "a")

@@ -136,7 +136,7 @@ def test_blocks_of_mods_keep_number_or_name_and_are_counted(tmp_path):
         "legacy:4095_0",
         "legacy:301_0",
     ]
-    told = "blocks of mods, kept by their old number or name"
+    told = "mod blocks, kept with their legacy ID or name"
     assert list(losses) == [("biomes", 1), (told, 3)]
     data = schematic(blocks, (4, 1, 1), BlockIDs={"4095": "shop:till"})
     assert state_texts(read(data, tmp_path))[2, 0, 0] == "shop:till"
@@ -275,29 +275,29 @@ def test_signs_go_to_older_games_and_back():
 
 SIZE = (2, 1, 2)
 DAMAGED = {
-    "too few blocks": ({"Blocks": np.zeros(3, np.int8)}, "says 4 blocks and holds fewer"),
-    "too few values": ({"Data": np.zeros(3, np.int8)}, "says 4 blocks and holds fewer"),
-    "too few high bits": ({"AddBlocks": np.zeros(1, np.int8)}, "says 4 blocks and holds fewer"),
-    "no blocks": ({"Blocks": None}, "is no schematic of numbered blocks ('Blocks' is missing)"),
-    "blocks of text": ({"Blocks": "stone"}, "is no schematic of numbered blocks"),
-    "no width": ({"Width": None}, "is no schematic of numbered blocks ('Width' is missing)"),
+    "too few blocks": ({"Blocks": np.zeros(3, np.int8)}, "declares 4 blocks but contains fewer"),
+    "too few values": ({"Data": np.zeros(3, np.int8)}, "declares 4 blocks but contains fewer"),
+    "too few high bits": ({"AddBlocks": np.zeros(1, np.int8)}, "declares 4 blocks but contains fewer"),
+    "no blocks": ({"Blocks": None}, "is not a valid legacy schematic ('Blocks' is missing)"),
+    "blocks of text": ({"Blocks": "stone"}, "is not a valid legacy schematic"),
+    "no width": ({"Width": None}, "is not a valid legacy schematic ('Width' is missing)"),
     "a width of nothing": ({"Width": Short(0)}, "says 0 x 1 x 2 blocks"),
     "a huge size": (
         {"Width": Short(-1), "Height": Short(-1), "Length": Short(-1)},
         "says 65535 x 65535 x 65535 blocks; 1 to 67,108,864 are read",
     ),
-    "another game": ({"Materials": "Pocket"}, "is a schematic for 'Pocket'; 'Alpha' is read"),
+    "another game": ({"Materials": "Pocket"}, "has the materials 'Pocket'; only 'Alpha' (Java) is supported"),
     "a block entity without a place": (
         {"TileEntities": [{"id": "Sign"}]},
-        "is no schematic of numbered blocks ('x' is missing)",
+        "is not a valid legacy schematic ('x' is missing)",
     ),
     "an entity without a place": (
         {"Entities": [{"id": "Pig"}]},
-        "is no schematic of numbered blocks ('Pos' is missing)",
+        "is not a valid legacy schematic ('Pos' is missing)",
     ),
     "a mapping of texts": (
         {"SchematicaMapping": {"a": "b"}},
-        "is no schematic of numbered blocks",
+        "is not a valid legacy schematic",
     ),
 }
 

@@ -78,5 +78,5 @@ def test_what_is_listed_stays_listed(shared_data, tmp_path):
     write_structure(before, tmp_path / "a.nbt", version=game_version(), clears=False)
     read_blocks(tmp_path / "a.nbt", told)
     ((what, count),) = told
-    assert what == "places that the structure leaves as they are"
+    assert what == "positions that the structure leaves unchanged"
     assert count == (state_texts(before) == AIR).sum()

@@ -141,7 +141,7 @@ def test_an_entity_that_is_nowhere_is_refused(tmp_path):
     root = read_nbt(unpack((tmp_path / "a.schem").read_bytes(), "a"), "a")[1]
     root["Entities"][0]["Pos"] = [0.0, float("nan"), 0.0]
     (tmp_path / "a.schem").write_bytes(pack_gzip(write_nbt(root, "Schematic")))
-    with pytest.raises(DamagedFileError, match="is no Sponge schematic"):
+    with pytest.raises(DamagedFileError, match="is not a valid Sponge schematic"):
         read_schem(tmp_path / "a.schem")
 
 
@@ -156,7 +156,7 @@ def test_names_follow_the_version(tmp_path):
 
 
 def test_a_side_that_is_too_long_is_refused(tmp_path):
-    with pytest.raises(UsageError, match="1 to 65,535 blocks a side"):
+    with pytest.raises(UsageError, match="must be 1 to 65,535 blocks"):
         write_schem(volume_of(np.zeros((65_536, 1, 1)), (AIR,), (0, 0, 0)), tmp_path / "a.schem")
     long = volume_of(np.ones((65_535, 1, 1)), (AIR, "minecraft:stone"), (0, 0, 0))
     write_schem(long, tmp_path / "a.schem")
@@ -263,12 +263,12 @@ def test_a_damaged_schematic_is_refused_by_name(tree, tmp_path):
 def test_what_the_errors_say(tmp_path):
     path = tmp_path / "bad.schem"
     expected = {
-        "a palette index out of range": "has a block of number 2, which its palette lacks",
-        "too few blocks": "says 4 blocks and holds fewer",
+        "a palette index out of range": "contains the block index 2, which is not in the palette",
+        "too few blocks": "declares 4 blocks but contains fewer",
         "a volume of 281 million million blocks": "says 65535 x 65535 x 65535 blocks; 1 to"
         " 67,108,864 are read",
-        "no width": "is no Sponge schematic ('Width' is missing)",
-        "an unknown version": "is a Sponge schematic of version 9; 1 to 3 are read",
+        "no width": "is not a valid Sponge schematic ('Width' is missing)",
+        "an unknown version": "has Sponge schematic version 9; supported: 1 to 3",
     }
     for name, text in expected.items():
         path.write_bytes(pack_gzip(write_nbt(DAMAGED[name], "Schematic")))

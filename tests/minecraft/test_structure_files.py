@@ -94,7 +94,7 @@ def test_air_may_be_left_out_so_that_what_stands_there_stays(tmp_path):
     found = read_structure(tmp_path / "a.nbt", losses)
     np.testing.assert_array_equal(state_texts(found), texts)
     count = texts.size - len(listed)
-    assert list(losses) == [("places that the structure leaves as they are", count)]
+    assert list(losses) == [("positions that the structure leaves unchanged", count)]
 
 
 def test_block_entities_and_entities_come_back(tmp_path):
@@ -122,7 +122,7 @@ def test_of_several_palettes_one_is_read(tmp_path):
     assert read_structure(tmp_path / "b.nbt", losses).palette == (AIR, STONE)
     assert list(losses) == [("other palettes of the structure", 1)]
     assert read_structure(tmp_path / "b.nbt", variant=1).palette == (AIR, "minecraft:dirt")
-    with pytest.raises(UsageError, match=r"b.nbt has variants 0 to 1, not 2"):
+    with pytest.raises(UsageError, match=r"variant of .*b.nbt must be 0 to 1, got 2"):
         read_structure(tmp_path / "b.nbt", variant=2)
 
 
@@ -270,17 +270,17 @@ def repacked(path: Path, change) -> Path:
 PACK_DAMAGE = {
     "no pieces": (
         lambda files: {name: data for name, data in files.items() if not name.endswith(".nbt")},
-        "places a piece that it does not hold",
+        "places a structure piece that it does not contain",
     ),
     "pieces elsewhere": (
         lambda files: {name: data.replace(b" 60 9", b" 61 9") for name, data in files.items()},
-        "what says to stand at",
+        "but the piece states the position",
     ),
     "nothing placed": (
         lambda files: {
             name: data.replace(b"place template", b"say") for name, data in files.items()
         },
-        "places no structure",
+        "contains no command that places a structure",
     ),
     "a piece that is text": (
         lambda files: {n: b"text" if n.endswith(".nbt") else data for n, data in files.items()},
@@ -306,7 +306,7 @@ def test_a_pack_of_pieces_too_large_together_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(structure_pack, "MAX_CELLS", limit)
     assert read_blocks(path).states.size <= limit  # 130 of 144 cells a row.
     monkeypatch.setattr(structure_pack, "MAX_CELLS", 130 * 9 - 1)
-    with pytest.raises(LimitError, match="its pieces have over 1,169 blocks together"):
+    with pytest.raises(LimitError, match="has pieces that exceed the limit of 1,169 blocks"):
         read_blocks(path)
 
 
@@ -321,7 +321,7 @@ def test_a_large_structure_gets_its_pack_beside_it(tmp_path):
 
 def test_a_game_without_place_template_is_refused(tmp_path):
     old = GameVersion("1.18.2", 2975, 9)
-    with pytest.raises(UsageError, match=r"Minecraft 1.18.2 places no structures by command"):
+    with pytest.raises(UsageError, match=r"Minecraft 1.18.2 cannot place structures by command"):
         write_structure_pack(VOLUMES["small"], tmp_path / "a.zip", version=old)
 
 
@@ -368,32 +368,32 @@ def tree_with(**changes) -> dict:
 
 
 DAMAGED = {
-    "nothing": ({}, "is no structure file ('size' is missing)"),
-    "no palette": (tree_with(palette=None), "is no structure file ('palette' is missing)"),
-    "no blocks": (tree_with(blocks=None), "is no structure file ('blocks' is missing)"),
-    "a size of two": (tree_with(size=[1, 1]), "is no structure file"),
+    "nothing": ({}, "is not a valid structure file ('size' is missing)"),
+    "no palette": (tree_with(palette=None), "is not a valid structure file ('palette' is missing)"),
+    "no blocks": (tree_with(blocks=None), "is not a valid structure file ('blocks' is missing)"),
+    "a size of two": (tree_with(size=[1, 1]), "is not a valid structure file"),
     "a size of nothing": (tree_with(size=[1, 0, 1]), "says 1 x 0 x 1 blocks"),
     "a huge size": (tree_with(size=[2**31 - 1] * 3), "1 to 67,108,864 are read"),
     "a number out of range": (
         tree_with(blocks=[{"pos": [0, 0, 0], "state": 2}]),
-        "has a block that its palette of 2 lacks",
+        "contains a block index that is not in its palette of 2 states",
     ),
     "a negative number": (
         tree_with(blocks=[{"pos": [0, 0, 0], "state": -1}]),
-        "has a block that its palette of 2 lacks",
+        "contains a block index that is not in its palette of 2 states",
     ),
     "a block outside": (
         tree_with(blocks=[{"pos": [2, 0, 0], "state": 0}]),
-        "has a block outside of its size, (2, 1, 1)",
+        "contains a block outside its declared size (2, 1, 1)",
     ),
-    "a block without a place": (tree_with(blocks=[{"state": 0}]), "has a block without place"),
-    "a block that is a number": (tree_with(blocks=[1]), "has a block without place and number"),
-    "blocks that are text": (tree_with(blocks="a"), "has a block without place and number"),
-    "no palettes": (tree_with(palettes=[]), "has 0 palettes; 1 to 1,000 are read"),
+    "a block without a place": (tree_with(blocks=[{"state": 0}]), "contains a block without position"),
+    "a block that is a number": (tree_with(blocks=[1]), "contains a block without position or index"),
+    "blocks that are text": (tree_with(blocks="a"), "contains a block without position or index"),
+    "no palettes": (tree_with(palettes=[]), "has 0 palettes; expected 1 to 1,000"),
     "a palette of texts": (tree_with(palette=["stone"]), "contains an invalid palette entry"),
     "an entity without a place": (
         tree_with(entities=[{"nbt": {"id": "a"}}]),
-        "is no structure file ('pos' is missing)",
+        "is not a valid structure file ('pos' is missing)",
     ),
 }
 
@@ -419,5 +419,5 @@ def test_a_list_of_many_empty_blocks_is_refused_unread(tmp_path):
 
 def test_a_volume_of_too_many_blocks_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(our_structure, "MAX_BLOCKS", 50)
-    with pytest.raises(UsageError, match="holds 1 to 50 blocks, not 60; write a .schem"):
+    with pytest.raises(UsageError, match="contains 1 to 50 blocks, got 60; write a .schem"):
         write_structure(VOLUMES["small"], tmp_path / "a.nbt")

@@ -1,4 +1,4 @@
-"""Formats in which players share builds: Litematica, structures, old schematics."""
+"""Formats for sharing builds: Litematica files, structure files and legacy schematics."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,12 +12,12 @@ if TYPE_CHECKING:
 
 
 class LitematicFormat(FileFormat):
-    """A Litematica file."""
+    """The Litematica format, ``.litematic``."""
 
     suffix = ".litematic"
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read version 4 to 7, its regions joined."""
+        """Read a file of version 4 to 7 and join its regions."""
         from world2minecraft.minecraft.schematics.litematic import read_litematic  # noqa: PLC0415  # numba.
 
         return read_litematic(path, losses)
@@ -25,7 +25,7 @@ class LitematicFormat(FileFormat):
     def write(
         self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
     ) -> None:
-        """Write one region under the options' name."""
+        """Write a file with one region that has the name in ``options``."""
         from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.litematic import write_litematic  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
@@ -36,12 +36,12 @@ class LitematicFormat(FileFormat):
 
 
 class StructureFormat(FileFormat):
-    """A structure file of the game."""
+    """The game's structure format, ``.nbt``."""
 
     suffix = ".nbt"
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read the structure, of several palettes the first."""
+        """Read a structure file. If it has several palettes, the first is used."""
         from world2minecraft.minecraft.schematics.structure import read_structure  # noqa: PLC0415  # numba.
 
         return read_structure(path, losses)
@@ -49,7 +49,7 @@ class StructureFormat(FileFormat):
     def write(
         self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
     ) -> None:
-        """Write one structure; one too large for a structure block gets a pack of pieces too."""
+        """Write a structure file, and also a data pack of pieces if the volume is large."""
         from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.structure import write_structure  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.structure_pack import (  # noqa: PLC0415
@@ -68,13 +68,13 @@ class StructureFormat(FileFormat):
 
 
 class LegacySchematicFormat(FileFormat):
-    """A schematic of MCEdit, WorldEdit or Schematica from before 1.13; it is read only."""
+    """The schematic format of MCEdit, WorldEdit and Schematica before 1.13, which is read-only."""
 
     suffix = ".schematic"
     can_write = False
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read it, its numbers as today's states."""
+        """Read a legacy schematic and convert its block IDs to current block states."""
         from world2minecraft.minecraft.schematics.mcedit import read_schematic  # noqa: PLC0415  # numba.
 
         return read_schematic(path, losses)
@@ -82,5 +82,5 @@ class LegacySchematicFormat(FileFormat):
     def write(
         self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
     ) -> None:
-        """Refuse: numbers of 1.12 name a fraction of today's blocks."""
-        raise UsageError(f"{path}: .schematic is read and not written; write a .schem instead")
+        """Raise UsageError, because legacy block IDs cannot represent most current blocks."""
+        raise UsageError(f"{path}: .schematic files cannot be written; write a .schem file instead")

@@ -261,7 +261,7 @@ def test_worlds_without_much_in_them(states):
     assert len(graph) == int(states.sum()) and len(graph.edge_to) == 0
     assert len(connected_parts(graph)) == len(graph)
     if not len(graph):
-        with pytest.raises(ValueError, match="no place to stand"):
+        with pytest.raises(ValueError, match="no places to stand"):
             graph.nearest((0, 0, 0))
 
 

@@ -1,8 +1,8 @@
-"""The motion of the game's player: keys and boxes in, the next twentieth of a second out.
+"""Simulation of the player's movement in ticks of 1/20 s.
 
-``step`` moves a ``Body`` among the boxes of a world by one tick. ``BlockWorld`` gives the
-collision boxes of blocks, ``BoxWorld`` those of a list. ``find_standing_place``
-finds where to begin.
+``step`` advances a ``Body`` by one tick among the collision boxes of a world. ``BlockWorld``
+contains the boxes of blocks, and ``BoxWorld`` contains a list of boxes. ``find_standing_place``
+finds a free start position.
 """
 
 from world2minecraft.minecraft.physics.collisions import (

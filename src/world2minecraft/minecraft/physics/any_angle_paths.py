@@ -1,9 +1,10 @@
-"""Any-angle shortest paths (lazy Theta*): ways bend only where they must, as people walk.
+"""Any-angle shortest paths in a walkable graph, computed with lazy Theta*.
 
-From a place one walks straight to any other that it sees: a body at each point of the line
-between stands within the bodies of the four places around it, and all of those hang together by
-steps there and back. So a straight way is as free as the steps are; ways turn at places alone,
-so a graph with ``at_corners`` has the true ones. Where the ground drops, ways go by its own steps.
+A path leads straight from one place to another if the line between them is free. A body at any
+point of the line occupies part of the space of bodies at the four places around it, and these must
+be connected by steps in both directions, so that a straight path is as free as the steps. Paths
+turn only at places, so a graph with ``at_corners`` contains the exact shortest paths. Where the
+ground drops, paths use the steps of the graph.
 """
 
 from typing import NamedTuple
@@ -20,17 +21,17 @@ SWEEPS = 1  # Over all places, in which bends of neighbours are tried; a second 
 
 
 class Lattice(NamedTuple):
-    """The places of a graph in rows and columns, and the steps that lead there and back."""
+    """The places of a graph arranged in rows and columns, with the two-way steps between them."""
 
-    at: np.ndarray  # int64 [N, 2], the numbers of the columns along x and z
-    xs_m: np.ndarray  # float64 [X], where columns are
+    at: np.ndarray  # int64 [N, 2], column index along x and z.
+    xs_m: np.ndarray  # float64 [X], positions of the columns.
     zs_m: np.ndarray  # float64 [Z]
     height_m: np.ndarray  # float64 [N]
-    link: np.ndarray  # int32 [N, 9], by 3 * (dx + 1) + dz + 1; -1 for none
+    link: np.ndarray  # int32 [N, 9], neighbour by 3 * (dx + 1) + dz + 1; -1 if there is none.
 
 
 def build_lattice(graph: WalkGraph) -> Lattice:
-    """Return the lattice of a graph with one place or more."""
+    """Return the lattice of a graph that has at least one place."""
     feet_m = graph.feet / graph.blocks_per_metre
     (xs_m, x), (zs_m, z) = (np.unique(feet_m[:, axis], return_inverse=True) for axis in (0, 2))
     at = np.stack([x, z], axis=1).astype(np.int64)
@@ -47,16 +48,17 @@ def build_lattice(graph: WalkGraph) -> Lattice:
 def straight_distances_m(
     graph: WalkGraph, lattice: Lattice, places: int | np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return how far it is from each place to the nearest of some, and where that way bends first.
+    """Compute the any-angle distance and the first turn from each place to the nearest target.
 
     Args:
-        graph: where one walks.
-        lattice: of the graph.
-        places: where ways lead to.
+        graph: The walkable graph.
+        lattice: The lattice of the graph.
+        places: The target place or places.
 
     Returns:
-        Metres, float64 [N], infinite where no way leads; and places, int32 [N]: from each one goes
-        straight to that one, which is itself at an end and -1 where no way leads.
+        Distances in metres, float64 [N], infinite if no path exists; and turning places, int32 [N].
+        The path leads straight from a place to its turning place, which is the place itself at a
+        target and -1 if no path exists.
     """
     sources = np.atleast_1d(np.asarray(places, np.int64))
     away, bend, order = _lazy_theta_star(lattice, graph.edges, graph.backward, sources)
@@ -67,9 +69,9 @@ def straight_distances_m(
 
 @njit
 def straight_m(lattice, here, there):
-    """Return how long the straight way from a place to another is, and back; inf for none.
+    """Return the length of the straight path between two places, or infinity if it is blocked.
 
-    Where the ground rises and falls under it, it is as much longer.
+    Rises and falls of the ground add to the length. The path must be free in both directions.
     """
     i, k = lattice.at[here, 0], lattice.at[here, 1]
     to_i, to_k = lattice.at[there, 0], lattice.at[there, 1]

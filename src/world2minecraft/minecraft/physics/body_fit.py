@@ -1,4 +1,4 @@
-"""Check whether bodies fit at places that need not be those of a graph."""
+"""Test whether bodies fit at arbitrary positions."""
 
 import numpy as np
 
@@ -14,14 +14,14 @@ def bodies_fit(
     half: float,
     heights: tuple[float, float],
 ) -> np.ndarray:
-    """Return which boxes around places are free of what stops a body, bool [N].
+    """Return whether the box of a body is free of collisions at each position, as bool [N].
 
     Args:
-        solid: the boxes of a volume, see ``graph.solid_of``.
-        corner: the world position of its cell (0, 0, 0).
-        feet: float64 [N, 3], world block coordinates.
-        half: half the box's width, in blocks.
-        heights: its bottom and its top over the feet, in blocks.
+        solid: The collision boxes of a volume, from ``collision_grid``.
+        corner: The world position of cell (0, 0, 0).
+        feet: Positions of the feet in world block coordinates, float64 [N, 3].
+        half: Half the width of the body's box, in blocks.
+        heights: Heights of the box's bottom and top above the feet, in blocks.
     """
     middles = np.asarray(feet, np.float64) - np.array(corner)
     reach = np.array([half, 0.0, half])

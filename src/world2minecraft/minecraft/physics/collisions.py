@@ -1,6 +1,7 @@
-"""Collisions of boxes with the boxes of blocks: sweeping along each axis, stepping up, standing.
+"""Collisions of a moving box with block boxes: axis sweeps, stepping up and standing.
 
-Boxes are float64 [N, 6]: low and high corner. What a box lies in already does not hold it.
+Boxes are float64 [N, 6] with the low and the high corner. A box that the moving box already
+overlaps does not stop it.
 """
 
 from collections.abc import Sequence
@@ -18,7 +19,7 @@ _RINGS = 40  # Of places tried around one that is taken, a quarter of a body apa
 
 
 def find_overlaps(boxes: np.ndarray, box: np.ndarray, touch: float = TOUCH) -> np.ndarray:
-    """Return which of some boxes overlap a box, bool [N]; touching is no overlap."""
+    """Return which boxes overlap a given box, as bool [N]. Boxes that only touch do not overlap."""
     inside = (boxes[:, :3] < box[3:] - touch) & (boxes[:, 3:] > box[:3] + touch)
     return np.asarray(inside.all(axis=1))
 
@@ -26,7 +27,10 @@ def find_overlaps(boxes: np.ndarray, box: np.ndarray, touch: float = TOUCH) -> n
 def free_distance(
     boxes: np.ndarray, box: np.ndarray, axis: int, way: float, touch: float = TOUCH
 ) -> float:
-    """Return how much of a way along one axis a box can go before it meets another."""
+    """Return the distance that a box can move along one axis before it meets another box.
+
+    The distance has the sign of ``way`` and at most its size.
+    """
     if not way or not len(boxes):
         return way
     one, two = _OTHERS[axis]
@@ -46,9 +50,10 @@ def free_distance(
 def sweep_box(
     boxes: np.ndarray, box: np.ndarray, way: np.ndarray, touch: float = TOUCH
 ) -> tuple[float, float, float]:
-    """Return how much of a way, float64 [3], a box can go: up or down, then the longer side first.
+    """Return the part of a movement, float64 [3], that a box can make before collisions.
 
-    That order is the game's: one slides along what one meets.
+    As in the game, the box moves vertically first and then along the longer horizontal axis, so
+    that it slides along obstacles.
     """
     longer_first = (1, 2, 0) if abs(way[0]) < abs(way[2]) else (1, 0, 2)
     gone = [0.0, 0.0, 0.0]
@@ -62,7 +67,7 @@ def sweep_box(
 def sweep_with_step(
     boxes: np.ndarray, box: np.ndarray, way: np.ndarray, height: float, touch: float = TOUCH
 ) -> tuple[float, float, float]:
-    """Return how much of a way a box can go when it may step up by a height and down again."""
+    """Return the part of a movement that a box can make if it may step up by a given height."""
     best = sweep_box(boxes, box, np.array([way[0], height, way[2]]), touch)
     reach = box.copy()  # All that it would pass over: as high as all of that lets it.
     reach[:3] += np.minimum([way[0], 0, way[2]], 0)
@@ -87,29 +92,30 @@ def _length(x: float, z: float) -> float:
 
 
 class World(Protocol):
-    """Anything that has collision boxes."""
+    """Interface of a world with collision boxes."""
 
     def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Return the boxes, float64 [N, 6] in blocks, that reach into a box; more do no harm."""
+        """Return boxes as float64 [N, 6] in blocks that include all boxes overlapping a region."""
         ...
 
 
 class BoxWorld:
-    """A list of boxes."""
+    """A world that consists of a list of boxes."""
 
     def __init__(self, boxes: Sequence[Sequence[float]] | np.ndarray):
         self.boxes = np.asarray(boxes, np.float64).reshape(-1, 6)
 
     def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Return the boxes that reach into a box."""
+        """Return the boxes that overlap a region."""
         return self.boxes[find_overlaps(self.boxes, np.concatenate([low, high]), 0.0)]
 
 
 class BlockWorld:
-    """The blocks of a volume, in world block coordinates.
+    """The collision boxes of a volume, in world block coordinates.
 
-    ``kinds`` uint16 [X, Y, Z] names the shape of each cell, ``shapes`` are float32 [N, 6] in
-    block units; 0 is the shape of air, which has no box. ``corner`` is the place of cell 0, 0, 0.
+    ``kinds``, uint16 [X, Y, Z], contains the shape index of each cell. Each shape in ``shapes`` is
+    float32 [N, 6] in block units; shape 0 is air, which has no box. ``corner`` is the block
+    position of cell (0, 0, 0).
     """
 
     def __init__(
@@ -120,7 +126,7 @@ class BlockWorld:
 
     @classmethod
     def of_volume(cls, volume: BlockVolume) -> "BlockWorld":
-        """Return the world of a volume; states of equal shape share one kind."""
+        """Build the world of a volume. Block states with the same boxes use the same shape."""
         shapes: list[np.ndarray] = [np.zeros((0, 6), np.float32)]
         numbers = {shapes[0].tobytes(): 0}
         rows = np.zeros(len(volume.palette), np.uint16)
@@ -133,12 +139,12 @@ class BlockWorld:
 
     @classmethod
     def of_cells(cls, solid: np.ndarray, corner: Sequence[int] = (0, 0, 0)) -> "BlockWorld":
-        """Return the world of bool [X, Y, Z] in block axes: full cubes and air."""
+        """Build a world of full cubes and air from bool [X, Y, Z] in block axes."""
         cube = np.array([[0, 0, 0, 1, 1, 1]], np.float32)
         return cls(solid.astype(np.uint16), (np.zeros((0, 6), np.float32), cube), corner)
 
     def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Return the boxes of all cells that a box reaches, and of those just below."""
+        """Return the boxes of all cells in a region and of the cells just below it."""
         first = np.floor(low).astype(np.int64) - self.corner - [0, _TALLEST, 0]
         last = np.floor(high).astype(np.int64) - self.corner + 1
         first = np.clip(first, 0, self.kinds.shape)
@@ -156,10 +162,10 @@ class BlockWorld:
 def find_standing_place(
     world: World, position: tuple[float, float, float], scale: float = 1.0
 ) -> tuple[float, float, float]:
-    """Return the nearest place to a position where a body of a scale fits and stands.
+    """Find the position nearest to a given position where a body of a given scale can stand.
 
-    Places are tried in rings around it, as high as it is or as one step lower or higher; the
-    position itself comes back where none is free.
+    Positions are searched in square rings around the given position, up to one step higher or
+    lower. The given position is returned if no free position is found.
     """
     for ring in range(_RINGS):
         for x, z in _ring_offsets(ring):

@@ -1,8 +1,8 @@
 """The player's body and the constants of the game's physics.
 
-Coordinates are those of blocks: x east, y up, z south. Lengths are in blocks for a player of the
-game's size; ``scale`` makes the player and all speeds as many times larger, so that at 4 blocks a
-metre and scale 4 a person has a person's size in the room.
+Coordinates are block coordinates: x is east, y is up, z is south. Lengths are in blocks for a
+player of the game's size. ``scale`` multiplies the player's size and all speeds, so that at 4
+blocks per metre and scale 4 the player is as large as a real person in the room.
 """
 
 from typing import NamedTuple
@@ -12,7 +12,7 @@ import numpy as np
 TICKS_PER_S = 20
 WIDTH, HEIGHT, CROUCHED_HEIGHT = 0.6, 1.8, 1.5
 EYE, CROUCHED_EYE = 1.62, 1.27
-STEP_HEIGHT = 0.6  # What one walks up without a jump.
+STEP_HEIGHT = 0.6  # The height of a step that needs no jump.
 GRAVITY, FALL_DRAG = 0.08, 0.98  # Blocks a tick a tick; of the falling speed, each tick.
 JUMP_SPEED, JUMP_WAIT = 0.42, 10  # Blocks a tick; ticks until a key held down jumps again.
 SPRINT_JUMP = 0.2  # Blocks a tick, forward.
@@ -27,7 +27,7 @@ EDGE_STEP = 0.05  # Blocks by which one who sneaks draws back from an edge.
 
 
 class Keys(NamedTuple):
-    """What is held down during a tick, and where the player looks: the game's yaw."""
+    """The keys held down during a tick, and the yaw of the view."""
 
     forward: bool = False
     back: bool = False
@@ -36,24 +36,24 @@ class Keys(NamedTuple):
     jump: bool = False
     sneak: bool = False
     sprint: bool = False
-    yaw_deg: float = 0.0  # 0 looks to +z and grows clockwise from above.
+    yaw_deg: float = 0.0  # 0 faces +z; increases clockwise seen from above.
 
 
 class Body(NamedTuple):
-    """A player between two ticks."""
+    """The state of a player between two ticks."""
 
-    position: tuple[float, float, float]  # blocks, the middle of the feet
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # blocks a tick
+    position: tuple[float, float, float]  # The middle of the feet, in blocks.
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # Blocks per tick.
     on_ground: bool = False
     crouched: bool = False
-    jump_wait: int = 0  # ticks
-    hit_wall: bool = False  # in the last tick
+    jump_wait: int = 0  # Ticks until the next jump.
+    hit_wall: bool = False  # Whether the last tick ended at a wall.
 
 
 def body_box(
     position: tuple[float, float, float], scale: float = 1.0, *, crouched: bool = False
 ) -> np.ndarray:
-    """Return the box, float64 [6] in blocks, of a body whose feet are at a position."""
+    """Return the box of a body as float64 [6] in blocks, given the position of its feet."""
     half = WIDTH * scale / 2
     height = (CROUCHED_HEIGHT if crouched else HEIGHT) * scale
     x, y, z = position
@@ -61,5 +61,5 @@ def body_box(
 
 
 def eye_height(body: Body, scale: float = 1.0) -> float:
-    """Return how far the eyes are above the feet, in blocks."""
+    """Return the height of the eyes above the feet, in blocks."""
     return (CROUCHED_EYE if body.crouched else EYE) * scale

@@ -1,4 +1,4 @@
-"""Move a player on foot by one tick, a twentieth of a second."""
+"""Movement of a walking player by one tick (1/20 s)."""
 
 import math
 
@@ -36,13 +36,13 @@ _MARGIN = 1.0  # Blocks around what a tick can reach.
 
 
 def step(world: World, body: Body, keys: Keys, scale: float = 1.0) -> Body:
-    """Return the player a tick later.
+    """Return the player's state after one tick.
 
     Args:
-        world: the boxes that stop a player, in blocks.
-        body: the player now.
-        keys: what is held down.
-        scale: how many times larger than the game's the player is; speeds grow alike.
+        world: The boxes that stop the player, in blocks.
+        body: The player's current state.
+        keys: The keys held down during the tick.
+        scale: The player's size relative to the game's player. Speeds scale with it.
 
     Example:
         >>> from world2minecraft.minecraft.physics.collisions import BoxWorld

@@ -9,9 +9,9 @@ from world2minecraft.minecraft.physics.walk_graph import WalkGraph
 
 
 class WalkPath(NamedTuple):
-    """A way from its first place to its last."""
+    """A path through a walkable graph, from the first place to the last."""
 
-    places: np.ndarray  # int32 [M], of the graph
+    places: np.ndarray  # int32 [M], place indices in the graph.
     feet: np.ndarray  # float64 [M, 3], world block coordinates
     length_m: float
 
@@ -19,13 +19,15 @@ class WalkPath(NamedTuple):
 def shortest_path(
     graph: WalkGraph, start: int, goal: int, weights: np.ndarray | None = None
 ) -> WalkPath | None:
-    """Return a shortest way between two places, found by A*; None where none leads there.
+    """Return the shortest path between two places, or None if no path exists.
+
+    The path is found with A*.
 
     Args:
-        graph: where one walks.
-        start: the first place.
-        goal: the last.
-        weights: float64 [N], 1 or more: how much longer a metre counts at each place.
+        graph: The walkable graph.
+        start: Index of the first place.
+        goal: Index of the last place.
+        weights: Cost per metre at each place, float64 [N], at least 1. The default is 1.
     """
     target = graph.feet[goal] / graph.blocks_per_metre
     heuristic = np.linalg.norm(graph.feet / graph.blocks_per_metre - target, axis=1) * (1 - 1e-9)
@@ -47,10 +49,10 @@ def shortest_path(
 def distances_m(
     graph: WalkGraph, places: int | np.ndarray, *, backward: bool = False
 ) -> np.ndarray:
-    """Return how far it is from the nearest of some places to each place, float64 [N].
+    """Return the distance in metres from the nearest of some places to each place, as float64 [N].
 
-    Where no way leads it is infinite. ``backward`` measures the ways to the places: with steps
-    down that have no way back the two differ. One field to a goal serves a whole episode.
+    The distance is infinite if no path exists. With ``backward``, paths lead to the given places
+    instead. The results differ if the graph has steps down without a way back.
     """
     ahead = (graph.edge_start, graph.edge_to, graph.edge_m)
     start, to, cost = graph.backward if backward else ahead
@@ -59,22 +61,26 @@ def distances_m(
 
 
 def reachable(graph: WalkGraph, start: int) -> np.ndarray:
-    """Return which places one can walk to from a place, bool [N], itself among them."""
+    """Return which places can be reached from a place, including the place itself, as bool [N]."""
     return _flood(graph.edge_start, graph.edge_to, start)
 
 
 def connected_parts(graph: WalkGraph) -> np.ndarray:
-    """Return the number, int32 [N], of the part of the graph that each place hangs together with.
+    """Return the number of the connected part that each place belongs to, as int32 [N].
 
-    Places hang together where a step leads between them in one direction at least; parts are
-    numbered in the order of their first places.
+    Two places are connected if a step leads from one to the other in at least one direction. Parts
+    are numbered in the order of their first places.
     """
     back_start, back_to, _ = graph.backward
     return _label_parts(graph.edge_start, graph.edge_to, back_start, back_to)
 
 
 def clearance_m(graph: WalkGraph) -> np.ndarray:
-    """Return how far it is from each place to the nearest that lacks a neighbour, float64 [N]."""
+    """Return each place's distance in metres to the nearest place at an edge, as float64 [N].
+
+    A place is at an edge if it has fewer than eight neighbours. The distance is infinite if no
+    place is at an edge.
+    """
     edges = np.flatnonzero(np.diff(graph.edge_start) < 8)
     if not len(edges):
         return np.full(len(graph), np.inf)
@@ -119,7 +125,10 @@ def _search(start, to, cost, sources, goal, heuristic):
 
 @njit
 def push(keys, values, size, key, value):
-    """Put a value into a heap; of equal keys the smaller value comes first."""
+    """Push a value onto a binary heap and return the new size.
+
+    Of values with equal keys, the smaller value is popped first.
+    """
     n = size
     while n > 0:
         up = (n - 1) // 2
@@ -133,7 +142,7 @@ def push(keys, values, size, key, value):
 
 @njit
 def pop(keys, values, size):
-    """Take the first value out of a heap."""
+    """Remove the first value from a binary heap and return the new size."""
     size -= 1
     key, value, n = keys[size], values[size], 0
     while 2 * n + 1 < size:

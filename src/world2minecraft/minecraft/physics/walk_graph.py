@@ -1,12 +1,13 @@
-"""The walkable graph of a volume: the places where a player can stand, and the steps between.
+"""The walkable graph of a volume: the places where a player can stand and the steps between them.
 
-The player has the game's body, times a scale that is the volume's own where none is named: at 4
-blocks a metre a person of 1.8 m is 7.2 blocks high. He walks up steps of 0.6, jumps 1.25 where he
-may, and drops 3, all times the scale. Steps lead to the eight neighbours; no corner is cut. Closed
-doors and gates count as open, but for iron doors, which open only by a button or the like.
+The player has the body of the game's player, multiplied by a scale that defaults to the volume's
+blocks per metre: at 4 blocks per metre, a person of 1.8 m is 7.2 blocks high. The player walks up
+steps of 0.6, can optionally jump 1.25, and drops at most 3, all multiplied by the scale. Steps lead
+to the eight neighbouring columns without cutting corners. Closed doors and gates count as open,
+except iron doors, which need a button or similar.
 
-Each column of a grid has gaps in which a body fits, between what is over and under it; their
-heights are counted in sixteenths of a block, as the game's shapes are.
+Each column of a grid has gaps in which a body fits. Their heights are in sixteenths of a block, as
+in the game's shapes.
 """
 
 from dataclasses import dataclass, replace
@@ -39,12 +40,12 @@ _FURNITURE = (int(SemanticClass.CHAIR), int(SemanticClass.FURN))  # From the fir
 
 
 def is_door(state: str) -> bool:
-    """Whether a block state is a door or a gate, of any kind, open or shut."""
+    """Return whether a block state is a door or a gate of any kind, open or closed."""
     return state.partition("[")[0].endswith(_OPENED)
 
 
 def is_shut(state: str) -> bool:
-    """Whether a block state is a door or gate that a player would open.
+    """Return whether a block state is a closed door or gate that a player can open.
 
     Example:
         >>> is_shut("minecraft:oak_door[facing=west,half=lower,open=false]")
@@ -55,27 +56,30 @@ def is_shut(state: str) -> bool:
 
 
 def open_door(state: str) -> str:
-    """Return the state of the same door, open; other states come back as they are."""
+    """Return the open state of a door or gate. Other states are returned unchanged."""
     return state.replace("open=false", "open=true") if is_shut(state) else state
 
 
 def open_all_doors(volume: BlockVolume) -> BlockVolume:
-    """Return the volume with all its doors and gates open; its cells are the same array."""
+    """Return a volume with all doors and gates open. The array of states is shared."""
     return replace(volume, palette=tuple(open_door(state) for state in volume.palette))
 
 
 class CollisionGrid(NamedTuple):
-    """The collision boxes of a volume, as the kernels read them."""
+    """The collision boxes of a volume in the form that the kernels use."""
 
-    kinds: np.ndarray  # uint16 [X, Y, Z]; 0 has no box
-    start: np.ndarray  # int32 [K + 1], the first box of each kind
-    boxes: np.ndarray  # float64 [B, 6], block units within their cell
-    classes: np.ndarray  # uint8 [X, Y, Z], WET for liquids
+    kinds: np.ndarray  # uint16 [X, Y, Z], shape index; shape 0 has no box.
+    start: np.ndarray  # int32 [K + 1], index of the first box of each shape.
+    boxes: np.ndarray  # float64 [B, 6], block units relative to the cell.
+    classes: np.ndarray  # uint8 [X, Y, Z], semantic class; WET for liquids.
     is_full: np.ndarray  # bool [K]
 
 
 class StepLimits(NamedTuple):
-    """How far one step may lead up, down, and down beside the way; in sixteenths of a block."""
+    """The maximum rise and drop of one step, in sixteenths of a block.
+
+    ``step`` limits the depth of the ground beside a diagonal step.
+    """
 
     climb: float
     drop: float
@@ -83,24 +87,24 @@ class StepLimits(NamedTuple):
 
 
 class StandingPlaces(NamedTuple):
-    """The gaps of a grid of C columns in which a body fits; heights in sixteenths of a block."""
+    """The gaps in C grid columns in which a body fits. Heights are in sixteenths of a block."""
 
     counts: np.ndarray  # int32 [C]
     floor: np.ndarray  # int32 [C, MAX_FLOORS]
     ceiling: np.ndarray  # int32 [C, MAX_FLOORS]
-    ground: np.ndarray  # uint8 [C, MAX_FLOORS], the class of what is under the feet
+    ground: np.ndarray  # uint8 [C, MAX_FLOORS], semantic class of the block under the feet.
 
 
 def find_standing_places(
     solid: CollisionGrid, columns: tuple[np.ndarray, np.ndarray], half: float, height: float
 ) -> StandingPlaces:
-    """Return the gaps in which a body stands, in each column of a volume.
+    """Find the gaps in which a body can stand, in each column of a volume.
 
     Args:
-        solid: the collision boxes.
-        columns: where they are along x and along z, float64, in cells from the volume's corner.
-        half: half the body's width, in blocks.
-        height: how high it is, in blocks.
+        solid: The collision boxes.
+        columns: Positions of the columns along x and z, float64, in cells from the volume's corner.
+        half: Half the width of the body, in blocks.
+        height: Height of the body, in blocks.
     """
     xs, zs = columns
     count = len(xs) * len(zs)
@@ -209,7 +213,10 @@ def _ground(solid, box, floor):
 
 
 class Edges(NamedTuple):
-    """Steps from N places, in rows: those of place n are ``start[n]`` to ``start[n + 1]``."""
+    """The steps from N places in compressed rows.
+
+    The steps of place n are at indices ``start[n]`` to ``start[n + 1]``.
+    """
 
     start: np.ndarray  # int64 [N + 1]
     to: np.ndarray  # int32 [E]
@@ -218,12 +225,12 @@ class Edges(NamedTuple):
 
 @dataclass(frozen=True)
 class WalkRule:
-    """How one walks; lengths are those of a player of the game's size.
+    """Rules for walking. Lengths apply to a player of the game's size.
 
-    ``scale`` None takes the volume's blocks a metre. ``on_furniture`` lets one stand on what is
-    labelled chair to furniture, and on beds, as the game does; where nothing is labelled one may
-    anyway. ``at_corners`` adds the columns in which a body's side touches that of a block, where
-    shortest ways bend; not where blocks are so small that it matters little.
+    ``scale`` defaults to the volume's blocks per metre. ``on_furniture`` allows standing on blocks
+    labelled as furniture, such as chairs, and on beds. Unlabelled blocks can always be stood on.
+    ``at_corners`` adds the columns in which a body touches the side of a block, where shortest
+    paths turn. It has no effect if blocks are so small that the columns make little difference.
     """
 
     scale: float | None = None
@@ -237,31 +244,37 @@ class WalkRule:
 
 @dataclass(frozen=True, eq=False)
 class WalkGraph:
-    """N places to stand and the E steps between them, in rows: those of place n go to
-    ``edge_to[edge_start[n]:edge_start[n + 1]]``. Steps down may have no way back.
-    """  # noqa: D205
+    """N standing places and E steps between them, in compressed rows.
+
+    The steps of place n lead to ``edge_to[edge_start[n]:edge_start[n + 1]]``. Steps down may have
+    no way back.
+    """
 
     feet: np.ndarray  # float64 [N, 3], world block coordinates
-    headroom: np.ndarray  # float64 [N], blocks over the feet, inf under the open sky
-    ground: np.ndarray  # uint8 [N], the class of what is under the feet
+    headroom: np.ndarray  # float64 [N], blocks above the feet; inf under the open sky.
+    ground: np.ndarray  # uint8 [N], semantic class of the block under the feet.
     edge_start: np.ndarray  # int64 [N + 1]
     edge_to: np.ndarray  # int32 [E]
-    edge_m: np.ndarray  # float64 [E], metres of the room
-    scale: float  # of the player
+    edge_m: np.ndarray  # float64 [E], length in metres.
+    scale: float  # The player's scale.
     blocks_per_metre: float
-    spacing: float  # blocks from a column to the next, at most
+    spacing: float  # Maximum distance between columns, in blocks.
 
     def __len__(self) -> int:
         return len(self.feet)
 
     def nearest(self, position: np.ndarray | tuple[float, float, float]) -> int:
-        """Return the place nearest to a position in world blocks. Raises ValueError: none is."""
+        """Return the index of the place nearest to a position in world block coordinates.
+
+        Raises:
+            ValueError: If the graph has no places.
+        """
         if not len(self):
-            raise ValueError("the graph has no place to stand")
+            raise ValueError("the walkable graph has no places to stand; check the volume")
         return int(((self.feet - np.asarray(position)) ** 2).sum(axis=1).argmin())
 
     def part(self, places: np.ndarray) -> "WalkGraph":
-        """Return the graph of some places alone, in their order, with the steps between them."""
+        """Return the subgraph of some places, in the given order, with the steps between them."""
         number = np.full(len(self), -1, np.int32)
         number[places] = np.arange(len(places))
         inside = (number[self.edge_from] >= 0) & (number[self.edge_to] >= 0)
@@ -280,17 +293,17 @@ class WalkGraph:
 
     @cached_property
     def edge_from(self) -> np.ndarray:
-        """Int32 [E]: where each step begins."""
+        """The index of the place at which each step starts, int32 [E]."""
         return np.repeat(np.arange(len(self), dtype=np.int32), np.diff(self.edge_start))
 
     @cached_property
     def edges(self) -> "Edges":
-        """The steps, as kernels read them."""
+        """The steps of the graph in the form that the kernels use."""
         return Edges(self.edge_start, self.edge_to, self.edge_m)
 
     @cached_property
     def backward(self) -> "Edges":
-        """The steps turned round."""
+        """The steps of the graph in reverse direction."""
         order = np.argsort(self.edge_to, kind="stable")
         counts = np.bincount(self.edge_to, minlength=len(self))
         start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
@@ -298,11 +311,11 @@ class WalkGraph:
 
 
 def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
-    """Return the walkable graph of a volume.
+    """Build the walkable graph of a volume.
 
     Args:
-        volume: the blocks; what is beyond them is air without a floor.
-        rule: how one walks.
+        volume: The blocks. The space outside is air without a floor.
+        rule: The rules for walking. The default is ``WalkRule()``.
 
     Example:
         >>> from world2minecraft.minecraft.physics.shortest_paths import shortest_path
@@ -353,12 +366,15 @@ def _columns(count: int, per_block: int, half: float | None) -> np.ndarray:
 
 
 def columns_per_block(blocks_per_metre: float, width: float) -> int:
-    """Return how many columns a block has: near each other, and no farther than a body is wide."""
+    """Return the number of columns per block along one axis.
+
+    The columns are at most about 0.25 m apart and no farther apart than the width of the body.
+    """
     return max(1, round(1 / (SPACING_M * blocks_per_metre)), int(np.ceil(1 / width - 1e-6)))
 
 
 def collision_grid(volume: BlockVolume, opens_doors: bool = True) -> CollisionGrid:
-    """Return the boxes of a volume for the kernels; liquids count as full and are no ground."""
+    """Return the collision boxes of a volume. Liquids are full blocks that cannot be stood on."""
     world = BlockWorld.of_volume(open_all_doors(volume) if opens_doors else volume)
     wet = np.array([state.startswith(_LIQUIDS) for state in volume.palette])[volume.states]
     shapes = [*world.shapes, FULL_CUBE]

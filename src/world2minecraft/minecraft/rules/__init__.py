@@ -1,1 +1,1 @@
-"""What the game does to blocks: whom they join, what holds them, how light spreads."""
+"""The game's rules for blocks: connections, support and light."""

@@ -1,8 +1,9 @@
-"""Entities attached to a block: frames, paintings and leash knots state which by its position.
+"""Entities attached to a block: item frames, paintings and leash knots.
 
-They say it in world coordinates, as ``TileX``, ``TileY``, ``TileZ``, or from 1.21.5 on as
-``block_pos``. Where a file was moved after it was written, the block is no longer there, and the
-game drops the entity: so a position that is not beside the entity becomes the entity's own.
+Their NBT contains the world position of the block, as ``TileX``, ``TileY``, ``TileZ``, or as
+``block_pos`` since 1.21.5. If a file was moved after it was written, this position is wrong and the
+game drops the entity. A position that is not next to the entity is therefore replaced by the
+entity's own block position.
 """
 
 from collections.abc import Mapping
@@ -19,11 +20,11 @@ _REACH = 2.0  # Blocks from the middle of the largest painting, 4 x 4, to the bl
 def attached_block(
     nbt: Mapping[str, Any], position: tuple[float, float, float]
 ) -> tuple[int, int, int]:
-    """Return the block that an entity hangs on, or the one that it stands in.
+    """Return the position of the block that an entity hangs on, or of the block that it is in.
 
     Args:
-        nbt: the entity's tags, as they are in world coordinates.
-        position: where the entity is, in the same coordinates.
+        nbt: The entity's NBT, in world coordinates.
+        position: The entity's position in the same coordinates.
     """
     own = tuple(int(value // 1) for value in position)
     stated = named_block(nbt)
@@ -37,12 +38,13 @@ def attached_block(
 def move_attachment(
     nbt: Mapping[str, Any], position: tuple[float, float, float], shift: tuple[int, int, int]
 ) -> dict[str, Any]:
-    """Return ``nbt`` with its block moved by ``shift`` and, if need be, brought to the entity.
+    """Move the attachment block in an entity's NBT, and correct it if it is not next to the entity.
 
     Args:
-        nbt: the entity's tags; those that name no block come back as they are.
-        position: where the entity is after the move.
-        shift: blocks along x, y, z from the coordinates of ``nbt`` to those of ``position``.
+        nbt: The entity's NBT. It is copied unchanged if it contains no attachment block.
+        position: The position of the entity after the move.
+        shift: Offset in blocks along x, y, z from the coordinates of ``nbt`` to those of
+            ``position``.
     """
     stated = named_block(nbt)
     if stated is None:
@@ -53,14 +55,14 @@ def move_attachment(
 
 
 def name_attached_block(nbt: Mapping[str, Any], block: tuple[int, int, int]) -> dict[str, Any]:
-    """Return an entity's tags with another block to hang on, in the form that they have."""
+    """Return an entity's NBT with another attachment block, in the same form as before."""
     if "block_pos" in nbt:
         return {**nbt, "block_pos": np.array(block, np.int32)}
     return {**nbt, **dict(zip(TILE, block, strict=True))}
 
 
 def named_block(nbt: Mapping[str, Any]) -> tuple[int, int, int] | None:
-    """Return the block that an entity's tags say it hangs on; None where they name none."""
+    """Return the attachment block in an entity's NBT, or None if it contains none."""
     try:
         held = nbt["block_pos"] if "block_pos" in nbt else [nbt[key] for key in TILE]
         x, y, z = (int(value) for value in held)

@@ -1,4 +1,4 @@
-"""Facts about blocks by name patterns, from one data file written by hand."""
+"""Properties of blocks by name pattern, from a hand-written data file."""
 
 import json
 from fnmatch import translate
@@ -12,24 +12,24 @@ DATA_FILE = "data/block_rules.json"
 
 @cache
 def block_rules() -> dict[str, Pattern[str]]:
-    """Read the shipped file, once: the pattern of each list of names."""
+    """Load the name pattern of each list in the bundled data file. The result is cached."""
     raw = json.loads(files("world2minecraft.minecraft").joinpath(DATA_FILE).read_text("utf-8"))
     return {key: pattern_of(names) for key, names in raw.items() if isinstance(names, list)}
 
 
 def pattern_of(names: list[str]) -> Pattern[str]:
-    """Return the pattern that matches any of some names with ``*`` in them."""
+    """Return a pattern that matches any of the names, in which ``*`` is a wildcard."""
     return compiled("|".join(translate(name) for name in names) or r"(?!)")
 
 
 @lru_cache(maxsize=1 << 16)
 def is_among(name: str, rule: str) -> bool:
-    """Whether a block's full name is in one list of the file, and in none of its exceptions.
+    """Return whether a block's full name is in a list of the data file and is not an exception.
 
-    The exceptions of ``logs`` stand in ``not_logs``, and so on.
+    The exceptions of the list ``logs``, for example, are in the list ``not_logs``.
 
     Raises:
-        KeyError: the file has no such list.
+        KeyError: If the file has no such list.
     """
     rules = block_rules()
     bare = name.partition(":")[2] or name

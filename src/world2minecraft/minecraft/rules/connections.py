@@ -1,13 +1,14 @@
-"""Connections and shapes that the game computes from neighbours, for a whole volume at once.
+"""Connections and shapes that the game computes from neighbouring blocks, for a whole volume.
 
-A world file gets no block updates, so a pane that does not say whom it joins stands alone. Here
-every state takes the properties that it would have after an update of all its neighbours: the
-corners of stairs; the sides of panes, bars and fences; gates sunk between walls; the sides and
-posts of walls; the halves of doors and of double chests; the distance of leaves from a log; snow
-on grass; the smoke of campfires on hay. Redstone is left alone. docs/states.md has the rules.
+The game does not update blocks of a world file when it loads them, so a pane without connection
+properties stays unconnected. This module sets the properties that every block would have after an
+update: the corners of stairs; the sides of panes, bars and fences; gates lowered between walls; the
+sides and posts of walls; the halves of doors and double chests; the distance of leaves from a log;
+snow on grass; the smoke of campfires on hay. Redstone is not changed. docs/states.md lists the
+rules.
 
-A block is taken for a stair, a fence and so on by its name's end and by having the properties of
-one, so mods' and newer games' blocks that keep to the game's names are joined as well. Directions
+A block is recognised as stairs, a fence and so on by the end of its name and its properties, so
+that blocks of mods and newer games are connected too if they follow the game's naming. Directions
 are those of ``supports``: north, east, south, west, up, down.
 """
 
@@ -65,25 +66,25 @@ _FLAT = (NORTH, EAST, SOUTH, WEST)
 
 
 class Traits(NamedTuple):
-    """What a neighbour needs to know of a state, as numbers."""
+    """The properties of a block state that its neighbours depend on, as integers."""
 
     kind: int = OTHER
-    block: int = 0  # the same for states of one block
-    facing: int = -1  # 0 north, 1 east, 2 south, 3 west
-    top: int = 0  # a stair's half or a door's
-    sturdy: int = 0  # bits by direction: a full face, of a block that is joined at all
-    arms: int = 0  # bits: the lower face from its middle to the four sides; 16 for the middle
-    post: int = 0  # raises the post of a wall under it
-    up: int = 0  # a wall's own post
-    variant: int = 0  # a chest's type; leaves' distance; 1 for snow and hay
+    block: int = 0  # The same for all states of one block.
+    facing: int = -1  # 0 north, 1 east, 2 south, 3 west.
+    top: int = 0  # 1 for the upper half of stairs or doors.
+    sturdy: int = 0  # Bits by direction: full faces of a block to which others connect.
+    arms: int = 0  # Bits: lower face from the middle to each of the four sides; 16 for the middle.
+    post: int = 0  # Whether the block raises the post of a wall below it.
+    up: int = 0  # Whether a wall has a post.
+    variant: int = 0  # The type of a chest; the distance of leaves; 1 for snow, 2 for hay.
 
 
 @lru_cache(maxsize=1 << 16)
 def connection_traits(text: str) -> Traits:
-    """Return the traits of a block state; ``block`` is 0 and is numbered by who compares blocks.
+    """Return the traits of a block state. ``block`` is 0 and must be set by the caller.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
     """
     state = complete(parse_state(text))
     values = dict(state.properties)
@@ -123,9 +124,9 @@ def _variant(name: str, kind: int, values: dict[str, str]) -> int:
 
 
 class StateGrid:
-    """A volume of block states with a rim of air, while rules change it by looking at neighbours.
+    """A volume of block states with a margin of air, which rules modify by looking at neighbours.
 
-    Cells are numbers into ``flat``, the volume with its rim in C order.
+    Cells are indices into ``flat``, the padded volume in C order.
     """
 
     def __init__(self, states: np.ndarray, palette: Iterable[str]):
@@ -145,12 +146,12 @@ class StateGrid:
         self._kinds = kinds[self.flat[self._cells]]
 
     def result(self) -> tuple[np.ndarray, tuple[str, ...]]:
-        """Return the states without the rim, uint16 [X, Y, Z], and the palette."""
+        """Return the states without the margin, as uint16 [X, Y, Z], and the palette."""
         inner = self.flat.reshape(self.shape)[1:-1, 1:-1, 1:-1]
         return np.ascontiguousarray(inner), tuple(self.palette)
 
     def column(self, name: str) -> np.ndarray:
-        """Return one trait of every state of the palette, int32 [P]."""
+        """Return one trait of every state in the palette, as int32 [P]."""
         known = self._columns.get(name, _NONE)
         if len(known) < len(self.palette):  # States that have joined since the last call.
             more = [self._trait(text, name) for text in self.palette[len(known) :]]
@@ -158,30 +159,30 @@ class StateGrid:
         return known
 
     def cells_of(self, kind: int) -> np.ndarray:
-        """Return the cells, int [N], whose states are of a kind."""
+        """Return the cells, int [N], whose states have the given kind."""
         return self._cells[self._kinds == kind]
 
     def at(self, cells: np.ndarray, direction: int | None = None) -> np.ndarray:
-        """Return the states, uint16 [N], of cells or of their neighbours in a direction."""
+        """Return the states, uint16 [N], of cells or of their neighbours in one direction."""
         return self.flat[cells if direction is None else cells + self.steps[direction]]
 
     def towards(self, cells: np.ndarray, directions: np.ndarray) -> np.ndarray:
-        """Return the states, uint16 [N], of each cell's neighbour in a direction of its own."""
+        """Return the state, uint16 [N], of one neighbour per cell, each in its own direction."""
         return self.flat[cells + self.steps[directions]]
 
     def heights(self, cells: np.ndarray) -> np.ndarray:
-        """Return the layer, int [N], of each cell, the rim counted."""
+        """Return the layer of each cell as int [N], including the margin."""
         return cells // self.shape[2] % self.shape[1]
 
     def change(
         self, cells: np.ndarray, values: np.ndarray, write: Callable[[list[int]], dict[str, str]]
     ) -> None:
-        """Give cells new properties.
+        """Set properties of cells.
 
         Args:
-            cells: int [N].
-            values: int [N, K], what decides the properties of each cell.
-            write: the properties for one row of ``values``.
+            cells: The cells to change, int [N].
+            values: Values that determine the properties of each cell, int [N, K].
+            write: Function that returns the properties for one row of ``values``.
         """
         if not len(cells):
             return
@@ -201,14 +202,14 @@ class StateGrid:
         return self.id_of(str(state.having(**changed)))
 
     def id_of(self, text: str) -> int:
-        """Return the number of a state, which joins the palette where it is new.
+        """Return the index of a state in the palette, after adding the state if it is new.
 
         Raises:
-            LimitError: the palette is full.
+            LimitError: If the palette is full.
         """
         if text not in self._ids:
             if len(self.palette) >= MAX_STATES:
-                raise LimitError("palette", "has more than 65,536 block states")
+                raise LimitError("palette", "exceeds the limit of 65,536 block states")
             self._ids[text] = len(self.palette)
             self.palette.append(text)
         return self._ids[text]
@@ -225,17 +226,17 @@ def update_connections(
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return a volume with the connections and shapes that the game would compute.
 
-    What lies outside the volume counts as air. Doing it twice changes nothing more.
+    The space outside the volume counts as air. A second call changes nothing.
 
     Args:
-        states: uint16 [X, Y, Z] in block axes (x east, y up, z south), indices into the palette.
-        palette: block states; those of one kind need not be complete.
+        states: Palette indices, uint16 [X, Y, Z] in block axes (x east, y up, z south).
+        palette: Block states. Properties may be missing.
 
     Returns:
-        uint16 [X, Y, Z] and the palette: the one given, with new states behind it.
+        The updated states as uint16 [X, Y, Z], and the given palette with new states appended.
 
     Raises:
-        UsageError: a text of the palette is no block state.
+        UsageError: If a palette entry is not a valid block state.
 
     Example:
         >>> pair = np.array([[[1]], [[2]]], np.uint16)

@@ -1,18 +1,20 @@
-"""Block light: what states emit, which let it through, and how it spreads.
+"""Block light: the light that blocks emit, the blocks that light passes, and its propagation.
 
-Light falls by one for each block it goes, and blocks that fill their whole cube stop it, but for
-glass and its like. Facts stand in ``data/light_levels.json``.
+Light decreases by one per block. Blocks that fill their whole cube stop it, except glass and
+similar blocks. The light levels are in ``data/light_levels.json``.
 
-``flood_light`` spreads every kind of light from cell to cell. Its arrays are flat views of a grid
-with one cell of margin on every side, so that a step never leaves them. ``kinds`` names for each
-cell its row in ``words``, which says what light can pass:
+``flood_light`` propagates any kind of light from cell to cell. Its arrays are flat views of a grid
+with one cell of margin on every side, so that a step never leaves the array. ``kinds`` contains for
+each cell a row index into ``words``, whose bits describe how light passes the cell:
 
-- bits 0 to 23: which quarters of its faces are covered, four bits a face in the order -x +x -y +y
-  -z +z. A quarter's bit is 2 * (upper half of the first other axis) + (upper half of the second).
-  Light passes from cell to cell unless the two faces that touch cover all four quarters together.
-- ``SHUT``, all of them: light never enters, but leaves freely, as it does from a glowing block.
-- ``DIMS``: light that falls straight down is dimmed by it, as in water.
-- ``SOLID``: it darkens corners, and has no light of its own to show. The margin is shut, not solid.
+- Bits 0 to 23 are the covered quarters of its faces, four bits per face in the order -x +x -y +y -z
+  +z. The bit of a quarter is 2 * (upper half of the first other axis) + (upper half of the second
+  other axis). Light passes between two cells unless the two touching faces together cover all four
+  quarters.
+- ``SHUT`` is all of these bits: light never enters but leaves freely, as from a glowing block.
+- ``DIMS``: the block dims light that falls straight down, as water does.
+- ``SOLID``: the block darkens corners and has no light of its own. The margin is shut but not
+  solid.
 """
 
 import json
@@ -35,13 +37,13 @@ BRIGHTEST = 15
 
 
 def neighbour_steps(shape: tuple[int, ...]) -> np.ndarray:
-    """Return the six steps -x +x -y +y -z +z in a flat view of a grid, int64 [6]."""
+    """Return the six index steps -x +x -y +y -z +z in a flat view of a grid, as int64 [6]."""
     along = np.array([shape[1] * shape[2], shape[2], 1], np.int64)
     return np.stack([-along, along], axis=1).reshape(-1)
 
 
 def pad_margin(values: np.ndarray, margin: int) -> np.ndarray:
-    """Return values [X, Y, Z] with one cell of ``margin`` on every side, [X + 2, Y + 2, Z + 2]."""
+    """Pad values [X, Y, Z] with one cell of ``margin`` on every side to [X + 2, Y + 2, Z + 2]."""
     padded = np.full(tuple(size + 2 for size in values.shape), margin, values.dtype)
     padded[1:-1, 1:-1, 1:-1] = values
     return padded
@@ -49,9 +51,9 @@ def pad_margin(values: np.ndarray, margin: int) -> np.ndarray:
 
 @njit
 def flood_light(light, kinds, words, steps, seeds):
-    """Spread light from the cells ``seeds`` (int64 [N]), which have theirs already, in place.
+    """Propagate light in place from the seed cells, int64 [N], whose light is already set.
 
-    Cells are raised level by level from the brightest, so that each is raised once.
+    Cells are processed from the brightest level down, so that each cell is raised only once.
     """
     first = np.zeros(258, np.int64)
     for seed in seeds:
@@ -99,10 +101,10 @@ def _spread_cell(light, kinds, words, steps, cell, level, raised, found):
 
 @lru_cache(maxsize=1 << 16)
 def emitted_light(state: str) -> int:
-    """Return the light that a block state gives, 0 to 15.
+    """Return the light level that a block state emits, 0 to 15.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
 
     Example:
         >>> emitted_light("minecraft:lantern[hanging=true]")
@@ -121,10 +123,12 @@ def emitted_light(state: str) -> int:
 
 @lru_cache(maxsize=1 << 16)
 def lets_light_through(state: str) -> bool:
-    """Whether light goes on through a block state: all that fill no whole cube, and glass.
+    """Return whether light passes through a block state.
+
+    Light passes through glass and through all blocks that do not fill a whole cube.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
     """
     name = parse_state(state).name.partition(":")[2]
     clear, unclear = _patterns()
@@ -134,11 +138,11 @@ def lets_light_through(state: str) -> bool:
 
 
 def spread_light(sources: np.ndarray, clear: np.ndarray) -> np.ndarray:
-    """Return the block light everywhere, uint8 [X, Y, Z].
+    """Return the block light of every cell as uint8 [X, Y, Z].
 
     Args:
-        sources: uint8 [X, Y, Z], the light that a block gives itself, 0 to 15.
-        clear: bool [X, Y, Z], where light goes through.
+        sources: Light level that each block emits, 0 to 15, as uint8 [X, Y, Z].
+        clear: Whether light passes through each cell, as bool [X, Y, Z].
     """
     light = pad_margin(sources.astype(np.uint8, copy=False), 0)
     shut = pad_margin(~clear, True).reshape(-1).view(np.uint8)
@@ -149,7 +153,7 @@ def spread_light(sources: np.ndarray, clear: np.ndarray) -> np.ndarray:
 
 
 def block_light(volume: BlockVolume) -> np.ndarray:
-    """Return the block light of a volume, uint8 [X, Y, Z] in block axes."""
+    """Return the block light of a volume as uint8 [X, Y, Z] in block axes."""
     gives = np.array([emitted_light(state) for state in volume.palette], np.uint8)
     clear = np.array([lets_light_through(state) for state in volume.palette], bool)
     return spread_light(gives[volume.states], clear[volume.states])

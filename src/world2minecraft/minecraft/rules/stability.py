@@ -1,9 +1,9 @@
-"""Unstable blocks of a volume: what falls, pops off, breaks, flows, or changes at an update.
+"""Detection of unstable blocks: blocks that fall, pop off, break, flow or change when updated.
 
-A written file gets no block updates, so a torch without a wall hangs there until the first block
-next to it changes. Here every state is checked for the support that it needs from its neighbours,
-by the rules of ``data/support_rules.json``, which says how they are written, and for whether a
-neighbour's update would give it other connections.
+The game does not update blocks of a world file when it loads them, so a torch without a wall stays
+until the first neighbouring block changes. This module checks whether every block has the support
+that it needs, by the rules in ``data/support_rules.json`` (which documents their format), and
+whether an update would change its connections.
 """
 
 import json
@@ -41,9 +41,10 @@ _MELTING = ("minecraft:ice", "minecraft:snow")
 
 
 class SupportOption(NamedTuple):
-    """One way to be supported: what one of the blocks in some directions must offer.
+    """One way in which a block can be supported by its neighbours.
 
-    ``none`` inverts it: none of them may.
+    At least one neighbour in the given directions must offer the support. With ``none``, none of
+    them may.
     """
 
     directions: tuple[int, ...]
@@ -52,7 +53,7 @@ class SupportOption(NamedTuple):
 
 
 class Demand(NamedTuple):
-    """What a state needs: one of its options for support, else the reason holds."""
+    """Support that a block state needs. The reason applies if none of the options is met."""
 
     options: tuple[SupportOption, ...]
     reason: str
@@ -69,10 +70,10 @@ class _Rule(NamedTuple):
 
 @lru_cache(maxsize=1 << 16)
 def support_demands(text: str) -> tuple[Demand, ...]:
-    """Return all demands of a block state.
+    """Return all support demands of a block state.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
     """
     state = complete(parse_state(text))
     bare, values = state.name.partition(":")[2], dict(state.properties)
@@ -93,16 +94,16 @@ def support_demands(text: str) -> tuple[Demand, ...]:
 
 @lru_cache(maxsize=1 << 18)
 def offers_support(text: str, offer: str, direction: int) -> bool:
-    """Whether a block state gives what is offer of it.
+    """Return whether a block state offers a kind of support to a neighbour.
 
     Args:
-        text: the state.
-        offer: a word of the rules, such as ``full`` or ``block:stone``.
-        direction: where it lies, seen from the block that asks.
+        text: The block state.
+        offer: A word of the rules, such as ``full`` or ``block:stone``.
+        direction: The direction of this block, seen from the block that needs support.
 
     Raises:
-        UsageError: the text is no block state.
-        KeyError: the rules know no such word.
+        UsageError: If the text is not a valid block state.
+        KeyError: If the word is not in the rules.
     """
     state = complete(parse_state(text))
     word, _, rest = offer.partition(":")
@@ -130,14 +131,14 @@ def offers_support(text: str, offer: str, direction: int) -> bool:
 
 
 def holds_water(text: str) -> bool:
-    """Whether a block state has water in it that would spread."""
+    """Return whether a block state contains water that can flow out."""
     state = complete(parse_state(text))
     return state.name.partition(":")[2] in _WATER or state.get("waterlogged") == "true"
 
 
 @lru_cache(maxsize=1 << 16)
 def is_floodable(text: str) -> bool:
-    """Whether spreading water would take the place of a block state."""
+    """Return whether flowing water would replace a block state."""
     state = complete(parse_state(text))
     if state.name in _AIR:
         return True
@@ -212,7 +213,7 @@ def _raw() -> dict[str, Any]:
 
 
 class UnstableBlock(NamedTuple):
-    """A block that would not stay as it is, and why."""
+    """A block that would not stay as it is, with the reason."""
 
     block_pos: tuple[int, int, int]
     state: str
@@ -220,13 +221,13 @@ class UnstableBlock(NamedTuple):
 
 
 def find_unstable(volume: BlockVolume) -> list[UnstableBlock]:
-    """Return the blocks of a volume that would not stay, in the order of x, y, z.
+    """Find the blocks of a volume that would not stay as they are, ordered by x, y, z.
 
-    What lies outside the volume counts as air. Redstone and growth by hand are left out; what
-    grows, melts, weathers or decays by itself is reported.
+    The space outside the volume counts as air. Redstone and growth caused by a player are ignored.
+    Blocks that grow, melt, weather or decay by themselves are reported.
 
     Args:
-        volume: the blocks; positions come in its world coordinates.
+        volume: The blocks. Positions in the result are in world coordinates.
     """
     found = [
         (cell, state, reason) for cell, state, reason in _all_cells(volume.states, volume.palette)
@@ -242,11 +243,11 @@ def find_unstable(volume: BlockVolume) -> list[UnstableBlock]:
 def find_unstable_cells(
     states: np.ndarray, palette: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], str, str]]:
-    """Return the cells of a design that would not stay: cell, state and reason, in order.
+    """Find the unstable cells of a design, with their states and the reasons, in order.
 
     Args:
-        states: uint16 [X, Y, Z] in block axes, indices into the palette.
-        palette: block states; index 0 need not be air.
+        states: Palette indices, uint16 [X, Y, Z] in block axes.
+        palette: Block states. Index 0 need not be air.
     """
     return sorted(_all_cells(states, palette))
 
@@ -254,7 +255,10 @@ def find_unstable_cells(
 def find_unmet_cells(
     states: np.ndarray, palette: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], str, str]]:
-    """Return the same but for those that an update would only connect or shape otherwise."""
+    """Find the cells of a design that lack support or from which water would flow.
+
+    Cells whose connections or shape would change are not included.
+    """
     grid = StateGrid(states, palette)
     found = [*_unmet(grid), *_flowing(grid)]
     return sorted((_place(grid, cell), palette[int(grid.flat[cell])], why) for cell, why in found)
@@ -335,7 +339,7 @@ def _flowing(grid: StateGrid) -> Iterable[tuple[int, str]]:
     for way in (*range(UP), DOWN):
         runs |= floodable[grid.at(cells, way)] & ~shut[own, way]
     for cell in cells[runs].tolist():
-        yield cell, "flows: nothing holds its water"
+        yield cell, "flows: its water is not enclosed"
 
 
 def _melting(volume: BlockVolume) -> list[tuple[tuple[int, int, int], str, str]]:

@@ -1,9 +1,9 @@
-"""Support shapes: which faces of a block support something, as the game decides for a torch.
+"""Support shapes of blocks: which faces can support an attached block, as the game decides.
 
-A face is what the block's support shape shows at that side of its cube. It is *full* where it
-covers the whole square, *rigid* where it covers the outer two sixteenths all around, and has a
-*centre* where it covers the middle two sixteenths. The support shape is the collision shape but
-for a few blocks, which ``data/block_rules.json`` names.
+A face is the part of the block's support shape at one side of its cube. It is *full* if it covers
+the whole square, *rigid* if it covers the outer two sixteenths all around, and has a *centre* if it
+covers the middle two sixteenths. The support shape equals the collision shape, except for a few
+blocks that are listed in ``data/block_rules.json``.
 """
 
 from functools import lru_cache
@@ -28,12 +28,12 @@ _MEAN_SIDE = 35 / 48  # Of a shape's box: from here on it counts as solid.
 
 
 class Faces(NamedTuple):
-    """What the six faces of a state hold, each a tuple of six by direction."""
+    """The kinds of support that the six faces of a block state offer, as tuples by direction."""
 
     full: tuple[bool, ...]
     rigid: tuple[bool, ...]
     centre: tuple[bool, ...]
-    down_arms: tuple[bool, ...]  # The lower face from the middle to the four sides; the middle.
+    down_arms: tuple[bool, ...]  # Lower face: middle to each of the four sides, then the middle.
 
 
 _ALL, _NONE = (True,) * 6, (False,) * 6
@@ -43,10 +43,10 @@ _EMPTY = Faces(_NONE, _NONE, _NONE, _NONE[:5])
 
 @lru_cache(maxsize=1 << 16)
 def faces_of(state: str) -> Faces:
-    """Return what the faces of a block state hold.
+    """Return the kinds of support that the faces of a block state offer.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
 
     Example:
         >>> faces_of("minecraft:oak_slab[type=top]").full[UP]
@@ -70,7 +70,7 @@ def faces_of(state: str) -> Faces:
 
 
 def support_boxes_of(state: str) -> np.ndarray:
-    """Return the boxes by which a state holds others, float32 [N, 6] in block units."""
+    """Return the boxes of a block state's support shape as float32 [N, 6] in block units."""
     parsed = complete(parse_state(state))
     if is_among(parsed.name, "no_support"):
         return FULL_CUBE[:0]
@@ -85,7 +85,7 @@ def support_boxes_of(state: str) -> np.ndarray:
 
 @lru_cache(maxsize=1 << 16)
 def is_solid(state: str) -> bool:
-    """Whether a sign or a banner can stand on a state or hang at it: of a big enough shape."""
+    """Return whether a block state is large enough to support a sign or a banner."""
     parsed = parse_state(state)
     if is_among(parsed.name, "solid"):
         return True
@@ -97,7 +97,7 @@ def is_solid(state: str) -> bool:
 
 
 def has_centre_below(state: BlockState) -> bool:
-    """Whether something may hang from the middle of a state's lower face."""
+    """Return whether a block can hang from the middle of a block state's lower face."""
     if is_among(state.name, "no_centre_below"):
         return False
     return faces_of(str(state)).centre[DOWN]

@@ -1,1 +1,1 @@
-"""The files that builders share: Sponge, Litematica, structures, and those of before 1.13."""
+"""File formats for sharing builds: Sponge, Litematica, structures and legacy schematics."""

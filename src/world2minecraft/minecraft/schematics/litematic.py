@@ -1,9 +1,10 @@
-"""Litematica files: one or several regions, each a box with a palette of its own.
+"""Reading and writing of Litematica files, which contain one or more regions with own palettes.
 
-A region's ``Position`` is one of its corners and its ``Size`` goes from there, along an axis
-backward where it is negative. Blocks and block entities count from the lowest corner, entities
-from ``Position``. Block (x, y, z) of a region of width W and length L is number
-(y * L + z) * W + x, in ``max(2, ceil log2)`` bits, packed without gaps.
+The ``Position`` of a region is one of its corners, and its ``Size`` extends from there, backwards
+along axes on which it is negative. Positions of blocks and block entities are relative to the
+lowest corner, and those of entities are relative to ``Position``. In a region of width W and length
+L, the block (x, y, z) has index (y * L + z) * W + x. Palette indices have ``max(2, ceil log2)``
+bits and are packed without gaps.
 """
 
 import math
@@ -68,16 +69,17 @@ def write_litematic(
     name: str = "room",
     version: GameVersion | None = None,
 ) -> None:
-    """Write a volume as a Litematica file of one region at the file's origin.
+    """Write a volume as a Litematica file with one region at the origin of the file.
 
     Args:
-        volume: the blocks; its corner is kept in a tag that Litematica ignores.
-        path: the file, ``.litematic``.
-        name: what the mod shows, and the region's name.
-        version: the game whose data version it carries; 1.20.1 where it is left out.
+        volume: The blocks. The corner is stored in a tag that Litematica ignores.
+        path: The ``.litematic`` file to write.
+        name: The name of the region and the name that the mod displays.
+        version: The target game version. The default is 1.20.1.
 
     Raises:
-        UsageError: the volume is empty. OutputError: the file cannot be written.
+        UsageError: If the volume is empty.
+        OutputError: If the file cannot be written.
     """
     write_regions({name: volume}, path, name=name, version=version)
 
@@ -89,22 +91,23 @@ def write_regions(
     name: str = "room",
     version: GameVersion | None = None,
 ) -> None:
-    """Write volumes as the regions of one file, each where its corner puts it.
+    """Write volumes as regions of one Litematica file, each at its own corner.
 
     Args:
-        regions: volumes by name, in one world's coordinates; the lowest corner of all of them
-            becomes the file's origin.
-        path: the file, ``.litematic``.
-        name: what the mod shows.
-        version: the game whose data version it carries; 1.20.1 where it is left out.
+        regions: Volumes by region name, in shared world coordinates. The lowest corner of all
+            volumes becomes the origin of the file.
+        path: The ``.litematic`` file to write.
+        name: The name that the mod displays.
+        version: The target game version. The default is 1.20.1.
 
     Raises:
-        UsageError: there is no region, or an empty one. OutputError: it cannot be written.
+        UsageError: If there is no region, or a region is empty.
+        OutputError: If the file cannot be written.
     """
     version = version or game_version()
     regions = {key: convert_volume(volume, version.data_version) for key, volume in regions.items()}
     if not regions or not all(volume.states.size for volume in regions.values()):
-        raise UsageError("a Litematica file holds one region or more, and at least a block each")
+        raise UsageError("a .litematic file must have at least one region, each with blocks")
     corners = np.array([volume.corner for volume in regions.values()])
     ends = corners + [volume.states.shape for volume in regions.values()]
     low = corners.min(axis=0)
@@ -180,17 +183,18 @@ def _xyz(values: np.ndarray) -> dict[str, int]:
 
 
 def read_litematic(path: str | Path, losses: Losses | None = None) -> BlockVolume:
-    """Read a Litematica file, its regions joined to one volume.
+    """Read a Litematica file and join its regions to one volume.
 
-    Where regions overlap, the later one's blocks stand, but for its air.
+    Where regions overlap, the blocks of the later region are used, except its air.
 
     Args:
-        path: the file.
-        losses: counts what a volume cannot hold.
+        path: The file to read.
+        losses: Counts of the data that a volume cannot store, updated by this call.
 
     Raises:
-        InputError: there is no file, or one of 1.12. DamagedFileError: it is no Litematica file.
-        LimitError: it is larger than the program reads.
+        InputError: If the file is not found or was written for 1.12 or older.
+        DamagedFileError: If the file is not a valid Litematica file.
+        LimitError: If the file exceeds the size limit.
     """
     regions = read_regions(path, losses)
     if len(regions) == 1:
@@ -201,7 +205,17 @@ def read_litematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
 
 
 def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, BlockVolume]:
-    """Read the regions of a Litematica file by name. Args and errors as ``read_litematic``."""
+    """Read the regions of a Litematica file as volumes by name.
+
+    Args:
+        path: The file to read.
+        losses: Counts of the data that a volume cannot store, updated by this call.
+
+    Raises:
+        InputError: If the file is not found or was written for 1.12 or older.
+        DamagedFileError: If the file is not a valid Litematica file.
+        LimitError: If the file exceeds the size limit.
+    """
     source = Path(path)
     raw = unpack(read_bytes(source, MAX_FILE_BYTES), source, LIMITS.bytes)
     _, root = read_nbt(raw, source, LIMITS)
@@ -210,13 +224,14 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
         _check_version(root, source)
         named = root["Regions"]
         if not 1 <= len(named) <= MAX_REGIONS:
-            raise DamagedFileError(source, f"has {len(named)} regions; 1 to {MAX_REGIONS:,} are")
+            reason = f"has {len(named)} regions; expected 1 to {MAX_REGIONS:,}"
+            raise DamagedFileError(source, reason)
         boxes = {name: _box(region, source) for name, region in named.items()}
         check_size(enclosing_box(list(boxes.values()))[1], source)
         cells = sum(math.prod(size.tolist()) for _, size in boxes.values())
         if cells > MAX_CELLS:  # Regions may lie in one another.
-            reason = f"its regions have {cells:,} blocks together"
-            raise LimitError(source, f"{reason}; at most {MAX_CELLS:,} are read")
+            reason = f"has regions with {cells:,} blocks in total, the limit is {MAX_CELLS:,}"
+            raise LimitError(source, reason)
         shift, game = _shift(root, boxes, source), root.get("MinecraftDataVersion", DEFAULT_GAME)
         found = {
             name: _region_volume(region, boxes[name], shift, game, source)
@@ -224,7 +239,7 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
         }
     except MISSHAPEN as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is no Litematica file{missing}") from error
+        raise DamagedFileError(source, f"is not a valid Litematica file{missing}") from error
     if losses is not None:
         _count_losses(root, losses)
     return found
@@ -233,8 +248,8 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
 def _check_version(root: Mapping[str, Any], source: Path) -> None:
     version = root["Version"]
     if not isinstance(version, int) or version not in VERSIONS:
-        known = f"{VERSIONS.start} to {VERSIONS.stop - 1} are read"
-        raise InputError(source, f"is a Litematica file of version {version}; {known}")
+        known = f"{VERSIONS.start} to {VERSIONS.stop - 1}"
+        raise InputError(source, f"has Litematica version {version}; supported: {known}")
 
 
 def _box(region: Mapping[str, Any], source: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -268,10 +283,11 @@ def _region_volume(
     words = region.pop("BlockStates")  # Its memory is free when the blocks are made.
     bits = bit_width(max(len(texts), 1), MIN_BITS)
     if words.dtype != np.int64 or len(words) < straddled_word_count(states.size, bits):
-        raise DamagedFileError(source, f"says {states.size:,} blocks and holds fewer")
+        raise DamagedFileError(source, f"declares {states.size:,} blocks but contains fewer")
     wrong = int(unpack_straddled(words.view(np.uint64), bits, lookup, states.transpose(1, 2, 0)))
     if wrong >= 0:
-        raise DamagedFileError(source, f"has a block of number {wrong}, which its palette lacks")
+        reason = f"contains the block index {wrong}, which is not in the palette"
+        raise DamagedFileError(source, reason)
     del words
     corner = low + shift
     x, y, z = corner.tolist()
@@ -305,4 +321,4 @@ def _count_losses(root: Mapping[str, Any], losses: Losses) -> None:
     for region in root["Regions"].values():
         for key in ("PendingBlockTicks", "PendingFluidTicks"):
             losses.add("scheduled ticks", len(region.get(key, [])))
-    losses.add("preview pictures", int("PreviewImageData" in root.get("Metadata", {})))
+    losses.add("preview images", int("PreviewImageData" in root.get("Metadata", {})))

@@ -1,8 +1,9 @@
-"""Schematics from before 1.13, ``.schematic``: MCEdit, WorldEdit 6 and Schematica.
+"""Reading of legacy schematics (``.schematic``) from MCEdit, WorldEdit 6 and Schematica.
 
-A block was a number and a data value of four bits; block (x, y, z) of a schematic of width W and
-length L is number (y * L + z) * W + x of the arrays. What the two do not say, such as the colour
-of a bed, stood in its block entity or came from its neighbours, and is put into the state here.
+Before 1.13, a block had a numeric ID and a data value of four bits. In a schematic of width W and
+length L, the block (x, y, z) has index (y * L + z) * W + x. Properties that the ID and data value
+do not contain, such as the colour of a bed, come from block entities or neighbouring blocks and are
+added to the block state.
 """
 
 import math
@@ -40,18 +41,19 @@ Corner = tuple[int, int, int]
 
 
 def read_schematic(path: str | Path, losses: Losses | None = None) -> BlockVolume:
-    """Read a schematic of numbered blocks.
+    """Read a legacy schematic with numeric block IDs.
 
-    Numbers that no vanilla game had come back as ``legacy:NUMBER_VALUE``, or by the name that the
-    file gives them.
+    IDs that no vanilla game used become ``legacy:ID_VALUE``, or the name that the file defines.
 
     Args:
-        path: the file.
-        losses: counts blocks without a name of today, and of what else a volume cannot hold.
+        path: The file to read.
+        losses: Counts of blocks without a current name and of data that a volume cannot store,
+            updated by this call.
 
     Raises:
-        InputError: there is no file, or one of another game. DamagedFileError: it is no
-            schematic. LimitError: it is larger than the program reads.
+        InputError: If the file is not found or belongs to another edition of the game.
+        DamagedFileError: If the file is not a valid schematic.
+        LimitError: If the file exceeds the size limit.
     """
     source = Path(path)
     raw = unpack(read_bytes(source, MAX_FILE_BYTES), source, LIMITS.bytes)
@@ -61,13 +63,14 @@ def read_schematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
         return _volume_of(root, source, Losses() if losses is None else losses)
     except MISSHAPEN as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is no schematic of numbered blocks{missing}") from error
+        raise DamagedFileError(source, f"is not a valid legacy schematic{missing}") from error
 
 
 def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolume:
     kind = root.get("Materials", "Alpha")
     if kind != "Alpha":
-        raise InputError(source, f"is a schematic for {str(kind)[:40]!r}; 'Alpha' is read (Java)")
+        reason = f"has the materials {str(kind)[:40]!r}; only 'Alpha' (Java) is supported"
+        raise InputError(source, reason)
     sides = (int(root[key]) & 0xFFFF for key in ("Width", "Height", "Length"))
     size = check_size(sides, source)
     states, palette = _blocks(root, size, source, losses)
@@ -77,7 +80,7 @@ def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolum
     if states.size <= MAX_JOINED_CELLS:
         states, palette = _trim_palette(*update_connections(*join_halves(states, palette)), palette)
     else:
-        losses.add("connections of blocks, for the schematic is too large to compute them")
+        losses.add("connections of blocks, which are not computed for large schematics")
     losses.add("biomes", int("Biomes" in root))
     entities_held = [entity for entity in held if entity.id]
     entities = [upgrade_entity(nbt, corner) for nbt in root.get("Entities", [])]
@@ -93,7 +96,7 @@ def _blocks(
     numbers, values = root.pop("Blocks").view(np.uint8), root.pop("Data").view(np.uint8)
     more = root.pop("AddBlocks", np.zeros(0, np.int8)).view(np.uint8)
     if len(numbers) < count or len(values) < count or 0 < 2 * len(more) < count - 1:
-        raise DamagedFileError(source, f"says {count:,} blocks and holds fewer")
+        raise DamagedFileError(source, f"declares {count:,} blocks but contains fewer")
     states = np.empty(size, np.uint16)
     counts = np.zeros(1 << 16, np.int64)
     read_legacy_keys(numbers, values, more, states.transpose(1, 2, 0), counts)
@@ -102,7 +105,7 @@ def _blocks(
     for key in np.flatnonzero(counts).tolist():
         text_of[key], is_known = legacy_state(key >> 4, key & 15, names)
         if not is_known:
-            losses.add("blocks of mods, kept by their old number or name", int(counts[key]))
+            losses.add("mod blocks, kept with their legacy ID or name", int(counts[key]))
     palette, number_of = build_palette(text_of.values(), source)
     lookup = np.zeros(1 << 16, np.uint16)
     for key, text in text_of.items():

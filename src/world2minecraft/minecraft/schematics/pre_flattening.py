@@ -1,9 +1,9 @@
-"""Blocks, block entities and entities from before 1.13 ("the flattening"), upgraded to today's.
+"""Upgrades of blocks, block entities and entities from before 1.13 ("the flattening").
 
-Blocks had numbers and data values, and block entities held what is now in their state. Of blocks of
-two parts, what one part said, the other did not: the lower half of a door knew where it faces and
-whether it is open, the upper its hinge; of a tall plant only the lower half knew its kind; two
-chests side by side were one.
+Blocks had numeric IDs and data values, and block entities stored some properties that are now in
+the block state. In blocks of two parts, each part stored only some properties: the lower half of a
+door stored its direction and whether it is open, and the upper half stored its hinge. Only the
+lower half of a tall plant stored its kind. Two adjacent chests formed a double chest.
 """
 
 import json
@@ -71,10 +71,12 @@ Corner = tuple[int, int, int]
 
 
 def upgrade_block_entity(nbt: Mapping[str, Any], corner: Corner) -> BlockEntity:
-    """Return a block entity of today, at its place in the world; its id is empty if there is none.
+    """Convert a legacy block entity to the current form, at its world position.
+
+    The ID is empty if the block no longer has a block entity.
 
     Raises:
-        KeyError, TypeError, ValueError: it lacks its name or its place.
+        KeyError, TypeError, ValueError: If the name or position is missing or invalid.
     """
     x, y, z = (int(nbt[axis]) + low for axis, low in zip("xyz", corner, strict=True))
     rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
@@ -86,10 +88,10 @@ def upgrade_block_entity(nbt: Mapping[str, Any], corner: Corner) -> BlockEntity:
 
 
 def upgrade_entity(nbt: Mapping[str, Any], corner: Corner) -> Entity:
-    """Return an entity of today, at its place in the world.
+    """Convert a legacy entity to the current form, at its world position.
 
     Raises:
-        KeyError, TypeError, ValueError: it lacks its name or its place.
+        KeyError, TypeError, ValueError: If the name or position is missing or invalid.
     """
     x, y, z = (float(value) + low for value, low in zip(nbt["Pos"], corner, strict=True))
     rest = move_attachment(nbt, (x, y, z), corner)
@@ -98,7 +100,7 @@ def upgrade_entity(nbt: Mapping[str, Any], corner: Corner) -> Entity:
 
 
 def apply_block_entity(text: str, entity: BlockEntity) -> str:
-    """Return a block's state with what its block entity said before 1.13.
+    """Add the properties that a legacy block entity stored to a block state.
 
     Example:
         >>> bed = BlockEntity((0, 0, 0), "minecraft:bed", {"color": 3})
@@ -160,11 +162,14 @@ Pair = tuple[BlockState, BlockState]
 
 
 def join_halves(states: np.ndarray, palette: Palette) -> tuple[np.ndarray, Palette]:
-    """Return the volume with both parts of doors, tall plants and chests joined.
+    """Complete the properties of doors, tall plants and double chests from their other halves.
 
     Args:
-        states: uint16 [X, Y, Z] in block axes, changed in place.
-        palette: its states.
+        states: Palette indices, uint16 [X, Y, Z] in block axes, modified in place.
+        palette: The block states of the palette.
+
+    Returns:
+        The states and the extended palette.
     """
     growing = list(palette)
     parsed = [parse_state(text) for text in palette]
@@ -246,12 +251,12 @@ def _number(palette: list[str], text: str) -> int:
 
 
 def legacy_state(number: int, value: int, names: Mapping[int, str]) -> tuple[str, bool]:
-    """Return the state of a block number and data value, and whether vanilla games had it.
+    """Return the state of a legacy block, and whether vanilla games had the block.
 
     Args:
-        number: 0 to 4095.
-        value: 0 to 15; one that its block did not use means the block's first.
-        names: what the file itself calls its numbers; those of mods differ from file to file.
+        number: The block ID, 0 to 4095.
+        value: The data value, 0 to 15. A value that the block did not use gives its first state.
+        names: The names that the file defines for IDs. IDs of mod blocks vary between files.
 
     Example:
         >>> legacy_state(5, 1, {})

@@ -1,4 +1,4 @@
-"""Sponge schematics, versions 1 to 3: what WorldEdit and most tools read."""
+"""Reading and writing of Sponge schematics of version 1 to 3, the format of WorldEdit."""
 
 import math
 from collections.abc import Mapping
@@ -47,30 +47,34 @@ def write_schem(
     schem_version: Literal[1, 2, 3] = 2,
     version: GameVersion | None = None,
 ) -> None:
-    """Write a volume as a Sponge schematic. Its Offset is the volume's corner.
+    """Write a volume as a Sponge schematic whose ``Offset`` is the volume's corner.
 
-    Entities lie where WorldEdit puts them: in version 2 in world coordinates, in 3 from Offset.
+    As in WorldEdit, positions of entities are in world coordinates in version 2 and relative to
+    ``Offset`` in version 3.
 
     Args:
-        volume: the blocks; states are written as they stand in its palette.
-        path: the file, ``.schem``.
-        schem_version: 2, which every WorldEdit since 7.0 reads, 3, since 7.3, or 1, for tools
-            that know nothing newer: it holds no entities and does not say its game.
-        version: the game whose data version it carries; 1.20.1 where it is left out.
+        volume: The blocks to write.
+        path: The ``.schem`` file to write.
+        schem_version: The schematic version. WorldEdit reads version 2 since 7.0 and version 3
+            since 7.3. Version 1 is for older tools; it stores neither entities nor the game
+            version.
+        version: The target game version. The default is 1.20.1.
 
     Raises:
-        UsageError: a side is longer than 65,535 blocks. OutputError: it cannot be written.
+        UsageError: If the volume is empty or a side is longer than 65,535 blocks.
+        OutputError: If the file cannot be written.
     """
     version = version or game_version()
     volume = convert_volume(volume, version.data_version)
     if max(volume.states.shape) > 0xFFFF or not volume.states.size:
-        raise UsageError(f"a schematic holds 1 to 65,535 blocks a side, not {volume.states.shape}")
+        shape = tuple(volume.states.shape)
+        raise UsageError(f"each side of a .schem must be 1 to 65,535 blocks, got {shape}")
     palette = {
         write_state(state, version.data_version): number
         for number, state in enumerate(volume.palette)
     }
     if len(palette) != len(volume.palette):
-        raise UsageError("the palette names one block state twice")
+        raise UsageError("the palette of the volume contains a block state twice")
     cells = np.ascontiguousarray(volume.states.transpose(1, 2, 0)).ravel()
     packed = np.empty(3 * len(cells), np.uint8)
     data = packed[: write_varints(cells, packed)].view(np.int8)
@@ -92,16 +96,17 @@ def read_schem(path: str | Path, losses: Losses | None = None) -> BlockVolume:
     """Read a Sponge schematic of version 1, 2 or 3.
 
     Args:
-        path: the file.
-        losses: counts biomes, which a volume has no place for.
+        path: The file to read.
+        losses: Counts of the data that a volume cannot store (biomes), updated by this call.
 
     Returns:
-        The volume, without labels and with one block a metre: a schematic does not say its scale.
-        Blocks of mods keep their names.
+        The volume without labels. Its scale is one block per metre, because schematics do not store
+        a scale. Mod blocks keep their names.
 
     Raises:
-        InputError: there is no file. DamagedFileError: it is no schematic.
-        LimitError: it is larger than the program reads.
+        InputError: If the file is not found.
+        DamagedFileError: If the file is not a valid schematic.
+        LimitError: If the file exceeds the size limit.
     """
     source = Path(path)
     raw = unpack(read_bytes(source, MAX_FILE_BYTES), source, LIMITS.bytes)
@@ -113,7 +118,7 @@ def read_schem(path: str | Path, losses: Losses | None = None) -> BlockVolume:
         return _volume_of(tree, source)
     except MISSHAPEN as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is no Sponge schematic{missing}") from error
+        raise DamagedFileError(source, f"is not a valid Sponge schematic{missing}") from error
 
 
 # Writing.
@@ -185,7 +190,7 @@ def _unsigned(side: int) -> Short:
 def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
     version = tree["Version"]
     if version not in (1, 2, 3):
-        raise InputError(source, f"is a Sponge schematic of version {version}; 1 to 3 are read")
+        raise InputError(source, f"has Sponge schematic version {version}; supported: 1 to 3")
     sides = (int(tree[key]) & 0xFFFF for key in ("Width", "Height", "Length"))
     size = check_size(sides, source)
     cell_count = math.prod(size)
@@ -193,7 +198,7 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
     # Taken out of the tree, so that its memory is free when the blocks are made.
     data = blocks.pop("Data" if version == 3 else "BlockData").view(np.uint8)
     if len(data) < cell_count:
-        raise DamagedFileError(source, f"says {cell_count:,} blocks and holds fewer")
+        raise DamagedFileError(source, f"declares {cell_count:,} blocks but contains fewer")
     game = int(tree.get("DataVersion", DEFAULT_GAME))
     palette, number_of = _palette(blocks["Palette"], game, source)
     width, height, length = size
@@ -241,9 +246,10 @@ def _palette(
         try:
             state = read_state(str(parse_state(text)), game)
         except UsageError as error:
-            raise DamagedFileError(source, f"has a palette with {error}") from error
+            raise DamagedFileError(source, f"contains an invalid palette entry: {error}") from error
         if not 0 <= number <= 0xFFFF or number in text_of:
-            raise DamagedFileError(source, f"its palette has a bad or repeated number {number}")
+            reason = f"contains an invalid or repeated palette index {number}"
+            raise DamagedFileError(source, reason)
         text_of[int(number)] = state
     palette, number_of = build_palette(text_of.values(), source)
     return palette, {number: number_of[state] for number, state in text_of.items()}
@@ -256,14 +262,15 @@ def _fill(cells: np.ndarray, data: np.ndarray, number_of: Mapping[int, int], sou
         lookup[number] = ours
     used = int(read_varints(data, lookup, cells))
     if used <= -3:
-        raise DamagedFileError(
-            source, f"has a block of number {-3 - used}, which its palette lacks"
-        )
+        reason = f"contains the block index {-3 - used}, which is not in the palette"
+        raise DamagedFileError(source, reason)
     if used != len(data):
-        reason = {-1: "ends too early", -2: "has a number of more than four bytes"}
-        raise DamagedFileError(
-            source, f"its block data {reason.get(used, 'goes on after the last block')}"
-        )
+        reasons = {
+            -1: "has block data that ends too early",
+            -2: "has a block index of more than four bytes",
+        }
+        extra = "has block data after the last block"
+        raise DamagedFileError(source, reasons.get(used, extra))
 
 
 def _block_entity(nbt: dict[str, Any], corner: Corner, version: int) -> BlockEntity:

@@ -1,8 +1,8 @@
-"""Structure files of the game, ``.nbt``: what structure blocks and ``/place template`` read.
+"""Reading and writing of the game's structure files (``.nbt``) for structure blocks and commands.
 
-A structure lists its blocks one by one, each with its place and its number in the palette; places
-that are not listed are left as they are in the world. A box of a room has many thousands, so the
-list is written from a template of 36 bytes a block and read by a kernel.
+A structure lists its blocks individually, each with its position and palette index. Positions that
+are not listed leave the world unchanged. The volume of a room has many thousands of blocks, so the
+list is written from a template of 36 bytes per block and read by a kernel.
 """
 
 from collections.abc import Mapping, Sequence
@@ -62,7 +62,11 @@ MAX_BLOCKS = 3_000_000  # Listed one by one: 108 MB.
 
 @dataclass(frozen=True, eq=False)
 class BlockList:
-    """The blocks of a structure: int32 [N, 3] places, int32 [N] numbers, compounds by number."""
+    """The blocks of a structure: positions, palette indices and NBT data.
+
+    ``places`` is int32 [N, 3], ``states`` is int32 [N], and ``nbt`` contains compounds by block
+    index.
+    """
 
     places: np.ndarray
     states: np.ndarray
@@ -70,10 +74,10 @@ class BlockList:
 
     @classmethod
     def of(cls, found: Sequence[Any], path: Path) -> "BlockList":
-        """Return the list that ``BlockListReader`` found, however its records are written.
+        """Return the block list from the values that ``BlockListReader`` read.
 
         Raises:
-            DamagedFileError: a record lacks its place or its number.
+            DamagedFileError: If a record lacks its position or palette index.
         """
         if len(found) == 1 and isinstance(found[0], cls):
             return found[0]
@@ -85,18 +89,18 @@ class BlockList:
                 np.array(places, np.int32).reshape(len(states), 3), np.array(states, np.int32), nbt
             )
         except MISSHAPEN as error:
-            raise DamagedFileError(path, "has a block without place and number") from error
+            raise DamagedFileError(path, "contains a block without position or index") from error
 
 
 def block_list_bytes(
     places: np.ndarray, states: np.ndarray, nbt: Mapping[int, Mapping[str, Any]]
 ) -> bytes:
-    """Return the NBT of a list named ``blocks``.
+    """Return the NBT bytes of a list named ``blocks``.
 
     Args:
-        places: int [N, 3].
-        states: int [N], numbers in the structure's palette.
-        nbt: what block entities hold, by their number in the list.
+        places: Positions, int [N, 3].
+        states: Palette indices, int [N].
+        nbt: Data of block entities by index in the list.
     """
     records = np.empty(len(places), _RECORD)
     records["pos_head"], records["state_head"] = np.void(_POS_HEAD), np.void(_STATE_HEAD)
@@ -112,10 +116,10 @@ def block_list_bytes(
 
 
 class BlockListReader(NbtReader):
-    """Reads the root's ``blocks`` into one ``BlockList``, without an object for each block."""
+    """An NBT reader that reads the ``blocks`` list into one ``BlockList`` of arrays."""
 
     def elements(self, tag: int, count: int, depth: int) -> list[Any]:
-        """Read a list's elements."""
+        """Read the elements of a list."""
         if tag != COMPOUND or depth != 2 or self.key != "blocks":
             return super().elements(tag, count, depth)
         is_short = count * _RECORD.itemsize > len(self.data) - self.at
@@ -151,7 +155,7 @@ def _int_at(data, at):  # pragma: no cover
 
 @njit
 def skip_value(data, at, tag, sizes):  # pragma: no cover
-    """Return the byte after a value of NBT of the kind ``tag``, or -1 where it is broken."""
+    """Return the offset after an NBT value of the given tag type, or -1 if the value is invalid."""
     kinds = np.empty(_DEPTH, np.int64)  # What each open list holds, 0 for an open compound.
     left = np.empty(_DEPTH, np.int64)
     depth = 0
@@ -213,15 +217,15 @@ def scan_blocks(data, at, places, states, nbt_at, sizes):  # pragma: no cover
     """Read the records of a block list.
 
     Args:
-        data: uint8 [N], NBT.
-        at: where the first record begins.
-        places: int32 [M, 3] out.
-        states: int32 [M] out.
-        nbt_at: int64 [M] out, where each block's compound begins, or -1.
-        sizes: the sizes of the kinds of values.
+        data: NBT bytes, uint8 [N].
+        at: Offset of the first record.
+        places: Output positions, int32 [M, 3].
+        states: Output palette indices, int32 [M].
+        nbt_at: Output offset of each block's compound, or -1 if it has none, int64 [M].
+        sizes: Size in bytes of a value of each tag type.
 
     Returns:
-        The byte after the last record, or -1 where a record is not as the game writes it.
+        The offset after the last record, or -1 if a record does not have the game's form.
     """
     end = len(data)
     for index in range(len(states)):
@@ -274,25 +278,35 @@ def write_structure(
     version: GameVersion | None = None,
     clears: bool = True,
 ) -> None:
-    """Write a volume as one structure file, of any size.
+    """Write a volume of any size as one structure file.
 
-    A structure block takes 48 blocks a side; ``structure_pack`` writes pieces of that size.
+    A structure block can load at most 48 blocks per side; ``structure_pack`` writes pieces of that
+    size.
 
     Args:
-        volume: the blocks; its corner is kept in a tag that the game ignores.
-        path: the file, ``.nbt``.
-        version: the game whose data version it carries; 1.20.1 where it is left out.
-        clears: whether air is listed, so that placing it takes away what stands there.
+        volume: The blocks. The corner is stored in a tag that the game ignores.
+        path: The ``.nbt`` file to write.
+        version: The target game version. The default is 1.20.1.
+        clears: Whether air is included, so that placing the structure removes existing blocks.
 
     Raises:
-        UsageError: the volume is empty or has over three million blocks to list.
-        OutputError: the file cannot be written.
+        UsageError: If the volume is empty or has more than three million blocks to list.
+        OutputError: If the file cannot be written.
     """
     write_bytes(path, structure_bytes(volume, version or game_version(), clears=clears))
 
 
 def structure_bytes(volume: BlockVolume, version: GameVersion, *, clears: bool = True) -> bytes:
-    """Return the bytes of a structure file. Args and errors as ``write_structure``."""
+    """Return a volume as the bytes of a structure file.
+
+    Args:
+        volume: The blocks. The corner is stored in a tag that the game ignores.
+        version: The target game version.
+        clears: Whether air is included, so that placing the structure removes existing blocks.
+
+    Raises:
+        UsageError: If the volume is empty or has more than three million blocks to list.
+    """
     volume = convert_volume(volume, version.data_version)
     # Bottom up, as builders do: y, then z, then x.
     cells = volume.states.transpose(1, 2, 0)
@@ -300,8 +314,8 @@ def structure_bytes(volume: BlockVolume, version: GameVersion, *, clears: bool =
     listed = np.argwhere(np.ones_like(cells, bool) if clears else cells != air)
     if not volume.states.size or len(listed) > MAX_BLOCKS:
         raise UsageError(
-            f"a structure holds 1 to {MAX_BLOCKS:,} blocks, not {len(listed):,}; write a .schem, "
-            "a .litematic or a world"
+            f"a structure file contains 1 to {MAX_BLOCKS:,} blocks, got {len(listed):,}; write a "
+            ".schem file, a .litematic file or a world instead"
         )
     places = np.ascontiguousarray(listed[:, [2, 0, 1]]).astype(np.int32)
     states = volume.states[places[:, 0], places[:, 1], places[:, 2]]
@@ -345,14 +359,16 @@ def read_structure(
     """Read a structure file.
 
     Args:
-        path: the file.
-        losses: counts what a volume cannot hold: places that the structure leaves as they are come
-            back as air, and of a structure with several palettes one is read.
-        variant: which palette, where the structure has several.
+        path: The file to read.
+        losses: Counts of the data that a volume cannot store, updated by this call. Positions that
+            the structure leaves unchanged become air, and only one of several palettes is read.
+        variant: Index of the palette, if the structure has several.
 
     Raises:
-        InputError: there is no file. DamagedFileError: it is no structure.
-        LimitError: it is larger than the program reads. UsageError: it has no such variant.
+        InputError: If the file is not found.
+        DamagedFileError: If the file is not a valid structure.
+        LimitError: If the file exceeds the size limit.
+        UsageError: If the structure has no such palette.
     """
     source = Path(path)
     return parse_structure(read_bytes(source, MAX_FILE_BYTES), source, losses, variant=variant)
@@ -361,7 +377,19 @@ def read_structure(
 def parse_structure(
     data: bytes, source: Path, losses: Losses | None = None, *, variant: int = 0
 ) -> BlockVolume:
-    """Return the volume of a structure file's bytes. Args and errors as ``read_structure``."""
+    """Read a structure from the bytes of a structure file.
+
+    Args:
+        data: The bytes of the file.
+        source: The file path for error messages.
+        losses: Counts of the data that a volume cannot store, updated by this call.
+        variant: Index of the palette, if the structure has several.
+
+    Raises:
+        DamagedFileError: If the data is not a valid structure.
+        LimitError: If the data exceeds the size limit.
+        UsageError: If the structure has no such palette.
+    """
     raw = unpack(data, source, LIMITS.bytes)
     _, root = BlockListReader(raw, source, LIMITS).root()
     del raw
@@ -369,7 +397,7 @@ def parse_structure(
         return _volume_of(root, source, Losses() if losses is None else losses, variant)
     except MISSHAPEN as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is no structure file{missing}") from error
+        raise DamagedFileError(source, f"is not a valid structure file{missing}") from error
 
 
 def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: int) -> BlockVolume:
@@ -380,15 +408,16 @@ def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: i
     palette, number_of = build_palette(texts, source)
     places, numbers = blocks.places, blocks.states
     if len(numbers) and not 0 <= numbers.min() <= numbers.max() < len(texts):
-        raise DamagedFileError(source, f"has a block that its palette of {len(texts)} lacks")
+        reason = f"contains a block index that is not in its palette of {len(texts)} states"
+        raise DamagedFileError(source, reason)
     if len(places) and (places.min() < 0 or (places.max(axis=0) >= size).any()):
-        raise DamagedFileError(source, f"has a block outside of its size, {size}")
+        raise DamagedFileError(source, f"contains a block outside its declared size {size}")
     ours = np.array([number_of[text] for text in texts] or [0], np.uint16)
     states = np.full(size, _UNLISTED, np.uint16)
     for start in range(0, len(numbers), _BATCH):  # As indices, all would take much memory.
         x, y, z = places[start : start + _BATCH].T
         states[x, y, z] = ours[numbers[start : start + _BATCH]]
-    losses.add("places that the structure leaves as they are", _put_air(states))
+    losses.add("positions that the structure leaves unchanged", _put_air(states))
     corner = stated_corner(root, source) or (0, 0, 0)
     held = [_block_entity(places[n].tolist(), nbt, corner) for n, nbt in blocks.nbt.items()]
     entities = [_entity(nbt, corner) for nbt in root.get("entities", [])]
@@ -410,9 +439,11 @@ def _palette(
 ) -> Sequence[Mapping[str, Any]]:
     palettes = root["palettes"] if "palettes" in root else [root["palette"]]
     if not 1 <= len(palettes) <= MAX_PALETTES:
-        raise LimitError(source, f"has {len(palettes)} palettes; 1 to {MAX_PALETTES:,} are read")
+        reason = f"has {len(palettes)} palettes; expected 1 to {MAX_PALETTES:,}"
+        raise LimitError(source, reason)
     if not 0 <= variant < len(palettes):
-        raise UsageError(f"{source} has variants 0 to {len(palettes) - 1}, not {variant}")
+        last = len(palettes) - 1
+        raise UsageError(f"variant of {source} must be 0 to {last}, got {variant}")
     losses.add("other palettes of the structure", len(palettes) - 1)
     return palettes[variant]
 

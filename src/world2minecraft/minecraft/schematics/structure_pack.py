@@ -1,7 +1,7 @@
-"""A data pack that builds a volume from structures: pieces of 48 blocks a side and a function.
+"""Data packs that build a volume from structure pieces of at most 48 blocks per side.
 
-``/function NAME:place`` loads the chunks, waits for them, and places every piece where it belongs.
-Structures carry what commands cannot say shortly: block entities and entities as they are.
+``/function NAME:place`` loads the chunks, waits for them and places every piece. Structures keep
+block entities and entities that would need long commands.
 """
 
 import re
@@ -36,7 +36,7 @@ _PLACE = re.compile(
 
 
 def is_too_large(volume: BlockVolume, version: GameVersion) -> bool:
-    """Whether a volume needs a pack of pieces, and the game can place them."""
+    """Return whether a volume is too large for a structure block and the game can place pieces."""
     return max(volume.states.shape) > PIECE and version.data_version >= FIRST_PLACE_VERSION
 
 
@@ -47,23 +47,23 @@ def write_structure_pack(
     name: str = "room",
     version: GameVersion | None = None,
 ) -> None:
-    """Write a volume as the zip of a data pack of structures.
+    """Write a volume as a data pack of structures in a zip archive.
 
     Args:
-        volume: the blocks; they are placed at the volume's own world position.
-        path: the file, ``.zip``, to be put into ``datapacks`` of a world.
-        name: the namespace of the pieces and of the function; what no namespace can hold of it
-            becomes ``_``.
-        version: the game to write for, 1.19 or later; 1.20.1 where it is left out.
+        volume: The blocks, which are placed at the volume's own world position.
+        path: The ``.zip`` file to write. Put it into the ``datapacks`` folder of a world.
+        name: The namespace of the pieces and of the function. Invalid characters become ``_``.
+        version: The target game version, 1.19 or later. The default is 1.20.1.
 
     Raises:
-        UsageError: the game has no ``/place template``. OutputError: it cannot be written.
+        UsageError: If the game version does not support ``/place template``.
+        OutputError: If the file cannot be written.
     """
     version = version or game_version()
     if version.data_version < FIRST_PLACE_VERSION:
         raise UsageError(
-            f"Minecraft {version.name} places no structures by command; choose 1.19 or later, or "
-            "write a .schem"
+            f"Minecraft {version.name} cannot place structures by command; choose --mc-version "
+            "1.19 or later, or write a .schem file"
         )
     space = to_namespace(name)
     files: dict[str, str | bytes] = {
@@ -83,7 +83,7 @@ def write_structure_pack(
 
 
 def is_structure_pack(path: Path) -> bool:
-    """Whether a zip has the function that places the pieces of a structure."""
+    """Return whether a zip archive contains a function that places structure pieces."""
     try:
         with zipfile.ZipFile(path) as archive:
             return any(_PART.fullmatch(name) for name in archive.namelist())
@@ -92,34 +92,35 @@ def is_structure_pack(path: Path) -> bool:
 
 
 def read_structure_pack(path: str | Path, losses: Losses | None = None) -> BlockVolume:
-    """Read the pieces of a pack that this program wrote, each where the function places it.
+    """Read a data pack of structure pieces that this program wrote, each at its own position.
 
     Raises:
-        InputError: there is no file, or it places nothing. DamagedFileError: a piece is missing
-        or broken. LimitError: there are too many, or they are too large.
+        InputError: If the file is not found or places no structure.
+        DamagedFileError: If a piece is missing or damaged.
+        LimitError: If there are too many pieces, or they are too large.
     """
     source = Path(path)
     if not source.is_file():
-        raise InputError(source, "is not there")
+        raise InputError(source, "not found")
     try:
         with zipfile.ZipFile(source) as archive:
             names = set(archive.namelist())
             files = _list_placements(archive, source)
             sizes = [archive.getinfo(name).file_size for name, _ in files if name in names]
             if len(files) > MAX_PIECES or sum(sizes) > MAX_BYTES:
-                raise LimitError(
-                    source, f"has more than {MAX_PIECES:,} pieces or {MAX_BYTES:,} bytes"
-                )
+                reason = f"exceeds the limit of {MAX_PIECES:,} pieces or {MAX_BYTES:,} bytes"
+                raise LimitError(source, reason)
             if len(sizes) < len(files):
-                raise DamagedFileError(source, "places a piece that it does not hold")
+                raise DamagedFileError(source, "places a structure piece that it does not contain")
             parts, cells = [], 0
             for name, place in files:
                 parts.append(_read_piece(archive.read(name), source, place, losses))
                 cells += parts[-1].states.size
                 if cells > MAX_CELLS:  # A piece of nothing but air says its size in a few bytes.
-                    raise LimitError(source, f"its pieces have over {MAX_CELLS:,} blocks together")
+                    reason = f"has pieces that exceed the limit of {MAX_CELLS:,} blocks in total"
+                    raise LimitError(source, reason)
     except UNREADABLE as error:
-        raise DamagedFileError(source, f"is no readable zip ({error})") from error
+        raise DamagedFileError(source, f"is not a valid zip archive ({error})") from error
     return join_volumes(parts, source)
 
 
@@ -131,13 +132,14 @@ def _list_placements(
     found = {}
     for name in parts:
         if archive.getinfo(name).file_size > MAX_BYTES:
-            raise LimitError(source, f"has a function of more than {MAX_BYTES:,} bytes")
+            reason = f"contains a function that exceeds the limit of {MAX_BYTES:,} bytes"
+            raise LimitError(source, reason)
         folder = FOLDERS[1] if "/functions/" in name else FOLDERS[0]
         for match in _PLACE.finditer(archive.read(name).decode("utf-8", "replace")):
             space, title, x, y, z = match.groups()
             found[space, title] = (f"data/{space}/{folder}/{title}.nbt", (int(x), int(y), int(z)))
     if not found:
-        raise InputError(source, "places no structure")
+        raise InputError(source, "contains no command that places a structure")
     return list(found.values())
 
 
@@ -146,12 +148,13 @@ def _read_piece(
 ) -> BlockVolume:
     piece = parse_structure(data, source, losses)
     if piece.corner != place:
-        raise DamagedFileError(source, f"places at {place} what says to stand at {piece.corner}")
+        reason = f"places a piece at {place}, but the piece states the position {piece.corner}"
+        raise DamagedFileError(source, reason)
     return piece
 
 
 def split_into_pieces(volume: BlockVolume) -> dict[tuple[int, int, int], BlockVolume]:
-    """Return the volume in boxes of at most 48 blocks a side, by their number along x, y, z."""
+    """Split a volume into pieces of at most 48 blocks per side, by piece index along x, y, z."""
     counts = [-(-side // PIECE) for side in volume.states.shape]
     return {(x, y, z): _piece(volume, (x, y, z)) for x, y, z in np.ndindex(*counts)}
 

@@ -1,1 +1,1 @@
-"""A running server: the RCON protocol, and building a volume through it."""
+"""Building of volumes on a running server through the RCON protocol."""

@@ -1,9 +1,10 @@
-"""RCON, the remote console of Minecraft servers (Valve's Source RCON protocol).
+"""Client for RCON, the remote console protocol of Minecraft servers (Source RCON by Valve).
 
-A packet is a little-endian int32 length, int32 id, int32 type (3 log in, 2 command, 0 reply), the
-body in UTF-8 and two zero bytes. The game's server reads each packet with one call that takes
-1,460 bytes, so a command must fit into that, and only one may be on its way: a second that comes
-in the same segment makes it hang up. Replies over 4,096 bytes come in several packets.
+A packet consists of a little-endian int32 length, an int32 ID, an int32 type (3 for login, 2 for a
+command, 0 for a reply), the body in UTF-8 and two zero bytes. The server reads each packet with one
+call for at most 1,460 bytes. A command must therefore fit into that size, and only one command may
+be in transit: the server closes the connection if a second one arrives in the same segment. Replies
+of more than 4,096 bytes arrive in several packets.
 """
 
 import hashlib
@@ -26,20 +27,20 @@ _HEADER = struct.Struct("<iii")
 
 
 def parse_address(text: str) -> tuple[str, int]:
-    """Return host and port of ``HOST:PORT``; the port is 25575 where it is left out.
+    """Parse ``HOST:PORT`` and return the host and the port. The default port is 25575.
 
     Raises:
-        UsageError: it is no address.
+        UsageError: If the text is not a valid address.
     """
     found = _ADDRESS.fullmatch(text)
     port = int(found["port"] or PORT) if found else 0
     if not found or not 1 <= port <= 65535:
-        raise UsageError(f"--rcon must be HOST:PORT, such as localhost:{PORT}, not {text!r}")
+        raise UsageError(f"--rcon must be HOST:PORT, such as localhost:{PORT}, got {text!r}")
     return found["host"].strip("[]"), port
 
 
 def build_note_path(server: str, digest: str) -> Path:
-    """Return the file that remembers how far a build on a server is."""
+    """Return the path of the file that stores the progress of a build on a server."""
     from world2minecraft.core.jit import user_cache_dir  # noqa: PLC0415  # It loads numba.
 
     name = hashlib.sha256(f"{server} {digest}".encode()).hexdigest()[:24]
@@ -47,13 +48,13 @@ def build_note_path(server: str, digest: str) -> Path:
 
 
 class RconClient:
-    """One connection to a server's remote console. Use it in a ``with``.
+    """A connection to the remote console of a server, for use as a context manager.
 
     Args:
-        host: its name or address.
-        port: 25575, unless ``rcon.port`` in server.properties says otherwise.
-        password: ``rcon.password`` of server.properties.
-        timeout_s: how long to wait for the connection and for each reply.
+        host: Name or address of the server.
+        port: The RCON port, ``rcon.port`` in server.properties. The game's default is 25575.
+        password: The RCON password, ``rcon.password`` in server.properties.
+        timeout_s: Seconds to wait for the connection and for each reply.
     """
 
     def __init__(self, host: str, port: int, password: str, timeout_s: float = 20.0):
@@ -78,14 +79,14 @@ class RconClient:
         """Connect and log in.
 
         Raises:
-            ConnectionError, TimeoutError: the server is not there or hung up.
-            ServerError: it refused the password.
+            ConnectionError, TimeoutError: If the server cannot be reached or closed the connection.
+            ServerError: If the server rejected the password.
         """
         self.close()
         try:
             self._socket = socket.create_connection((self.host, self.port), self.timeout_s)
         except UnicodeError as error:  # A name with an empty part, or one of over 63 letters.
-            raise ServerError(f"{self.host} is no name of a server; check --rcon") from error
+            raise ServerError(f"{self.host} is not a valid host name; check --rcon") from error
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._send(LOG_IN, self._password.encode("utf-8", "surrogateescape"))
         number, _ = self._receive()
@@ -94,32 +95,32 @@ class RconClient:
         if number == REFUSED:
             self.close()
             raise ServerError(
-                f"{self.host}:{self.port} refused the password; set W2M_RCON_PASSWORD to "
-                "rcon.password of its server.properties"
+                f"{self.host}:{self.port} rejected the RCON password; set W2M_RCON_PASSWORD to "
+                "rcon.password from the server's server.properties"
             )
 
     def close(self) -> None:
-        """Hang up; nothing happens where there is no connection."""
+        """Close the connection, if there is one."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None
 
     def command(self, text: str) -> str:
-        """Run one command, without its slash, and return what the server says.
+        """Run one command, without its leading slash, and return the server's reply.
 
         Raises:
-            UsageError: the command has a line break or more than ``MAX_COMMAND_BYTES`` bytes.
-            ConnectionError, TimeoutError: the connection was lost; the command may have run.
-            ServerError: the server speaks no RCON.
+            UsageError: If the command has a line break or more than ``MAX_COMMAND_BYTES`` bytes.
+            ConnectionError, TimeoutError: If the connection was lost. The command may have run.
+            ServerError: If the server does not use the RCON protocol.
         """
         body = text.encode()
         if len(body) > MAX_COMMAND_BYTES:
             raise UsageError(
-                f"a command may have {MAX_COMMAND_BYTES} bytes by RCON, not {len(body)}: "
+                f"an RCON command can have {MAX_COMMAND_BYTES} bytes, got {len(body)}: "
                 f"{text[:60]}..."
             )
         if any(ord(letter) < 32 for letter in text):
-            raise UsageError(f"a command is one line without control characters, not {text!r}")
+            raise UsageError(f"an RCON command must not contain control characters, got {text!r}")
         self._send(COMMAND, body)
         return self._reply().decode("utf-8", "replace")
 
@@ -136,7 +137,8 @@ class RconClient:
                 parts.append(body)
                 number, body = self._receive()
         elif number != wanted:
-            raise ServerError(f"{self.host}:{self.port} answered out of turn; is it RCON?")
+            address = f"{self.host}:{self.port}"
+            raise ServerError(f"{address} sent an unexpected reply; check that it is an RCON port")
         return b"".join(parts)
 
     def _send(self, kind: int, body: bytes) -> None:
@@ -148,8 +150,8 @@ class RconClient:
         length = struct.unpack("<i", self._exactly(4))[0]
         if not 10 <= length <= MAX_REPLY_BYTES:
             raise ServerError(
-                f"{self.host}:{self.port} sent a packet of {length} bytes; is it RCON? "
-                "server.properties names the port: rcon.port"
+                f"{self.host}:{self.port} sent a packet of {length} bytes, which is not RCON; "
+                "use the port rcon.port from server.properties"
             )
         data = self._exactly(length)
         number = struct.unpack("<i", data[:4])[0]
@@ -160,7 +162,7 @@ class RconClient:
         while len(held) < count:
             got = self._open_socket().recv(count - len(held))
             if not got:
-                raise ConnectionResetError(f"{self.host}:{self.port} hung up")
+                raise ConnectionResetError(f"{self.host}:{self.port} closed the connection")
             held += got
         return bytes(held)
 

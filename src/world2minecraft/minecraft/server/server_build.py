@@ -1,7 +1,7 @@
-"""Build a volume on a running server, across lost connections, and check the result.
+"""Building of a volume on a running server, with reconnection and a check of the result.
 
-A plan lists the commands in order. Progress is noted in a small file, so that a second run resumes
-where the first was stopped.
+A plan lists the commands in order. Progress is saved in a small file, so that a second run resumes
+where the first one stopped.
 """
 
 import hashlib
@@ -63,19 +63,20 @@ _WERE_LOADED = "No chunks were marked"
 _PASSED, _FAILED = "Test passed", "Test failed"
 
 
-Probe = tuple[int, int, int, str]  # x, y, z and what must be there of a state
+Probe = tuple[int, int, int, str]  # x, y, z and the expected block state.
 
 
 @dataclass(frozen=True)
 class BuildPlan:
-    """Commands by phase. Whatever was run twice in its order leaves the same blocks.
+    """The commands of a build by phase. Running commands twice in order gives the same blocks.
 
-    load, release: forceload of the chunks, and its end.
-    loaded: places (x, y, z) all of which must be loaded before anything is set.
-    work: what empties and sets blocks, their data and the entities, in order.
-    entities_from: the index in ``work`` from which entities are set: these would be doubled when
-        run twice, so it begins with the command that takes them away.
-    probes: what must be there in the end.
+    load, release: Commands that force-load the chunks, and commands that release them.
+    loaded: Positions (x, y, z) that must be loaded before any block is set.
+    work: Commands that clear and set blocks, block data and entities, in order.
+    entities_from: The index in ``work`` from which entities are placed. Running these commands
+    twice
+        would duplicate entities, so the first one removes existing entities.
+    probes: The blocks to check at the end.
     """
 
     load: tuple[str, ...]
@@ -87,7 +88,7 @@ class BuildPlan:
 
     @property
     def digest(self) -> str:
-        """What two plans share that do the same: the SHA-256 of their work."""
+        """The SHA-256 hash of the ``work`` commands, which is equal for equivalent plans."""
         return hashlib.sha256("\n".join(self.work).encode()).hexdigest()
 
 
@@ -99,18 +100,19 @@ def plan_build(
     samples: int = 256,
     losses: Losses | None = None,
 ) -> BuildPlan:
-    """Return what builds a volume at its own world position.
+    """Plan the commands that build a volume at its own world position.
 
     Args:
-        volume: the blocks.
-        version: the game of the server, for the names of blocks.
-        built: bool [X, Y, Z], the cells that are set, air among them; all where it is left out.
-        samples: how many of its blocks to ask for in the end; half of them not air. The places
-            depend on the volume alone.
-        losses: counts data and entities that are too long for a command.
+        volume: The blocks to build.
+        version: The game version of the server, which determines block names.
+        built: The cells to set, including air, as bool [X, Y, Z]. The default is all cells.
+        samples: Number of blocks to check at the end, half of them not air. The positions depend
+            only on the volume.
+        losses: Counts of block data and entities that are too long for a command.
 
     Raises:
-        UsageError: a state or an entity's id is none, or the box leaves the world's layers.
+        UsageError: If a block state or an entity ID is invalid, or the volume exceeds the height
+            limits of the world.
     """
     _check_layers(volume, version)
     volume = convert_volume(volume, version.data_version)
@@ -137,7 +139,7 @@ def _check_layers(volume: BlockVolume, version: GameVersion) -> None:
     low, high = volume.corner[1], volume.corner[1] + volume.states.shape[1] - 1
     if low < version.min_y or high > version.max_y:
         raise UsageError(
-            f"the build reaches from layer {low} to {high}, but the world has {version.min_y} to "
+            f"the build has layers {low} to {high}, but the world has layers {version.min_y} to "
             f"{version.max_y}; choose another --at or fewer blocks per metre"
         )
 
@@ -158,7 +160,7 @@ def _corners(volume: BlockVolume) -> tuple[tuple[int, int, int], ...]:
 
 
 def lasting_state(state: str) -> str:
-    """Return a state without the properties that the blocks around it may change at once.
+    """Return a block state without the properties that neighbouring blocks can change.
 
     Example:
         >>> lasting_state("minecraft:oak_stairs[facing=east,half=top,shape=inner_left]")
@@ -193,7 +195,7 @@ def _probes(
 
 @dataclass(frozen=True)
 class LiveResult:
-    """Result of a build: commands sent, reconnections, places checked, blocks set again."""
+    """The counts of a build: commands, reconnections, checked blocks and repaired blocks."""
 
     commands: int
     reconnects: int
@@ -202,14 +204,14 @@ class LiveResult:
 
 
 class LiveBuilder:
-    """Runs a plan on one server.
+    """Runs a build plan on one server.
 
     Args:
-        client: where to; it is connected when it is used.
-        plan: the commands.
-        note: the file that remembers how far it is; None remembers nothing.
-        progress: called with the commands done.
-        sleep: how to wait; tests do not.
+        client: The RCON client. It connects when the build starts.
+        plan: The commands to run.
+        note: The file that stores the progress. With None, progress is not stored.
+        progress: Callback that receives the number of finished commands.
+        sleep: Function that waits for a number of seconds.
     """
 
     def __init__(
@@ -228,11 +230,12 @@ class LiveBuilder:
         self._to_release: tuple[str, ...] = plan.release
 
     def run(self) -> LiveResult:
-        """Build, check, and repair what is wrong.
+        """Build the volume, check it and repair wrong blocks.
 
         Raises:
-            ServerError: the server cannot be reached, refuses, does not load the chunks, or does
-                not hold the blocks in the end. What was done is noted; a second run goes on.
+            ServerError: If the server cannot be reached, rejects a command, does not load the
+                chunks or does not have the expected blocks at the end. Progress is saved for a
+                second run.
         """
         try:
             self._done = self._read_note()
@@ -270,7 +273,7 @@ class LiveBuilder:
             if self._is_loaded(x, y, z):
                 return
             self._sleep(LOAD_WAIT_S)
-        raise ServerError(f"the server has not loaded the chunk at {x} {z}; try again later")
+        raise ServerError(f"the server has not loaded the chunk at x={x} z={z}; try again later")
 
     def _is_loaded(self, x: int, y: int, z: int) -> bool:
         reply = self._send(f"execute if loaded {x} {y} {z}")
@@ -289,11 +292,11 @@ class LiveBuilder:
                 if any(sign in reply for sign in _WRONG):
                     short = command if len(command) < 120 else command[:117] + "..."
                     raise ServerError(
-                        f"the server refused {short!r}: {one_line(reply, 200)}; {_advice(reply)}"
+                        f"the server rejected {short!r}: {one_line(reply, 200)}; {_advice(reply)}"
                     )
                 return
             self._sleep(LOAD_WAIT_S)
-        raise ServerError(f"the server has not loaded the place of {command[:80]!r}")
+        raise ServerError(f"the server has not loaded the chunk of {command[:80]!r}; try again")
 
     def _send(self, command: str) -> str:
         """Send a command and return the reply; reconnect where the connection is lost."""
@@ -319,10 +322,10 @@ class LiveBuilder:
 
     def _connection_error(self, error: OSError) -> ServerError:
         where = f"{self._client.host}:{self._client.port}"
-        reason = f"{where} does not answer ({error.strerror or error})"
+        reason = f"no reply from {where} ({error.strerror or error})"
         if self._was_there:
-            return ServerError(f"{reason} any more; run the same command again to go on")
-        return ServerError(f"{reason}; it needs enable-rcon=true in server.properties")
+            return ServerError(f"{reason}; run the same command again to resume the build")
+        return ServerError(f"{reason}; set enable-rcon=true in server.properties")
 
     def _check(self) -> int:
         """Ask for the probes; where one is wrong, build once more and ask for it again."""
@@ -334,10 +337,10 @@ class LiveBuilder:
         left = self._wrong(wrong)
         if left:
             named = "; ".join(f"{x} {y} {z} is not {state}" for x, y, z, state in left[:SHOWN])
-            count = f"{len(left)} of {len(self._plan.probes)} blocks"
+            count = f"{len(left)} of {len(self._plan.probes)} checked blocks"
             raise ServerError(
-                f"{count} are not as they were set: {named}. A plugin "
-                "that protects the place may forbid it"
+                f"{count} are wrong after the build ({named}); check whether a plugin protects "
+                "the area"
             )
         return len(wrong)
 
@@ -384,5 +387,5 @@ def _advice(reply: str) -> str:
     if "Too many blocks" in reply:
         return "set the game rule commandModificationBlockLimit back to 32768"
     if "of this world" in reply or "of the world" in reply:
-        return "choose another --at: the build reaches out of the server's world"
-    return "is --mc-version its version?"
+        return "choose another --at, because the build is outside the server's world"
+    return "check that --mc-version is the server's version"
