@@ -19,7 +19,7 @@ WORDS = [
     ("build room.npz --out OUT --new-chunks", 2, "--new-chunks needs --into WORLD"),
     ("build room.npz --into W --at 1 2", 2, "requires 3 arguments; see w2m build --help"),
     ("clean OUT --undo 0", 2, "see w2m clean --help"),
-    ("undo nowhere --list", 3, "nowhere: is no world folder: it has no level.dat"),
+    ("undo nowhere --list", 3, "nowhere: is not a world folder: level.dat not found"),
     ("dataset build D --houses 1 --hour 99", 2, "--hour must be 0 to 24, not 99"),
     ("dataset build D --houses 1 --seed -1", 2, "--seed must be 0 or more, not -1"),
     ("dataset build D --houses 2 --preset 9k", 2, "no preset is named '9k'"),

@@ -75,7 +75,7 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
     assert "note:" not in capsys.readouterr().out
     assert cli.run(["install", str(out), "--game", "old"]) == 0
     assert (
-        "note: this game is 1.20, older than the world, and will not open it; build again with "
+        "note: Minecraft 1.20 cannot open this newer world; build the world again with "
         "--mc-version 1.20\n"
     ) in capsys.readouterr().out
     assert cli.run(["install", "--list"]) == 0
@@ -89,14 +89,22 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
     ("words", "code", "reason"),
     [
         (["install"], 2, "no world given; add the folder of a run, as in w2m install OUT"),
-        (["install", "{out}"], 2, "no game found; give the saves folder of one with --saves"),
-        (["install", "{home}", "--saves", "{home}"], 3, "holds no world (build/world/level.dat)"),
+        (["install", "{out}"], 2, "no game found; use --saves DIR"),
+        (
+            ["install", "{home}", "--saves", "{home}"],
+            3,
+            "contains no world (build/world/level.dat)",
+        ),
         (
             ["install", "{out}", "--saves", "{home}/a/b"],
             3,
             "not found, nor a folder to create it in",
         ),
-        (["install", "{out}", "--saves", "{home}", "--name", "/"], 2, "a world cannot be named"),
+        (
+            ["install", "{out}", "--saves", "{home}", "--name", "/"],
+            2,
+            "--name must contain letters or digits",
+        ),
     ],
 )
 def test_what_cannot_be_is_one_line(out, home, capsys, words, code, reason):
@@ -109,7 +117,7 @@ def test_what_cannot_be_is_one_line(out, home, capsys, words, code, reason):
 @pytest.mark.parametrize(
     ("wanted", "reason"),
     [
-        ("7", "--game 7: only 2 games found; see w2m install --list"),
+        ("7", "--game 7 does not exist, because only 2 games were found; run w2m install --list"),
         (
             "bedrock",
             "no game is named 'bedrock'; choose one with --game NUMBER: 1 Minecraft launcher",

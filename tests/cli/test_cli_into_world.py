@@ -140,7 +140,11 @@ def test_force_brings_the_old_files_back(schem, world):
         (["{schem}", "--into", "{world}"], 2, "--into needs a place: add --at X Y Z"),
         (["{schem}", "--out", "x", "--at", "1", "2", "3"], 2, "--at"),
         (["{schem}", "--into", "{world}", "--at", "1", "2"], 2, "--at"),
-        (["{schem}", "--into", "nowhere", "--at", "1", "2", "3"], 3, "nowhere: is no world folder"),
+        (
+            ["{schem}", "--into", "nowhere", "--at", "1", "2", "3"],
+            3,
+            "nowhere: is not a world folder",
+        ),
         (
             ["{schem}", "--into", "{world}", "--at", "1", "2", "3", "--air", "all"],
             2,
@@ -173,9 +177,9 @@ def test_what_cannot_be_is_one_line_and_changes_nothing(schem, world, capsys, wo
     [
         (["undo", "{world}"], 2, "no build by World2Minecraft to undo"),
         (["undo", "{world}", "--blocks", "--force"], 2, "exclude each other"),
-        (["undo", "nowhere", "--list"], 3, "nowhere: is no world folder: it has no level.dat"),
-        (["undo", "{world}/..", "--list"], 3, "/home is one"),
-        (["undo", "nowhere"], 3, "nowhere: is no world folder: it has no level.dat"),
+        (["undo", "nowhere", "--list"], 3, "nowhere: is not a world folder: level.dat not found"),
+        (["undo", "{world}/..", "--list"], 3, "/home instead"),
+        (["undo", "nowhere"], 3, "nowhere: is not a world folder: level.dat not found"),
     ],
 )
 def test_an_undo_of_nothing_is_one_line(world, capsys, words, code, reason):

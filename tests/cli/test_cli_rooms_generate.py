@@ -25,10 +25,10 @@ def test_a_room_is_written_and_can_be_read_back(tmp_path, capsys):
         (["--shape", "round"], "no room shape is named 'round'; known: box, columns, cut, ell"),
         (["--rooms", "5"], "--rooms and --storeys are for a house; add --house"),
         (["--house", "--kind", "bed"], "--kind and --shape are for a single room; leave them out"),
-        (["--house", "--rooms", "2"], "rooms must be from 3 to 14 on 1 storey, not 2"),
-        (["--house", "--storeys", "0"], "storeys must be 1 or 2, not 0"),
-        (["--seed", "-1"], "seed must be 0 or more, not -1"),
-        (["--clutter", "2"], "clutter must be from 0 to 1, not 2.0"),
+        (["--house", "--rooms", "2"], "rooms must be from 3 to 14 on 1 storey, got 2"),
+        (["--house", "--storeys", "0"], "storeys must be 1 or 2, got 0"),
+        (["--seed", "-1"], "seed must be 0 or more, got -1"),
+        (["--clutter", "2"], "clutter must be from 0 to 1, got 2.0"),
     ],
 )
 def test_words_that_cannot_be_are_refused_in_one_line(tmp_path, capsys, words, message):

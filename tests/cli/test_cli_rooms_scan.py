@@ -73,18 +73,18 @@ def test_a_trial_is_scanned_by_name(tmp_path, monkeypatch):
         (["--seed", "-1"], "--seed must be 0 or more, not -1"),
         (["--seed", "1", "--kind", "barn"], "no room kind is named 'barn'; known:"),
         (["--seed", "1", "--sensor", "rgb"], "no sensor is named 'rgb'; did you mean 'rgbd'"),
-        (["--seed", "1", "--frames", "0"], "frames must be 1 or more, not 0"),
+        (["--seed", "1", "--frames", "0"], "frames must be 1 or more, got 0"),
         (
             ["--seed", "1", "--coverage", "0"],
-            "coverage must be above 0 and at most 1, not 0.0",
+            "coverage must be above 0 and at most 1, got 0.0",
         ),
         (
             ["--seed", "1", "--depth-scale-sigma", "3"],
-            "depth_scale_sigma must be 0 to 0.2, not 3.0",
+            "depth_scale_sigma must be from 0 to 0.2, got 3.0",
         ),
         (
             ["--seed", "1", "--label-error", "2"],
-            "label_error must be a share from 0 to 1, not 2.0",
+            "label_error must be from 0 to 1, got 2.0",
         ),
         (["room", "--kind", "study"], "room has a kind of its own; leave --kind out"),
         (

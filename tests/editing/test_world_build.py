@@ -296,7 +296,7 @@ def test_a_build_out_of_the_world_is_refused(home, corner, text):
 
 
 def test_no_world_is_refused(tmp_path):
-    with pytest.raises(InputError, match="is no world folder: it has no level.dat$"):
+    with pytest.raises(InputError, match="is not a world folder: level.dat not found$"):
         build_into_world(tmp_path, room())
 
 
@@ -321,7 +321,7 @@ def test_a_world_that_is_open_in_the_game_is_left_alone(world):
             with pytest.raises(ConflictError) as raised:
                 act()
             assert str(raised.value) == (
-                f"{world}: is open in the game (or in a server, or another program); leave the "
+                f"{world}: is open in the game, a server or another program; close the "
                 "world there, then try again"
             )
         game.stdin.close()

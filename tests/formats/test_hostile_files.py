@@ -84,7 +84,7 @@ FILES = {
     ),
     "many.mcfunction": (
         lambda: b"".join(b"setblock 0 %d 0 a%d\n" % (n % 300, n) for n in range(66_000)),
-        "refused has 66,001 block states; at most 65,535 are read",
+        "refused has 66,001 block states, the limit is 65,535",
     ),
     "large.mcstructure": (large_structure, "read 11852352"),
     "count.mcstructure": (

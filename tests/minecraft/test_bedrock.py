@@ -360,7 +360,7 @@ def read_mcstructure_bytes(raw: bytes):
     [
         ({"size": np.array([1, 1], np.int32)}, "is not a valid Bedrock structure"),
         ({"size": np.array([5, 5, 5], np.int32)}, "declares 125 blocks, but a block layer has"),
-        ({"size": np.array([0, 1, 1], np.int32)}, "says 0 x 1 x 1 blocks"),
+        ({"size": np.array([0, 1, 1], np.int32)}, "declares a size of 0 x 1 x 1 blocks"),
         ({"structure": {}}, "is not a valid Bedrock structure ('block_indices' is missing)"),
         ({"structure": 3}, "is not a valid Bedrock structure"),
     ],

@@ -120,7 +120,10 @@ def test_display_entities_need_a_game_that_has_them(tmp_path):
             "contains an invalid command: coordinates must be integers, got '1 2 ^3'",
         ),
         ("fill 0 0 0 9999 999 9999 stone", "exceeds the limit of"),
-        ("setblock 0 0 0 a\nsetblock 9999999 0 99999 a", "says 10000000 x 1 x 100000 blocks"),
+        (
+            "setblock 0 0 0 a\nsetblock 9999999 0 99999 a",
+            "declares a size of 10000000 x 1 x 100000 blocks",
+        ),
         (
             "setblock 0 0 0 a{b:",
             "contains an invalid command: invalid SNBT text: expected a value, got",

@@ -150,7 +150,7 @@ def test_it_can_be_converted_and_not_written(tmp_path):
     np.testing.assert_array_equal(
         state_texts(read_blocks(tmp_path / "b.schem")), state_texts(found)
     )
-    with pytest.raises(UsageError, match="no block format ends so"):
+    with pytest.raises(UsageError, match="unknown file suffix for blocks"):
         write_blocks(found, tmp_path / "c.schematic")
 
 
@@ -277,16 +277,22 @@ SIZE = (2, 1, 2)
 DAMAGED = {
     "too few blocks": ({"Blocks": np.zeros(3, np.int8)}, "declares 4 blocks but contains fewer"),
     "too few values": ({"Data": np.zeros(3, np.int8)}, "declares 4 blocks but contains fewer"),
-    "too few high bits": ({"AddBlocks": np.zeros(1, np.int8)}, "declares 4 blocks but contains fewer"),
+    "too few high bits": (
+        {"AddBlocks": np.zeros(1, np.int8)},
+        "declares 4 blocks but contains fewer",
+    ),
     "no blocks": ({"Blocks": None}, "is not a valid legacy schematic ('Blocks' is missing)"),
     "blocks of text": ({"Blocks": "stone"}, "is not a valid legacy schematic"),
     "no width": ({"Width": None}, "is not a valid legacy schematic ('Width' is missing)"),
-    "a width of nothing": ({"Width": Short(0)}, "says 0 x 1 x 2 blocks"),
+    "a width of nothing": ({"Width": Short(0)}, "a size of 0 x 1 x 2 blocks"),
     "a huge size": (
         {"Width": Short(-1), "Height": Short(-1), "Length": Short(-1)},
-        "says 65535 x 65535 x 65535 blocks; 1 to 67,108,864 are read",
+        "declares a size of 65535 x 65535 x 65535 blocks; expected 1 to 67,108,864 blocks",
     ),
-    "another game": ({"Materials": "Pocket"}, "has the materials 'Pocket'; only 'Alpha' (Java) is supported"),
+    "another game": (
+        {"Materials": "Pocket"},
+        "has the materials 'Pocket'; only 'Alpha' (Java) is supported",
+    ),
     "a block entity without a place": (
         {"TileEntities": [{"id": "Sign"}]},
         "is not a valid legacy schematic ('x' is missing)",

@@ -148,7 +148,9 @@ def test_an_old_world_is_a_void(name, tmp_path):
 
 def test_a_build_below_an_old_games_floor_is_refused(tmp_path):
     deep = volume_of(np.ones((1, 3, 1)), (AIR, "minecraft:stone"), (0, -1, 0))
-    with pytest.raises(UsageError, match=r"from layer -1 to 1, but Minecraft 1.16.5 has 0 to 255"):
+    with pytest.raises(
+        UsageError, match=r"has layers -1 to 1, but Minecraft 1.16.5 has layers 0 to 255"
+    ):
         write(deep, tmp_path / "world", "1.16.5")
 
 

@@ -56,7 +56,7 @@ def test_the_lock_is_given_back_after_an_error(world):
 
 
 def test_no_world_has_no_lock(tmp_path):
-    with pytest.raises(InputError, match="is no world folder"), session_lock(tmp_path):
+    with pytest.raises(InputError, match="is not a world folder"), session_lock(tmp_path):
         pass
     assert not list(tmp_path.iterdir())
 
@@ -81,7 +81,7 @@ def test_a_java_program_and_we_keep_each_other_out(world, tmp_path):
     [
         (errno.EACCES, ConflictError, "is open in the game"),
         (errno.EAGAIN, ConflictError, "is open in the game"),
-        (errno.ENOLCK, OutputError, "its session.lock cannot be locked: "),
+        (errno.ENOLCK, OutputError, "cannot lock session.lock: "),
     ],
 )
 @pytest.mark.parametrize("system", ["posix", "windows"])

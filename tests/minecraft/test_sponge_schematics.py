@@ -265,8 +265,9 @@ def test_what_the_errors_say(tmp_path):
     expected = {
         "a palette index out of range": "contains the block index 2, which is not in the palette",
         "too few blocks": "declares 4 blocks but contains fewer",
-        "a volume of 281 million million blocks": "says 65535 x 65535 x 65535 blocks; 1 to"
-        " 67,108,864 are read",
+        "a volume of 281 million million blocks": "declares a size of 65535 x 65535 x"
+        " 65535 blocks; expected 1 to"
+        " 67,108,864 blocks",
         "no width": "is not a valid Sponge schematic ('Width' is missing)",
         "an unknown version": "has Sponge schematic version 9; supported: 1 to 3",
     }

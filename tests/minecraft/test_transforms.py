@@ -210,7 +210,7 @@ def test_left_and_right_change_places_in_a_mirror():
 
 
 def test_a_text_that_is_no_state_is_refused():
-    with pytest.raises(UsageError, match="must be like minecraft:oak_log"):
+    with pytest.raises(UsageError, match="is invalid; expected text such as minecraft:oak_log"):
         turn_state("oak_log[axis=x", 1)
 
 

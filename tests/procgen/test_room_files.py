@@ -55,7 +55,10 @@ def test_the_same_room_gives_the_same_files(written, tmp_path):
 
 
 def test_an_empty_folder_says_what_writes_one(tmp_path):
-    with pytest.raises(InputError, match=r"layout\.json: is not there; `w2m rooms generate --out"):
+    with pytest.raises(
+        InputError,
+        match=r"layout\.json: not found; create the folder with `w2m rooms generate --out",
+    ):
         read_generated(tmp_path)
 
 
@@ -79,27 +82,30 @@ def test_an_empty_folder_says_what_writes_one(tmp_path):
 )
 def test_a_layout_that_is_none_is_refused(written, tmp_path, change):
     folder = copy_of(written, tmp_path, stated=change)
-    with pytest.raises(DamagedFileError, match=r"layout\.json: is no layout of a room \("):
+    with pytest.raises(DamagedFileError, match=r"layout\.json: is not a valid room layout \("):
         read_generated(folder)
 
 
 def test_layouts_that_are_no_object_are_refused(written, tmp_path):
     folder = copy_of(written, tmp_path)
     write_json(folder / "layout.json", [1, 2])
-    with pytest.raises(DamagedFileError, match="is no layout of a room"):
+    with pytest.raises(DamagedFileError, match="is not a valid room layout"):
         read_generated(folder)
 
 
 @pytest.mark.parametrize(
     ("arrays", "message"),
     [
-        ({"labels": np.zeros((3, 3), np.uint8)}, r"labels is uint8 \(3, 3\), not a room's"),
+        (
+            {"labels": np.zeros((3, 3), np.uint8)},
+            r"array labels has an invalid dtype or shape: uint8 \(3, 3\)",
+        ),
         ({"labels": np.full((2, 2, 2), 1.0)}, "labels is float64"),
         ({"instance": np.zeros((2, 2, 2), np.uint16)}, "instance is uint16"),
         ({"colour": np.zeros((2, 2, 2, 3), np.uint8)}, "colour is uint8"),
-        ({"origin_m": np.full(3, np.nan)}, "origin_m is not finite"),
-        ({"voxel_m": np.array(0.0)}, "voxel_m is 0.0, not from 0.005 to 0.5"),
-        ({"voxel_m": np.array([0.02])}, "voxel_m is float64"),
+        ({"origin_m": np.full(3, np.nan)}, "origin_m must be finite"),
+        ({"voxel_m": np.array(0.0)}, "voxel_m must be from 0.005 to 0.5, got 0.0"),
+        ({"voxel_m": np.array([0.02])}, "array voxel_m has an invalid dtype or shape: float64"),
     ],
 )
 def test_arrays_that_are_no_room_are_refused(written, tmp_path, arrays, message):
@@ -111,15 +117,17 @@ def test_values_that_mean_nothing_are_refused(written, tmp_path):
     held = read_npz(written / "truth.npz", ARRAYS)
     labels, instance = held["labels"].copy(), held["instance"].copy()
     labels[0, 0, 0], instance[0, 0, 0] = 12, 60_000
-    with pytest.raises(DamagedFileError, match="labels hold 12, which is no class"):
+    with pytest.raises(DamagedFileError, match="labels must be below 12, got 12"):
         read_generated(copy_of(written, tmp_path, arrays={"labels": labels}))
-    with pytest.raises(DamagedFileError, match="instance holds 60000 of"):
+    with pytest.raises(DamagedFileError, match="instance must be at most .* got 60000"):
         read_generated(copy_of(written, tmp_path, arrays={"instance": instance}))
 
 
 def test_a_file_that_says_it_is_huge_is_not_read(written, monkeypatch):
     monkeypatch.setattr(stored, "MAX_CELLS", 1000)
-    with pytest.raises(LimitError, match=r"truth\.npz: has [\d,]+ bytes; a room has 1,000 cells"):
+    with pytest.raises(
+        LimitError, match=r"truth\.npz: has [\d,]+ bytes, which exceeds the limit of 1,000 cells"
+    ):
         read_generated(written)
 
 
@@ -129,7 +137,9 @@ def test_bytes_that_are_no_archive_are_refused(written, tmp_path):
     with pytest.raises(DamagedFileError, match=r"truth\.npz: is not a readable"):
         read_generated(folder)
     (folder / "truth.npz").unlink()
-    with pytest.raises(InputError, match=r"truth\.npz: is not there; it lies beside layout\.json"):
+    with pytest.raises(
+        InputError, match=r"truth\.npz: not found; it must be in the same folder as layout\.json"
+    ):
         read_generated(folder)
 
 

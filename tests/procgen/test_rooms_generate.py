@@ -80,7 +80,7 @@ def test_an_unknown_kind_is_refused_by_name():
 
 
 def test_a_negative_seed_is_refused():
-    with pytest.raises(ValueError, match="^seed must be 0 or more, not -1"):
+    with pytest.raises(ValueError, match="^seed must be 0 or more, got -1"):
         generate_room(-1)
 
 

@@ -218,11 +218,11 @@ def test_the_bytes_of_a_house_depend_on_the_seed_alone():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"rooms": 2}, "rooms must be from 3 to 14 on 1 storey, not 2"),
-        ({"rooms": 15}, "rooms must be from 3 to 14 on 1 storey, not 15"),
-        ({"rooms": 3, "storeys": 2}, "rooms must be from 4 to 14 on 2 storeys, not 3"),
-        ({"storeys": 3}, "storeys must be 1 or 2, not 3"),
-        ({"clutter": 1.5}, "clutter must be from 0 to 1, not 1.5"),
+        ({"rooms": 2}, "rooms must be from 3 to 14 on 1 storey, got 2"),
+        ({"rooms": 15}, "rooms must be from 3 to 14 on 1 storey, got 15"),
+        ({"rooms": 3, "storeys": 2}, "rooms must be from 4 to 14 on 2 storeys, got 3"),
+        ({"storeys": 3}, "storeys must be 1 or 2, got 3"),
+        ({"clutter": 1.5}, "clutter must be from 0 to 1, got 1.5"),
     ],
 )
 def test_numbers_out_of_range_are_refused(words, message):

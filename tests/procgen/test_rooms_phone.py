@@ -99,7 +99,7 @@ def test_a_phone_has_no_labels_and_no_depth(words, text):
 
 
 def test_a_video_has_even_sides():
-    with pytest.raises(ValueError, match="a video's sides must be even, not 161x120"):
+    with pytest.raises(ValueError, match="video width and height must be even, got 161x120"):
         ScanSettings("video", width=161, height=120)
     ScanSettings("photos", width=161, height=120)
 

@@ -150,7 +150,7 @@ def test_a_new_kind_has_what_makes_it_one(kind):
 def test_names_are_refused_with_a_suggestion():
     with pytest.raises(UnknownNameError, match="no room shape is named 'el'; did you mean 'ell'"):
         generate_room(0, shape="el")
-    with pytest.raises(ValueError, match=r"^clutter must be from 0 to 1, not -0\.1$"):
+    with pytest.raises(ValueError, match=r"^clutter must be from 0 to 1, got -0\.1$"):
         generate_room(0, clutter=-0.1)
     assert set(KINDS) >= {"bathroom", "hall", "office", "children"}
 

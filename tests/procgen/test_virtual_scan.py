@@ -215,11 +215,11 @@ def test_wrong_arguments_are_refused(tmp_path):
     with pytest.raises(UnknownNameError, match="no sensor is named 'lidar'"):
         scan_room(room(), tmp_path, sensor="lidar")
     for wrong, text in (
-        ({"frames": 0}, "frames must be 1 or more, not 0"),
-        ({"label_error": 1.5}, "label_error must be a share from 0 to 1, not 1.5"),
-        ({"depth_scale_sigma": -0.1}, "depth_scale_sigma must be 0 to 0.2, not -0.1"),
-        ({"coverage": 0.0}, "coverage must be above 0 and at most 1, not 0.0"),
-        ({"coverage": 1.2}, "coverage must be above 0 and at most 1, not 1.2"),
+        ({"frames": 0}, "frames must be 1 or more, got 0"),
+        ({"label_error": 1.5}, "label_error must be from 0 to 1, got 1.5"),
+        ({"depth_scale_sigma": -0.1}, "depth_scale_sigma must be from 0 to 0.2, got -0.1"),
+        ({"coverage": 0.0}, "coverage must be above 0 and at most 1, got 0.0"),
+        ({"coverage": 1.2}, "coverage must be above 0 and at most 1, got 1.2"),
     ):
         with pytest.raises(ValueError, match=f"^{text}$"):
             scan_room(room(), tmp_path, **wrong)

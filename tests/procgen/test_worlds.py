@@ -203,9 +203,9 @@ def test_written_worlds_are_read_back(tmp_path):
 @pytest.mark.parametrize(
     ("given", "error", "text"),
     [
-        ({"seed": -1}, ValueError, "seed must be 0 or more, not -1"),
-        ({"rooms": 2}, ValueError, "rooms must be from 3 to 14 on 1 storey, not 2"),
-        ({"blocks_per_metre": 12.5}, ValueError, "blocks_per_metre must be from 2 to under 6"),
+        ({"seed": -1}, ValueError, "seed must be 0 or more, got -1"),
+        ({"rooms": 2}, ValueError, "rooms must be from 3 to 14 on 1 storey, got 2"),
+        ({"blocks_per_metre": 12.5}, ValueError, "blocks_per_metre must be from 2 to below 6"),
         ({"style": "modrn"}, UnknownNameError, "did you mean 'modern'?"),
     ],
 )

@@ -176,7 +176,7 @@ def read_volume(path: str | Path, losses: Losses | None = None) -> BlockVolume:
     try:
         volume = read_blocks(find_blocks(source), counted)
     except InputError as error:
-        if not error.reason.startswith("is no block file"):
+        if not error.reason.startswith("is not in a supported format"):
             raise
         known = list_suffixes("read")
         raise InputError(source, f"is no block file that is read; known: {known}") from None

@@ -1,9 +1,9 @@
-"""Signs: made here, and converted between the forms in which games keep their texts.
+"""Signs: creation, and conversion between the text formats of game versions.
 
-Four tags until 1.19, two sides of four lines of JSON since 1.20, and lines of NBT since 1.21.5,
-where JSON is shown as plain letters. The game upgrades an older block entity only where the chunk
-says that it is older. A volume keeps signs as 1.20.1 has them: readers convert them to that form,
-and writers to the form of the game that is written for.
+Signs store four tags until 1.19, two sides of four JSON lines since 1.20, and NBT lines since
+1.21.5, which displays JSON as plain text. The game upgrades an older block entity only if the data
+version of its chunk is older. Volumes store signs in the form of 1.20.1: readers convert to this
+form, and writers convert to the form of the target game.
 """
 
 import json
@@ -38,11 +38,11 @@ LINE_LETTERS = 15  # Of about six pixels; a line has 90.
 
 
 def upgrade_signs(held: Iterable[BlockEntity], data_version: int) -> tuple[BlockEntity, ...]:
-    """Return block entities with their signs as 1.20.1 has them.
+    """Convert the signs among block entities to the form of 1.20.1.
 
     Args:
-        held: block entities of a file.
-        data_version: that of the game that wrote it.
+        held: The block entities of a file.
+        data_version: The data version of the game that wrote the file.
     """
     if data_version < FIRST_TWO_SIDES:
         return _map_signs(held, upgrade_sign)
@@ -52,9 +52,9 @@ def upgrade_signs(held: Iterable[BlockEntity], data_version: int) -> tuple[Block
 
 
 def upgrade_command_signs(held: Iterable[BlockEntity]) -> tuple[BlockEntity, ...]:
-    """Return block entities that commands of any game set, with their signs as 1.20.1 has them.
+    """Convert the signs set by commands of any game version to the form of 1.20.1.
 
-    A line that is a text in quotes is taken for JSON: only a line of NBT tells its game.
+    A line given as a string is taken as JSON, because only an NBT line identifies its game version.
     """
     return _map_signs(
         held,
@@ -65,9 +65,9 @@ def upgrade_command_signs(held: Iterable[BlockEntity]) -> tuple[BlockEntity, ...
 
 
 def convert_sign(entity: BlockEntity, data_version: int) -> BlockEntity:
-    """Return a block entity of a volume as a game has it; what is no sign stays as it is.
+    """Convert the sign of a volume to the form of a game version.
 
-    Before 1.20 a sign has its front alone.
+    Block entities that are not signs are returned unchanged. Before 1.20, only the front is kept.
     """
     if entity.id not in SIGNS or FIRST_TWO_SIDES <= data_version < FIRST_NBT_LINES:
         return entity
@@ -77,7 +77,7 @@ def convert_sign(entity: BlockEntity, data_version: int) -> BlockEntity:
 
 
 def upgrade_sign(nbt: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the tags of a sign with two sides.
+    """Convert the NBT of a sign to the form with two sides.
 
     Example:
         >>> upgrade_sign({"Text1": "Exit"})["front_text"]["messages"][0]
@@ -207,18 +207,19 @@ def _json_of(text: Any, depth: int) -> Any:
 def sign_entity(
     block_pos: tuple[int, int, int], lines: Sequence[str], command: str = ""
 ) -> BlockEntity:
-    """Return the block entity of a sign, waxed, so that nobody rewrites it by a click.
+    """Create the block entity of a sign, waxed so that players cannot edit it.
 
     Args:
-        block_pos: where it stands.
-        lines: up to four lines of text.
-        command: what a click on it does, such as ``/function w2m:human_size``; nothing if empty.
+        block_pos: The block position of the sign.
+        lines: Up to four lines of text.
+        command: The command that a click runs, such as ``/function w2m:human_size``. Empty for
+            none.
 
     Raises:
-        UsageError: there are more than four lines.
+        UsageError: If there are more than four lines.
     """
     if len(lines) > LINE_COUNT:
-        raise UsageError(f"a sign has {LINE_COUNT} lines, not {len(lines)}")
+        raise UsageError(f"a sign can have {LINE_COUNT} lines of text, got {len(lines)}")
     texts: list[dict[str, Any]] = [{"text": line} for line in lines]
     texts += [{"text": ""}] * (LINE_COUNT - len(texts))
     if command:
@@ -236,11 +237,11 @@ def sign_entity(
 
 
 def wrap_sign_text(text: str, lines: int) -> list[str]:
-    """Return a text in lines that a sign can show, cut off with dots where it is too long.
+    """Wrap a text into lines that fit on a sign, and shorten it with dots if it is too long.
 
     Args:
-        text: any printable text.
-        lines: how many lines it may take.
+        text: The text to wrap.
+        lines: Maximum number of lines.
     """
     return wrap(text, LINE_LETTERS, max_lines=lines, placeholder="..")
 

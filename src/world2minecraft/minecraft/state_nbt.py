@@ -1,4 +1,4 @@
-"""Block states as NBT: the entries of the palettes of chunks, structures and Litematica."""
+"""Conversion between block states and NBT palette entries of chunks, structures and schematics."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,7 +10,7 @@ from world2minecraft.minecraft.block_states import MAX_TEXT, BlockState, parse_s
 
 
 def state_entry(state: str, data_version: int) -> dict[str, Any]:
-    """Return a palette entry of NBT, its block named as the game of ``data_version`` does.
+    """Return the NBT palette entry of a block state, with the block names of a game version.
 
     Example:
         >>> state_entry("minecraft:oak_log[axis=y]", 3465)
@@ -24,33 +24,34 @@ def state_entry(state: str, data_version: int) -> dict[str, Any]:
 
 
 def state_text(entry: Mapping[str, Any]) -> str:
-    """Return the canonical text of a palette entry of NBT, with Name and Properties.
+    """Return the canonical text of an NBT palette entry with ``Name`` and ``Properties``.
 
     Raises:
-        UsageError: the entry names no block state.
+        UsageError: If the entry is not a valid block state.
     """
     name, properties = entry.get("Name"), entry.get("Properties", {})
     texts = isinstance(properties, dict) and all(isinstance(v, str) for v in properties.values())
     if not isinstance(name, str) or not texts:
-        raise UsageError("a block state without a name, or with properties that are no text")
+        raise UsageError("a block state must have a name and text properties")
     text = str(BlockState(name, properties))
     if len(text) > MAX_TEXT:
-        raise UsageError(f"block state {text[:60] + '...'!r} of more than {MAX_TEXT:,} letters")
+        shown = text[:60] + "..."
+        raise UsageError(f"block state {shown!r} exceeds the limit of {MAX_TEXT:,} characters")
     return text
 
 
 def palette_texts(entries: Any, data_version: Any, path: str | Path) -> list[str]:
-    """Return the states of a whole palette of NBT, as 1.20.1 calls them.
+    """Convert a whole NBT palette to block states with the names of 1.20.1.
 
     Args:
-        entries: the list of compounds.
-        data_version: what the file says of the game that wrote it.
-        path: the file that errors name.
+        entries: The list of palette entries.
+        data_version: The data version stored in the file.
+        path: The file path for error messages.
 
     Raises:
-        DamagedFileError: it is no list of block states.
+        DamagedFileError: If an entry is not a valid block state.
     """
     try:
         return [read_state(state_text(entry), int(data_version)) for entry in entries]
     except (UsageError, AttributeError, TypeError, ValueError, IndexError) as error:
-        raise DamagedFileError(path, f"has a palette with {error}") from error
+        raise DamagedFileError(path, f"contains an invalid palette entry: {error}") from error

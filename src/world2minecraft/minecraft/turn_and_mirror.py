@@ -1,8 +1,8 @@
-"""Turn and mirror block states and volumes.
+"""Rotation and mirroring of block states and volumes.
 
-A quarter turn is counter-clockwise seen from above: east goes to north, north to west, west to
-south. Block axes are x east, y up, z south. The rules speak of properties and not of blocks, so
-they hold for mods that keep to the game's property names.
+A quarter turn is counter-clockwise seen from above: east becomes north, north becomes west, west
+becomes south. Block axes are x east, y up, z south. The rules depend on properties and not on block
+names, so they also apply to mods that use the game's property names.
 """
 
 from collections.abc import Callable
@@ -35,14 +35,14 @@ _SLOTS = {"slot_0": "slot_2", "slot_2": "slot_0", "slot_3": "slot_5", "slot_5": 
 
 @lru_cache(maxsize=1 << 16)
 def turn_state(state: str, quarter_turns: int) -> str:
-    """Turn a block state counter-clockwise seen from above by quarter turns.
+    """Rotate a block state by quarter turns counter-clockwise seen from above.
 
     Args:
-        state: any block state as text; a mod's is turned by the same rules.
-        quarter_turns: how often; negative turns are clockwise.
+        state: Text of the block state. Mod blocks follow the same rules.
+        quarter_turns: Number of quarter turns. Negative turns are clockwise.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
 
     Example:
         >>> turn_state("minecraft:oak_stairs[facing=east,half=bottom]", 1)
@@ -60,10 +60,10 @@ def turn_state(state: str, quarter_turns: int) -> str:
 
 @lru_cache(maxsize=1 << 16)
 def mirror_state(state: str, axis: Literal["x", "z"]) -> str:
-    """Mirror a block state by reversing one block axis: x swaps east and west.
+    """Mirror a block state along one block axis. The axis x swaps east and west.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
 
     Example:
         >>> mirror_state("minecraft:oak_door[facing=east,hinge=left]", "x")
@@ -83,9 +83,10 @@ def mirror_state(state: str, axis: Literal["x", "z"]) -> str:
 
 
 def turn_volume(volume: BlockVolume, quarter_turns: int) -> BlockVolume:
-    """Turn a volume in its place: its minimum corner stays, every block keeps its room point.
+    """Rotate a volume by quarter turns counter-clockwise, keeping its minimum corner.
 
-    Block entities, entities and ``block_to_room`` are carried along.
+    Block entities, entities and ``block_to_room`` are rotated too, so that every block keeps its
+    position in the room.
     """
     turned = volume
     for _ in range(quarter_turns % 4):

@@ -1,7 +1,7 @@
-"""Volumes from files of players: blocks without labels and scale.
+"""Construction of volumes from game files, which have neither labels nor a scale.
 
-Readers know their blocks as a list of state texts, of which the volume's palette is made: air
-first, the others sorted, each once.
+Readers provide a list of state texts, from which the volume's palette is built: air first, then the
+other states sorted and without duplicates.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -25,26 +25,28 @@ Corner = tuple[int, int, int]
 
 
 def build_palette(texts: Iterable[str], path: str | Path) -> tuple[tuple[str, ...], dict[str, int]]:
-    """Return a palette of the states in ``texts``, and the number of each in it.
+    """Build a palette of block states, and return it with the index of each state.
 
     Raises:
-        LimitError: there are more than 65,535 states.
+        LimitError: If there are more than 65,535 states.
     """
     palette = (AIR, *sorted(set(texts) - {AIR}))
     if len(palette) > MAX_STATES:
-        raise LimitError(path, f"has {len(palette):,} block states; at most 65,535 are read")
+        reason = f"has {len(palette):,} block states, the limit is {MAX_STATES:,}"
+        raise LimitError(path, reason)
     return palette, {state: number for number, state in enumerate(palette)}
 
 
 def check_size(size: Iterable[int], path: str | Path) -> tuple[int, int, int]:
-    """Return x, y, z of ``size`` where a volume of it can be held.
+    """Return a size as x, y, z after checking that a volume of this size fits into the limits.
 
     Raises:
-        LimitError: it is empty or too large.
+        LimitError: If the size is zero or too large.
     """
     x, y, z = (int(side) for side in size)
     if min(x, y, z) < 1 or x * y * z > MAX_CELLS:
-        raise LimitError(path, f"says {x} x {y} x {z} blocks; 1 to {MAX_CELLS:,} are read")
+        reason = f"declares a size of {x} x {y} x {z} blocks; expected 1 to {MAX_CELLS:,} blocks"
+        raise LimitError(path, reason)
     return x, y, z
 
 
@@ -55,14 +57,14 @@ def unlabelled_volume(
     block_entities: Iterable[BlockEntity] = (),
     entities: Iterable[Entity] = (),
 ) -> BlockVolume:
-    """Return a volume without labels and with one block a metre.
+    """Create a volume without labels, at one block per metre.
 
     Args:
-        states: uint16 [X, Y, Z] in block axes, numbers of ``palette``.
-        palette: full block states, air first.
-        corner: the world position of the first cell.
-        block_entities: those of its blocks, in world coordinates.
-        entities: what stands in it, in world coordinates.
+        states: Palette indices, uint16 [X, Y, Z] in block axes.
+        palette: Complete block states, with air first.
+        corner: The world position of the first cell.
+        block_entities: The block entities, in world coordinates.
+        entities: The entities, in world coordinates.
     """
     return BlockVolume(
         states=np.ascontiguousarray(states),
@@ -77,16 +79,18 @@ def unlabelled_volume(
 
 
 def enclosing_box(boxes: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest corner and the size of the box around boxes of a corner and a size."""
+    """Return the lowest corner and the size of the bounding box of boxes (corner, size)."""
     low = np.min([corner for corner, _ in boxes], axis=0)
     return low, np.max([corner + size for corner, size in boxes], axis=0) - low
 
 
 def join_volumes(parts: Sequence[BlockVolume], path: str | Path) -> BlockVolume:
-    """Return volumes of one world as one; of two in a place the later stands, but for its air.
+    """Join volumes that share world coordinates to one volume.
+
+    Where volumes overlap, the blocks of the later volume are used, except its air.
 
     Raises:
-        LimitError: their box is too large, or they have too many states together.
+        LimitError: If the bounding box is too large, or there are too many block states.
     """
     boxes = [(np.array(part.corner), np.array(part.states.shape)) for part in parts]
     low, size = enclosing_box(boxes)
@@ -104,20 +108,21 @@ def join_volumes(parts: Sequence[BlockVolume], path: str | Path) -> BlockVolume:
 
 
 def stated_corner(tree: Mapping[str, Any], path: str | Path) -> Corner | None:
-    """Return the corner that ``own_tag`` put into ``tree``, or None where there is none.
+    """Return the corner that ``own_tag`` stored in an NBT tree, or None if there is none.
 
     Raises:
-        DamagedFileError: the tag holds something else.
+        DamagedFileError: If the tag is invalid.
     """
     if OWN_TAG not in tree:
         return None
     try:
         x, y, z = (int(value) for value in tree[OWN_TAG]["Corner"])
     except MISSHAPEN as error:
-        raise DamagedFileError(path, f"has a tag {OWN_TAG} without a Corner of three") from error
+        reason = f"contains a tag {OWN_TAG} without a Corner of three numbers"
+        raise DamagedFileError(path, reason) from error
     return x, y, z
 
 
 def own_tag(corner: Iterable[int]) -> dict[str, Any]:
-    """Return the tag that keeps a world position in formats that have no place for it."""
+    """Return the NBT tag that stores a world position in formats without a field for it."""
     return {OWN_TAG: {"Corner": np.array(list(corner), np.int32)}}

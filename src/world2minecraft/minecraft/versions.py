@@ -1,4 +1,4 @@
-"""Versions of the game that the program writes for, from one data file."""
+"""The game versions that the program supports."""
 
 import json
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ LAST_LEVEL_VERSION = "1.21.8"
 
 @dataclass(frozen=True)
 class GameVersion:
-    """One release of Minecraft Java.
+    """A release of Minecraft Java Edition.
 
-    ``data_version`` is what its files carry; ``pack_format`` is that of its data packs, with
-    ``pack_minor`` from 1.21.9 on. ``min_y`` to ``max_y`` are the block layers of the overworld,
-    both included.
+    ``data_version`` is the version number in the game's files. ``pack_format`` is the format number
+    of data packs, with ``pack_minor`` since 1.21.9. ``min_y`` and ``max_y`` are the lowest and
+    highest block layers of the overworld.
     """
 
     name: str
@@ -33,27 +33,27 @@ class GameVersion:
 
     @property
     def level_data_version(self) -> int:
-        """The data version of the worlds that are written for this game."""
+        """The data version of worlds written for this game."""
         return min(self.data_version, game_version(LAST_LEVEL_VERSION).data_version)
 
 
 @cache
 def game_versions() -> tuple[GameVersion, ...]:
-    """The versions that everything is written for, 1.20 and later, oldest first."""
+    """Return the versions that all formats support (1.20 and later), oldest first."""
     return tuple(GameVersion(name, *numbers) for name, *numbers in _table()["versions"])
 
 
 @cache
 def old_versions() -> tuple[GameVersion, ...]:
-    """The versions before, from 1.13 on, oldest first: files are written for them, not packs."""
+    """Return the older versions (1.13 and later) that all formats but data packs support."""
     return tuple(GameVersion(name, *numbers) for name, *numbers in _table()["old_versions"])
 
 
 def game_version(name: str = DEFAULT_VERSION) -> GameVersion:
-    """Return a version of the game by its name, such as ``1.20.1``.
+    """Return a game version by name, such as ``1.20.1``.
 
     Raises:
-        UnknownNameError: the table has no such version; the message suggests the nearest.
+        UnknownNameError: If the version is unknown. The message suggests the nearest name.
     """
     known = (*old_versions(), *game_versions())
     for version in known:
@@ -63,7 +63,7 @@ def game_version(name: str = DEFAULT_VERSION) -> GameVersion:
 
 
 def name_in_version(state_name: str, data_version: int) -> str:
-    """Return what a version of the game calls a block of the table's version.
+    """Return the name of a block in a game version, given its name in 1.20.1.
 
     Example:
         >>> name_in_version("minecraft:grass", 3698)
@@ -75,7 +75,7 @@ def name_in_version(state_name: str, data_version: int) -> str:
 
 @cache
 def new_names() -> dict[str, str]:
-    """What blocks of the table's version are called since; the newer name to the older."""
+    """Return the blocks renamed since 1.20.1, as a mapping from the newer to the older name."""
     return {new: old for old, (_, new) in _renamed().items()}
 
 

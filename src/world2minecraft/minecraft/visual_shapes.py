@@ -1,7 +1,7 @@
-"""Visible boxes of block states, and which states are drawn at full brightness.
+"""Visible boxes of block states, and the blocks that are rendered at full brightness.
 
-One data file written by hand, ``data/visual_boxes.json``, says what is seen of fences, walls,
-signs, torches, plants and others; all else looks as it collides.
+The hand-written data file ``data/visual_boxes.json`` defines the visible boxes of fences, walls,
+signs, torches, plants and others. All other blocks look like their collision boxes.
 """
 
 import json
@@ -36,13 +36,13 @@ QUARTERS = ("north", "east", "south", "west")
 
 
 def is_luminous(state: str) -> bool:
-    """Tell whether a state is drawn at full brightness."""
+    """Return whether a block state is rendered at full brightness."""
     return any(part in state for part in LUMINOUS) and not any(part in state for part in DARK)
 
 
 @dataclass(frozen=True, eq=False)
 class VisualFamily:
-    """Blocks that look alike: the patterns of their names and the parts that are drawn."""
+    """A family of blocks with the same look: their name patterns and their visible parts."""
 
     name: str
     patterns: tuple[str, ...]
@@ -56,18 +56,19 @@ class VisualFamily:
 
 @lru_cache(maxsize=1 << 16)
 def visual_boxes(state: str) -> np.ndarray:
-    """Return the boxes that are seen of a block state.
+    """Return the visible boxes of a block state.
 
     Args:
-        state: its text; missing properties count as the defaults.
+        state: Text of the block state. Missing properties have their default values.
 
     Returns:
-        Read-only float32 [N, 6]: x0 y0 z0 x1 y1 z1 in block units within the unit cube, x east,
-        y up, z south. The boxes share no volume, but for the edges of vines. Air, barriers and
-        light blocks have none.
+        The boxes as read-only float32 [N, 6] with x0, y0, z0, x1, y1, z1 in block units within the
+        unit cube: x is east, y is up and z is south. The boxes do not overlap, except at the edges
+            of
+        vines. Air, barriers and light blocks have no box.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
 
     Example:
         >>> visual_boxes("minecraft:red_carpet").tolist()
@@ -81,7 +82,7 @@ def visual_boxes(state: str) -> np.ndarray:
 
 
 def find_visual_family(state: BlockState) -> VisualFamily | None:
-    """Return the family whose look was written by hand for a complete state, or None."""
+    """Return the visual family of a complete block state, or None if it has none."""
     name = state.name.partition(":")[2]
     properties = dict(state.properties)
     for family in visual_families():
@@ -94,7 +95,7 @@ def find_visual_family(state: BlockState) -> VisualFamily | None:
 
 @cache
 def visual_families() -> tuple[VisualFamily, ...]:
-    """Read the shipped file, once; the first family that fits a block counts."""
+    """Load the visual families from the bundled file. The first match of a block applies."""
     raw = json.loads(files("world2minecraft.minecraft").joinpath(DATA_FILE).read_text("utf-8"))
     return tuple(_family(entry) for entry in raw["families"])
 

@@ -1,8 +1,7 @@
-"""Procedural furnished rooms as metric layouts and 2 cm voxels, and virtual scans of them.
+"""Procedurally generated rooms as metric layouts and 2 cm voxels, and their virtual scans.
 
-``generate_room`` gives the room of a seed, ``generate_house`` a house of several rooms;
-``scan_room`` writes a capture of either as a depth camera would hand it over, with the exact truth
-beside it.
+``generate_room`` generates a room from a seed, and ``generate_house`` a house of several rooms.
+``scan_room`` writes a capture as a depth camera would record it, together with the ground truth.
 """
 
 from world2minecraft.procgen.houses.house import generate_house

@@ -1,9 +1,8 @@
-"""The fixed benchmark: fifty scans in five difficulties, and fifty others to tune on.
+"""The fixed benchmark: fifty scans in five difficulties, and fifty more for tuning.
 
-A trial is a room or a house and the way it is scanned, all from one seed. ``trials("tune")`` has
-seeds 500 to 549, ``trials("test")`` seeds 1000 to 1049. Whoever chooses a parameter, a threshold
-or a model looks at "tune" alone: figures of "test" are worth something only as long as tuning
-never sees it.
+A trial is a room or house and its scan, all generated from one seed. ``list_trials("tune")`` has
+the seeds 500 to 549 and ``list_trials("test")`` the seeds 1000 to 1049. Use only "tune" to choose a
+parameter, a threshold or a model, because results on "test" are meaningful only without tuning.
 """
 
 from collections.abc import Callable
@@ -30,9 +29,9 @@ ODD_SHAPES = ("ell", "cut", "sloped")
 
 @dataclass(frozen=True)
 class Trial:
-    """One scan of the benchmark: what is generated and how it is scanned.
+    """One scan of the benchmark: the room or house to generate and the scan settings.
 
-    ``kind`` is ``house`` where there are several ``rooms``.
+    ``kind`` is ``house`` if there are several ``rooms``.
     """
 
     name: str
@@ -50,11 +49,11 @@ class Trial:
     label_error: float = LABEL_ERROR
 
     def clean(self) -> "Trial":
-        """Return the same walk through the same room without noise, jitter or depth scale."""
+        """Return the same trial without noise, pose jitter or depth scale."""
         return replace(self, name=f"{self.name}-clean", sensor="clean", depth_scale_sigma=0.0)
 
     def room(self) -> Room:
-        """Generate what is scanned."""
+        """Generate the room or house of the trial."""
         if self.rooms > 1:
             return generate_house(
                 self.seed, rooms=self.rooms, storeys=self.storeys, clutter=self.clutter
@@ -63,14 +62,14 @@ class Trial:
 
 
 def list_trials(split: Split, difficulty: str | None = None) -> tuple[Trial, ...]:
-    """Return the trials of a split, ten a difficulty, in the order of ``DIFFICULTIES``.
+    """Return the trials of a split, ten per difficulty, in the order of ``DIFFICULTIES``.
 
     Args:
-        split: ``tune``, or ``test``, which tuning never sees.
-        difficulty: one of ``DIFFICULTIES``; None for all.
+        split: ``tune`` or ``test``. Do not use ``test`` for tuning.
+        difficulty: One of ``DIFFICULTIES``. The default is all of them.
 
     Raises:
-        UnknownNameError: there is no such split or difficulty.
+        UnknownNameError: If the split or the difficulty is unknown.
     """
     if split not in FIRST_SEED:
         raise UnknownNameError("split", split, FIRST_SEED)
@@ -84,7 +83,7 @@ def find_trial(name: str) -> Trial:
     """Return a trial by name, such as ``noise-500`` or ``noise-500-clean``.
 
     Raises:
-        UnknownNameError: no trial has this name.
+        UnknownNameError: If no trial has this name.
     """
     every = {trial.name: trial for split in ("tune", "test") for trial in list_trials(split)}
     found = every.get(name.removesuffix("-clean"))
@@ -94,10 +93,10 @@ def find_trial(name: str) -> Trial:
 
 
 def write_trial(trial: Trial, folder: str | Path, progress: Progress = no_progress) -> None:
-    """Generate and scan a trial, with label images, and write its capture and truth.
+    """Generate and scan a trial, and write its capture with label images and its ground truth.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the folder cannot be written.
     """
     scan_room(
         trial.room(),

@@ -1,4 +1,4 @@
-"""A picture of a generated room or house from above at an angle, opened so that one looks in."""
+"""Cutaway preview images of generated rooms and houses, seen from above at an angle."""
 
 from dataclasses import replace
 
@@ -21,12 +21,13 @@ SUPERSAMPLE = 2
 
 
 def room_picture(room: Room, width_px: int = 1280, height_px: int | None = None) -> np.ndarray:
-    """Return a cutaway picture, uint8 [height, width, 3]; storeys lie side by side.
+    """Render a cutaway image as uint8 [height, width, 3], with storeys side by side.
 
     Args:
-        room: a room or a house.
-        width_px: of the picture.
-        height_px: of the picture; None: three quarters of its width, half for two storeys.
+        room: The room or house.
+        width_px: Width of the image in pixels.
+        height_px: Height of the image in pixels. The default is three quarters of the width, or
+            half for two storeys.
     """
     levels = sorted({layout.floor_z_m for layout in room.layouts})
     share = width_px // len(levels)

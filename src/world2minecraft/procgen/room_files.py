@@ -1,7 +1,7 @@
-"""A generated room or house on disk: ``layout.json`` and ``truth.npz``, written and read back.
+"""Reading and writing of generated rooms and houses as ``layout.json`` and ``truth.npz``.
 
-What is read may come from anywhere: sizes are checked before memory is taken, and every number
-before it is used.
+The files may come from an untrusted source: sizes are checked before memory is allocated, and every
+value is checked before it is used.
 """
 
 import math
@@ -29,10 +29,10 @@ VOXEL_RANGE_M = (0.005, 0.5)
 
 
 def write_generated(room: Room, folder: str | Path) -> None:
-    """Write a room or a house, so that ``read_generated`` gives it back.
+    """Write a generated room or house, which ``read_generated`` can read.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the folder cannot be written.
     """
     arrays = {name: np.asarray(getattr(room, name)) for name in ARRAYS}
     write_npz(Path(folder) / TRUTH, arrays)
@@ -48,21 +48,22 @@ def write_generated(room: Room, folder: str | Path) -> None:
 
 
 def read_generated(folder: str | Path) -> Room:
-    """Read what ``write_generated`` wrote; lengths come back rounded to a tenth of a millimetre.
+    """Read a generated room or house. Lengths are rounded to 0.1 mm in the files.
 
     Raises:
-        InputError: a file is missing. DamagedFileError: a file is not what it should be.
-        LimitError: the room is larger than ``MAX_CELLS``.
+        InputError: If a file is missing.
+        DamagedFileError: If a file is invalid.
+        LimitError: If the room has more than ``MAX_CELLS`` cells.
     """
     path, truth = Path(folder) / LAYOUT, Path(folder) / TRUTH
     if not path.is_file():
-        raise InputError(path, "is not there; `w2m rooms generate --out DIR` writes such a folder")
+        raise InputError(path, "not found; create the folder with `w2m rooms generate --out DIR`")
     stated = read_json(path, MAX_LAYOUT_BYTES)
     try:
         kind, seed = str(stated["kind"]), int(stated["seed"])
         layouts = _layouts(stated["layouts"])
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError, UnknownNameError) as e:
-        raise DamagedFileError(path, f"is no layout of a room ({e})") from e
+        raise DamagedFileError(path, f"is not a valid room layout ({e})") from e
     _check_declared(truth)
     arrays = read_npz(truth, ARRAYS)
     _check_arrays(truth, arrays, sum(len(layout.objects) for layout in layouts))
@@ -111,7 +112,7 @@ def _layouts(rows: Any) -> tuple[Layout, ...]:
     if not isinstance(rows, list) or not 1 <= len(rows) <= MAX_LAYOUTS:
         raise ValueError(f"layouts must be a list of 1 to {MAX_LAYOUTS} rooms")
     if sum(len(row["objects"]) for row in rows) > MAX_OBJECTS:
-        raise ValueError(f"it has more than {MAX_OBJECTS:,} objects")
+        raise ValueError(f"objects exceed the limit of {MAX_OBJECTS:,}")
     return tuple(_layout(row) for row in rows)
 
 
@@ -139,14 +140,15 @@ def _layout(row: dict[str, Any]) -> Layout:
 def _check_declared(path: Path) -> None:
     """Refuse a file whose arrays say that they are larger than any room, before they are read."""
     if not path.is_file():
-        raise InputError(path, "is not there; it lies beside layout.json")
+        raise InputError(path, "not found; it must be in the same folder as layout.json")
     try:
         with zipfile.ZipFile(path) as archive:
             declared = sum(entry.file_size for entry in archive.infolist())
     except UNREADABLE as error:
-        raise DamagedFileError(path, f"is not a readable .npz ({error})") from error
+        raise DamagedFileError(path, f"is not a valid .npz file ({error})") from error
     if declared > MAX_CELLS * BYTES_A_CELL:
-        raise LimitError(path, f"has {declared:,} bytes; a room has {MAX_CELLS:,} cells at most")
+        reason = f"has {declared:,} bytes, which exceeds the limit of {MAX_CELLS:,} cells"
+        raise LimitError(path, reason)
 
 
 def _check_arrays(path: Path, arrays: dict[str, np.ndarray], objects: int) -> None:
@@ -160,13 +162,16 @@ def _check_arrays(path: Path, arrays: dict[str, np.ndarray], objects: int) -> No
     )
     for values, dtype, shape, name in wanted:
         if values.dtype != dtype or values.shape != shape:
-            raise DamagedFileError(path, f"{name} is {values.dtype} {values.shape}, not a room's")
+            given = f"{values.dtype} {values.shape}"
+            raise DamagedFileError(path, f"array {name} has an invalid dtype or shape: {given}")
     if not np.isfinite(arrays["origin_m"]).all():
-        raise DamagedFileError(path, "origin_m is not finite")
+        raise DamagedFileError(path, "origin_m must be finite")
     voxel_m = float(arrays["voxel_m"])
     if not math.isfinite(voxel_m) or not VOXEL_RANGE_M[0] <= voxel_m <= VOXEL_RANGE_M[1]:
-        raise DamagedFileError(path, f"voxel_m is {voxel_m}, not from 0.005 to 0.5")
+        raise DamagedFileError(path, f"voxel_m must be from 0.005 to 0.5, got {voxel_m}")
     if labels.max() >= CLASS_COUNT:
-        raise DamagedFileError(path, f"labels hold {labels.max()}, which is no class")
+        reason = f"labels must be below {CLASS_COUNT}, got {labels.max()}"
+        raise DamagedFileError(path, reason)
     if instance.max() > objects:
-        raise DamagedFileError(path, f"instance holds {instance.max()} of {objects} objects")
+        reason = f"instance must be at most {objects} (the number of objects), got {instance.max()}"
+        raise DamagedFileError(path, reason)

@@ -1,7 +1,7 @@
-"""Virtual scans: a generated room as a capture on disk, as a sensor would write it, with its truth.
+"""Virtual scans, which record a generated room as a capture folder with its ground truth.
 
-The capture is in our plain layout; its world frame is turned, tilted and shifted, so that the
-alignment has work. ``truth.npz`` and ``truth.json`` hold what no sensor knows.
+The capture uses the plain layout. Its world frame is rotated, tilted and shifted, so that the room
+must be aligned. ``truth.npz`` and ``truth.json`` contain the ground truth.
 """
 
 from collections.abc import Iterator, Sequence
@@ -42,29 +42,31 @@ def scan_room(
     height: int = 480,
     progress: Progress = no_progress,
 ) -> None:
-    """Scan a room or a house virtually and write the capture with its truth.
+    """Scan a room or a house virtually, and write the capture and its ground truth.
 
     Args:
-        room: the room or the house.
-        folder: where the capture goes; made if missing.
-        sensor: ``rgbd`` or ``clean``; or a phone's without depth: ``photo`` (photos with their
-            poses), ``photos`` (JPEGs and nothing else), ``video`` (``capture.mp4``).
-        frames: how many pictures the whole tour has; else 40, 100 photos, or 240 of a video.
-        seed: of the tour, the world frame and the noise; the same seed gives the same bytes.
-        with_labels: whether to write label images.
-        label_error: the share of the label images, in patches, that says another class.
-        depth_scale_sigma: each frame's depth is multiplied by a factor of its own, 1 give or
-            take this much, as depth networks and badly calibrated sensors do.
-        coverage: the share of the tour that is walked, above 0 and up to 1: the pictures of 0.6
-            are the first 60 % of those of 1, so that some corners stay unseen.
-        width: of the pictures, in pixels.
-        height: of the pictures, in pixels.
-        progress: called after each frame, stage ``capture``.
+        room: The room or house.
+        folder: The output folder, which is created if it does not exist.
+        sensor: ``rgbd`` or ``clean`` for a depth camera, or a phone without depth: ``photo``
+            (photos with poses), ``photos`` (JPEG photos only) or ``video`` (``capture.mp4``).
+        frames: Number of frames of the whole tour. The default is 40 with depth, 100 photos or 240
+            video frames.
+        seed: Seed of the tour, the world frame and the noise. The same seed gives the same bytes.
+        with_labels: Whether to write label images.
+        label_error: Share of the label images, in patches, that has a wrong class.
+        depth_scale_sigma: Standard deviation of a random factor, with mean 1, that multiplies the
+            depth of each frame. It simulates depth networks and badly calibrated sensors.
+        coverage: Share of the tour that is recorded, above 0 and at most 1. With 0.6, only the
+            first 60 % of the frames are recorded, so that some corners remain unseen.
+        width: Width of the images in pixels.
+        height: Height of the images in pixels.
+        progress: Callback after each frame, with the stage ``capture``.
 
     Raises:
-        UnknownNameError: no sensor has this name. ValueError: a figure is out of its range.
-        OutputError: the folder cannot be written. MissingExtraError: ``av`` is not installed, which
-            writes videos.
+        UnknownNameError: If the sensor is unknown.
+        ValueError: If a value is out of range.
+        OutputError: If the folder cannot be written.
+        MissingExtraError: If ``av``, which is required for videos, is not installed.
     """
     how = ScanSettings(
         sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
@@ -93,7 +95,10 @@ def room_views(
     width: int = 640,
     height: int = 480,
 ) -> Iterator[View]:
-    """Yield the views of a virtual scan one at a time; arguments as ``scan_room``."""
+    """Yield the views of a virtual scan one at a time.
+
+    The arguments are those of ``scan_room``.
+    """
     how = ScanSettings(
         sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
     )
@@ -120,16 +125,15 @@ def write_truth(
     truth_room_to_scan: np.ndarray,
     frames: Sequence[FrameTruth] = (),
 ) -> None:
-    """Write ``truth.npz`` and ``truth.json`` beside a capture.
+    """Write the ground truth of a capture as ``truth.npz`` and ``truth.json``.
 
-    ``truth.npz`` holds ``labels``, ``instance``, ``voxel_m``, ``origin_m``,
-    ``truth_room_to_scan`` and, a row a frame, ``frame_names``, ``camera_to_truth`` (float64
-    [F, 4, 4], the true pose of the camera in the room) and ``depth_scale`` (float64 [F], what
-    true depth was multiplied by). ``truth.json`` holds the kind, the seed, the objects and the
-    layouts.
+    ``truth.npz`` contains ``labels``, ``instance``, ``voxel_m``, ``origin_m`` and
+    ``truth_room_to_scan``, and for each frame ``frame_names``, ``camera_to_truth`` (the true camera
+    pose in the room, float64 [F, 4, 4]) and ``depth_scale`` (the factor applied to the true depth,
+    float64 [F]). ``truth.json`` contains the kind, the seed, the objects and the layouts.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the folder cannot be written.
     """
     write_npz(
         Path(folder) / "truth.npz",
@@ -157,7 +161,7 @@ def write_truth(
 
 
 def object_to_json(number: int, item: LayoutObject) -> dict[str, Any]:
-    """Return an object as ``truth.json`` states it; ``number`` is its instance, from 1."""
+    """Return the ``truth.json`` entry of an object with an instance number from 1."""
     return {
         "id": number,
         "class": CLASS_NAMES[item.class_id],

@@ -1,1 +1,1 @@
-"""World folders and regions: read, written, edited in place, and where the game keeps them."""
+"""World folders and region files: reading, writing, in-place editing and installation."""

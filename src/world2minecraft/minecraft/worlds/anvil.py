@@ -1,9 +1,9 @@
-"""Region files: 32 x 32 chunks in sectors of 4 KiB, with oversized chunks in files of their own.
+"""Region files of 32 x 32 chunks in 4 KiB sectors, with oversized chunks in separate files.
 
-Chunks packed as LZ4 are the blocks of lz4-java, each with a head and a checksum. A head is
-``LZ4Block``, a byte (how the block is packed, and how large blocks are), then, each in four bytes
-of which the lowest comes first, the packed size, the size, and a checksum of the unpacked block:
-xxHash32 of which the four highest bits are left out. A block of size 0 ends the stream.
+LZ4-compressed chunks use the block format of lz4-java. Each block has a header that consists of
+``LZ4Block``; a byte with the compression method and the maximum block size; and three little-endian
+32-bit integers: the compressed size, the size, and a checksum of the data, which is xxHash32
+without the four highest bits. A block of size 0 ends the stream.
 """
 
 import os
@@ -36,7 +36,7 @@ _CHUNK_HEADER = struct.Struct(">IB")
 
 
 def pack_lz4(data: bytes) -> bytes:
-    """Return ``data`` in blocks of 64 KiB."""
+    """Compress data in blocks of 64 KiB as lz4-java does."""
     parts = []
     size = 1 << BLOCK_BITS
     for start in range(0, len(data), size):
@@ -50,37 +50,37 @@ def pack_lz4(data: bytes) -> bytes:
 
 
 def unpack_lz4(data: bytes, path: str | Path, limit: int) -> bytes:
-    """Undo ``pack_lz4``.
+    """Decompress data that ``pack_lz4`` or lz4-java compressed.
 
     Args:
-        data: the packed blocks.
-        path: the file that errors name.
-        limit: the most bytes to return.
+        data: The compressed blocks.
+        path: The file path for error messages.
+        limit: Maximum number of bytes to return.
 
     Raises:
-        DamagedFileError: it is no such stream, ends too early or fails its checksum.
-        LimitError: it holds more than ``limit`` bytes.
+        DamagedFileError: If the stream is invalid, ends too early or fails its checksum.
+        LimitError: If the decompressed data has more than ``limit`` bytes.
     """
     parts: list[bytes] = []
     at = total = 0
     while True:
         if at + _LZ4_HEADER.size > len(data):
-            raise DamagedFileError(path, "its LZ4 stream ends too early")
+            raise DamagedFileError(path, "contains an LZ4 stream that ends too early")
         magic, how, packed_size, size, stated = _LZ4_HEADER.unpack_from(data, at)
         at += _LZ4_HEADER.size
         if magic != MAGIC:
-            raise DamagedFileError(path, "its LZ4 stream has a block without its mark")
+            raise DamagedFileError(path, "contains an LZ4 block with an invalid signature")
         if size == 0:
             break
         total += size if size > 0 else 0
         if total > limit:
-            raise LimitError(path, f"unpacks to more than {limit:,} bytes; at most that is read")
+            raise LimitError(path, f"exceeds the limit of {limit:,} bytes after decompression")
         if not 0 < packed_size <= len(data) - at or not 0 < size <= 1 << ((how & 15) + 10):
-            raise DamagedFileError(path, "its LZ4 stream has a block of a false size")
+            raise DamagedFileError(path, "contains an LZ4 block with an invalid size")
         parts.append(_block(data[at : at + packed_size], how, size, stated, path))
         at += packed_size
     if at != len(data):
-        raise DamagedFileError(path, "its LZ4 stream has bytes after its end")
+        raise DamagedFileError(path, "contains extra bytes after the end of an LZ4 stream")
     return b"".join(parts)
 
 
@@ -89,14 +89,14 @@ def _block(packed: bytes, how: int, size: int, stated: int, path: str | Path) ->
         is_raw = how & 0xF0 == RAW
         block = packed if is_raw else lz4.block.decompress(packed, uncompressed_size=size)
     except lz4.block.LZ4BlockError as error:
-        raise DamagedFileError(path, f"has a broken LZ4 block ({error})") from error
+        raise DamagedFileError(path, f"contains a damaged LZ4 block ({error})") from error
     if len(block) != size or checksum(block) != stated or how & 0xF0 not in (RAW, PACKED):
-        raise DamagedFileError(path, "has an LZ4 block that is not what its checksum says")
+        raise DamagedFileError(path, "contains an LZ4 block that does not match its checksum")
     return block
 
 
 def checksum(block: bytes) -> int:
-    """Return lz4-java's checksum of a block.
+    """Return the checksum that lz4-java stores for a block.
 
     Example:
         >>> hex(checksum(b""))
@@ -115,7 +115,7 @@ def _rotate_left(value, bits):  # pragma: no cover
 
 @njit
 def xxhash32(data, seed):  # pragma: no cover
-    """Return the xxHash32 of uint8 [N], after the description of its algorithm."""
+    """Return the xxHash32 of uint8 [N]."""
     one, two, three = np.uint64(0x9E3779B1), np.uint64(0x85EBCA77), np.uint64(0xC2B2AE3D)
     four, five = np.uint64(0x27D4EB2F), np.uint64(0x165667B1)
     low = np.uint64(0xFFFFFFFF)
@@ -155,23 +155,24 @@ def xxhash32(data, seed):  # pragma: no cover
 def pack_region(
     chunks: Mapping[tuple[int, int], bytes], level: int = 1, compression: str = "zlib"
 ) -> tuple[bytes, dict[str, bytes]]:
-    """Pack the chunks of one region.
+    """Pack the chunks of one region into a region file.
 
     Args:
-        chunks: NBT bytes by chunk position (x, z) in the world, all of the same region.
-        level: zlib level; 1 costs a third of the time of 6 and a room is mostly sector padding.
-        compression: gzip, zlib (which every game reads), none, or lz4 (1.20.5 and later).
+        chunks: NBT bytes by chunk position (x, z) in the world, all in the same region.
+        level: The zlib level. Level 1 takes a third of the time of level 6, and most of a file is
+            padding.
+        compression: One of gzip, zlib (readable by every game), none and lz4 (since 1.20.5).
 
     Returns:
-        The bytes of the ``.mca``, and those of each ``.mcc`` by file name: a chunk of more than
-        255 sectors lies in one.
+        The bytes of the ``.mca`` file, and the bytes of each ``.mcc`` file by name. A ``.mcc`` file
+        contains a chunk of more than 255 sectors.
 
     Raises:
-        UsageError: the compression is another.
+        UsageError: If the compression is unknown.
     """
     if compression not in COMPRESSIONS:
         known = ", ".join(COMPRESSIONS)
-        raise UsageError(f"no compression of chunks is named {compression!r}; known: {known}")
+        raise UsageError(f"compression must be one of {known}, got {compression!r}")
     stated = COMPRESSIONS[compression]
     table = np.zeros((2, 1024), ">u4")
     body: list[bytes] = []
@@ -192,7 +193,7 @@ def pack_region(
 
 
 def pack_chunk(data: bytes, kind: int = ZLIB, level: int = 1) -> bytes:
-    """Return a chunk's NBT packed in the way ``kind``: ``GZIP``, ``ZLIB``, ``PLAIN`` or ``LZ4``."""
+    """Compress the NBT of a chunk with the method ``GZIP``, ``ZLIB``, ``PLAIN`` or ``LZ4``."""
     if kind == PLAIN:
         return data
     if kind == LZ4:
@@ -203,17 +204,18 @@ def pack_chunk(data: bytes, kind: int = ZLIB, level: int = 1) -> bytes:
 def read_region(
     path: Path, is_wanted: Callable[[tuple[int, int]], bool] | None = None
 ) -> Iterator[tuple[tuple[int, int], bytes]]:
-    """Read the chunks of a region file: the position of each in the world and its NBT bytes.
+    """Yield the position in the world and the NBT bytes of each chunk in a region file.
 
-    One chunk is held at a time, however large the file is.
+    Only one chunk is in memory at a time.
 
     Args:
-        path: the file, ``r.X.Z.mca``.
-        is_wanted: whether the chunk at a position is read; all are where it is left out.
+        path: The region file, ``r.X.Z.mca``.
+        is_wanted: Function that selects chunks by position. The default is all chunks.
 
     Raises:
-        InputError: the file cannot be read. DamagedFileError: it is no region file.
-        LimitError: it or a chunk of it is too large.
+        InputError: If the file cannot be read.
+        DamagedFileError: If the file is not a valid region file.
+        LimitError: If the file or a chunk exceeds the size limit.
     """
     region_x, region_z = region_position(path)
     try:
@@ -230,26 +232,28 @@ def read_region(
 def _slots(head: bytes, size: int, path: Path) -> Iterator[tuple[int, range]]:
     """Return the chunks that a file's head names: the number of each and its sectors."""
     if size > MAX_REGION_BYTES:
-        raise LimitError(path, f"has {size:,} bytes; at most {MAX_REGION_BYTES:,} are read")
+        raise LimitError(path, f"has {size:,} bytes, the limit is {MAX_REGION_BYTES:,}")
     if not head:
         return  # The game leaves empty files where it never wrote a chunk.
     if len(head) < 2 * SECTOR:
-        raise DamagedFileError(path, f"is no region file: it has {len(head)} bytes, no whole head")
+        reason = f"is not a valid region file: the header is incomplete ({len(head)} bytes)"
+        raise DamagedFileError(path, reason)
     taken: set[int] = set()
     for slot, location in enumerate(np.frombuffer(head, ">u4", 1024).tolist()):
         if location:
             sectors = range(location >> 8, (location >> 8) + (location & 255))
             if sectors.start < 2 or not sectors or not taken.isdisjoint(sectors):
-                raise DamagedFileError(path, f"chunk {slot} lies on the head or on another chunk")
+                reason = f"chunk {slot} overlaps the header or another chunk"
+                raise DamagedFileError(path, reason)
             taken.update(sectors)
             yield slot, sectors
 
 
 def region_position(path: Path) -> tuple[int, int]:
-    """Return the x and z of a region file named ``r.X.Z.mca``.
+    """Return the region position x, z from the name of a region file, ``r.X.Z.mca``.
 
     Raises:
-        DamagedFileError: the name is another.
+        DamagedFileError: If the name has a different form.
     """
     parts = path.name.split(".")
     try:
@@ -257,18 +261,19 @@ def region_position(path: Path) -> tuple[int, int]:
             raise ValueError
         return int(parts[1]), int(parts[2])
     except ValueError:
-        raise DamagedFileError(path, "is not named like a region file, r.X.Z.mca") from None
+        raise DamagedFileError(path, "is not named like a region file (r.X.Z.mca)") from None
 
 
 def _read_chunk(path: Path, stream: BinaryIO, position: tuple[int, int], sectors: range) -> bytes:
     stream.seek(sectors.start * SECTOR)
     record = stream.read(len(sectors) * SECTOR)
     if len(record) < _CHUNK_HEADER.size:
-        raise DamagedFileError(path, f"ends before its chunk {position}")
+        raise DamagedFileError(path, f"ends before chunk {position}")
     length, kind = _CHUNK_HEADER.unpack_from(record)
     packed = record[_CHUNK_HEADER.size : 4 + length]
     if not 1 <= length <= len(sectors) * SECTOR - 4 or len(packed) != length - 1:
-        raise DamagedFileError(path, f"chunk {position} says {length:,} bytes and holds fewer")
+        reason = f"chunk {position} declares {length:,} bytes but contains fewer"
+        raise DamagedFileError(path, reason)
     source = path
     if kind & EXTERNAL:
         source = path.parent / f"c.{position[0]}.{position[1]}.mcc"
@@ -277,33 +282,31 @@ def _read_chunk(path: Path, stream: BinaryIO, position: tuple[int, int], sectors
 
 
 def unpack_chunk(packed: bytes, kind: int, source: Path, position: tuple[int, int]) -> bytes:
-    """Return a chunk's NBT.
+    """Decompress the NBT of a chunk.
 
     Args:
-        packed: the bytes after the one that says how they are packed.
-        kind: that byte, without the bit of a chunk in a file of its own.
-        source: the file that errors name.
-        position: the chunk's place in the world, for the same.
+        packed: The bytes after the compression byte.
+        kind: The compression byte, without the bit that marks a separate file.
+        source: The file path for error messages.
+        position: The chunk's position in the world, for error messages.
 
     Raises:
-        DamagedFileError: it is not packed as it says. LimitError: it is too large.
-        InputError: it is packed in a way of a mod, or of a game to come.
+        DamagedFileError: If the data does not match the stated compression.
+        LimitError: If the chunk exceeds the size limit.
+        InputError: If the compression is unknown, such as that of a mod or a future game.
     """
     if kind == LZ4:
         return unpack_lz4(packed, source, MAX_CHUNK_BYTES)
     if kind not in (GZIP, ZLIB, PLAIN):
-        reason = (
-            f"chunk {position} is packed in {_compression_name(packed, kind)}, which is not read"
-        )
-        advice = (
-            "set region-file-compression=deflate in server.properties and let it save the world"
-        )
+        reason = f"chunk {position} uses {_compression_name(packed, kind)}, which is not supported"
+        advice = "set region-file-compression=deflate in server.properties and save the world again"
         raise InputError(source, f"{reason}; {advice}")
     if kind == PLAIN:
         return packed
     result = unpack(packed, source, MAX_CHUNK_BYTES)
     if result is packed:
-        raise DamagedFileError(source, f"chunk {position} is not packed as it says")
+        reason = f"chunk {position} does not have its stated compression"
+        raise DamagedFileError(source, reason)
     return result
 
 
@@ -311,5 +314,5 @@ def _compression_name(packed: bytes, kind: int) -> str:
     """Return how a chunk is packed: a custom compression comes with a name, as texts do."""
     if kind == CUSTOM and len(packed) > 2:
         name = packed[2 : 2 + int.from_bytes(packed[:2], "big")][:80]
-        return f"the server's own way {name.decode('ascii', 'replace')!r}"
-    return f"way {kind}"
+        return f"the custom compression {name.decode('ascii', 'replace')!r}"
+    return f"compression type {kind}"

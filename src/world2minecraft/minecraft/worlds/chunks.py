@@ -1,8 +1,9 @@
-"""Chunks, columns of sections of 16 blocks a side: written for and read from games since 1.13.
+"""Chunks, which are columns of 16 x 16 x 16 sections: reading and writing for games since 1.13.
 
-From 1.13 to 1.17 their content lies in a compound named ``Level``; the world is 256 blocks high and
-begins at 0. Until 1.15 numbers are packed without gaps; until 1.16 entities lie in the chunk. 1.13
-lights nothing when it loads a chunk, so that its sections are written with full light from the sky.
+From 1.13 to 1.17, the content of a chunk is in a compound named ``Level``, and the world is 256
+blocks high and starts at layer 0. Palette indices are packed without gaps until 1.15, and entities
+are stored in the chunk until 1.16. Because 1.13 does not compute light when it loads a chunk,
+sections for it are written with full skylight.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -54,11 +55,11 @@ CHUNK_LIMITS = NbtLimits(depth=64, values=500_000, bytes=16 << 20)
 
 @dataclass(frozen=True)
 class Section:
-    """One packed section: ``place`` counts sections along x, y, z in the world."""
+    """A packed section. ``place`` is its position in sections along x, y, z in the world."""
 
     place: tuple[int, int, int]
     palette: tuple[str, ...]
-    words: np.ndarray  # uint64 [N] as packed today, N = 0 where one state fills it
+    words: np.ndarray  # uint64 [N] in the current packing; N = 0 for a uniform section.
 
 
 class SectionPacker:
@@ -72,11 +73,11 @@ class SectionPacker:
         self._words = np.zeros(SECTION // 4, np.uint64)
 
     def numbers(self, origin: np.ndarray) -> tuple[list[int], np.ndarray] | None:
-        """Pack the section whose first cell lies at ``origin`` in the volume.
+        """Pack the section whose first cell is at ``origin`` in the volume.
 
         Returns:
-            The numbers of its states in the volume's palette, in the section's own order, and
-            its words (a view that the next call overwrites); None where all of it is air.
+            The volume's palette indices of the section's states in the section's own order, and the
+            packed words (a view that the next call overwrites). None if the section is all air.
         """
         count, used = pack_section(self._states, origin, self._numbers, self._met, self._words)
         if count == 1 and self._met[0] == 0:
@@ -86,7 +87,7 @@ class SectionPacker:
     def column(
         self, place: tuple[int, int], corner: tuple[int, int, int], height: int
     ) -> Iterator[tuple[int, tuple[list[dict[str, Any]], np.ndarray]]]:
-        """Return the sections of a chunk from below to above: y, palette entries and words."""
+        """Yield the sections of a chunk from bottom to top: y, palette entries and packed words."""
         for y in range(corner[1] >> 4, (corner[1] + height - 1 >> 4) + 1):
             at = (place[0] * 16 - corner[0], y * 16 - corner[1], place[1] * 16 - corner[2])
             packed = self.numbers(np.array(at, np.int64))
@@ -105,20 +106,20 @@ def read_section(
     straddles: bool = False,
     y: Any = None,
 ) -> Section | None:
-    """Return a section from its NBT, or None where it is air alone.
+    """Read a section from its NBT, or return None if it is all air.
 
     Args:
-        blocks: the compound that holds the palette and the words.
-        palette_key: the name of the palette in it.
-        words_key: the name of the words in it.
-        place: the chunk's position in the world, in chunks.
-        path: the file that errors name.
-        data_version: that of the game that wrote the chunk.
-        straddles: whether numbers go over from one word to the next, as before 1.16.
-        y: the section's height; ``Y`` of ``blocks`` where it is left out.
+        blocks: The compound with the palette and the packed words.
+        palette_key: The name of the palette tag.
+        words_key: The name of the tag with the packed words.
+        place: The chunk's position in the world, in chunks.
+        path: The file path for error messages.
+        data_version: The data version of the game that wrote the chunk.
+        straddles: Whether palette indices cross word boundaries, as before 1.16.
+        y: The section's y position. The default is the tag ``Y`` of ``blocks``.
 
     Raises:
-        DamagedFileError: it is broken.
+        DamagedFileError: If the section is damaged.
     """
     try:
         palette = tuple(read_state(_text_of(held), data_version) for held in blocks[palette_key])
@@ -128,12 +129,12 @@ def read_section(
         words = words.view(np.uint64)
         height = int(blocks["Y"] if y is None else y)
     except (*MISSHAPEN, UsageError) as error:
-        raise DamagedFileError(path, f"chunk {place} has a broken section") from error
+        raise DamagedFileError(path, f"chunk {place} contains a damaged section") from error
     is_sized = 1 <= len(palette) <= SECTION
     packed = repack_section_words(words, len(palette), straddles=straddles) if is_sized else None
     if packed is None:
-        reason = f"{len(palette)} states in {len(words)} words"
-        raise DamagedFileError(path, f"chunk {place}, section {height} has {reason}")
+        reason = f"section {height} has {len(palette)} states but {len(words)} words"
+        raise DamagedFileError(path, f"chunk {place} is damaged: {reason}")
     if palette == (AIR,):
         return None
     return Section((place[0], height, place[1]), palette, packed)
@@ -146,14 +147,14 @@ def _text_of(entry: str | Mapping[str, Any]) -> str:
 def upgrade_old_chunk(
     root: Mapping[str, Any], place: tuple[int, int], path: Path
 ) -> dict[str, Any]:
-    """Return an old chunk's tree with the keys that chunks have today.
+    """Convert the NBT tree of an old chunk to the current tag names.
 
     Raises:
-        DamagedFileError: there is no ``Level``, or it is another thing.
+        DamagedFileError: If the tag ``Level`` is missing or invalid.
     """
     level = root.get("Level")
     if not isinstance(level, dict):
-        raise DamagedFileError(path, f"chunk {place} has no Level, as its data version says")
+        raise DamagedFileError(path, f"chunk {place} has no Level tag")
     names = {"TileEntities": "block_entities", "Entities": "Entities", "Sections": "sections"}
     held = {new: level.get(old, []) for old, new in names.items()}
     same = {key: level[key] for key in ("xPos", "zPos", "Status") if key in level}
@@ -161,10 +162,10 @@ def upgrade_old_chunk(
 
 
 def old_sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> Iterator[Section]:
-    """Return the sections of a flattened old chunk that are not air alone.
+    """Yield the sections of a chunk from 1.13 to 1.17 that are not all air.
 
     Raises:
-        DamagedFileError: one is broken.
+        DamagedFileError: If a section is damaged.
     """
     version = root["DataVersion"]
     straddles = version < FIRST_WITHOUT_GAPS
@@ -193,13 +194,13 @@ class OldChunkWriter:
         block_entities: Sequence[Mapping[str, Any]] = (),
         entities: Sequence[Mapping[str, Any]] = (),
     ) -> bytes | None:
-        """Return the NBT of the chunk at ``place`` (x, z), or None where nothing is in it.
+        """Return the NBT of a chunk, or None if it is empty.
 
         Args:
-            place: the chunk's position in the world, in chunks.
-            corner: the world position of the volume's first cell.
+            place: The chunk's position (x, z) in the world, in chunks.
+            corner: The world position of the volume's first cell.
             block_entities: NBT of the block entities in this chunk.
-            entities: NBT of the entities in this chunk, for games that keep them here.
+            entities: NBT of the entities in this chunk, for games that store them in chunks.
         """
         held = entities if self._version < FIRST_ENTITY_FILES else ()
         sections = [
@@ -243,7 +244,7 @@ class OldChunkWriter:
 
 
 class ChunkWriter:
-    """Writes the chunks of one volume."""
+    """Writes the chunks of one volume for a game since 1.18."""
 
     def __init__(self, states: np.ndarray, palette: Sequence[str], version: GameVersion):
         self._packer = SectionPacker(states, palette, version.level_data_version)
@@ -258,11 +259,11 @@ class ChunkWriter:
         corner: tuple[int, int, int],
         block_entities: Sequence[Mapping[str, Any]] = (),
     ) -> bytes | None:
-        """Return the NBT of the chunk at ``place`` (x, z), or None where all of it is air.
+        """Return the NBT of a chunk, or None if it is empty.
 
         Args:
-            place: the chunk's position in the world, in chunks.
-            corner: the world position of the volume's first cell.
+            place: The chunk's position (x, z) in the world, in chunks.
+            corner: The world position of the volume's first cell.
             block_entities: NBT of the block entities in this chunk.
         """
         low = corner[1] >> 4
@@ -336,7 +337,8 @@ class _ChunkReader(NbtReader):
             raw = self.data[self.at : end]
             if raw not in self._known:
                 if len(self._known) >= MAX_STATE_TEXTS:
-                    raise LimitError(self.path, f"holds over {MAX_STATE_TEXTS:,} block states")
+                    reason = f"exceeds the limit of {MAX_STATE_TEXTS:,} block states"
+                    raise LimitError(self.path, reason)
                 self._known[raw] = state_text(self.compound(depth + 1))
             found.append(self._known[raw])
             self.at = end
@@ -349,32 +351,34 @@ def read_chunk(
     """Read a chunk and return its NBT and an iterator over its sections.
 
     Args:
-        data: the chunk's NBT.
-        place: its position in the world, in chunks.
-        path: the file that errors name.
-        known: what palettes held so far; one mapping for all chunks of a world.
+        data: The NBT bytes of the chunk.
+        place: The chunk's position in the world, in chunks.
+        path: The file path for error messages.
+        known: Cache of palette entries, shared by all chunks of a world.
 
     Raises:
-        DamagedFileError: it is no chunk, or lies in another place than it says.
-        LimitError: it asks for too much. InputError: it is of a game before 1.13.
+        DamagedFileError: If the chunk is damaged or states a different position.
+        LimitError: If the chunk exceeds the NBT limits.
+        InputError: If the chunk was written by a game before 1.13.
     """
     try:
         _, root = _ChunkReader(data, path, known).root()
     except UsageError as error:
-        raise DamagedFileError(path, f"chunk {place} has a palette with {error}") from error
+        reason = f"chunk {place} contains an invalid palette entry: {error}"
+        raise DamagedFileError(path, reason) from error
     version = root.get("DataVersion", 0)
     if not isinstance(version, int) or version < FIRST_DATA_VERSION:
-        reason = f"chunk {place} is of a game before 1.13 (data version {version})"
-        advice = "in a newer game's list of worlds choose Edit, then Optimize World"
-        raise InputError(path, f"{reason}; {advice}, or give a --box that was played in since")
+        reason = f"chunk {place} was saved before Minecraft 1.13 (data version {version})"
+        advice = "in a newer game, edit the world and choose Optimize World"
+        raise InputError(path, f"{reason}; {advice}, or use a --box with newer chunks")
     is_old = version < FIRST_WITHOUT_LEVEL or "Level" in root
     if is_old:
         root = upgrade_old_chunk(root, place, path)
     if (root.get("xPos"), root.get("zPos")) != place:
         stated = (root.get("xPos"), root.get("zPos"))
-        raise DamagedFileError(path, f"chunk {place} says that it is chunk {stated}")
+        raise DamagedFileError(path, f"chunk {place} states the position {stated}")
     if not isinstance(root.get("sections", []), list):
-        raise DamagedFileError(path, f"chunk {place} has sections that are no list")
+        raise DamagedFileError(path, f"chunk {place} contains a sections tag that is not a list")
     return root, (old_sections if is_old else _sections)(root, place, path)
 
 
@@ -382,7 +386,7 @@ def _sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> It
     version = root["DataVersion"]
     for section in root.get("sections", []):
         if not isinstance(section, dict):
-            raise DamagedFileError(path, f"chunk {place} has a broken section")
+            raise DamagedFileError(path, f"chunk {place} contains a damaged section")
         blocks = section.get("block_states")
         if blocks is not None:
             height = section.get("Y")

@@ -1,7 +1,7 @@
-"""Edit chunks of 1.18 and later in place: all else in them and in their region files is preserved.
+"""In-place editing of chunks of 1.18 and later, which keeps all other data of their region files.
 
-Reading a whole world and writing it again would repack each of its chunks, and lose what a mod
-keeps there. Here the table is rebuilt, and the records of untouched chunks are copied.
+Reading and rewriting a whole world would repack every chunk and lose the data of mods. This module
+instead rebuilds the table of a region file and copies the records of unchanged chunks.
 """
 
 import struct
@@ -49,10 +49,10 @@ Place = tuple[int, int]
 
 @dataclass(frozen=True)
 class RegionFile:
-    """A region file as it lies on disk.
+    """The content of a region file.
 
-    ``records`` are the packed chunks by their place in the world, each with the byte before it
-    that says how it is packed; ``times`` are when each was saved, in seconds.
+    ``records`` contains the compressed chunks by world position, each after its compression byte.
+    ``times`` contains the time in seconds at which each chunk was saved.
     """
 
     path: Path
@@ -60,10 +60,11 @@ class RegionFile:
     times: Mapping[Place, int] = field(default_factory=dict)
 
     def chunk(self, place: Place) -> bytes | None:
-        """Return the NBT of a chunk, or None where the file has none there.
+        """Return the NBT bytes of a chunk, or None if the file does not contain it.
 
         Raises:
-            DamagedFileError: it is not packed as it says. LimitError: it is too large.
+            DamagedFileError: If the data does not match the stated compression.
+            LimitError: If the chunk exceeds the size limit.
         """
         record = self.records.get(place)
         if record is None:
@@ -76,12 +77,12 @@ class RegionFile:
         return unpack_chunk(packed, kind & ~EXTERNAL, source, place)
 
     def with_chunks(self, chunks: Mapping[Place, bytes]) -> dict[str, bytes | None]:
-        """Return the files that change when chunks are put in: their bytes, by name.
+        """Return the files that change if chunks are replaced, as bytes by file name.
 
-        None stands for a file that must go. Nothing is written.
+        None marks a file to delete. No file is written.
 
         Args:
-            chunks: NBT by place, all within this region.
+            chunks: NBT bytes by chunk position, all in this region.
         """
         records, changed = dict(self.records), {}
         for place, data in sorted(chunks.items()):
@@ -97,17 +98,19 @@ class RegionFile:
 
 
 def read_region_file(path: Path) -> RegionFile:
-    """Read a region file without unpacking its chunks; a missing or empty file has none.
+    """Read a region file without decompressing its chunks. A missing file has no chunks.
 
     Raises:
-        DamagedFileError: it is no region file. LimitError: it is too large.
+        DamagedFileError: If the file is not a valid region file.
+        LimitError: If the file exceeds the size limit.
     """
     region_x, region_z = region_position(path)
     data = read_bytes(path, MAX_EDITED_BYTES) if path.exists() else b""
     if not data:
         return RegionFile(path)
     if len(data) < 2 * SECTOR:
-        raise DamagedFileError(path, f"is no region file: it has {len(data)} bytes, no whole head")
+        reason = f"is not a valid region file: the header is incomplete ({len(data)} bytes)"
+        raise DamagedFileError(path, reason)
     locations, times = np.frombuffer(data, ">u4", 2048).reshape(2, 1024).tolist()
     records: dict[Place, bytes] = {}
     saved: dict[Place, int] = {}
@@ -120,18 +123,19 @@ def read_region_file(path: Path) -> RegionFile:
 
 
 def outside_name(place: Place) -> str:
-    """Return the name of the file that holds a chunk too large for its region file."""
+    """Return the name of the separate file for a chunk that is too large for its region file."""
     return f"c.{place[0]}.{place[1]}.mcc"
 
 
 def _record(data: bytes, location: int, path: Path, place: Place) -> bytes:
     start, sectors = (location >> 8) * SECTOR, location & 255
     if start < 2 * SECTOR or not sectors or start + _RECORD_HEADER.size > len(data):
-        raise DamagedFileError(path, f"chunk {place} lies on the head or beyond the end")
+        raise DamagedFileError(path, f"chunk {place} overlaps the header or is beyond the end")
     length = _RECORD_HEADER.unpack_from(data, start)[0]
     record = data[start + 4 : start + 4 + length]
     if not 1 <= length <= sectors * SECTOR - 4 or len(record) != length:
-        raise DamagedFileError(path, f"chunk {place} says {length:,} bytes and holds fewer")
+        reason = f"chunk {place} declares {length:,} bytes but contains fewer"
+        raise DamagedFileError(path, reason)
     return record
 
 
@@ -152,17 +156,22 @@ def _pack_region(records: Mapping[Place, bytes], times: Mapping[Place, int]) -> 
 
 @dataclass
 class StateNumbers:
-    """The states of many chunks, numbered together, with the NBT that each was first read from."""
+    """A shared index of the block states of many chunks, with the original NBT of each state."""
 
     texts: list[str] = field(default_factory=lambda: [AIR])
     entries: dict[int, dict[str, Any]] = field(default_factory=dict)
     _numbers: dict[str, int] = field(default_factory=lambda: {AIR: 0})
 
     def number(self, state: str, entry: dict[str, Any] | None = None) -> int:
-        """Return the number of a state; ``entry`` is its NBT where it was read from some."""
+        """Return the index of a state, and add the state if it is new.
+
+        Args:
+            state: The block state.
+            entry: The NBT from which the state was read, if any.
+        """
         if state not in self._numbers:
             if len(self.texts) > np.iinfo(np.uint16).max:
-                raise InputError("palette", "the place holds more than 65,536 block states")
+                raise InputError("palette", "exceeds the limit of 65,536 block states")
             self._numbers[state] = len(self.texts)
             self.texts.append(state)
         number = self._numbers[state]
@@ -176,41 +185,43 @@ class _Reader(NbtReader):
 
 
 def parse_chunk(data: bytes, place: Place, path: Path) -> dict[str, Any] | None:
-    """Return the tree of a chunk; None where the game has not finished making it.
+    """Return the NBT tree of a chunk, or None if the game has not finished generating it.
 
     Args:
-        data: the chunk's NBT.
-        place: its position in the world, in chunks.
-        path: the file that errors name.
+        data: The NBT bytes of the chunk.
+        place: The chunk's position in the world, in chunks.
+        path: The file path for error messages.
 
     Raises:
-        DamagedFileError: it is no chunk, or another one. LimitError: it is too large.
-        InputError: it is of a game before 1.18.
+        DamagedFileError: If the chunk is damaged or states a different position.
+        LimitError: If the chunk exceeds the NBT limits.
+        InputError: If the chunk was written by a game before 1.18.
     """
     _, root = _Reader(data, path, LIMITS).root()
     version = root.get("DataVersion", 0)
     if not isinstance(version, int) or version < FIRST_DATA_VERSION:
-        reason = f"chunk {place} is of a game before 1.18 (data version {version})"
-        raise InputError(path, f"{reason}; open the world once in a newer game and go there")
+        reason = f"chunk {place} was saved before Minecraft 1.18 (data version {version})"
+        raise InputError(path, f"{reason}; visit this place in a newer game and save the world")
     stated = (root.get("xPos"), root.get("zPos"))
     if stated != place:
-        raise DamagedFileError(path, f"chunk {place} says that it is chunk {stated}")
+        raise DamagedFileError(path, f"chunk {place} states the position {stated}")
     for key in ("sections", "block_entities"):
         held = root.setdefault(key, [])
         if not isinstance(held, list) or not all(isinstance(entry, dict) for entry in held):
-            raise DamagedFileError(path, f"chunk {place} has {key} that are no list of compounds")
+            reason = f"chunk {place} contains a tag {key} that is not a list of compounds"
+            raise DamagedFileError(path, reason)
     if not all(isinstance(section.get("Y"), int) for section in root["sections"]):
-        raise DamagedFileError(path, f"chunk {place} has a section without a height")
+        raise DamagedFileError(path, f"chunk {place} contains a section without a Y position")
     return root if root.get("Status") in FULL else None
 
 
 def new_chunk(place: Place, data_version: int, min_section: int) -> dict[str, Any]:
-    """Return a chunk of air that the game takes as finished.
+    """Return the NBT tree of a chunk of air that the game accepts as finished.
 
     Args:
-        place: its position in the world, in chunks.
-        data_version: that of the world.
-        min_section: the lowest section, as -4.
+        place: The chunk's position in the world, in chunks.
+        data_version: The data version of the world.
+        min_section: The y position of the lowest section, such as -4.
     """
     return {
         "DataVersion": data_version,
@@ -232,10 +243,10 @@ def new_chunk(place: Place, data_version: int, min_section: int) -> dict[str, An
 
 
 def read_sections(root: dict[str, Any], path: Path, numbers: StateNumbers) -> dict[int, np.ndarray]:
-    """Return the blocks of a chunk: uint16 [16, 16, 16] (x, y, z) by section.
+    """Return the blocks of a chunk as uint16 [16, 16, 16] (x, y, z) by section y position.
 
     Raises:
-        DamagedFileError: a section is broken.
+        DamagedFileError: If a section is damaged.
     """
     found = {}
     for section in root["sections"]:
@@ -247,27 +258,28 @@ def read_sections(root: dict[str, Any], path: Path, numbers: StateNumbers) -> di
             words = blocks.get("data", np.zeros(0, np.int64)).view(np.uint64)
             place = int(section["Y"])
         except (KeyError, TypeError, AttributeError, ValueError, UsageError) as error:
-            raise DamagedFileError(path, f"has a broken section ({error})") from error
+            raise DamagedFileError(path, f"contains a damaged section ({error})") from error
         cells = np.zeros((16, 16, 16), np.uint16)
         is_sized = 1 <= len(local) <= SECTION
         packed = repack_section_words(words, len(local), straddles=False) if is_sized else None
         if packed is None:
-            reason = f"{len(local)} states in {len(words)} words"
-            raise DamagedFileError(path, f"section {place} has {reason}")
+            reason = f"has {len(local)} states but {len(words)} words"
+            raise DamagedFileError(path, f"section {place} is damaged: it {reason}")
         if not unpack_section(packed, np.array(local, np.uint16), cells, np.zeros(3, np.int64)):
-            raise DamagedFileError(path, f"section {place} points outside its palette")
+            reason = f"section {place} contains a block index that is not in its palette"
+            raise DamagedFileError(path, reason)
         found[place] = cells
     return found
 
 
 def set_section(root: dict[str, Any], place: int, cells: np.ndarray, numbers: StateNumbers) -> None:
-    """Put blocks into a chunk's tree, in place; the section is made where there is none.
+    """Set the blocks of a section in a chunk's NBT tree, in place. A missing section is created.
 
     Args:
-        root: the chunk.
-        place: the section.
-        cells: uint16 [16, 16, 16], numbers of ``numbers``.
-        numbers: the states.
+        root: The NBT tree of the chunk.
+        place: The y position of the section.
+        cells: Blocks as uint16 [16, 16, 16], indices of ``numbers``.
+        numbers: The index of block states.
     """
     met = np.zeros(SECTION, np.uint16)
     words = np.zeros(SECTION // 4, np.uint64)
@@ -297,7 +309,7 @@ def read_block_entities(root: dict[str, Any], path: Path) -> list[BlockEntity]:
     """Return the block entities of a chunk.
 
     Raises:
-        DamagedFileError: one has no id or no place.
+        DamagedFileError: If a block entity has no ID or position.
     """
     found = []
     for nbt in root["block_entities"]:
@@ -306,12 +318,13 @@ def read_block_entities(root: dict[str, Any], path: Path) -> list[BlockEntity]:
             position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
             found.append(BlockEntity(position, str(nbt["id"]), rest))
         except (KeyError, TypeError, ValueError, AttributeError) as error:
-            raise DamagedFileError(path, "has a block entity without id and place") from error
+            reason = "contains a block entity without ID or position"
+            raise DamagedFileError(path, reason) from error
     return found
 
 
 def set_block_entities(root: dict[str, Any], entities: Sequence[BlockEntity]) -> None:
-    """Make these the block entities of a chunk, in place."""
+    """Replace the block entities of a chunk, in place."""
     root["block_entities"] = [
         {
             **entity.nbt,
@@ -323,9 +336,9 @@ def set_block_entities(root: dict[str, Any], entities: Sequence[BlockEntity]) ->
 
 
 def clear_light(root: dict[str, Any]) -> None:
-    """Remove light and heights of a changed chunk, so that the game computes them on loading.
+    """Remove the light and height maps of a changed chunk, so that the game recomputes them.
 
-    Servers that keep their light in tags of their own (Paper) look at those alone.
+    The light tags of Paper servers are removed too.
     """
     root["isLightOn"] = Byte(0)
     root["Heightmaps"] = {}

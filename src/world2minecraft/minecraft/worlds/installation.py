@@ -1,4 +1,4 @@
-"""Copy a world into a game's saves folder under a free name."""
+"""Installation of a world in a game's saves folder under a free name."""
 
 import os
 import re
@@ -23,19 +23,21 @@ _FORBIDDEN = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f]')
 
 
 def install_world(world: Path, saves: Path, name: str | None = None) -> Path:
-    """Copy a world into a saves folder and return where it is; nothing there is overwritten.
+    """Copy a world to a saves folder under a free name and return the new world folder.
 
-    It is copied beside its place first, so that the game never sees half of it.
+    The world is copied to a temporary folder first, so that the game never sees an incomplete
+    world. Existing worlds are not overwritten.
 
     Args:
-        world: the folder with ``level.dat``.
-        saves: the saves folder; made where only its parent is there.
-        name: what the game's list shows and the folder is called; the world's own where left
-            out. Where it is taken, a number follows it.
+        world: The world folder with ``level.dat``.
+        saves: The saves folder. It is created if only its parent exists.
+        name: The name of the world in the game and of its folder. The default is the world's own
+            name. A number is appended if the name is taken.
 
     Raises:
-        InputError: there is no world. UsageError: the name cannot be a folder's.
-        OutputError: the folder may not be written, or its disk is full.
+        InputError: If the world is not found.
+        UsageError: If the name has no valid characters for a folder name.
+        OutputError: If the folder cannot be written or the disk is full.
     """
     level = read_level(world)
     wanted = check_name(name or str(level.get("LevelName") or world.name))
@@ -60,21 +62,23 @@ def install_world(world: Path, saves: Path, name: str | None = None) -> Path:
 
 
 def check_name(name: str) -> str:
-    """Return a name as a folder may have it on every system: printable, short, none reserved.
+    """Convert a name to a folder name that is valid on every operating system.
 
     Raises:
-        UsageError: nothing of it is left.
+        UsageError: If no valid characters remain.
     """
     text = _FORBIDDEN.sub(" ", name)
     text = " ".join("".join(letter for letter in text if letter.isprintable()).split())
     text = text[:MAX_NAME].strip(". ")
     if not text:
-        raise UsageError(f"a world cannot be named {name!r}; give --name some letters")
+        raise UsageError(f"--name must contain letters or digits, got {name!r}")
     return f"{text} world" if _RESERVED.fullmatch(text) else text
 
 
 def free_name(wanted: str, taken: set[str]) -> str:
-    """Return the name, or with the lowest number that makes it free; case does not count.
+    """Return a name that is not taken, with the lowest number appended if necessary.
+
+    The comparison ignores case.
 
     Example:
         >>> free_name("Room", {"room", "Room (2)"})
@@ -122,7 +126,8 @@ def _files_of(world: Path) -> list[Path]:
             if path.is_file() and not path.is_symlink() and name != LOCK_FILE:
                 found.append(path)
         if len(found) > MAX_FILES:
-            raise InputError(world, f"holds more than {MAX_FILES:,} files; it is no room of ours")
+            reason = f"contains more than {MAX_FILES:,} files, so it is not a room world"
+            raise InputError(world, reason)
     return found
 
 
@@ -130,29 +135,30 @@ def _check_space(files: list[Path], saves: Path) -> None:
     needed = sum(path.stat().st_size for path in files) + SPARE_BYTES
     free = shutil.disk_usage(saves).free
     if free < needed:
-        raise OutputError(saves, f"its disk has {free >> 20} MB free; {needed >> 20} are needed")
+        reason = f"not enough disk space: {needed >> 20} MB required, {free >> 20} MB free"
+        raise OutputError(saves, reason)
 
 
 def find_world(source: Path) -> Path:
-    """Return the world folder of a run, of its ``build`` folder, or the folder itself.
+    """Find the world folder of a run, of its ``build`` folder, or the folder itself.
 
     Raises:
-        InputError: there is none.
+        InputError: If no world is found.
     """
     for folder in (source, source / "build" / "world", source / "world"):
         if (folder / "level.dat").is_file():
             return folder
-    raise InputError(source, "holds no world (build/world/level.dat); build one with w2m build")
+    raise InputError(source, "contains no world (build/world/level.dat); run w2m build first")
 
 
 def age_note(world: Path, game: Game) -> str:
-    """Say so where the game is older than the world; empty where it is not, or not known."""
+    """Return a warning if the game is older than the world, or an empty string otherwise."""
     known = {version.name: version.data_version for version in game_versions()}
     version = read_level(world).get("DataVersion")
     age = known.get(game.version or "")
     if age is None or not isinstance(version, int) or age >= version:
         return ""
     return (
-        f"this game is {game.version}, older than the world, and will not open it; build again "
-        f"with --mc-version {game.version}"
+        f"Minecraft {game.version} cannot open this newer world; build the world again with "
+        f"--mc-version {game.version}"
     )

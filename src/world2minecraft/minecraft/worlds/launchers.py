@@ -1,12 +1,12 @@
-"""Find the saves folders of the launchers on this machine.
+"""Search for the saves folders of the game launchers on this computer.
 
 ======================  ========================================================================
 Minecraft launcher      ``.minecraft``, and the game directories of its installations
-Prism, PolyMC, MultiMC  one game directory an instance; Windows, macOS, Linux, Flatpak, Scoop
+Prism, PolyMC, MultiMC  One game directory per instance (Windows, macOS, Linux, Flatpak, Scoop)
 ======================  ========================================================================
 
-Only folders that are there count. MultiMC keeps its data beside its program, which may lie
-anywhere; the usual places are looked at.
+Only existing folders are returned. MultiMC stores its data next to its program, which can be
+anywhere, so only the usual locations are searched.
 """
 
 import json
@@ -31,7 +31,7 @@ SETTINGS_FILES = {
 
 @dataclass(frozen=True)
 class Game:
-    """One game that can be started: its name for people, its saves folder, its version if known."""
+    """An installed game, with its display name, its saves folder and its version if known."""
 
     name: str
     saves: Path
@@ -39,12 +39,14 @@ class Game:
 
 
 def find_games(platform: str, home: Path, environment: Mapping[str, str]) -> list[Game]:
-    """Return the games of a machine, the launcher's own first, each saves folder once.
+    """Find the installed games, with the Minecraft launcher first and no saves folder twice.
 
     Args:
-        platform: as ``sys.platform``: ``win32``, ``darwin`` or another for Linux.
-        home: the user's home folder.
-        environment: APPDATA, LOCALAPPDATA, XDG_DATA_HOME and PRISMLAUNCHER_DATA_DIR are looked at.
+        platform: The value of ``sys.platform``: ``win32``, ``darwin``, or any other value for
+            Linux.
+        home: The home folder of the user.
+        environment: The environment variables. APPDATA, LOCALAPPDATA, XDG_DATA_HOME and
+            PRISMLAUNCHER_DATA_DIR are used.
     """
     found: dict[Path, Game] = {}
     for root in _launcher_folders(platform, home, environment):
@@ -57,17 +59,18 @@ def find_games(platform: str, home: Path, environment: Mapping[str, str]) -> lis
 
 
 def choose_game(games: Sequence[Game], wanted: str) -> Game:
-    """Return the game of a number, from 1, or of a part of its name; the only one by default.
+    """Return the game with a number (from 1) or a part of its name, or the only game.
 
     Raises:
-        UsageError: there is none, or several match.
+        UsageError: If no game or several games match.
     """
     if not games:
-        raise UsageError("no game found; give the saves folder of one with --saves DIR")
+        raise UsageError("no game found; use --saves DIR to name a saves folder")
     if wanted.isdecimal():
         if not 1 <= int(wanted) <= len(games):
-            count = f"{len(games)} games" if len(games) > 1 else "1 game"
-            raise UsageError(f"--game {wanted}: only {count} found; see w2m install --list")
+            count = f"{len(games)} games were" if len(games) > 1 else "1 game was"
+            reason = f"--game {wanted} does not exist, because only {count} found"
+            raise UsageError(f"{reason}; run w2m install --list")
         return games[int(wanted) - 1]
     named = [game for game in games if wanted.casefold() in game.name.casefold()]
     if len(named) == 1:

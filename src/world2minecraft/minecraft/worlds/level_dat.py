@@ -1,4 +1,4 @@
-"""Make ``level.dat``: creative, a void, always one hour, nothing moves, the player in the room."""
+"""Creation of ``level.dat`` for a void world in creative mode at a fixed hour."""
 
 from pathlib import Path
 from typing import Any
@@ -47,13 +47,13 @@ GAME_RULES = {
 
 
 def no_world(folder: Path) -> InputError:
-    """Return the error over a folder without a ``level.dat``; it names a world that lies in it."""
-    reason = "is no world folder: it has no level.dat"
+    """Return the error for a folder without ``level.dat``, suggesting a world inside it."""
+    reason = "is not a world folder: level.dat not found"
     try:
         inner = sorted(path.parent for path in folder.glob("*/level.dat"))
     except OSError:
         inner = []
-    return InputError(folder, f"{reason}; {inner[0]} is one" if inner else reason)
+    return InputError(folder, f"{reason}; use {inner[0]} instead" if inner else reason)
 
 
 def level_data(
@@ -64,15 +64,16 @@ def level_data(
     packs: tuple[str, ...] = (),
     hour: float = 12.0,
 ) -> dict[str, Any]:
-    """Return the tree of a ``level.dat``.
+    """Return the NBT tree of a ``level.dat`` file.
 
     Args:
-        name: what the game's list of worlds shows.
-        spawn: where the player's feet stand, in world block coordinates.
-        spawn_yaw_deg: where the player looks, in the game's yaw: 0 south, 90 west.
-        version: the game that the world is written for.
-        packs: data packs of the world's own folder, by file name.
-        hour: the hour that stays, 0 to 24; the game's day begins at 6.
+        name: The name in the game's list of worlds.
+        spawn: Position of the player's feet in world block coordinates.
+        spawn_yaw_deg: Direction of the player's view as the game's yaw in degrees: 0 is south, 90
+            is west.
+        version: The target game version.
+        packs: File names of data packs in the world's own folder.
+        hour: The fixed hour of the day, 0 to 24. The game's day begins at 6.
     """
     x, y, z = (int(value // 1) for value in spawn)
     data_version = version.level_data_version

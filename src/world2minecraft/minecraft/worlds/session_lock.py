@@ -1,7 +1,7 @@
-"""``session.lock``: how the game marks a world as open, and how others lock it.
+"""Locking of a world through ``session.lock``, as the game does while a world is open.
 
-The game keeps the first byte of the file locked as long as it has the world open. Where the lock
-can be taken, nobody has it; while it is held here, the game refuses to open the world.
+The game keeps the first byte of the file locked while it has the world open. If the lock can be
+acquired, no game has the world open, and the game cannot open the world until it is released.
 """
 
 # Not by filelock: it locks by flock, and Java, with it the game, by POSIX locks, which do not meet.
@@ -30,11 +30,12 @@ SNOWMAN = "\u2603".encode()  # What the game writes there, by its own taste.
 
 @contextmanager
 def session_lock(world: Path) -> Iterator[None]:
-    """Hold a world's lock, so that neither the game nor a second of us opens it.
+    """Lock a world, so that neither the game nor another run of the program opens it.
 
     Raises:
-        ConflictError: the game, or another program, has the world open.
-        InputError: there is no such world. OutputError: the world may not be written.
+        ConflictError: If the game or another program has the world open.
+        InputError: If the world is not found.
+        OutputError: If the world folder cannot be written.
     """
     if not (world / "level.dat").is_file():
         raise no_world(world)
@@ -43,14 +44,14 @@ def session_lock(world: Path) -> Iterator[None]:
     try:
         stream = open(path, "r+b" if was_there else "x+b")  # noqa: SIM115  # Closed below.
     except OSError as error:
-        reason = f"its {LOCK_FILE} cannot be opened: {error.strerror or error}"
+        reason = f"cannot open {LOCK_FILE}: {error.strerror or error}"
         raise OutputError(world, reason) from error
     is_held = False
     try:
         is_held = _take(stream, world)
         if not is_held:
-            reason = "is open in the game (or in a server, or another program)"
-            raise ConflictError(world, f"{reason}; leave the world there, then try again")
+            reason = "is open in the game, a server or another program"
+            raise ConflictError(world, f"{reason}; close the world, then try again")
         if not was_there:
             stream.write(SNOWMAN)
             stream.flush()
@@ -73,7 +74,7 @@ def _take(stream: Any, world: Path) -> bool:
     except OSError as error:
         if error.errno in (errno.EACCES, errno.EAGAIN, errno.EDEADLK):
             return False
-        reason = f"its {LOCK_FILE} cannot be locked: {error.strerror or error}"
+        reason = f"cannot lock {LOCK_FILE}: {error.strerror or error}"
         raise OutputError(world, reason) from error
     return True
 

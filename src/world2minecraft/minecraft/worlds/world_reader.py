@@ -1,4 +1,4 @@
-"""Read world folders of Minecraft Java as volumes."""
+"""Reading of Minecraft Java world folders as volumes."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -35,25 +35,27 @@ Box = tuple[int, int, int, int, int, int]
 
 
 def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
-    """Read the overworld of a world folder, of 1.13 or later.
+    """Read the overworld of a world folder of 1.13 or later.
 
     Args:
-        folder: the folder that holds ``level.dat``.
-        box: x0 y0 z0 x1 y1 z1 in blocks, the last ones not included; the smallest box of all
-            that is not air where it is left out.
+        folder: The folder that contains ``level.dat``.
+        box: The box to read as x0, y0, z0, x1, y1, z1 in blocks, with exclusive upper bounds. The
+            default is the bounding box of all blocks except air.
 
     Returns:
-        The volume, without labels and with one block a metre: a world does not say its scale.
+        The volume without labels. Its scale is one block per metre, because worlds do not store a
+        scale.
 
     Raises:
-        InputError: there is no world. DamagedFileError: a file of it is broken.
-        LimitError: it is too large to hold; give a box.
+        InputError: If the world is not found.
+        DamagedFileError: If a file of the world is damaged.
+        LimitError: If the world is too large. Use a box in this case.
     """
     root = Path(folder)
     read_level(root)
     regions = region_files(root)
     if not regions:
-        raise InputError(root, "holds no region files of an overworld; nothing to read")
+        raise InputError(root, "contains no region files of the overworld; nothing to read")
     found = _gather([path for path in regions if _may_overlap(path, box)], box)
     palette, number_of = build_palette(found.numbers, root)
     numbers = np.array([number_of[state] for state in found.numbers], np.uint16)
@@ -76,26 +78,28 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
 
 
 def read_level(folder: Path) -> dict[str, Any]:
-    """Return the ``Data`` of a world's ``level.dat``.
+    """Return the ``Data`` compound of a world's ``level.dat``.
 
     Raises:
-        InputError: there is none. DamagedFileError: it is broken. LimitError: it is too large.
+        InputError: If the file is not found.
+        DamagedFileError: If the file is damaged.
+        LimitError: If the file exceeds the NBT limits.
     """
     path = folder / "level.dat"
     if not path.is_file():
         raise no_world(folder)
     if (folder / "db").is_dir() and not region_files(folder):
-        reason = "is a world of Bedrock Edition, and Java's are read"
-        raise InputError(folder, f"{reason}; save what you want of it as a .mcstructure there")
+        reason = "is a Bedrock Edition world, but only Java Edition worlds are supported"
+        raise InputError(folder, f"{reason}; export the blocks as .mcstructure in the game")
     data = unpack(read_bytes(path, LEVEL_LIMITS.bytes), path, LEVEL_LIMITS.bytes)
     _, root = read_nbt(data, path, LEVEL_LIMITS)
     if not isinstance(root.get("Data"), dict):
-        raise DamagedFileError(path, "has no Data")
+        raise DamagedFileError(path, "contains no Data compound")
     return root["Data"]
 
 
 def region_files(root: Path) -> list[Path]:
-    """The overworld's regions: beside level.dat, or from 26.1 on in a tree of dimensions."""
+    """Return the region files of the overworld, including the folder layout of 26.1 and later."""
     for folder in (root / "region", root / "dimensions" / "minecraft" / "overworld" / "region"):
         found = sorted(folder.glob("r.*.mca"))
         if found:
@@ -115,8 +119,8 @@ def _gather(regions: list[Path], box: Box | None) -> "_ChunkContents":
                 if box is None or _is_level(section, box):
                     found.add_section(section, path)
             if unpacked > MAX_UNPACKED_BYTES or len(found.sections) > MAX_SECTIONS:
-                reason = f"the world has more than {MAX_CELLS:,} blocks"
-                raise LimitError(path, f"{reason}, or takes too much memory; give a --box of it")
+                reason = f"exceeds the limit of {MAX_CELLS:,} blocks or the memory limit"
+                raise LimitError(path, f"{reason}; use --box to read a part of the world")
             held = _block_entities(root, path)
             found.block_entities += found.within(upgrade_signs(held, root["DataVersion"]), path)
             found.entities += found.within(_entities(root.get("Entities", []), path), path)
@@ -138,8 +142,8 @@ class _ChunkContents:
         numbers = self.numbers
         own = [numbers.setdefault(state, len(numbers)) for state in section.palette]
         if len(numbers) > MAX_STATES:
-            reason = f"has over {MAX_STATES:,} block states"
-            raise LimitError(path, f"{reason}; give a --box of the world")
+            reason = f"exceeds the limit of {MAX_STATES:,} block states"
+            raise LimitError(path, f"{reason}; use --box to read a part of the world")
         self.sections.append((section.place, np.array(own, np.uint16), section.words))
 
     def add_entity_files(self, paths: list[Path], box: Box | None) -> None:
@@ -153,8 +157,8 @@ class _ChunkContents:
         """Return entities where they do not take too much memory together."""
         self._held_bytes += sum(tree_bytes(dict(entity.nbt)) for entity in held)
         if self._held_bytes > MAX_HELD_BYTES:
-            reason = f"the world's entities take more than {MAX_HELD_BYTES:,} bytes"
-            raise LimitError(path, f"{reason}; give a --box of it")
+            reason = f"exceeds the limit of {MAX_HELD_BYTES:,} bytes of entities"
+            raise LimitError(path, f"{reason}; use --box to read a part of the world")
         return held
 
 
@@ -163,7 +167,7 @@ def _is_level(section: Section, box: Box) -> bool:
 
 
 def entity_files(regions: list[Path], box: Box | None) -> list[Path]:
-    """Return the files of entities beside a world's regions that may hold some of a box."""
+    """Return the entity files next to a world's region files that can overlap a box."""
     folder = regions[0].parent.parent / "entities"
     return [path for path in sorted(folder.glob("r.*.mca")) if _may_overlap(path, box)]
 
@@ -190,7 +194,8 @@ def _block_entities(root: dict[str, Any], path: Path) -> Iterator[BlockEntity]:
             position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
             yield BlockEntity(position, str(nbt["id"]), rest)
         except MISSHAPEN as error:
-            raise DamagedFileError(path, "has a block entity without id and place") from error
+            reason = "contains a block entity without ID or position"
+            raise DamagedFileError(path, reason) from error
 
 
 def _fill(
@@ -204,12 +209,14 @@ def _fill(
     size = high - low
     if (size <= 0).any() or size.astype(float).prod() > MAX_CELLS:
         shown = " x ".join(str(side) for side in size.tolist())
-        raise LimitError(root, f"{shown} blocks; at most {MAX_CELLS:,} are read: give a --box")
+        reason = f"has {shown} blocks, the limit is {MAX_CELLS:,}"
+        raise LimitError(root, f"{reason}; use --box to read a part of the world")
     states = np.zeros(tuple(size.tolist()), np.uint16)
     for place, own, words in sections:
         origin = np.array(place, np.int64) * 16 - low
         if not unpack_section(words, numbers[own], states, origin):
-            raise DamagedFileError(root, f"section {place} points outside its palette")
+            reason = f"section {place} contains a block index that is not in its palette"
+            raise DamagedFileError(root, reason)
     x, y, z = low.tolist()
     return states, (x, y, z)
 
@@ -231,7 +238,7 @@ def _entities(held: Any, path: Path) -> list[Entity]:
     try:
         return [_entity(nbt) for nbt in held]
     except MISSHAPEN as error:
-        raise DamagedFileError(path, "has an entity without id and place") from error
+        raise DamagedFileError(path, "contains an entity without ID or position") from error
 
 
 def _entity(nbt: dict[str, Any]) -> Entity:

@@ -1,4 +1,4 @@
-"""Write world folders of Minecraft Java; ``world_reader`` reads them back."""
+"""Writing of Minecraft Java world folders, which ``world_reader`` can read."""
 
 import os
 import shutil
@@ -43,24 +43,25 @@ def write_world(
     version: GameVersion | None = None,
     hour: float = 12.0,
 ) -> None:
-    """Write a volume as a world that opens in creative mode, at one hour of the day, in a void.
+    """Write a volume as a void world that opens in creative mode at a fixed hour of the day.
 
-    The folder is written beside its place and moved there at the end. A world of this program
-    that no game has saved yet, and into which nothing was built, is replaced; any other folder
-    with files in it is left alone.
+    The world is written to a temporary folder and then moved. An existing world is replaced only if
+    this program wrote it, no game has saved it and nothing was built into it. Any other folder that
+    contains files is left unchanged.
 
     Args:
-        volume: the blocks; states are written as they stand in its palette.
-        folder: the world's folder, as it goes under ``saves``.
-        name: what the game's list of worlds shows.
-        spawn: where the player's feet stand, in world block coordinates.
-        spawn_yaw_deg: where the player looks, in the game's yaw: 0 south, 90 west.
-        version: the game to write for; 1.20.1 where it is left out.
-        hour: the hour that stays, 0 to 24.
+        volume: The blocks to write.
+        folder: The world folder to write.
+        name: The name in the game's list of worlds.
+        spawn: Position of the player's feet in world block coordinates.
+        spawn_yaw_deg: Direction of the player's view as the game's yaw in degrees: 0 is south, 90
+            is west.
+        version: The target game version. The default is 1.20.1.
+        hour: The fixed hour of the day, 0 to 24.
 
     Raises:
-        OutputError: the folder is taken or cannot be written.
-        UsageError: the volume is higher or lower than the game's world.
+        OutputError: If the folder contains other files or cannot be written.
+        UsageError: If the volume exceeds the height limits of the world.
     """
     target, version = Path(folder), version or game_version()
     volume = convert_volume(volume, version.level_data_version)
@@ -89,9 +90,9 @@ def _check_heights(volume: BlockVolume, version: GameVersion) -> None:
     low, high = volume.corner[1], volume.corner[1] + volume.states.shape[1] - 1
     if low < version.min_y or high > version.max_y:
         raise UsageError(
-            f"the build reaches from layer {low} to {high}, but Minecraft {version.name} has "
-            f"{version.min_y} to {version.max_y}; choose fewer blocks per metre, or a place for "
-            "it: w2m build ... --into WORLD --at X Y Z"
+            f"the build has layers {low} to {high}, but Minecraft {version.name} has layers "
+            f"{version.min_y} to {version.max_y}; use fewer blocks per metre, or another position "
+            "with w2m build --into WORLD --at X Y Z"
         )
 
 
@@ -107,13 +108,13 @@ def _check_free(target: Path) -> None:
     except OSError as error:
         raise OutputError(target, f"cannot be read: {error.strerror or error}") from error
     except InputError:
-        raise OutputError(target, "holds other files; choose another folder") from None
+        raise OutputError(target, "contains other files; choose another folder") from None
     if mark != MAKER:
-        reason = "holds a world that has been played in or made elsewhere"
+        reason = "contains a world that was played in or created by another program"
         raise OutputError(target, f"{reason}; move it away or choose another folder")
     if any((target / UNDO_FOLDER).glob("*")):
-        reason = "holds a world that was built into since, by w2m build --into"
-        raise OutputError(target, f"{reason}; take that back with w2m undo, or move it away")
+        reason = "contains a world into which w2m build --into has built"
+        raise OutputError(target, f"{reason}; revert that with w2m undo, or move the world")
 
 
 def _move(draft: Path, target: Path) -> None:

@@ -1,1 +1,1 @@
-"""Houses of several rooms: floor plans, stairs, and their rooms furnished."""
+"""Generation of houses: floor plans, stairs and furnished rooms."""

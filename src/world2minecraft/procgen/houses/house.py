@@ -1,4 +1,4 @@
-"""Seeded houses: a plan with a corridor, doors and stairs, as layouts and as 2 cm voxels."""
+"""Generation of houses from a seed, as layouts and 2 cm voxels."""
 
 import numpy as np
 
@@ -43,15 +43,15 @@ def paint_house(
     rugs: list[tuple[Rug, ...]],
     rng: np.random.Generator,
 ) -> Canvas:
-    """Paint a house.
+    """Voxelize a house with its furniture.
 
     Args:
-        plan: its cells.
-        gaps: the openings in its walls.
-        styles: the colours of each cell.
-        items: what stands in each cell, in the frame of the house.
-        rugs: what lies on the floor of each cell, in the frame of the house.
-        rng: draws the grain of floors and furniture.
+        plan: The plan with the cells of the house.
+        gaps: The openings in the walls.
+        styles: The colour scheme of each cell.
+        items: The objects in each cell, in the frame of the house.
+        rugs: The rugs in each cell, in the frame of the house.
+        rng: Random generator for the grain of floors and furniture.
     """
     canvas = Canvas(plan.size_m)
     for cell, style in zip(plan.cells, styles, strict=True):
@@ -127,16 +127,16 @@ def _grown_slices(a: slice, b: slice, c: slice, across: int) -> tuple[slice, sli
 
 
 def generate_house(seed: int, *, rooms: int = 5, storeys: int = 1, clutter: float = 0.0) -> Room:
-    """Return the house of a seed: the same seed and numbers give the same bytes.
+    """Generate a house from a seed. The same arguments always give the same bytes.
 
     Args:
-        seed: 0 or more.
-        rooms: how many rooms in all, 3 to 14, the hall of each storey among them.
-        storeys: 1 or 2; two need 4 rooms or more.
-        clutter: 0 (tidy) to 1: how many things lie about, and how askew the chairs stand.
+        seed: The random seed, at least 0.
+        rooms: Number of rooms, 3 to 14, including one hall per storey.
+        storeys: Number of storeys, 1 or 2. Two storeys need at least 4 rooms.
+        clutter: Amount of loose objects and displaced chairs, from 0 (tidy) to 1.
 
     Raises:
-        ValueError: a number is out of its range.
+        ValueError: If an argument is out of range.
     """
     check_house(seed, rooms, storeys, clutter)
     rng = np.random.default_rng([seed, rooms, storeys])
@@ -161,19 +161,23 @@ def generate_house(seed: int, *, rooms: int = 5, storeys: int = 1, clutter: floa
 
 
 def check_house(seed: int, rooms: int, storeys: int, clutter: float) -> None:
-    """Raise ``ValueError`` where a number of a house is out of its range."""
+    """Check the arguments of ``generate_house``.
+
+    Raises:
+        ValueError: If an argument is out of range.
+    """
     if seed < 0:
-        raise ValueError(f"seed must be 0 or more, not {seed}")
+        raise ValueError(f"seed must be 0 or more, got {seed}")
     if not STOREYS[0] <= storeys <= STOREYS[1]:
-        raise ValueError(f"storeys must be 1 or 2, not {storeys}")
+        raise ValueError(f"storeys must be 1 or 2, got {storeys}")
     least = max(ROOMS[0], 2 * storeys)
     if not least <= rooms <= ROOMS[1]:
         raise ValueError(
             f"rooms must be from {least} to {ROOMS[1]} on {storeys} "
-            f"{'storey' if storeys == 1 else 'storeys'}, not {rooms}"
+            f"{'storey' if storeys == 1 else 'storeys'}, got {rooms}"
         )
     if not 0 <= clutter <= 1:
-        raise ValueError(f"clutter must be from 0 to 1, not {clutter}")
+        raise ValueError(f"clutter must be from 0 to 1, got {clutter}")
 
 
 def _layout(

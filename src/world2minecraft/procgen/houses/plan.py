@@ -1,9 +1,9 @@
-"""The plan of a house: a corridor with rooms along it, the gaps in its walls, and its stairs.
+"""Floor plans of houses: a corridor with rooms on both sides, wall openings and stairs.
 
-The corridor runs along x; rooms lie below and above it with straight walls of 12 cm between them,
-the same on every storey. Where there are two storeys, the upper side begins with a bay of the hall
-that holds the stairs. All lengths are multiples of 2 cm; the inner faces of the outer walls are at
-x = 0 and y = 0.
+The corridor runs along x, with rooms below and above it, separated by straight walls of 12 cm. Both
+storeys have the same corridor. In a house with two storeys, the upper side starts with a part of
+the hall that contains the stairs. All lengths are multiples of 2 cm. The inner faces of the outer
+walls are at x = 0 and y = 0.
 """
 
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ RAIL_M, RAIL_THICK_M, POST_GAP_M = 0.9, 0.04, 0.12  # Codes: 0.9 m high, under 1
 
 @dataclass(frozen=True)
 class Cell:
-    """One room of a house: its kind, its storey and its place."""
+    """One room of a house, with its kind, storey and position."""
 
     kind: str
     storey: int
@@ -58,14 +58,14 @@ class Cell:
 
     @property
     def rect(self) -> Rect:
-        """The rectangle around it."""
+        """The bounding rectangle of the room."""
         width, depth, _ = self.ground.size_m
         return self.x_m, self.y_m, self.x_m + width, self.y_m + depth
 
 
 @dataclass(frozen=True)
 class Flight:
-    """Stairs that rise along +y from ``rect``'s start; the hall's bay holds them."""
+    """A flight of stairs in the hall that rises along +y from the start of ``rect``."""
 
     rect: Rect
     risers: int
@@ -75,7 +75,7 @@ class Flight:
 
 @dataclass(frozen=True)
 class HousePlan:
-    """The cells, storey by storey, the hall first on each; heights; the stairs."""
+    """The rooms of a house by storey (the hall first), the ceiling height and the stairs."""
 
     cells: tuple[Cell, ...]
     storeys: int
@@ -84,18 +84,18 @@ class HousePlan:
 
     @property
     def pitch_m(self) -> float:
-        """From floor to floor."""
+        """The distance in metres from one floor to the next."""
         return round_to_step(self.height_m + SLAB_M)
 
     @property
     def size_m(self) -> tuple[float, float, float]:
-        """The inner box around all rooms."""
+        """The size of the inner bounding box of all rooms, in metres."""
         x, y = (max(cell.rect[n] for cell in self.cells) for n in (2, 3))
         return x, y, round_to_step(self.pitch_m * (self.storeys - 1) + self.height_m)
 
 
 def plan_house(rooms: int, storeys: int, rng: np.random.Generator) -> HousePlan:
-    """Return a plan of ``rooms`` rooms, halls among them, on one or two storeys."""
+    """Generate a plan with ``rooms`` rooms, including halls, on one or two storeys."""
     risers, rise, tread = FLIGHTS[int(rng.integers(len(FLIGHTS)))]
     run = round_to_step((risers - 1) * tread)
     two = storeys == 2
@@ -189,7 +189,7 @@ def _row(
 
 @dataclass(frozen=True)
 class Gap:
-    """An opening as the first of ``cells`` sees it; a second cell lies behind its wall."""
+    """A wall opening as seen from the first of ``cells``. A second cell is behind the wall."""
 
     kind: Literal["window", "door", "doorway"]
     cells: tuple[int, ...]
@@ -200,7 +200,7 @@ class Gap:
     head_m: float
 
     def hole(self, cell: int, placed: Cell) -> Hole:
-        """Return it as a hole in a wall of one of its cells, in that cell's own frame."""
+        """Return the opening as a hole in a wall of one of its cells, in the frame of that cell."""
         turn, at = self.wall.turn, self.wall.at_m
         if cell != self.cells[0]:
             turn, at = (turn + 2) % 4, at + (-WALL_M if turn < 2 else WALL_M)
@@ -220,7 +220,7 @@ class Gap:
 
 
 def house_gaps(plan: HousePlan, rng: np.random.Generator) -> tuple[Gap, ...]:
-    """Return the gaps of a plan; the front door is first."""
+    """Generate the wall openings of a plan, starting with the front door."""
     gaps = [_front_door(plan)]
     for number, cell in enumerate(plan.cells):
         if cell.kind != "hall":
@@ -308,7 +308,10 @@ def _doorway(plan: HousePlan, number: int) -> list[Gap]:
 
 
 def stairs_model(flight: Flight, wood: Colour) -> Model:
-    """A flight whose front, +x, is where one begins to climb; its last riser is the slab's edge."""
+    """Return a model of stairs whose front, +x, is the bottom step.
+
+    The top riser is the edge of the floor slab.
+    """
     treads = flight.risers - 1
     d, w, h = (round_to_step(v) for v in (treads * flight.tread_m, STAIR_M, treads * flight.rise_m))
     parts = []
@@ -321,7 +324,7 @@ def stairs_model(flight: Flight, wood: Colour) -> Model:
 
 
 def railing_model(length_m: float, wood: Colour) -> Model:
-    """A rail on posts along its left-right axis."""
+    """Return a model of a railing on posts that runs along its y axis."""
     d, w, h = RAIL_THICK_M, round_to_step(length_m), RAIL_M
     count = max(2, round(w / (POST_GAP_M + RAIL_THICK_M)) + 1)
     parts = [Part((-d / 2, -w / 2, h - 0.06, d / 2, w / 2, h), wood, "wood")]
@@ -332,7 +335,7 @@ def railing_model(length_m: float, wood: Colour) -> Model:
 
 
 def stairwell(plan: HousePlan, flight: Flight) -> Box:
-    """Return the hole in the slab over the flight, x0 y0 z0 x1 y1 z1."""
+    """Return the hole in the slab above the stairs as x0, y0, z0, x1, y1, z1."""
     x0, y0, x1, y1 = flight.rect
     # The first step over which the ceiling would be too low, and one before it.
     first = max(0, int((plan.height_m - HEADROOM_M) / flight.rise_m) - 1)
@@ -341,7 +344,7 @@ def stairwell(plan: HousePlan, flight: Flight) -> Box:
 
 
 def stair_items(plan: HousePlan, flight: Flight, wood: Colour) -> tuple[list[Item], list[Item]]:
-    """Return what belongs to the stairs on the ground storey and on the upper one."""
+    """Return the items of the stairs on the ground storey and of the railings above."""
     x0, y0, x1, y1 = flight.rect
     steps = Item(stairs_model(flight, wood), (x0 + x1) / 2, (y0 + y1) / 2, 0.0, 270.0)
     _, start, _, _, end, level = stairwell(plan, flight)

@@ -1,8 +1,8 @@
-"""Furnishing of the rooms of a house: each in a frame of its own, turned by quarters, then placed.
+"""Furnishing of the rooms of a house, each in a separate frame rotated by quarter turns.
 
-A recipe knows its walls by number (a kitchen's counters run along walls 0 and 1), so a room is
-tried in all four turns until the recipe's walls are those without doors. The kitchen of a house has
-a recipe of its own: one run of counters along whichever wall the doors leave free.
+A recipe identifies walls by number (for example, kitchen counters are along walls 0 and 1), so
+rotations of a room are tried until the recipe's walls have no doors. Kitchens of houses have their
+own recipe: one row of counters along any wall without doors.
 """
 
 from collections.abc import Collection
@@ -43,7 +43,7 @@ LEAF_M = (0.88, 2.0)
 
 
 def furnish_galley(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """A fridge, a counter, a cooker under its hood and a sink in one row, and a table."""
+    """Furnish a kitchen with a row of fridge, counter, cooker with hood and sink, and a table."""
     walls = [int(wall) for wall in plan.rng.permutation(4)]
     placed = None
     for wall in sorted(walls, key=lambda n: -plan.ground.walls[n].length_m):
@@ -129,21 +129,21 @@ def _table(plan: Plan, style: Style) -> None:
 
 @dataclass(frozen=True)
 class RoomFrame:
-    """A room's own frame: the room of the house turned back by ``turns`` quarters."""
+    """The local frame of a room, rotated by ``turns`` quarter turns against the house."""
 
     cell: Cell
     turns: int
 
     @property
     def ground(self) -> Ground:
-        """The ground in the room's own frame; only plain boxes are turned."""
+        """The ground of the room in its local frame. Only rectangular rooms are rotated."""
         width, depth, height = self.cell.ground.size_m
         if self.turns == 0:
             return self.cell.ground
         return Ground((width, depth, height) if self.turns == 2 else (depth, width, height))
 
     def to_house(self, x_m: float, y_m: float) -> tuple[float, float]:
-        """Carry a place of the room's own frame into the frame of the house."""
+        """Transform a position from the local frame to the frame of the house."""
         width, depth, _ = self.ground.size_m
         x, y = (
             (x_m, y_m), (depth - y_m, x_m), (width - x_m, depth - y_m), (y_m, width - x_m)
@@ -151,7 +151,7 @@ class RoomFrame:
         return x + self.cell.x_m, y + self.cell.y_m
 
     def hole(self, hole: Hole) -> Hole:
-        """Carry a hole of the cell's frame into the room's own frame."""
+        """Transform a hole from the frame of the cell to the local frame."""
         if self.turns == 0:
             return hole
         side = self.cell.ground.walls[hole.wall]
@@ -164,13 +164,13 @@ class RoomFrame:
         return replace(hole, wall=number, first_m=min(alongs), last_m=max(alongs))
 
     def item(self, item: Item, floor_z_m: float) -> Item:
-        """Carry an item into the frame of the house."""
+        """Transform an item from the local frame to the frame of the house."""
         x, y = self.to_house(item.x_m, item.y_m)
         yaw = (item.yaw_deg + 90.0 * self.turns) % 360
         return Item(item.model, x, y, item.z_m + floor_z_m, yaw)
 
     def rug(self, rug: Rug) -> Rug:
-        """Carry a rug into the frame of the house."""
+        """Transform a rug from the local frame to the frame of the house."""
         ax, ay = self.to_house(rug[0], rug[1])
         bx, by = self.to_house(rug[2], rug[3])
         return min(ax, bx), min(ay, by), max(ax, bx), max(ay, by), rug[4]
@@ -184,9 +184,9 @@ def furnish_cells(
     seed: tuple[int, ...],
     left_out: Collection[int] = (),
 ) -> tuple[list[list[Item]], list[tuple[Rug, ...]]]:
-    """Return what stands and what lies in each cell, in the frame of the house.
+    """Generate the items and rugs of each cell, in the frame of the house.
 
-    Cells that are left out by number stay empty; the others are the same with and without them.
+    Cells whose number is in ``left_out`` stay empty. This does not change the other cells.
     """
     items, rugs = [], []
     for number, cell in enumerate(plan.cells):

@@ -1,1 +1,1 @@
-"""Furnished rooms: floor shapes, furniture, placement, clutter and voxels."""
+"""Generation of furnished rooms: floor shapes, furniture, placement, clutter and voxels."""

@@ -1,7 +1,6 @@
-"""Clutter: chairs pulled out and askew, things on tables, beds and floors, odd shapes.
+"""Clutter for furnished rooms: displaced chairs, loose objects and objects with irregular shapes.
 
-Everything is added to a furnished plan and keeps its laws: nothing collides, and whoever comes in
-at a door still reaches the room.
+Clutter objects do not collide with other items, and the room remains reachable from every door.
 """
 
 import numpy as np
@@ -40,13 +39,13 @@ TOPS: dict[str, float | None] = {
 
 
 def scatter(plan: Plan, clutter: float, rng: np.random.Generator, doors_m: Doors) -> None:
-    """Clutter a furnished room.
+    """Add clutter to a furnished room.
 
     Args:
-        plan: the room; its items change.
-        clutter: 0 leaves it as it is, 1 is a room that nobody tidied for weeks.
-        rng: draws everything.
-        doors_m: where one stands who has come in, one place a door.
+        plan: The room. Its items are modified.
+        clutter: Amount of clutter, from 0 (none) to 1.
+        rng: Random generator.
+        doors_m: Position on the floor behind each door.
     """
     if clutter <= 0:
         return

@@ -1,4 +1,4 @@
-"""The colours of one room: wood, walls, floor and cloth that go together."""
+"""Matching colours for a room: wood, walls, floor and fabric."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ WHITE: Colour = (238, 237, 232)
 
 @dataclass(frozen=True)
 class Style:
-    """One choice of colours."""
+    """The colour scheme of a room."""
 
     wood: Colour
     dark_wood: Colour
@@ -40,7 +40,7 @@ class Style:
 
 
 def choose_style(rng: np.random.Generator) -> Style:
-    """Return colours drawn by ``rng``."""
+    """Choose a random colour scheme."""
     cloth = int(rng.integers(len(CLOTHS)))
     second = (cloth + 1 + int(rng.integers(len(CLOTHS) - 1))) % len(CLOTHS)
     wall = WALLS[int(rng.integers(len(WALLS)))]

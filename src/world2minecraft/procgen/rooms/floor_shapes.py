@@ -1,8 +1,9 @@
-"""The ground of a room: which part of its box is air, where its walls are, how high its ceiling is.
+"""Shapes of rooms: the free floor area, the walls and the ceiling height.
 
-A room is its inner box less what is built into it: full-height blocks (the missing corner of an L,
-a chimney breast, a column), corners cut off at 45 degrees, and roofs that slope down to a wall. The
-shapes to choose from: a box, an L, a cut corner or chimney breast, a sloped ceiling, columns.
+A room is a box without its built-in parts: full-height blocks (the missing corner of an L, a
+chimney breast, a column), corners cut off at 45 degrees, and roofs that slope down to a wall. The
+available shapes are a box, an L, a box with a cut corner or chimney breast, a sloped ceiling, and
+columns.
 """
 
 from collections.abc import Callable
@@ -28,10 +29,11 @@ WALL_FOR_DOOR_M = 1.3
 
 @dataclass(frozen=True)
 class Wall:
-    """A straight wall, seen from the room.
+    """A straight wall, as seen from the room.
 
-    ``turn`` is the quarter turns of a front that looks away from it; ``at_m`` its x (turns 0, 2)
-    or y (1, 3); it runs from ``first_m`` to ``last_m`` along the other axis.
+    ``turn`` is the yaw of furniture with its back to the wall, in quarter turns. ``at_m`` is the
+    wall's x (for turns 0 and 2) or y (for turns 1 and 3). The wall extends from ``first_m`` to
+    ``last_m`` along the other axis.
     """
 
     turn: int
@@ -41,16 +43,16 @@ class Wall:
 
     @property
     def length_m(self) -> float:
-        """How long it is."""
+        """The length of the wall in metres."""
         return self.last_m - self.first_m
 
     def point(self, along_m: float, away_m: float = 0.0) -> tuple[float, float]:
-        """Return the place ``along_m`` on the running axis and ``away_m`` before the wall."""
+        """Return the position ``along_m`` along the wall and ``away_m`` in front of it."""
         off = self.at_m + away_m if self.turn < 2 else self.at_m - away_m
         return (off, along_m) if self.turn % 2 == 0 else (along_m, off)
 
     def rect(self, first_m: float, last_m: float, near_m: float, far_m: float) -> Rect:
-        """Return the rectangle between two places along it and two distances before it."""
+        """Return the rectangle between two positions along the wall and two distances from it."""
         ax, ay = self.point(first_m, near_m)
         bx, by = self.point(last_m, far_m)
         return min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)
@@ -58,7 +60,10 @@ class Wall:
 
 @dataclass(frozen=True)
 class Cut:
-    """A corner cut off at 45 degrees, ``leg_m`` along each wall, at the stated x and y ends."""
+    """A corner cut off at 45 degrees with legs of ``leg_m``.
+
+    ``high_x`` and ``high_y`` select the corner.
+    """
 
     high_x: bool
     high_y: bool
@@ -67,7 +72,10 @@ class Cut:
 
 @dataclass(frozen=True)
 class Roof:
-    """A ceiling that rises from ``knee_m`` at a side (a wall's turn) to full height at reach."""
+    """A sloped ceiling that rises from ``knee_m`` at a wall to full height at ``reach_m``.
+
+    ``side`` is the turn of the wall at the low side.
+    """
 
     side: int
     knee_m: float
@@ -76,7 +84,7 @@ class Roof:
 
 @dataclass(frozen=True)
 class Ground:
-    """One room's shape in its own frame, its inner box from (0, 0) to ``size_m``."""
+    """The shape of a room in its local frame, with the inner box from (0, 0) to ``size_m``."""
 
     size_m: tuple[float, float, float]
     blocks: tuple[Rect, ...] = ()
@@ -85,7 +93,7 @@ class Ground:
 
     @cached_property
     def polygon_m(self) -> np.ndarray:
-        """The outline without columns, float64 [N, 2], counter-clockwise from above."""
+        """The outline without columns, float64 [N, 2], counter-clockwise seen from above."""
         corners = _outline(self.size_m, self.blocks)
         width, depth, _ = self.size_m
         for cut in self.cuts:
@@ -95,7 +103,11 @@ class Ground:
 
     @cached_property
     def walls(self) -> tuple[Wall, ...]:
-        """The walls along x and y; number n < 4 is the longest of turn n at the box's side."""
+        """The walls along x and y.
+
+        Walls 0 to 3 are the longest walls at the sides of the inner box, in the order of their
+        turns.
+        """
         width, depth, _ = self.size_m
         sides = (0.0, 0.0, width, depth)
         found = []
@@ -114,7 +126,7 @@ class Ground:
         return (*main, *(wall for wall in found if wall not in main))
 
     def holds(self, box: Box) -> bool:
-        """Return whether a box lies in the room's air."""
+        """Return whether a box is inside the free space of the room."""
         inside = all(
             box[n] >= -TOUCH_M and box[n + 3] <= self.size_m[n] + TOUCH_M for n in range(3)
         )
@@ -138,7 +150,7 @@ class Ground:
         return roof.knee_m + (height - roof.knee_m) * min(1.0, max(0.0, off) / roof.reach_m)
 
     def built(self, x_m: np.ndarray, y_m: np.ndarray) -> np.ndarray:
-        """Return bool of the shape of ``x_m`` and ``y_m``: places that are wall from floor up."""
+        """Return whether positions are inside built-in blocks or cut corners, as a bool array."""
         width, depth, _ = self.size_m
         taken = np.zeros(np.broadcast(x_m, y_m).shape, bool)
         for a, b, c, d in self.blocks:
@@ -149,7 +161,7 @@ class Ground:
         return taken
 
     def ceiling_m(self, x_m: np.ndarray, y_m: np.ndarray) -> np.ndarray:
-        """Return the height of the ceiling over places, float64."""
+        """Return the height of the ceiling at positions in metres, as a float64 array."""
         width, depth, height = self.size_m
         level = np.full(np.broadcast(x_m, y_m).shape, height)
         for roof in self.roofs:
@@ -160,7 +172,7 @@ class Ground:
 
 
 def dilate_mask(mask: np.ndarray, steps: int) -> np.ndarray:
-    """Return a bool mask [X, Y] with all squares up to ``steps`` away, corners counted."""
+    """Dilate a bool mask [X, Y] by ``steps`` cells in all directions, including diagonals."""
     wider = np.zeros(mask.shape, bool)
     ndimage.binary_dilation(mask, np.ones((2 * steps + 1,) * 2, bool), output=wider)
     return wider
@@ -211,12 +223,12 @@ def _chamfer(corners: list[tuple], spot: tuple[float, float], leg_m: float) -> l
 
 
 def box_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return the plain box."""
+    """Return a rectangular ground."""
     return Ground(size_m)
 
 
 def ell_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return an L: sides a fifth longer than a box's, a corner of a third of each missing."""
+    """Return an L-shaped ground whose sides are 22 % longer than those of the box."""
     width, depth = (round_to_step(1.22 * side) for side in size_m[:2])
     gone_x = round_to_step(width * rng.uniform(0.28, 0.4))
     gone_y = round_to_step(depth * rng.uniform(0.28, 0.4))
@@ -229,7 +241,7 @@ def ell_ground(size_m: Size, rng: np.random.Generator) -> Ground:
 
 
 def cut_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return a room with a cut corner, a chimney breast, or an alcove."""
+    """Return a ground with a cut corner, a chimney breast or an alcove, chosen at random."""
     width, depth, height = size_m
     drawn = int(rng.integers(3))
     if drawn == 0:
@@ -257,7 +269,7 @@ def _between(free_m: float, margin_m: float, rng: np.random.Generator) -> float:
 
 
 def sloped_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return an attic: one or two sides under a roof of 35 to 50 degrees above a knee wall."""
+    """Return an attic ground with one or two roofs of 35 to 50 degrees above knee walls."""
     width, depth, height = size_m
     axis = 0 if width >= depth else 1
     knee = round_to_step(rng.uniform(0.9, 1.4))
@@ -271,7 +283,7 @@ def sloped_ground(size_m: Size, rng: np.random.Generator) -> Ground:
 
 
 def columns_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return a room with one or two square columns, off its middle."""
+    """Return a ground with one or two square columns outside its middle."""
     width, depth, _ = size_m
     side = round_to_step(rng.uniform(0.28, 0.4))
     blocks = []
@@ -291,25 +303,25 @@ SHAPES: dict[str, Callable[[Size, np.random.Generator], Ground]] = {
 
 
 def shaped_ground(shape: str, size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return a ground of a shape, about of a size.
+    """Return a ground of a given shape and approximate size.
 
     Args:
-        shape: one of ``SHAPES``.
-        size_m: the inner sides and the height of a box room.
-        rng: draws where it departs from the box.
+        shape: One of ``SHAPES``.
+        size_m: Inner width, depth and height of the box on which the shape is based.
+        rng: Random generator for the details of the shape.
     """
     return SHAPES[shape](size_m, rng)
 
 
 def draw_shape(seed: int) -> str:
-    """Return the shape that a seed draws where none is asked for."""
+    """Return the random shape of a seed, used if no shape is given."""
     return sorted(SHAPES)[int(np.random.default_rng([seed, 1 << 20]).integers(len(SHAPES)))]
 
 
 def open_walls(ground: Ground, kind: str) -> tuple[int, ...]:
-    """Return the numbers of the walls that may have doors and windows.
+    """Return the indices of the walls that can have doors and windows.
 
-    A kitchen's counters take two; under a roof a window finds no place.
+    In a kitchen, two walls are used by counters. Low walls under a roof cannot have windows.
     """
     low = {roof.side for roof in ground.roofs}
     upright = [n for n, wall in enumerate(ground.walls) if wall.turn not in low]

@@ -1,7 +1,7 @@
-"""A piece of furniture as coloured metric boxes.
+"""Furniture models made of coloured boxes in metres.
 
-A model stands in its own frame: the origin in the middle of its footprint, z = 0 at its bottom,
-its front looks along +x. Sizes are multiples of 2 cm, so that boxes fall on whole voxels.
+The origin of a model is the middle of its footprint, at its bottom. Its front faces +x. Sizes are
+multiples of 2 cm, so that boxes align with voxels.
 """
 
 from dataclasses import dataclass, replace
@@ -14,9 +14,10 @@ STEP_M = 0.02
 
 @dataclass(frozen=True)
 class Part:
-    """One box: ``box_m`` is x0 y0 z0 x1 y1 z1, and ``grain`` how its colour varies.
+    """A coloured box, ball or drum of a model.
 
-    A ``ball`` is the ellipsoid in its box, a ``drum`` the cylinder in it along ``axis``.
+    ``box_m`` is x0, y0, z0, x1, y1, z1, and ``grain`` is the kind of colour variation. A ``ball``
+    is the ellipsoid inside the box, and a ``drum`` is the cylinder along ``axis`` inside the box.
     """
 
     box_m: tuple[float, float, float, float, float, float]
@@ -28,7 +29,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Bar:
-    """A round bar from one place to another: legs that splay, strings, frames."""
+    """A round bar between two points, such as a slanted leg or a frame tube."""
 
     start_m: tuple[float, float, float]
     end_m: tuple[float, float, float]
@@ -38,7 +39,7 @@ class Bar:
 
     @property
     def box_m(self) -> tuple[float, float, float, float, float, float]:
-        """The box around it."""
+        """The bounding box of the bar."""
         low = tuple(min(p) - self.radius_m for p in zip(self.start_m, self.end_m, strict=True))
         high = tuple(max(p) + self.radius_m for p in zip(self.start_m, self.end_m, strict=True))
         return low[0], low[1], low[2], high[0], high[1], high[2]
@@ -46,7 +47,7 @@ class Bar:
 
 @dataclass(frozen=True)
 class Model:
-    """A named object: ``size_m`` is front-to-back, side to side, height; parts lie within it."""
+    """A named furniture model. ``size_m`` is the depth, width and height around all parts."""
 
     name: str
     class_id: int
@@ -55,7 +56,7 @@ class Model:
 
 
 def translate_part(part: Part | Bar, shift: tuple[float, ...]) -> Part | Bar:
-    """Return a part moved in its model's frame by ``shift``, x y z in metres."""
+    """Return a part that is moved by ``shift`` (x, y, z in metres) in the frame of its model."""
 
     def put(point: tuple[float, ...]) -> tuple[float, float, float]:
         x, y, z = (value + off for value, off in zip(point, shift, strict=True))
@@ -72,7 +73,7 @@ def round_to_step(length_m: float) -> float:
 
 
 def shade(colour: Colour, factor: float) -> Colour:
-    """Return a darker (factor < 1) or lighter colour."""
+    """Multiply the brightness of a colour by a factor."""
     red, green, blue = (max(0, min(255, round(value * factor))) for value in colour)
     return red, green, blue
 

@@ -1,8 +1,7 @@
-"""What the surfaces of a room are made of, so that photos can show grain, weave and print.
+"""Materials of the surfaces of a room, which determine the textures in photos.
 
-In comes a room, whose voxels have a class, a thing and a colour; out goes one material a voxel.
-Real rooms are uneven: wood, cloth, rugs and pictures are rich in marks, painted walls and
-cupboards are nearly bare, and so they stay here.
+Every voxel of a room gets one material from its class, object and colour. As in real rooms, wood,
+fabric, rugs and pictures have strong textures, while painted walls and cupboards are nearly plain.
 """
 
 from enum import IntEnum
@@ -24,7 +23,7 @@ STONE_NAMES = frozenset(("counter", "sink_counter", "washstand"))
 
 
 class Material(IntEnum):
-    """What a surface is made of; ``surface_textures`` draws it."""
+    """The material of a surface, which ``surface_textures`` renders."""
 
     BARE = 0
     WALL = 1
@@ -43,7 +42,7 @@ class Material(IntEnum):
 
 
 def room_materials(room: Room) -> np.ndarray:
-    """Return the material of each voxel of a room, uint8 [X, Y, Z]; air is ``BARE``."""
+    """Return the material of each voxel of a room as uint8 [X, Y, Z]. Air is ``BARE``."""
     labels, wooden = room.labels, _is_brown(room.colour)
     materials = np.zeros(labels.shape, np.uint8)
     materials[labels == int(SemanticClass.WALL)] = int(Material.WALL)
@@ -134,9 +133,9 @@ def _is_green(colour: np.ndarray) -> np.ndarray:
 
 
 def wall_planes(room: Room) -> np.ndarray:
-    """Return which planes are walls with room for a poster, bool [4, N], by face and index.
+    """Return which wall planes are large enough for a poster, as bool [4, N] by face and index.
 
-    The sides of recesses and columns are too narrow to hang something on.
+    The sides of recesses and columns are too narrow for a poster.
     """
     wall = room.labels == int(SemanticClass.WALL)
     air = room.labels == 0
@@ -152,7 +151,7 @@ def wall_planes(room: Room) -> np.ndarray:
 
 
 def heights_m(room: Room) -> np.ndarray:
-    """Return the height of each level of voxels over the floor of its storey, float64 [Z]."""
+    """Return the height of each voxel layer above the floor of its storey, as float64 [Z]."""
     z = room.origin_m[2] + np.arange(room.labels.shape[2]) * room.voxel_m
     floors = np.array(sorted({layout.floor_z_m for layout in room.layouts}))
     return z - floors[np.maximum(np.searchsorted(floors, z + 0.05, side="right") - 1, 0)]

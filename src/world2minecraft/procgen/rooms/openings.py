@@ -1,4 +1,4 @@
-"""The door and the windows of a room, chosen before it is furnished."""
+"""Doors and windows of a room, which are chosen before the room is furnished."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -19,7 +19,7 @@ RECESS_M = 0.06  # How deep a window or a door leaf lies in its wall.
 
 @dataclass(frozen=True)
 class Hole:
-    """An opening in a wall, from ``first_m`` to ``last_m`` along it; walls as ``Plan`` has them."""
+    """A wall opening from ``first_m`` to ``last_m`` along the wall with index ``wall``."""
 
     kind: Literal["window", "door", "doorway"]
     wall: int
@@ -29,18 +29,18 @@ class Hole:
     head_m: float
 
     def opening(self, ground: Ground) -> Opening:
-        """Return it as the layout states it."""
+        """Return the opening in the form of a layout."""
         wall = ground.walls[self.wall]
         start, end = (np.array(wall.point(along)) for along in (self.first_m, self.last_m))
         return Opening(self.kind, start, end, self.sill_m, self.head_m)
 
 
 def choose_openings(plan: Plan, *, walls: tuple[int, ...]) -> tuple[Hole, ...]:
-    """Choose a door and one or two windows on the given walls, and keep the air before them free.
+    """Choose a door and one or two windows, and reserve the space in front of them.
 
     Args:
-        plan: the empty plan; its ``reserved`` places grow.
-        walls: which walls may have openings, two or more.
+        plan: The empty plan. Its ``reserved`` boxes are extended.
+        walls: Indices of at least two walls that can have openings.
     """
     rng = plan.rng
     order = [int(wall) for wall in rng.permutation(walls)]
@@ -59,7 +59,7 @@ def choose_openings(plan: Plan, *, walls: tuple[int, ...]) -> tuple[Hole, ...]:
 
 
 def reserve_before(plan: Plan, hole: Hole) -> None:
-    """Keep the swing of a door and the air before a window free."""
+    """Reserve the swing area of a door or the space in front of a window."""
     far = 0.2 if hole.kind == "window" else DOOR_SWING_M
     aside = 0.34 if hole.kind == "window" else 0.04
     low, high = (hole.sill_m, hole.head_m) if hole.kind == "window" else (0.0, 2.1)
@@ -68,7 +68,7 @@ def reserve_before(plan: Plan, hole: Hole) -> None:
 
 
 def hang_curtains(plan: Plan, holes: tuple[Hole, ...], colour: Colour) -> None:
-    """Hang a curtain on both sides of each window where there is room."""
+    """Add curtains on both sides of each window if there is space."""
     for hole in holes:
         if hole.kind != "window":
             continue
@@ -83,13 +83,13 @@ def hang_curtains(plan: Plan, holes: tuple[Hole, ...], colour: Colour) -> None:
 
 
 def door_item(plan: Plan, hole: Hole, colour: Colour) -> Item:
-    """Return the leaf of a door, set into its wall."""
+    """Return the item of a door leaf in its wall."""
     model = door(hole.last_m - hole.first_m, hole.head_m, colour)
     middle = (hole.first_m + hole.last_m) / 2
     return plan.at_wall(model, hole.wall, middle, 0.0, -model.size_m[0])
 
 
 def door_step_m(plan: Plan, hole: Hole) -> tuple[float, float]:
-    """Return the place on the floor where one stands after coming in."""
+    """Return the floor position of a person who has just entered through a door."""
     item = door_item(plan, hole, (0, 0, 0))
     return item.point(0.5, 0.0)

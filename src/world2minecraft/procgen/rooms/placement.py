@@ -1,9 +1,9 @@
-"""Placement of furniture without collisions, by itself or in relation to other pieces.
+"""Collision-free placement of furniture, independently or relative to other items.
 
-A ``Plan`` knows the room's ground, what stands in it, and the places that must stay free (the
-door's swing, the air before a window, the way beside a bed). Walls are those of the ground; the
-first four are numbered by the quarter turns of a front that looks away from them: 0 at x = 0, 1 at
-y = 0, 2 at x = max, 3 at y = max.
+A ``Plan`` contains the ground of the room, its items, and reserved space such as the swing of a
+door, the area in front of a window and the space beside a bed. Walls are those of the ground. The
+first four are numbered by the yaw of furniture with its back to the wall, in quarter turns: 0 is at
+x = 0, 1 at y = 0, 2 at x = max and 3 at y = max.
 """
 
 from dataclasses import dataclass
@@ -20,12 +20,12 @@ from world2minecraft.procgen.rooms.furniture_model import STEP_M, Colour, Model,
 
 TRIES = 40
 SQUARE_M = 0.1
-Rug = tuple[float, float, float, float, Colour]  # x0 y0 x1 y1 and its colour
+Rug = tuple[float, float, float, float, Colour]  # x0, y0, x1, y1 and the colour.
 
 
 @dataclass(frozen=True)
 class Item:
-    """A model in its place: the middle of its footprint, the height of its bottom, its yaw."""
+    """A placed model, with the middle of its footprint, the height of its bottom and its yaw."""
 
     model: Model
     x_m: float
@@ -35,7 +35,7 @@ class Item:
 
     @cached_property
     def box_m(self) -> Box:
-        """The axis-aligned box around it, x0 y0 z0 x1 y1 z1."""
+        """The axis-aligned bounding box as x0, y0, z0, x1, y1, z1."""
         d, w, h = self.model.size_m
         c, s = np.abs(rotation_about_z(self.yaw_deg)[:2, 0])
         half_x, half_y = (d * c + w * s) / 2, (d * s + w * c) / 2
@@ -46,27 +46,27 @@ class Item:
 
     @property
     def center_m(self) -> np.ndarray:
-        """The middle of the box around it, float64 [3]."""
+        """The centre of the bounding box, float64 [3]."""
         return np.array([self.x_m, self.y_m, self.z_m + self.model.size_m[2] / 2])
 
     @property
     def size_m(self) -> tuple[float, float, float]:
-        """The size of its model."""
+        """The size of the model."""
         return self.model.size_m
 
     def point(self, front_m: float, left_m: float) -> tuple[float, float]:
-        """Return the place in the room of a point of the item's own frame."""
+        """Return the room position of a point in the item's local frame."""
         turned = apply(rotation_about_z(self.yaw_deg), np.array([front_m, left_m, 0.0]))
         return self.x_m + float(turned[0]), self.y_m + float(turned[1])
 
 
 def boxes_intersect(a: Box, b: Box) -> bool:
-    """Return whether two boxes share more than a face."""
+    """Return whether two boxes overlap. Boxes that only touch do not overlap."""
     return all(a[n] < b[n + 3] - TOUCH_M and b[n] < a[n + 3] - TOUCH_M for n in range(3))
 
 
 def items_intersect(a: Item, b: Item) -> bool:
-    """Return whether two items share more than a face, as they are turned."""
+    """Return whether two items overlap, considering their rotation. Touching is no overlap."""
     if not boxes_intersect(a.box_m, b.box_m):
         return False
     if a.yaw_deg % 90 == 0 and b.yaw_deg % 90 == 0:
@@ -84,27 +84,27 @@ class Plan:
         self.pits: list[Rect] = []  # Holes in the floor: nobody walks there.
 
     def wall_length(self, wall: int) -> float:
-        """The length of a wall."""
+        """Return the length of a wall in metres."""
         return self.ground.walls[wall].length_m
 
     def at_wall(
         self, model: Model, wall: int, along_m: float, z_m: float = 0.0, gap_m: float = 0.0
     ) -> Item:
-        """Return the item with its back to a wall, its middle at ``along_m``.
+        """Return an item with its back to a wall and its middle at ``along_m``.
 
-        ``along_m`` is an x on walls 1 and 3 and a y on walls 0 and 2.
+        ``along_m`` is an x coordinate on walls 1 and 3, and a y coordinate on walls 0 and 2.
         """
         side = self.ground.walls[wall]
         x, y = side.point(along_m, model.size_m[0] / 2 + gap_m)
         return snap_to_voxels(Item(model, x, y, z_m, 90.0 * side.turn))
 
     def fits(self, item: Item, *, may_block: bool = False, among: list[Item] | None = None) -> bool:
-        """Return whether an item lies in the room and meets nothing (nor a reserved place).
+        """Return whether an item is inside the room and overlaps no item or reserved space.
 
         Args:
-            item: what is asked about.
-            may_block: whether reserved places may be taken.
-            among: the items that it must not meet; all for None.
+            item: The item to check.
+            may_block: Whether the item may overlap reserved space.
+            among: The items that it must not overlap. The default is all items.
         """
         box = item.box_m
         inside = self.ground.holds(box)
@@ -117,7 +117,7 @@ class Plan:
         )
 
     def add(self, item: Item | None, *, may_block: bool = False) -> Item | None:
-        """Put an item in if it fits; return it, or None."""
+        """Add an item if it fits, and return it, or None if it does not fit."""
         if item is None or not self.fits(item, may_block=may_block):
             return None
         self.items.append(item)
@@ -132,14 +132,16 @@ class Plan:
         clear_m: float = 0.0,
         z_m: float = 0.0,
     ) -> Item | None:
-        """Put a model against one of the walls, at one of the shares ``along`` or at random.
+        """Place a model against one of several walls, and return its item or None.
+
+        None means that the model does not fit.
 
         Args:
-            model: what to place.
-            walls: which walls may be tried, in turn.
-            along: shares of the wall's length to try first; at random after.
-            clear_m: how much floor before it must stay free from then on.
-            z_m: the height of its bottom.
+            model: The model to place.
+            walls: Indices of the walls to try, in turn.
+            along: Fractions of the wall length to try first. Random positions are tried next.
+            clear_m: Depth of the floor area in front of the item that is reserved.
+            z_m: Height of the bottom of the item.
         """
         half = model.size_m[1] / 2
         for n in range(len(walls) * (len(along) + TRIES // 4)):
@@ -159,7 +161,7 @@ class Plan:
         return None
 
     def add_in_corner(self, model: Model, *, near: Item | None = None) -> Item | None:
-        """Put a small model in a free corner, or beside ``near``."""
+        """Place a small model in a free corner or beside ``near``, and return its item or None."""
         width, depth, _ = self.size_m
         inset_x, inset_y = model.size_m[0] / 2 + 0.06, model.size_m[1] / 2 + 0.06
         spots = [(x, y) for x in (inset_x, width - inset_x) for y in (inset_y, depth - inset_y)]
@@ -178,7 +180,7 @@ class Plan:
     def add_before(
         self, model: Model, anchor: Item, gap_m: float, *, left_m: float = 0.0, facing: bool = True
     ) -> Item | None:
-        """Put a model before an anchor's front, ``gap_m`` from it, turned to face it or as it."""
+        """Place a model in front of another item, facing the item or in the same direction."""
         away = anchor.model.size_m[0] / 2 + gap_m + model.size_m[0] / 2
         x, y = anchor.point(away, left_m)
         yaw = anchor.yaw_deg + (180.0 if facing else 0.0)
@@ -187,13 +189,13 @@ class Plan:
     def add_upon(
         self, model: Model, base: Item, front_m: float, left_m: float, *, top_m: float | None = None
     ) -> Item | None:
-        """Put a model on top of another, at a place of the other's frame, facing as it does."""
+        """Place a model on top of another item at a local position, with the same orientation."""
         x, y = base.point(front_m, left_m)
         top = base.z_m + (base.model.size_m[2] if top_m is None else top_m)
         return self.add(snap_to_voxels(Item(model, x, y, top, base.yaw_deg)), may_block=True)
 
     def reserve_beside(self, item: Item, width_m: float) -> None:
-        """Keep the floor on both sides of an item free."""
+        """Reserve the floor on both sides of an item."""
         x0, y0, _, x1, y1, _ = item.box_m
         if round(item.yaw_deg) % 180 == 0:
             self.reserved.append((x0, y0 - width_m, 0.0, x1, y1 + width_m, 2.0))
@@ -201,7 +203,7 @@ class Plan:
             self.reserved.append((x0 - width_m, y0, 0.0, x1 + width_m, y1, 2.0))
 
     def front_box(self, item: Item, depth_m: float) -> Box:
-        """Return the box of floor before an item's front."""
+        """Return the box of space in front of an item."""
         half, wide = item.model.size_m[0] / 2, item.model.size_m[1] / 2
         ax, ay = item.point(half, -wide)
         bx, by = item.point(half + depth_m, wide)
@@ -212,7 +214,7 @@ class Plan:
 
 
 def snap_to_voxels(item: Item) -> Item:
-    """Move an item by under 2 cm, so that its box begins on whole voxels."""
+    """Move an item by less than 2 cm, so that its bounding box is aligned with voxels."""
     x0, y0, z0, *_ = item.box_m
 
     def shift(value: float) -> float:
@@ -224,10 +226,10 @@ def snap_to_voxels(item: Item) -> Item:
 
 
 def paths_are_clear(plan: Plan, *doors_m: tuple[float, float], body_m: float = 0.24) -> bool:
-    """Return whether a person who comes in at a door reaches most of the free floor.
+    """Return whether a person who enters through any door can reach most of the free floor.
 
-    The floor is looked at in squares of 10 cm, furniture grown by ``body_m``, half a person. All
-    doors must lead to the same floor.
+    The floor is divided into squares of 10 cm, and furniture is enlarged by ``body_m``, half the
+    width of a person. All doors must lead to the same part of the floor.
     """
     x, y, free = _free_floor(plan, body_m)
     parts, _ = label_components(free, corners=False)
@@ -261,7 +263,7 @@ def _free_floor(plan: Plan, body_m: float) -> tuple[np.ndarray, np.ndarray, np.n
 
 
 def chairs_around(plan: Plan, board: Item, chair: Model, *, ends: bool) -> None:
-    """Put chairs at the long sides of a table, and at its ends, all facing it."""
+    """Place chairs at the long sides of a table, and optionally at its ends, facing the table."""
     depth, width, _ = board.model.size_m
     count = max(1, int(width / 0.62))
     spots = [
@@ -278,14 +280,14 @@ def chairs_around(plan: Plan, board: Item, chair: Model, *, ends: bool) -> None:
 
 
 def pendant_over(plan: Plan, board: Item, colour: Colour) -> None:
-    """Hang a lamp over the middle of a table."""
+    """Place a pendant lamp above the middle of a table."""
     lamp = decor.pendant(plan.size_m[2] - 1.6, colour)
     drop = plan.size_m[2] - lamp.size_m[2]
     plan.add(snap_to_voxels(Item(lamp, board.x_m, board.y_m, drop, 0.0)), may_block=True)
 
 
 def pictures_over(plan: Plan, below: Item, z_m: float, count: int = 2) -> None:
-    """Hang pictures on the wall behind an item."""
+    """Place pictures on the wall behind an item."""
     wall = round(below.yaw_deg / 90) % 4
     along = below.y_m if wall % 2 == 0 else below.x_m
     for n in range(count):
@@ -295,13 +297,13 @@ def pictures_over(plan: Plan, below: Item, z_m: float, count: int = 2) -> None:
 
 
 def picture_anywhere(plan: Plan) -> None:
-    """Hang a picture on a wall that has room for it."""
+    """Place a picture on a wall that has space for it."""
     model = decor.picture(0.8, 0.6, plan.rng)
     plan.add_at_walls(model, along=(0.5, 0.35, 0.65), z_m=1.4)
 
 
 def rug_around(item: Item, front_m: float, aside_m: float, colour: Colour) -> Rug:
-    """Return a rug that reaches out from under an item."""
+    """Return a rug that extends beyond an item."""
     x0, y0, _, x1, y1, _ = item.box_m
     grow_x, grow_y = (front_m, aside_m) if round(item.yaw_deg) % 180 == 0 else (aside_m, front_m)
     return (

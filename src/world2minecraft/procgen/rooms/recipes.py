@@ -1,8 +1,8 @@
-"""The kinds of rooms: their sizes, their floors, and the recipes that furnish them.
+"""Kinds of rooms, with their sizes, floors and furnishing recipes.
 
-Each recipe fills a ``Plan``; it places by relation (a sofa against a wall, the television across
-from it, chairs that face their table) and returns the rugs, or None where the room does not hold
-what makes it what it is.
+A recipe furnishes a ``Plan`` by relations between items, such as a sofa against a wall and a
+television opposite it. It returns the rugs, or None if the room has no space for its main
+furniture.
 """
 
 from collections.abc import Callable
@@ -33,7 +33,10 @@ BASE_KINDS = ("bed", "dining", "kitchen", "living", "study")
 
 
 def furnish_living(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """A sofa that looks at a television across a low table on a rug. None: it does not fit."""
+    """Furnish a living room with a sofa, a television opposite and a low table on a rug.
+
+    Returns None if the main furniture does not fit.
+    """
     rng = plan.rng
     long_walls = (1, 3) if plan.size_m[0] >= plan.size_m[1] else (0, 2)
     walls = tuple(int(wall) for wall in rng.permutation(long_walls))
@@ -78,7 +81,10 @@ def _beside_low_table(plan: Plan, low: Item, easy: Model) -> None:
 
 
 def furnish_bed(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """A bed with its head at a wall between two night tables, a wardrobe, a dresser."""
+    """Furnish a bedroom with a bed between two nightstands, a wardrobe and a dresser.
+
+    Returns None if the bed does not fit.
+    """
     rng = plan.rng
     width = float(rng.choice([1.4, 1.6, 1.8]))
     walls = tuple(int(wall) for wall in rng.permutation(4))
@@ -110,7 +116,10 @@ def furnish_bed(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
 
 
 def furnish_kitchen(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """An L of counters with sink, cooker and hood, cupboards above, a fridge, a small table."""
+    """Furnish a kitchen with counters in an L, cupboards above, a fridge and a small table.
+
+    Returns None if the counters or the table do not fit.
+    """
     rng = plan.rng
     wall = 1 if plan.size_m[0] >= plan.size_m[1] else 0
     run = _kitchen_run(plan, style, wall)
@@ -174,7 +183,10 @@ def _kitchen_arm(plan: Plan, style: Style, wall: int) -> None:
 
 
 def furnish_dining(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """A long table with chairs all around under a lamp, a sideboard, pictures."""
+    """Furnish a dining room with a long table, chairs, a pendant lamp and a sideboard.
+
+    Returns None if the table does not fit.
+    """
     rng = plan.rng
     along_x = plan.size_m[0] >= plan.size_m[1]
     length = float(rng.choice([1.6, 1.8, 2.0]))
@@ -202,7 +214,10 @@ def furnish_dining(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
 
 
 def furnish_study(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """A desk with a screen and its chair, walls of books, boxes, an easy chair."""
+    """Furnish a study with a desk, a chair, bookshelves, boxes and an armchair.
+
+    Returns None if the desk or its chair does not fit.
+    """
     rng = plan.rng
     walls = tuple(int(wall) for wall in rng.permutation(4))
     desk = plan.add_at_walls(
@@ -233,12 +248,15 @@ def furnish_study(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
 
 
 def shuffled_walls(plan: Plan) -> tuple[int, ...]:
-    """Return the four main walls in a random order."""
+    """Return the indices of the four main walls in random order."""
     return tuple(int(wall) for wall in plan.rng.permutation(4))
 
 
 def furnish_bathroom(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """A tub or a shower, a washstand under its mirror, a toilet; a washing machine if it fits."""
+    """Furnish a bathroom with a bathtub or shower, a washstand, a mirror and a toilet.
+
+    A washing machine is added if it fits. Returns None if the main fittings do not fit.
+    """
     rng = plan.rng
     walls = shuffled_walls(plan)
     tub = washing.bathtub(1.7) if rng.random() < 0.6 else washing.shower()
@@ -268,7 +286,7 @@ def _behind(plan: Plan, item: Item, model: Model, z_m: float) -> Item:
 
 
 def furnish_hall(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """Coats over a bench, a flat cupboard for shoes under a mirror, an umbrella stand."""
+    """Furnish a hall with coats above a bench, a shoe cabinet with a mirror, and a bin."""
     rng = plan.rng
     walls = tuple(int(wall) for wall in rng.permutation(len(plan.ground.walls)))
     shoes = plan.add_at_walls(playing.shoe_cabinet(WHITE), walls)
@@ -301,7 +319,10 @@ def _gap_m(plan: Plan, item: Item, wall: int) -> float:
 
 
 def furnish_office(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """Two desks with their chairs, a small table to talk at, files, a whiteboard."""
+    """Furnish an office with two desks, a meeting table, a filing cabinet and a whiteboard.
+
+    Returns None if no desk fits.
+    """
     rng = plan.rng
     walls = shuffled_walls(plan)
     places = []
@@ -342,7 +363,10 @@ def _work_place(plan: Plan, style: Style, wall: int) -> Item | None:
 
 
 def furnish_children(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
-    """A small bed in a corner, a desk, a low shelf of toys, a little table with stools."""
+    """Furnish a children's room with a small bed, a desk, a toy shelf and a table with stools.
+
+    Returns None if the bed does not fit.
+    """
     rng = plan.rng
     walls = shuffled_walls(plan)
     bed = plan.add_at_walls(
@@ -375,7 +399,7 @@ def furnish_children(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of room: the range of its inner sides in metres, its floor, and its recipe."""
+    """A kind of room, with the ranges of its inner sides in metres, its floor and its recipe."""
 
     short_m: tuple[float, float]
     long_m: tuple[float, float]
@@ -397,7 +421,7 @@ KINDS: dict[str, Kind] = {
 
 
 def random_size(kind: Kind, rng: np.random.Generator) -> tuple[float, float, float]:
-    """Return inner sides and height of a room of a kind, multiples of 2 cm."""
+    """Return a random width, depth and height for a kind of room, in multiples of 2 cm."""
     short, long = (
         round_to_step(rng.uniform(*kind.short_m)),
         round_to_step(rng.uniform(*kind.long_m)),

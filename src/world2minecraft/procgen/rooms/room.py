@@ -1,4 +1,4 @@
-"""Seeded furnished rooms: a layout in metres and the same room as 2 cm voxels."""
+"""Generation of furnished rooms from a seed, as layouts in metres and 2 cm voxels."""
 
 from dataclasses import dataclass
 
@@ -25,11 +25,12 @@ ATTEMPTS = 80  # A recipe fits on its first tries as a rule; the worst of 500 se
 
 @dataclass(frozen=True, eq=False)
 class Room:
-    """A place to be scanned: one furnished room, or a house of several.
+    """A generated furnished room, or a house of several rooms.
 
-    Instance n is the n-th object of all layouts in order, ``objects[n - 1]``. ``labels`` are class
-    ids, 0 air. The inner box of a room is from (0, 0, 0) to its size, the shell of walls, floor
-    slab and ceiling lies around it; in a house this holds for the box around all rooms.
+    Instance n is the n-th object of all layouts in order, ``objects[n - 1]``. ``labels`` contains
+    class IDs, with 0 for air. The inner box of a room extends from (0, 0, 0) to its size and is
+    surrounded by the shell of walls, floor slab and ceiling. In a house, this applies to the box
+    around all rooms.
     """
 
     kind: str
@@ -43,7 +44,7 @@ class Room:
 
     @property
     def layout(self) -> Layout:
-        """The first layout: the only one of a single room."""
+        """The first layout, which is the only layout of a single room."""
         return self.layouts[0]
 
     @property
@@ -53,7 +54,7 @@ class Room:
 
     @property
     def size_m(self) -> np.ndarray:
-        """The inner sides and the height of the box around all rooms, float64 [3]."""
+        """The inner width, depth and height of the box around all rooms, float64 [3]."""
         sides = np.max([layout.floor_polygon_m.max(axis=0) for layout in self.layouts], axis=0)
         top = max(layout.floor_z_m + layout.wall_height_m for layout in self.layouts)
         return np.array([*sides, top])
@@ -62,21 +63,23 @@ class Room:
 def generate_room(
     seed: int, *, kind: str | None = None, clutter: float = 0.0, shape: str | None = "box"
 ) -> Room:
-    """Return the room of a seed: the same seed gives the same bytes.
+    """Generate a room from a seed. The same arguments always give the same bytes.
 
     Args:
-        seed: 0 or more.
-        kind: one of ``KINDS``; None draws one of the five of ``BASE_KINDS``.
-        clutter: 0 (tidy) to 1: how many things lie about, and how askew the chairs stand.
-        shape: one of ``SHAPES``; None draws one.
+        seed: The random seed, at least 0.
+        kind: One of ``KINDS``. The default is a random kind from ``BASE_KINDS``.
+        clutter: Amount of loose objects and displaced chairs, from 0 (tidy) to 1.
+        shape: One of ``SHAPES``, or None for a random shape.
 
     Raises:
-        UnknownNameError: no kind or no shape has this name.
+        UnknownNameError: If the kind or the shape is unknown.
+        ValueError: If the seed or the clutter is out of range.
+        World2MinecraftError: If no room can be furnished with this seed.
     """
     if seed < 0:
-        raise ValueError(f"seed must be 0 or more, not {seed}")
+        raise ValueError(f"seed must be 0 or more, got {seed}")
     if not 0 <= clutter <= 1:
-        raise ValueError(f"clutter must be from 0 to 1, not {clutter}")
+        raise ValueError(f"clutter must be from 0 to 1, got {clutter}")
     kind = draw_kind(seed) if kind is None else kind
     if kind not in KINDS:
         raise UnknownNameError("room kind", kind, KINDS)
@@ -87,11 +90,11 @@ def generate_room(
         room = _try_room(seed, kind, shape, clutter, np.random.default_rng([seed, attempt]))
         if room is not None:
             return room
-    raise World2MinecraftError(f"seed {seed} gives no {kind} room; try another seed")
+    raise World2MinecraftError(f"cannot generate a {kind} room from seed {seed}; try another seed")
 
 
 def draw_kind(seed: int) -> str:
-    """Return the kind of room that a seed draws where none is asked for."""
+    """Return the random kind of room of a seed, used if no kind is given."""
     return sorted(BASE_KINDS)[int(np.random.default_rng(seed).integers(len(BASE_KINDS)))]
 
 
@@ -132,7 +135,7 @@ def _try_room(
 
 
 def room_layout(plan: Plan, holes: tuple[Hole, ...], items: list[Item], name: str = "") -> Layout:
-    """Return the layout of a furnished plan, in the plan's own frame."""
+    """Return the layout of a furnished plan, in the frame of the plan."""
     return Layout(
         floor_polygon_m=plan.ground.polygon_m,
         wall_height_m=plan.size_m[2],
@@ -143,7 +146,7 @@ def room_layout(plan: Plan, holes: tuple[Hole, ...], items: list[Item], name: st
 
 
 def layout_object(item: Item) -> LayoutObject:
-    """Return an item as the layout states it."""
+    """Return an item in the form of a layout object."""
     _, _, z0, _, _, z1 = item.box_m
     return LayoutObject(
         class_id=item.model.class_id,

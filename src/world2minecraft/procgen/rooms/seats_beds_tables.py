@@ -1,4 +1,4 @@
-"""Chairs, sofas, tables and beds, in real sizes."""
+"""Models of chairs, sofas, tables and beds in real sizes."""
 
 from itertools import pairwise
 
@@ -19,7 +19,7 @@ SOFA, TABLE = int(SemanticClass.SOFA), int(SemanticClass.TABLE)
 
 
 def chair(wood: Colour, cushion: Colour) -> Model:
-    """A dining chair: legs, a padded seat, two posts and three slats for a back."""
+    """Return a dining chair with a padded seat and a back with slats."""
     d, w, h = 0.46, 0.44, 0.90
     posts = [
         Part((-d / 2, y, 0.48, -d / 2 + 0.04, y + 0.04, h), wood, "wood")
@@ -37,7 +37,7 @@ def chair(wood: Colour, cushion: Colour) -> Model:
 
 
 def office_chair(cushion: Colour) -> Model:
-    """A desk chair on a foot of crossed bars, with a high back and arm rests."""
+    """Return an office chair with a crossed foot, a high back and armrests."""
     d, w, h = 0.60, 0.60, 1.04
     dark = (48, 50, 54)
     parts = (
@@ -55,13 +55,13 @@ def office_chair(cushion: Colour) -> Model:
 
 
 def armchair(fabric: Colour, wood: Colour) -> Model:
-    """An easy chair for one: the sofa's little brother, of class chair."""
+    """Return an upholstered armchair, which has the class chair."""
     d, w, h = 0.84, 0.80, 0.86
     return Model("armchair", CHAIR, (d, w, h), tuple(_upholstery(d, w, h, 1, fabric, wood)))
 
 
 def sofa(width: float, fabric: Colour, pillow: Colour, wood: Colour) -> Model:
-    """A sofa with arms, a cushion for each seat, and two loose pillows."""
+    """Return a sofa with arms, seat cushions and two loose pillows."""
     d, w, h = 0.92, round_to_step(width), 0.84
     parts = _upholstery(d, w, h, 3 if w > 2.0 else 2, fabric, wood)
     for y in (-w / 2 + 0.24, w / 2 - 0.62):
@@ -88,7 +88,7 @@ def _upholstery(d: float, w: float, h: float, seats: int, fabric: Colour, wood: 
 
 
 def table(name: str, depth: float, width: float, height: float, wood: Colour) -> Model:
-    """A table: four legs, an apron and a top."""
+    """Return a table with four legs, an apron and a top."""
     d, w, h = round_to_step(depth), round_to_step(width), round_to_step(height)
     under = shade(wood, 0.85)
     apron = Part(
@@ -102,7 +102,7 @@ def table(name: str, depth: float, width: float, height: float, wood: Colour) ->
 
 
 def desk(width: float, wood: Colour, body: Colour) -> Model:
-    """A desk with a side panel, a drawer block and a back panel. Its front is the sitter's side."""
+    """Return a desk with a drawer block, whose front is the side of the chair."""
     d, w, h = 0.70, round_to_step(width), 0.74
     parts = [
         Part((-d / 2, -w / 2, h - 0.04, d / 2, w / 2, h), wood, "wood"),
@@ -119,7 +119,7 @@ def desk(width: float, wood: Colour, body: Colour) -> Model:
 
 
 def bed(width: float, wood: Colour, blanket: Colour) -> Model:
-    """A bed: frame, mattress, pillows, blanket and headboard. Its front is the foot end."""
+    """Return a bed with pillows, a blanket and a headboard, whose front is the foot end."""
     d, w, h = 2.10, round_to_step(width), 1.04
     head = -d / 2 + 0.06
     white = (238, 236, 230)

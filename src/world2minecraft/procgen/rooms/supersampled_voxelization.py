@@ -1,6 +1,6 @@
-"""Voxelization of round and turned parts: every voxel is sampled at 27 points.
+"""Voxelization of round and rotated parts by sampling each voxel at 27 points.
 
-Boxes turned by quarters need none of this: they fall on whole voxels.
+Boxes rotated by quarter turns are aligned with voxels and do not need sampling.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ ENOUGH = 9  # Of 27: thin boards stay whole when they are turned, and nothing gr
 
 
 def make_model(name: str, class_id: int, parts: Sequence[Part | Bar]) -> Model:
-    """Return the model of parts that were drawn anywhere: its size is that of its voxels."""
+    """Create a model from parts at any position, with the size of its voxels."""
     low = np.array([part.box_m for part in parts])[:, :3].min(axis=0)
     base = Item(Model(name, class_id, (STEP_M, STEP_M, STEP_M), ()), 0.0, 0.0, 0.0, 0.0)
     begun = [translate_part(part, tuple((-low).tolist())) for part in parts]
@@ -36,16 +36,16 @@ def make_model(name: str, class_id: int, parts: Sequence[Part | Bar]) -> Model:
 
 
 def is_plain(item: Item, part: Part | Bar) -> bool:
-    """Return whether a part is a box that falls on whole voxels where the item stands."""
+    """Return whether a part is a box that is aligned with voxels in the orientation of its item."""
     return isinstance(part, Part) and part.form == "box" and item.yaw_deg % 90 == 0
 
 
 def solid_cells(item: Item, part: Part | Bar) -> tuple[np.ndarray, np.ndarray]:
-    """Return the voxels of a part, counted from the frame's origin.
+    """Return the voxels of a part, relative to the origin of the room frame.
 
     Returns:
-        int64 [3], the first voxel of a box around the part, and bool [I, J, K], which are filled;
-        one at least.
+        The first voxel of a box around the part, int64 [3], and which voxels of the box are filled,
+        bool [I, J, K]. At least one voxel is filled.
     """
     low_m, high_m = _bounds_m(item, part)
     first = np.floor(low_m / STEP_M).astype(np.int64)

@@ -1,4 +1,4 @@
-"""A furnished plan becomes voxels: labels, instances and colours at 2 cm."""
+"""Voxelization of a furnished plan into labels, instances and colours at 2 cm."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -21,7 +21,7 @@ WINDOW = int(SemanticClass.WINDOW)
 
 
 class Canvas:
-    """The arrays that are painted. Indices count from the outer corner of the shell."""
+    """The voxel arrays of a room, whose indices start at the outer corner of the shell."""
 
     def __init__(self, size_m: tuple[float, float, float]):
         inner = [round(side / VOXEL_M) for side in size_m]
@@ -33,30 +33,33 @@ class Canvas:
 
     @property
     def origin_m(self) -> np.ndarray:
-        """The minimum corner of voxel (0, 0, 0) in the room."""
+        """The position of the minimum corner of voxel (0, 0, 0) in the room frame."""
         return np.full(3, -SHELL * VOXEL_M)
 
     def cells(self, box_m: tuple[float, ...]) -> tuple[slice, slice, slice]:
-        """Return the voxels of a box; one at least along each axis."""
+        """Return the voxels of a box as slices, at least one voxel along each axis."""
         low = [round(value / VOXEL_M) + SHELL for value in box_m[:3]]
         high = [round(value / VOXEL_M) + SHELL for value in box_m[3:]]
         a, b, c = (slice(x, max(x + 1, y)) for x, y in zip(low, high, strict=True))
         return a, b, c
 
     def middles_m(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the x [X, 1] and the y [1, Y] of the middles of all voxels."""
+        """Return the x coordinates [X, 1] and y coordinates [1, Y] of all voxel centres."""
         x, y = ((np.arange(side) - SHELL + 0.5) * VOXEL_M for side in self.labels.shape[:2])
         return x[:, None], y[None, :]
 
     def fill(self, cells: tuple[slice, ...], label: int, instance: int, colour: Any) -> None:
-        """Paint a box of voxels; ``colour`` is one colour or broadcasts to the box."""
+        """Set the label, instance and colour of a box of voxels.
+
+        ``colour`` is a single colour or broadcasts to the box.
+        """
         self.labels[cells] = label
         self.instance[cells] = instance
         self.colour[cells] = colour
 
 
 def paint_shell(canvas: Canvas, style: Style, floor: str, rng: np.random.Generator) -> None:
-    """Paint walls, ceiling, skirting boards and the floor."""
+    """Fill in the walls, ceiling, skirting boards and floor."""
     everywhere = (slice(None),) * 3
     canvas.fill(everywhere, int(SemanticClass.WALL), 0, style.wall)
     accent = int(rng.integers(4))
@@ -78,12 +81,12 @@ def paint_shell(canvas: Canvas, style: Style, floor: str, rng: np.random.Generat
 def floor_colours(
     floor: str, shape: tuple[int, ...], wood: Colour, rng: np.random.Generator
 ) -> np.ndarray:
-    """Return uint8 [X, Y, 3]: a floor of ``planks`` or ``tiles``."""
+    """Return the colours of a floor of ``planks`` or ``tiles`` as uint8 [X, Y, 3]."""
     return (_planks if floor == "planks" else _tiles)(shape, wood, rng)
 
 
 def paint_built(canvas: Canvas, ground: Ground, style: Style) -> None:
-    """Paint what is built into the box: blocks and cut corners as wall, roofs as ceiling."""
+    """Fill in built-in blocks and cut corners as wall, and roofs as ceiling."""
     x, y = canvas.middles_m()
     inner = tuple(slice(SHELL, -SHELL) for _ in range(3))
     built = ground.built(x, y)[inner[:2]]
@@ -134,7 +137,10 @@ def _tiles(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np
 
 
 def paint_rug(canvas: Canvas, rug: Rug, within: Rect, floor_z_m: float = 0.0) -> None:
-    """Colour the floor under a flat rug, 10 cm off the sides of ``within``; it stays floor."""
+    """Colour the floor under a flat rug, at least 10 cm from the sides of ``within``.
+
+    The voxels keep the class floor.
+    """
     x0, y0, x1, y1, colour = rug
     low = (max(x0, within[0] + 0.1), max(y0, within[1] + 0.1))
     high = (min(x1, within[2] - 0.1), min(y1, within[3] - 0.1))
@@ -146,7 +152,7 @@ def paint_rug(canvas: Canvas, rug: Rug, within: Rect, floor_z_m: float = 0.0) ->
 
 
 def paint_item(canvas: Canvas, item: Item, instance: int, rng: np.random.Generator) -> None:
-    """Paint the parts of an item where it stands."""
+    """Fill in the voxels of an item."""
     for part in item.model.parts:
         if not is_plain(item, part):
             _paint_solid(canvas, item, part, instance, rng)
@@ -198,7 +204,7 @@ def _tint(colour: Colour, tone: np.ndarray) -> np.ndarray:
 
 
 def paint_hole(canvas: Canvas, hole: Hole, wall: Wall, floor_z_m: float = 0.0) -> None:
-    """Cut a recess for a window or a door, and glaze a window; ``wall`` is the hole's own."""
+    """Cut a recess for a window or door into its wall, and fill in the window pane."""
     deep = round(RECESS_M / VOXEL_M)
     recess = _in_wall(canvas, hole, wall, 0, deep, floor_z_m)
     canvas.fill(recess, 0, 0, 0)

@@ -1,1 +1,1 @@
-"""Virtual sensors: depth cameras, phones, photos and the ways that people hold them."""
+"""Virtual sensors: depth cameras, phones and camera paths."""

@@ -1,9 +1,9 @@
-"""The depth camera: what a consumer sensor makes of exact depth.
+"""Simulation of consumer depth cameras from exact depth.
 
-``rgbd`` follows structured-light sensors: axial noise that grows with the square of distance,
-depth in steps of disparity, lost pixels at edges, on dark and on grazing surfaces, and holes.
-``clean`` gives exact depth and exact poses. ``photo``, ``photos`` and ``video`` are phones, which
-see no depth at all (``phone``).
+``rgbd`` simulates a structured-light sensor: axial noise that grows with the square of the
+distance, depth quantized in disparity steps, missing pixels at edges and on dark or grazing
+surfaces, and holes. ``clean`` gives exact depth and exact poses. ``photo``, ``photos`` and
+``video`` are phones without depth (see ``phone``).
 """
 
 from dataclasses import dataclass
@@ -20,10 +20,10 @@ EDGE_SHARE = 0.03  # A step between neighbours of over 3 % of the depth, and 3 c
 
 @dataclass(frozen=True)
 class Sensor:
-    """The figures of a sensor; zero switches an effect off.
+    """The noise parameters of a sensor. Zero disables an effect.
 
-    The ``rgbd`` figures: axial sigma 1.2 mm + 1.9 mm x (z - 0.4 m)^2, disparity steps of 1/8 px,
-    2 % holes, pose jitter of 5 mm and 0.2 degrees, range 0.4 to 5 m.
+    The defaults are those of ``rgbd``: axial sigma 1.2 mm + 1.9 mm x (z - 0.4 m)^2, disparity steps
+    of 1/8 px, 2 % holes, pose jitter of 5 mm and 0.2 degrees, range 0.4 to 5 m.
     """
 
     sigma_m: float = 0.0012
@@ -48,7 +48,7 @@ def find_sensor(name: str) -> Sensor:
     """Return a sensor by name.
 
     Raises:
-        UnknownNameError: no sensor has this name.
+        UnknownNameError: If the sensor is unknown.
     """
     if name not in SENSORS:
         raise UnknownNameError("sensor", name, SENSORS)
@@ -63,15 +63,15 @@ def sense_depth(
     fx_px: float,
     rng: np.random.Generator,
 ) -> np.ndarray:
-    """Return what the sensor says of exact depth, float32 [H, W], 0 where it says nothing.
+    """Simulate the measured depth of a frame as float32 [H, W], with 0 for missing pixels.
 
     Args:
-        model: the sensor.
-        depth_m: float32 [H, W], exact z-depth, 0 where there is nothing.
-        cosine: float32 [H, W], between ray and surface.
-        luminance: float32 [H, W], 0 to 255.
-        fx_px: the focal length of this image.
-        rng: the frame's own source of noise.
+        model: The sensor.
+        depth_m: Exact z-depth as float32 [H, W], 0 if there is no surface.
+        cosine: Cosine between ray and surface normal, float32 [H, W].
+        luminance: Luminance of the image, 0 to 255, float32 [H, W].
+        fx_px: The focal length of this image in pixels.
+        rng: Random generator for the noise of this frame.
     """
     focal_px = fx_px * NATIVE_WIDTH_PX / depth_m.shape[1]
     noise = rng.standard_normal(depth_m.shape, np.float32)
@@ -87,12 +87,12 @@ def sense_depth(
 
 
 def axial_sigma_m(model: Sensor, depth_m: np.ndarray) -> np.ndarray:
-    """Return the standard deviation of depth at a depth."""
+    """Return the standard deviation of the measured depth at given depths, in metres."""
     return np.float32(model.sigma_m) + np.float32(model.sigma_growth) * (depth_m - 0.4) ** 2
 
 
 def quantize_disparity(model: Sensor, depth_m: np.ndarray, focal_px: float) -> np.ndarray:
-    """Round depth so that its disparity is a whole number of steps."""
+    """Round depths so that the disparity is a multiple of the sensor's disparity step."""
     if not model.disparity_step_px:
         return depth_m
     reach = np.float32(focal_px * BASELINE_M / model.disparity_step_px)
@@ -101,7 +101,7 @@ def quantize_disparity(model: Sensor, depth_m: np.ndarray, focal_px: float) -> n
 
 
 def depth_edges(depth_m: np.ndarray) -> np.ndarray:
-    """Return which pixels lie at a depth edge: one of their four neighbours is far off."""
+    """Return which pixels differ strongly in depth from one of their four neighbours."""
     found = np.zeros(depth_m.shape, bool)
     for axis in (0, 1):
         a, b = np.moveaxis(depth_m, axis, 0)[:-1], np.moveaxis(depth_m, axis, 0)[1:]
@@ -126,7 +126,7 @@ def _below(values: np.ndarray, limit: float) -> np.ndarray:
 
 
 def jitter_pose(model: Sensor, camera_to_room: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Return the pose that the sensor's tracker states: off by its jitter along each axis."""
+    """Return a camera pose with the random error of the sensor's tracking."""
     shift = rng.standard_normal(3) * model.jitter_m
     angles = np.radians(rng.standard_normal(3) * model.jitter_deg)
     stated = camera_to_room.copy()
@@ -136,5 +136,5 @@ def jitter_pose(model: Sensor, camera_to_room: np.ndarray, rng: np.random.Genera
 
 
 def scale_factor(sigma: float, rng: np.random.Generator) -> float:
-    """Return what a frame's depth is multiplied by: 1 give or take ``sigma``, 3 sigma at most."""
+    """Return a random depth scale of a frame, normal around 1 and clipped to 3 ``sigma``."""
     return 1.0 + sigma * float(np.clip(rng.standard_normal(), -3, 3))

@@ -1,8 +1,8 @@
-"""The navigation mesh of a room or a house: where a person can stand and walk, stairs included.
+"""The navigation mesh of a room or a house, which contains the places where a person can walk.
 
-The floor is looked at in squares of 10 cm. A person stands on what is solid, where 1.9 m above it
-and half a metre around it are free, and steps up or down by 26 cm at most: so one walk leads
-through doorways and up the stairs, and none over a table.
+The floor is divided into squares of 10 cm. A person can stand on a solid surface if 1.9 m above it
+and the space around the body are free. Steps up and down are at most 26 cm, so that paths lead
+through doorways and up stairs but not over tables.
 """
 
 from dataclasses import dataclass
@@ -27,26 +27,26 @@ DOORWAY_M, SLAB_M = 0.4, 0.6  # Walls, and what stairs pass between two storeys,
 
 @dataclass(frozen=True, eq=False)
 class NavMesh:
-    """The places of a person's feet and how they are linked.
+    """The places where a person can stand or pass, and the links between them.
 
-    ``easy`` places lie on a floor with room around the whole body; the others (a stair, a narrow
-    gap) are passed, not stood on. ``storey_room`` is the index of the layout that a place is in,
-    -1 in a doorway or a wall's thickness.
+    ``easy`` places are on a floor with free space around the whole body. The other places, such as
+    stairs and narrow gaps, can only be passed. ``storey_room`` is the index of the layout that
+    contains a place, or -1 in a doorway or wall.
     """
 
-    places_m: np.ndarray  # float64 [N, 3], in the room's frame
+    places_m: np.ndarray  # float64 [N, 3], in the frame of the room.
     easy: np.ndarray  # bool [N]
     storey_room: np.ndarray  # int64 [N]
-    links: csr_matrix  # float64 [N, N], the cost of a step, in metres
+    links: csr_matrix  # float64 [N, N], cost of each step, in metres.
 
     @cached_property
     def part(self) -> np.ndarray:
-        """The number of the connected part of each place, int32 [N]."""
+        """The number of the connected part that each place belongs to, int32 [N]."""
         return connected_components(self.links, directed=False)[1]
 
 
 def build_navmesh(room: Room) -> NavMesh:
-    """Return where a person can stand in a room or a house; there may be no place at all."""
+    """Build the navigation mesh of a room or a house, which may be empty."""
     squares = _squares(room)
     below = np.zeros((*squares.shape[:2], squares.shape[2] + 1), np.int32)
     np.cumsum(squares, axis=2, out=below[:, :, 1:])
@@ -134,7 +134,7 @@ def _where(layouts: tuple[Layout, ...], places_m: np.ndarray):
 
 
 def is_inside(polygon: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Return which points, float64 [N, 2], lie in a polygon, float64 [M, 2], by crossings."""
+    """Return which points, float64 [N, 2], are inside a polygon, float64 [M, 2]."""
     x, y = points[:, 0], points[:, 1]
     odd = np.zeros(len(points), bool)
     for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):

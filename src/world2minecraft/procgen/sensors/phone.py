@@ -1,9 +1,8 @@
-"""A phone as the sensor: photos with or without their poses, and a video; never depth.
+"""Simulation of a phone camera: photos with or without poses, and videos, but no depth.
 
-Surfaces have marks (``surface_textures``), and the pictures have soft edges, a phone's exposure and
-noise (``photo``). Photos are matched with each other, so neighbours must share most of what they
-see: the viewing direction is decided now and then, and between two such moments the camera turns
-evenly.
+Surfaces have textures (``surface_textures``), and images have the soft edges, exposure and noise of
+a phone (``photo_rendering``). Because photos are matched with each other, neighbouring photos must
+overlap: the viewing direction is chosen only at intervals and interpolated in between.
 """
 
 import io
@@ -47,16 +46,16 @@ MOMENTS = 4  # Rays of a pixel, each at its own moment.
 
 @dataclass(frozen=True, eq=False)
 class CameraTrack:
-    """Where the camera is and looks at each of F moments, and evenly in between."""
+    """The position and viewing direction of the camera at F moments, interpolated in between."""
 
     eyes_m: np.ndarray  # float64 [F, 3]
     angles: np.ndarray  # float64 [F, 2], yaw (it may exceed a full turn) and pitch in radians
 
     def pose(self, moment: float) -> np.ndarray:
-        """Return ``camera_to_room`` float64 [4, 4]; moments beyond the ends are those of the ends.
+        """Return ``camera_to_room``, float64 [4, 4], at a moment, clipped to the ends of the track.
 
         Args:
-            moment: 0 is the first, and it need not be a whole number.
+            moment: Index of the moment, starting from 0. Fractions are interpolated.
         """
         low = int(np.clip(np.floor(moment), 0, max(len(self.eyes_m) - 2, 0)))
         high = min(low + 1, len(self.eyes_m) - 1)
@@ -76,15 +75,15 @@ def plan_camera_track(
     *,
     smooth: bool,
 ) -> CameraTrack:
-    """Return how a room is filmed in so many pictures.
+    """Plan the camera track of a tour through a room.
 
     Args:
-        room: the room or the house.
-        scene: ``prepare_voxels`` of its labels.
-        camera: whose field of view counts.
-        pictures: how many; they are spread evenly over the time of the walk.
-        rng: draws the door where the walk begins, and the height of the eye.
-        smooth: whether it is a video, without jerks; photos are taken one by one.
+        room: The room or house.
+        scene: The result of ``prepare_voxels`` for the labels of the room.
+        camera: The camera, whose field of view is used.
+        pictures: Number of images, spread evenly over the duration of the tour.
+        rng: Random generator for the entrance door and the eye height.
+        smooth: Whether to smooth the track for a video. Photos are taken one by one.
     """
     walk = plan_walk(room, pictures, rng)
     eyes = camera_positions_m(walk.feet_m, rng)
@@ -103,7 +102,7 @@ def plan_camera_track(
 
 
 def phone_shots(room: Room, how: ScanSettings) -> Iterator[Shot]:
-    """Yield a phone's pictures of a room, one at a time, in the order of the walk."""
+    """Yield the images of a phone's scan one at a time, in the order of the tour."""
     scene = prepare_textured(room)
     rng = np.random.default_rng([how.seed, 1])
     video = how.sensor == "video"
@@ -130,10 +129,10 @@ def _shot(
 
 
 def write_photos(folder: str | Path, views: Iterable[View]) -> None:
-    """Write the colour of views as JPEG photos that say nothing of lens or place.
+    """Write the colour images of views as JPEG photos without camera metadata.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the folder cannot be written.
     """
     for view in views:
         buffer = io.BytesIO()
@@ -142,14 +141,17 @@ def write_photos(folder: str | Path, views: Iterable[View]) -> None:
 
 
 def write_video(path: str | Path, views: Iterable[View]) -> None:
-    """Write the colour of views as a video of 24 pictures a second; the same views, same bytes.
+    """Write the colour images of views as a video with 24 frames per second.
+
+    The same views always give the same bytes.
 
     Args:
-        path: an ``.mp4``; its folder is made where it is missing.
-        views: all of one size, both sides even; at least one.
+        path: The ``.mp4`` file to write. Its folder is created if it does not exist.
+        views: One or more views of the same size, with an even width and height.
 
     Raises:
-        OutputError: it cannot be written. MissingExtraError: ``av`` is not installed.
+        OutputError: If the file cannot be written.
+        MissingExtraError: If ``av`` is not installed.
     """
     try:
         import av  # noqa: PLC0415
@@ -182,5 +184,5 @@ def _stream(container: Any, width: int, height: int) -> Any:
 
 def _colour(view: View) -> np.ndarray:
     if view.colour is None:
-        raise ValueError(f"{view.name} has no colour")
+        raise ValueError(f"view {view.name} has no colour image")
     return np.ascontiguousarray(view.colour)

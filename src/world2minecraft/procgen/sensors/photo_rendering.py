@@ -1,14 +1,14 @@
-"""Photos of generated rooms: exact flat colours for depth sensors, or those of a phone.
+"""Rendering of photos of generated rooms, for depth sensors and for phones.
 
-Each room has a lamp under its ceiling. ``take_photo`` gives colour, z-depth, voxel and the cosine
-between ray and surface in one pass over the pixels. The light is that of the lamp plus what the
-walls throw back, dimmed where matter is near (a blurred grid of solid cells), and a fine grain, so
-that no surface is one flat tone. It belongs to the spot, not to the camera: a surface has one
-colour from everywhere.
+Each room has a lamp under its ceiling. ``take_photo`` computes colour, z-depth, voxel and the
+cosine between ray and surface in one pass over the pixels. The lighting combines the lamp, ambient
+light, occlusion by nearby surfaces (from a blurred grid of solid cells) and a fine grain that
+avoids flat colours. It depends on the position and not on the camera, so a surface has the same
+colour in every view.
 
-``expose`` and ``develop`` make a phone's photo for image matching: surfaces have marks, and each
-pixel is the mean of four rays, each taken at its own moment of the exposure, so that a camera that
-moves blurs; then come the gain that the phone chose and noise.
+``expose`` and ``develop`` simulate a phone's photo for image matching. Surfaces have textures, and
+each pixel is the mean of four rays at different moments of the exposure, which gives motion blur.
+The exposure gain and noise of the phone are applied last.
 """
 
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ DRIFT, TINT_DRIFT = 0.03, 0.012  # How the gain and the white balance of photos 
 
 
 def hang_lamps(room: Room) -> np.ndarray:
-    """Return the places of the lamps, float64 [L, 3] in metres, one a layout."""
+    """Return the positions of the lamps in metres, float64 [L, 3], one per layout."""
     return np.array([_lamp_m(room, layout) for layout in room.layouts])
 
 
@@ -75,9 +75,9 @@ def _middle_m(polygon_m: np.ndarray) -> tuple[float, float]:
 
 
 def nearest_lamps(room: Room, shape: tuple[int, ...], cell_m: float) -> np.ndarray:
-    """Return which lamp lights each cell of a coarse grid over the room, uint8 of ``shape``.
+    """Return the index of the lamp that lights each cell of a coarse grid, as uint8 of ``shape``.
 
-    It is that of the room in which the cell lies, or of the nearest room of its storey.
+    A cell is lit by the lamp of its room, or of the nearest room on its storey.
     """
     lamp_of = np.zeros(shape, np.uint8)
     if len(room.layouts) == 1:
@@ -100,25 +100,25 @@ def nearest_lamps(room: Room, shape: tuple[int, ...], cell_m: float) -> np.ndarr
 
 
 class Photo(NamedTuple):
-    """What one look at a room gives."""
+    """The rendered images of one camera pose."""
 
     colour: np.ndarray  # uint8 [H, W, 3]
     depth_m: np.ndarray  # float32 [H, W]
     voxel_index: np.ndarray  # int32 [H, W]
-    cosine: np.ndarray  # float32 [H, W], 1 where the ray meets the surface squarely
+    cosine: np.ndarray  # float32 [H, W], 1 if the ray is perpendicular to the surface.
 
 
 class Lighting(NamedTuple):
-    """What lights the surfaces of a room; arrays of coarse cells are [X, Y, Z]."""
+    """The lighting of a room. Arrays of coarse cells are [X, Y, Z]."""
 
-    solid: np.ndarray  # float32, the blurred share of solid voxels of each coarse cell
-    lamps: np.ndarray  # float64 [L, 3], in voxels, one a layout
-    lamp_of: np.ndarray  # uint8, the lamp that lights each coarse cell
+    solid: np.ndarray  # float32, blurred share of solid voxels in each coarse cell.
+    lamps: np.ndarray  # float64 [L, 3], in voxels, one per layout.
+    lamp_of: np.ndarray  # uint8, index of the lamp that lights each coarse cell.
 
 
 @dataclass(frozen=True, eq=False)
 class PhotoScene:
-    """A room made ready for photos."""
+    """A room prepared for rendering photos."""
 
     scene: VoxelScene
     colour: np.ndarray  # uint8 [X, Y, Z, 3]
@@ -126,7 +126,7 @@ class PhotoScene:
 
 
 def prepare_photos(room: Room) -> PhotoScene:
-    """Return the scene of a room."""
+    """Prepare a room for rendering photos."""
     filled = room.labels != 0
     padding = [(0, -side % COARSE) for side in filled.shape]
     padded = np.pad(filled, padding, constant_values=True)
@@ -144,7 +144,7 @@ def prepare_photos(room: Room) -> PhotoScene:
 
 
 def take_photo(scene: PhotoScene, camera: Camera, camera_to_room: np.ndarray) -> Photo:
-    """Take a photo through a camera of the room; lens distortion is left out."""
+    """Render a photo from a camera pose, ignoring lens distortion."""
     size = (camera.height_px, camera.width_px)
     photo = Photo(
         np.zeros((*size, 3), np.uint8),
@@ -202,7 +202,7 @@ def _render_photo(cells, colours, lighting, pose, rays, photo):
 
 @njit
 def surface_light(lighting, px, py, pz, face):
-    """Return the light of a ``Lighting`` on a face at a point in voxels, about 1 in the open."""
+    """Return the light on a surface point, given in voxels. The value is about 1 in the open."""
     lamps, lamp_of = lighting.lamps, lighting.lamp_of
     sign = 1.0 if face % 2 == 1 else -1.0
     axis = face // 2
@@ -258,27 +258,32 @@ def _hash(i, j, k):
 
 
 class SurfaceMarks(NamedTuple):
-    """What the marks on the surfaces of a room depend on."""
+    """The data that the surface textures of a room depend on."""
 
     materials: np.ndarray  # uint8 [X, Y, Z]
     instance: np.ndarray  # uint16 [X, Y, Z]
-    planes: np.ndarray  # bool [4, N], the planes of wall with room for posters
-    heights_m: np.ndarray  # float64 [Z], over the floor of the storey
+    planes: np.ndarray  # bool [4, N], wall planes with space for posters.
+    heights_m: np.ndarray  # float64 [Z], height above the floor of the storey.
     voxel_m: float
     seed: int
-    strength: float  # 0 leaves the colours flat, 1 is as in real rooms
+    strength: float  # 0 for flat colours, 1 for the contrast of real rooms.
 
 
 @dataclass(frozen=True, eq=False)
 class TexturedScene:
-    """A room made ready for photos with marks on its surfaces."""
+    """A room prepared for rendering photos with textured surfaces."""
 
     photos: PhotoScene
     marks: SurfaceMarks
 
 
 def prepare_textured(room: Room, strength: float = 1.0) -> TexturedScene:
-    """Return the scene of a room; ``strength`` 0 leaves its colours flat, 1 is as in real rooms."""
+    """Prepare a room for rendering photos with textures.
+
+    Args:
+        room: The room or house.
+        strength: Contrast of the textures, from 0 for flat colours to 1 for that of real rooms.
+    """
     marks = SurfaceMarks(
         room_materials(room),
         np.ascontiguousarray(room.instance),
@@ -292,12 +297,13 @@ def prepare_textured(room: Room, strength: float = 1.0) -> TexturedScene:
 
 
 def expose(scene: TexturedScene, camera: Camera, cameras_to_room: np.ndarray) -> np.ndarray:
-    """Return what falls on the chip, float32 [H, W, 3] of 0 to 255, without noise.
+    """Render the light on the image sensor as float32 [H, W, 3], 0 to 255, without noise.
 
     Args:
-        scene: the room.
-        camera: a pinhole camera; lens distortion is left out.
-        cameras_to_room: float64 [N, 4, 4], the poses during the exposure; one stands still.
+        scene: The textured scene of a room.
+        camera: A pinhole camera. Lens distortion is ignored.
+        cameras_to_room: The camera poses during the exposure, float64 [N, 4, 4]. One pose gives no
+            motion blur.
     """
     total = np.zeros((camera.height_px, camera.width_px, 3), np.float32)
     photos = scene.photos
@@ -312,12 +318,12 @@ def expose(scene: TexturedScene, camera: Camera, cameras_to_room: np.ndarray) ->
 
 
 def develop(light: np.ndarray, rng: np.random.Generator, drift: float = 1.0) -> np.ndarray:
-    """Return the picture that a phone makes of the light, uint8 [H, W, 3].
+    """Convert the light on the image sensor to a phone's image, uint8 [H, W, 3].
 
     Args:
-        light: float32 [H, W, 3], changed in place.
-        rng: the frame's own source of noise.
-        drift: how much gain and white balance wander from picture to picture; 0 in a video.
+        light: The light, float32 [H, W, 3], modified in place.
+        rng: Random generator for the noise of this frame.
+        drift: Variation of gain and white balance between images. Use 0 for videos.
     """
     gain = (MIDDLE_GREY / max(float(light.mean()), 1.0)) ** METERING
     gain *= float(np.exp(drift * DRIFT * rng.standard_normal()))

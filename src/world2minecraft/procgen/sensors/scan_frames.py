@@ -1,7 +1,7 @@
-"""The pictures of a virtual scan, one at a time: what the camera hands over, and what is true.
+"""The frames of a virtual scan with their ground truth, generated one at a time.
 
-A ``ScanSettings`` says how a room is scanned; ``room_shots`` plans the tour and takes its pictures.
-No picture is kept, so a scan of thousands takes no more memory than one of ten.
+``ScanSettings`` contains the settings of a scan. ``room_shots`` plans the tour and renders the
+images. Images are not stored, so the memory use does not depend on their number.
 """
 
 from collections.abc import Iterator
@@ -40,10 +40,11 @@ PATCH_PX = 8  # Label errors come in patches: a segmenter errs by regions.
 
 @dataclass(frozen=True)
 class ScanSettings:
-    """How a room is scanned; ``scan_room`` explains the fields.
+    """The settings of a virtual scan. See ``scan_room`` for the fields.
 
     Raises:
-        UnknownNameError: no sensor has this name. ValueError: a figure is out of its range.
+        UnknownNameError: If the sensor is unknown.
+        ValueError: If a value is out of range.
     """
 
     sensor: str = "rgbd"
@@ -59,61 +60,63 @@ class ScanSettings:
     def __post_init__(self):
         find_sensor(self.sensor)
         if self.frames is not None and self.frames < 1:
-            raise ValueError(f"frames must be 1 or more, not {self.frames}")
+            raise ValueError(f"frames must be 1 or more, got {self.frames}")
         if not 0 <= self.label_error <= 1:
-            raise ValueError(f"label_error must be a share from 0 to 1, not {self.label_error}")
+            raise ValueError(f"label_error must be from 0 to 1, got {self.label_error}")
         if not 0 <= self.depth_scale_sigma <= 0.2:
-            raise ValueError(f"depth_scale_sigma must be 0 to 0.2, not {self.depth_scale_sigma}")
+            raise ValueError(
+                f"depth_scale_sigma must be from 0 to 0.2, got {self.depth_scale_sigma}"
+            )
         if not 0 < self.coverage <= 1:
-            raise ValueError(f"coverage must be above 0 and at most 1, not {self.coverage}")
+            raise ValueError(f"coverage must be above 0 and at most 1, got {self.coverage}")
         if self.phone and (self.with_labels or self.label_error):
-            raise ValueError(f"labels come with sensor rgbd or clean, not with {self.sensor}")
+            raise ValueError(f"labels require the sensor rgbd or clean, got {self.sensor}")
         if self.sensor == "video" and (self.width % 2 or self.height % 2):
-            raise ValueError(f"a video's sides must be even, not {self.width}x{self.height}")
+            raise ValueError(f"video width and height must be even, got {self.width}x{self.height}")
         if self.phone and self.depth_scale_sigma:
-            raise ValueError(f"depth_scale_sigma must be left out: {self.sensor} has no depth")
+            raise ValueError(f"depth_scale_sigma must be 0 for {self.sensor}, which has no depth")
 
     @property
     def phone(self) -> bool:
-        """Whether it is a phone's camera, which sees no depth."""
+        """Whether the sensor is a phone, which does not measure depth."""
         return self.sensor in PHONES
 
     @property
     def planned(self) -> int:
-        """How many pictures the whole tour has."""
+        """The number of frames of the whole tour."""
         if self.frames is not None:
             return self.frames
         return DEFAULT_FRAMES.get(self.sensor, USUAL_FRAMES)
 
     @property
     def taken(self) -> int:
-        """How many pictures are taken: the share of the tour that is walked, one at least."""
+        """The number of recorded frames, at least 1, given by ``coverage``."""
         return max(1, round(self.coverage * self.planned))
 
     @property
     def camera(self) -> Camera:
-        """The pinhole camera of colour and depth alike."""
+        """The pinhole camera of the colour and depth images."""
         focal_px = FOCAL_SHARE * self.width
         return Camera(self.width, self.height, focal_px, focal_px, self.width / 2, self.height / 2)
 
 
 class FrameTruth(NamedTuple):
-    """What no sensor knows of a picture."""
+    """The ground truth of a frame."""
 
     name: str
-    camera_to_truth: np.ndarray  # float64 [4, 4], the true pose in the room
-    depth_scale: float  # What the sensor multiplied true depth by.
+    camera_to_truth: np.ndarray  # float64 [4, 4], the true camera pose in the room.
+    depth_scale: float  # The factor by which the sensor multiplied the true depth.
 
 
 class Shot(NamedTuple):
-    """One picture and its truth."""
+    """A view of a scan and its ground truth."""
 
     view: View
     truth: FrameTruth
 
 
 def room_shots(room: Room, how: ScanSettings) -> Iterator[Shot]:
-    """Yield the shots of a depth sensor's scan, one at a time, in the order of the walk."""
+    """Yield the shots of a depth camera's scan one at a time, in the order of the tour."""
     scene = prepare_photos(room)
     rng = np.random.default_rng([how.seed, 1])
     poses = plan_trajectory(room, scene.scene, how.camera, how.planned, rng)[: how.taken]
@@ -122,7 +125,10 @@ def room_shots(room: Room, how: ScanSettings) -> Iterator[Shot]:
 
 
 def room_to_scan(seed: int) -> np.ndarray:
-    """Return the 4x4 from the room to the capture's world frame: any yaw, tilted up to 27 deg."""
+    """Return the 4x4 transform from the room to the world frame of the capture.
+
+    The transform has a random yaw, a tilt of at most 27 degrees and a random translation.
+    """
     rng = np.random.default_rng([seed, 2])
     yaw, direction = rng.uniform(-np.pi, np.pi, 2)
     tilt = np.radians(rng.uniform(0.2, 1.0) * MAX_TILT_DEG)

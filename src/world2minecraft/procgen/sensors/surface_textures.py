@@ -1,8 +1,8 @@
-"""Marks on surfaces, bound to the place: grain, weave, print, stone, posters on walls.
+"""Procedural surface textures that depend on position: grain, fabric, prints, stone and posters.
 
-All is made from a hash of the place in metres, at about 2 mm, so that two photos from different
-places see the same marks: what matching needs and what flat colours lack. Marks finer than a
-pixel fade out, as they do in a lens. Strength 1 is what real rooms look like.
+All textures are computed from a hash of the position at a resolution of about 2 mm. Photos from
+different positions therefore show the same details, which image matching requires. Details finer
+than a pixel fade out, as in a lens. Strength 1 has the contrast of real rooms.
 """
 
 from world2minecraft.core.jit import inlined, njit
@@ -20,7 +20,7 @@ FLOOR_SEED = 40  # Of what is no thing; those of things follow.
 
 @njit
 def hash_to_unit(a, b, c, d):
-    """Return a number from 0 to 1 that belongs to four whole numbers."""
+    """Hash four integers to a number from 0 to 1."""
     h = (a * 73856093) ^ (b * 19349663) ^ (c * 83492791) ^ (d * 49979687)
     h = ((h ^ (h >> 15)) * 1274126177) & 0x7FFFFFFF
     h = ((h ^ (h >> 13)) * 1103515245) & 0x7FFFFFFF
@@ -29,15 +29,15 @@ def hash_to_unit(a, b, c, d):
 
 @njit
 def noise(x, y, z, wave, foot, seed):
-    """Return smooth noise of -1 to 1 at a place.
+    """Return smooth noise from -1 to 1 at a position.
 
     Args:
-        x: of the place, in metres, like ``y`` and ``z``.
-        y: see ``x``.
-        z: see ``x``.
-        wave: the length of its marks.
-        foot: the side of the pixel's footprint; marks finer than two of it fade out.
-        seed: a whole number.
+        x: The x coordinate of the position in metres.
+        y: The y coordinate of the position in metres.
+        z: The z coordinate of the position in metres.
+        wave: Wavelength of the noise in metres.
+        foot: Side length of the pixel footprint in metres. Details below two footprints fade out.
+        seed: An integer seed.
     """
     fade = min(max(wave / (2.0 * foot) - 0.4, 0.0), 1.0)
     if fade <= 0.0:
@@ -58,16 +58,16 @@ def noise(x, y, z, wave, foot, seed):
 
 @njit
 def tone(material, seed, x, y, z, face, foot):
-    """Return what the colour of a spot is multiplied by, about 1.
+    """Return the brightness factor of the texture at a position, about 1.
 
     Args:
-        material: a ``Material``.
-        seed: the thing's number.
-        x: of the place, in metres of the grid, like ``y`` and ``z``.
-        y: see ``x``.
-        z: see ``x``.
-        face: which way the surface looks, 0 to 5.
-        foot: the side of the pixel's footprint, in metres.
+        material: The ``Material`` number.
+        seed: The number of the object.
+        x: The x coordinate of the position in metres.
+        y: The y coordinate of the position in metres.
+        z: The z coordinate of the position in metres.
+        face: The direction of the surface, 0 to 5.
+        foot: Side length of the pixel footprint in metres.
     """
     if material == WALL:  # Plaster, rolled and not quite even.
         fine = noise(x, y, z, 0.012, foot, 1) + noise(x, y, z, 0.04, foot, 2)
@@ -180,14 +180,14 @@ def _text(seed, x, y, z, face, foot):
 
 @njit
 def poster(u, v, plane, foot, found):
-    """Write the colour of a poster into ``found`` float64 [3]; return whether one hangs there.
+    """Compute the colour of a poster at a wall position and return whether there is a poster.
 
     Args:
-        u: along the wall, in metres.
-        v: over the floor, in metres.
-        plane: the wall's number.
-        foot: the side of the pixel's footprint, in metres.
-        found: changed where one hangs there.
+        u: Position along the wall in metres.
+        v: Height above the floor in metres.
+        plane: The number of the wall.
+        foot: Side length of the pixel footprint in metres.
+        found: Output colour, float64 [3], written only if there is a poster.
     """
     cell = int(u / POSTER_STEP_M)
     if hash_to_unit(cell, plane, 9, 0) > POSTER_SHARE:

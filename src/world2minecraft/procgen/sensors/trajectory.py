@@ -1,8 +1,8 @@
-"""The poses of a scan: a person walks through all rooms and looks around while scanning.
+"""Camera trajectories of scans: a person walks through all rooms and looks around while scanning.
 
-The walk enters a room by the door, goes through a few stops chosen far from each other, each time
-to the next nearest over free floor, stays a moment at each, and goes on into the nearest room not
-yet seen. ``view_planning`` decides where the camera looks.
+The tour enters a room through the door, visits a few stops that are far apart, in nearest-first
+order over free floor, pauses at each, and continues in the nearest unvisited room.
+``view_planning`` chooses the viewing directions.
 """
 
 from dataclasses import dataclass
@@ -32,14 +32,14 @@ YAW_SPREAD, PITCH_SPREAD = np.radians(3.5), np.radians(2.3)
 
 @dataclass(frozen=True, eq=False)
 class WalkPath:
-    """Where the feet are at each of F moments, evenly spread over the time of the walk."""
+    """The position of the feet at F moments, spread evenly over the duration of the tour."""
 
     feet_m: np.ndarray  # float64 [F, 3]
-    pace_m: float  # The way, or what a stay stands for, from one moment to the next.
+    pace_m: float  # Distance between two moments; pauses count as distance.
 
 
 def plan_walk(room: Room, moments: int, rng: np.random.Generator) -> WalkPath:
-    """Return a walk through all rooms, ``moments`` long; ``rng`` draws at which door it begins."""
+    """Plan a tour of ``moments`` positions through all rooms, starting at a random door."""
     places_m, stays = _way(room, build_navmesh(room), rng)
     steps = np.linalg.norm(np.diff(places_m, axis=0), axis=1)
     steps[steps > JUMP_M] = 0.0  # Where no way leads one is carried, and takes no picture.
@@ -173,14 +173,14 @@ def _smooth_path(stands: NavMesh, way_m: np.ndarray) -> np.ndarray:
 def plan_trajectory(
     room: Room, scene: VoxelScene, camera: Camera, frames: int, rng: np.random.Generator
 ) -> np.ndarray:
-    """Return the poses of a tour, float64 [frames, 4, 4], ``camera_to_room``.
+    """Plan the camera poses of a tour as ``camera_to_room``, float64 [frames, 4, 4].
 
     Args:
-        room: the room or the house.
-        scene: ``prepare_voxels`` of its labels.
-        camera: whose field of view counts.
-        frames: how many; they are spread evenly over the time of the walk.
-        rng: draws the door where the walk begins, the height of the eye and the hand's unrest.
+        room: The room or house.
+        scene: The result of ``prepare_voxels`` for the labels of the room.
+        camera: The camera, whose field of view is used.
+        frames: Number of frames, spread evenly over the duration of the tour.
+        rng: Random generator for the entrance door, the eye height and the camera shake.
     """
     walk = plan_walk(room, frames, rng)
     planner = ViewPlanner(scene, camera, walk.pace_m)
@@ -195,7 +195,7 @@ def plan_trajectory(
 
 
 def camera_positions_m(feet_m: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Return the places of the camera over the feet, float64 [F, 3]."""
+    """Return the camera positions above the feet in metres, float64 [F, 3]."""
     waves = rng.uniform(0, 2 * np.pi) + np.linspace(0, 4 * np.pi, len(feet_m))
     height = np.clip(rng.uniform(*EYE_M) + SWAY_M * np.sin(waves), *EYE_M)
     aside = rng.uniform(-ASIDE_M, ASIDE_M, (len(feet_m), 2))

@@ -1,7 +1,7 @@
-"""View planning of a scan: look at what was seen least, from a side not seen from before.
+"""View planning for scans, which prefers surfaces that were seen least or from other sides.
 
-One look around by coarse rays tells what lies in each direction; every picture that could be
-taken from there is a window of it, so that choosing among hundreds costs a few milliseconds.
+Coarse rays in all directions find the surfaces around a position. Every possible image is a window
+of these directions, so choosing among hundreds of views takes a few milliseconds.
 """
 
 import numpy as np
@@ -34,7 +34,7 @@ CLASS_WORTH[5:] = 2.0  # Furniture and things.
 
 
 class ViewPlanner:
-    """The memory of what was seen. One object follows one walk."""
+    """Chooses viewing directions along one tour and remembers the surfaces already seen."""
 
     def __init__(
         self,
@@ -43,14 +43,14 @@ class ViewPlanner:
         pace_m: float,
         most: tuple[float, float] | None = None,
     ):
-        """Begin with nothing seen.
+        """Create a planner that has seen no surface.
 
         Args:
-            scene: ``prepare_voxels`` of the room.
-            camera: whose field of view counts.
-            pace_m: the way from one picture to the next.
-            most: how far yaw and pitch turn at most from one to the next, in radians; None leaves
-                them free, as a depth sensor's may jump.
+            scene: The result of ``prepare_voxels`` for the room.
+            camera: The camera, whose field of view is used.
+            pace_m: Distance in metres from one image to the next.
+            most: Maximum change of yaw and pitch between images, in radians. The default is
+                unlimited.
         """
         self._scene = scene
         self._patch = max(1, round(PATCH_M * scene.cells_per_metre))
@@ -67,7 +67,7 @@ class ViewPlanner:
         self._pitch = 0.0
 
     def next_direction(self, eye_m: np.ndarray) -> tuple[float, float]:
-        """Return the yaw and the pitch, in radians, of the next picture, and remember it."""
+        """Choose the yaw and pitch of the next image, in radians, and mark its surfaces as seen."""
         patch, worth, side = self._look_around(eye_m)
         fresh = self._freshness(patch, side)
         gain = self._windows(worth * fresh) * PITCH_WORTH[:, None]

@@ -1,4 +1,4 @@
-"""Houses as Minecraft worlds, made without a scan: every block with its class, thing and design."""
+"""Generation of houses as Minecraft worlds, with the class, object and design of every block."""
 
 from world2minecraft.procgen.worlds.house_world import HouseWorld, generate_world
 from world2minecraft.procgen.worlds.styles import styles

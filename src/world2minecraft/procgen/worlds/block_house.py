@@ -1,7 +1,8 @@
-"""A house plan in whole blocks: where each room's inside lies, where doors and windows are cut.
+"""Conversion of house plans to whole blocks: the interiors of rooms, doors, windows and stairs.
 
-Plans are metric, with walls of 12 cm. Here every wall is one block thick: it takes the block that
-its middle lies in, so rooms keep their sides to within two blocks, and two storeys their walls.
+Plans are metric, with walls of 12 cm. Here every wall is one block thick, at the block that
+contains the middle of the metric wall. Room sizes therefore change by less than two blocks, and
+walls of two storeys remain aligned.
 """
 
 from collections.abc import Sequence
@@ -19,7 +20,7 @@ RAIL = 1  # A rail takes a block.
 
 @dataclass(frozen=True)
 class BlockRoom:
-    """The inside of a room: blocks [low, high) along x and y, the first layer over its floor."""
+    """The interior of a room: blocks [low, high) along x and y, and the layer above its floor."""
 
     number: int
     kind: str
@@ -28,15 +29,15 @@ class BlockRoom:
     high: tuple[int, int]
     ground: int
     height: int
-    blocked: tuple[tuple[int, int, int, int], ...] = ()  # x0 y0 x1 y1 that are no floor of it
+    blocked: tuple[tuple[int, int, int, int], ...] = ()  # x0, y0, x1, y1 of excluded floor.
 
     @property
     def size(self) -> tuple[int, int]:
-        """How many blocks it has along x and y."""
+        """The number of blocks along x and y."""
         return self.high[0] - self.low[0], self.high[1] - self.low[1]
 
     def floor(self, shape: tuple[int, int]) -> np.ndarray:
-        """Return its columns, bool of the given shape."""
+        """Return the floor columns of the room as a bool array of the given shape."""
         inside = np.zeros(shape, bool)
         inside[self.low[0] : self.high[0], self.low[1] : self.high[1]] = True
         for x0, y0, x1, y1 in self.blocked:
@@ -46,11 +47,11 @@ class BlockRoom:
 
 @dataclass(frozen=True)
 class BlockGap:
-    """An opening: the blocks of a wall, [low, high) along x and y, from layer to layer."""
+    """A wall opening: blocks [low, high) along x and y, from ``bottom`` to ``top`` (exclusive)."""
 
     kind: Literal["window", "door", "doorway"]
     rooms: tuple[int, ...]
-    turn: int  # The quarter turns of a front that looks from the wall into the first room.
+    turn: int  # Direction from the wall into the first room, in quarter turns.
     low: tuple[int, int]
     high: tuple[int, int]
     bottom: int
@@ -59,9 +60,9 @@ class BlockGap:
 
 @dataclass(frozen=True)
 class BlockFlight:
-    """Stairs that rise along +y: their columns [x0, x1), the row of the first step, their count.
+    """Stairs that rise along +y: columns [x0, x1), the first row and the number of steps.
 
-    The hole in the floor over them begins at the row ``hole``.
+    ``hole`` is the first row of the opening in the upper floor.
     """
 
     x0: int
@@ -78,7 +79,7 @@ class BlockFlight:
 
 @dataclass(frozen=True)
 class BlockHouse:
-    """A house in blocks; indices count from its first inner block, layers from the lowest floor."""
+    """A house plan in blocks. Indices start at the first inner block and the lowest floor."""
 
     plan: HousePlan
     gaps_m: tuple[Gap, ...]
@@ -92,7 +93,7 @@ class BlockHouse:
 
 
 def person_size_blocks(blocks_per_metre: float) -> tuple[int, int]:
-    """Return how many blocks, wide and high, a person takes up who walks from block to block.
+    """Return the width and height in blocks that a walking person occupies.
 
     Example:
         >>> person_size_blocks(4.0)
@@ -108,7 +109,7 @@ def person_size_blocks(blocks_per_metre: float) -> tuple[int, int]:
 def plan_block_house(
     seed: Sequence[int], rooms: int, storeys: int, blocks_per_metre: float
 ) -> BlockHouse:
-    """Return the plan of a house of ``rooms`` rooms on ``storeys`` storeys, in blocks."""
+    """Generate a house plan with ``rooms`` rooms on ``storeys`` storeys, in blocks."""
     rng = np.random.default_rng([*seed, rooms, storeys])
     plan = plan_house(rooms, storeys, rng)
     gaps = house_gaps(plan, rng)

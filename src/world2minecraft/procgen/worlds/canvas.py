@@ -1,4 +1,4 @@
-"""The blocks of a house while they are set, with the furniture design that each is a part of."""
+"""A canvas of house blocks that records the furniture design of each block."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ OVER = 3  # Layers over the highest rooms: ceiling, roof and air.
 
 
 class WorldCanvas(Canvas):
-    """A canvas that knows designs. A place of the house is ``inner + margin`` of its arrays."""
+    """A canvas that records designs. Its indices are house positions plus the margin."""
 
     def __init__(self, house: BlockHouse, garden: int = 1):
         self.margin = margin = MARGIN + garden
@@ -32,13 +32,13 @@ class WorldCanvas(Canvas):
         self.designs: dict[str, int] = {"": 0}
 
     def at(self, x: int, y: int, z: int) -> tuple[int, int, int]:
-        """Return the index of a block of the house."""
+        """Return the canvas index of a block position in the house."""
         return x + self.margin, y + self.margin, z + UNDER
 
     def box(
         self, low: tuple[int, int, int], high: tuple[int, int, int]
     ) -> tuple[slice, slice, slice]:
-        """Return the slices of a box of blocks of the house, [low, high)."""
+        """Return the canvas slices of a box of house blocks, [low, high)."""
         x, y, z = (slice(a, b) for a, b in zip(self.at(*low), self.at(*high), strict=True))
         return x, y, z
 
@@ -50,18 +50,21 @@ class WorldCanvas(Canvas):
         instance: int = 0,
         design: str = "",
     ) -> None:
-        """Set blocks of one state at an index, slices or a mask."""
+        """Set the state, class, instance and design of blocks at an index, slices or a mask."""
         self.put(at, self.id_of(state), class_id, instance)
         self.design[at] = self.designs.setdefault(design, len(self.designs))
 
     def settle(self) -> int:
-        """Connect what joins, and take away what would not stay; return how many blocks went."""
+        """Connect blocks, remove unstable blocks, and return the number of removed blocks."""
         taken = apply_block_updates(self)
         self.design[self.states == 0] = 0
         return taken
 
     def finished(self) -> tuple[BlockVolume, np.ndarray, tuple[str, ...]]:
-        """Return the volume, its designs uint16 [X, Y, Z] in block axes, and their names."""
+        """Return the volume, the design of each block and the design names.
+
+        The designs are uint16 [X, Y, Z] in block axes, as indices into the names.
+        """
         used = np.unique(self.design)
         names = tuple(self.designs)
         used_names = sorted(names[int(number)] for number in used if number)

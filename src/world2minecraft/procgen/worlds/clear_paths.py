@@ -1,7 +1,6 @@
-"""Clear paths: from every door of a room to every other, as wide as a person.
+"""Checks that a person can walk between all doors of a room while furniture is placed.
 
-A room's ways are asked before a thing is put: what would shut a door, or close off a good part of
-the floor, is not put.
+Furniture is not placed if it would block a door or close off a large part of the floor.
 """
 
 import numpy as np
@@ -19,7 +18,7 @@ KEPT_PLACES = 0.95  # and of the places where a person fits that one must still 
 
 
 class ClearPaths:
-    """Which columns of each room are taken, and whether its ways are free."""
+    """The occupied columns of each room, and checks whether its paths remain clear."""
 
     def __init__(self, house: BlockHouse):
         self.house = house
@@ -33,21 +32,21 @@ class ClearPaths:
                     self.end(house.rooms[number], _before(gap, ~self.taken[number], self.body))
 
     def close(self, room: BlockRoom, box: tuple[int, int, int, int]) -> None:
-        """Take columns [x0, y0, x1, y1) of a room for good, as stairs do."""
+        """Mark columns [x0, y0, x1, y1) of a room as permanently occupied, such as by stairs."""
         x0, y0, x1, y1 = box
         self.taken[room.number][x0:x1, y0:y1] = True
 
     def end(self, room: BlockRoom, corner: tuple[int, int]) -> None:
-        """Add a place that ways must reach, by its least column; nothing is put there."""
+        """Add a place that paths must reach, given by its lowest column, and keep it free."""
         self.ends[room.number].append(corner)
 
     def stands(self, room: BlockRoom, cells: np.ndarray) -> np.ndarray:
-        """Return those columns, int [N, 2], of cells [N, 3] of the house that hinder a person."""
+        """Return the columns, int [N, 2], of house cells, int [N, 3], that obstruct a person."""
         low = cells[:, 2] < room.ground + self.head
         return np.unique(cells[low, :2], axis=0)
 
     def stay(self, room: BlockRoom, columns: np.ndarray) -> bool:
-        """Whether ways stay free when columns, int [N, 2], are taken too."""
+        """Return whether paths remain clear if columns, int [N, 2], become occupied."""
         if not len(columns):
             return True
         box = (slice(room.low[0], room.high[0]), slice(room.low[1], room.high[1]))
@@ -62,11 +61,11 @@ class ClearPaths:
         return bool(_dilate(reached, self.body).sum() >= KEPT_SHARE * free.sum())
 
     def take(self, room: BlockRoom, columns: np.ndarray) -> None:
-        """Take columns, int [N, 2]."""
+        """Mark columns, int [N, 2], as occupied."""
         self.taken[room.number][tuple(columns.T)] = True
 
     def free(self, room: BlockRoom) -> np.ndarray:
-        """Return the columns, bool [X, Y] of the house, that nothing stands on."""
+        """Return the free columns of a room as bool [X, Y] of the house."""
         return ~self.taken[room.number]
 
     def _reached(self, room: BlockRoom, places: np.ndarray) -> np.ndarray | None:

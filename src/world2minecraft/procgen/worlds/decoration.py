@@ -1,4 +1,4 @@
-"""What makes a furnished room whole: door leaves, curtains, lamps, rugs and things on walls."""
+"""Decoration of furnished rooms with door leaves, curtains, lamps and rugs."""
 
 import numpy as np
 
@@ -17,9 +17,9 @@ LAMP_AREA_M2 = (14.0, 6.0)  # Of floor that a ceiling lamp is for, by day and by
 
 
 def hang_leaves(furnisher: Furnisher, gaps: tuple[BlockGap, ...], rng: np.random.Generator) -> None:
-    """Hang open leaves at doors, within the room that each door is of.
+    """Add open door leaves to some inner doors.
 
-    A leaf lies at the wall beside its door where there is room, else it stands off the wall.
+    A leaf is placed along the wall beside its door if there is space, or else across it.
     """
     for gap in gaps:
         if gap.kind == "door" and len(gap.rooms) == 2 and rng.random() < LEAF_SHARE:
@@ -62,7 +62,7 @@ def _hang_leaf(
 
 
 def dress_windows(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) -> None:
-    """Give most windows of a room curtains of one kind, or blinds."""
+    """Add curtains of one kind, or blinds, to most windows of a room."""
     draw = rng.random()
     for gap in furnisher.house.gaps:
         if gap.kind != "window" or gap.rooms[0] != room.number:
@@ -104,7 +104,7 @@ def _hang(
 def hang_lamps(
     furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator, *, by_night: bool
 ) -> int:
-    """Hang lamps of one kind from a room's ceiling, more of them by night; return how many."""
+    """Hang ceiling lamps of one kind in a room, more by night, and return their number."""
     scale = furnisher.house.blocks_per_metre
     if room.kind in ("hall", "shop", "storage", "bathroom", "laundry"):
         names = CEILING_LAMPS[:1]
@@ -123,9 +123,12 @@ def hang_lamps(
 def hang_one(
     furnisher: Furnisher, room: BlockRoom, name: str, share: float, rng: np.random.Generator
 ) -> bool:
-    """Hang a design from the ceiling at a share of the room's length; say whether it fits.
+    """Hang a design from the ceiling at a fraction of the room's length.
 
-    What would hang lower than a person's head stays away, but flat lamps.
+    Designs below the height of a person's head are not placed, except flat lamps.
+
+    Returns:
+        Whether the design fits.
     """
     long = int(room.size[1] > room.size[0])
     found = furnisher.design(name, room, 0, rng)
@@ -145,7 +148,7 @@ def hang_one(
 
 
 def lay_rugs(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) -> None:
-    """Lay a rug in the middle of most rooms that are lived in, and runners along a hall."""
+    """Place a rug in the middle of most living areas, and runners along a hall."""
     if room.kind in ("bathroom", "kitchen", "storage", "workshop", "greenhouse", "laundry"):
         return
     if room.kind == "hall":

@@ -1,7 +1,7 @@
-"""Placement of library designs in rooms, block by block, where they fit and block no path.
+"""Placement of furniture designs in rooms, block by block, without blocking paths.
 
-A thing of a metric layout keeps its place to within two blocks, its front, and the wall that it
-stands at; other things look for a place along a wall, in the middle, or on something.
+An item of a metric layout keeps its position to within two blocks, its orientation and the wall at
+its back. Other designs are placed at a wall, on the floor or on top of another piece.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ Corner = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class PlacedFurniture:
-    """A piece of furniture in its place: its box of blocks of the house and its front."""
+    """A placed piece of furniture, with its box of house blocks and its orientation."""
 
     instance: int
     design: str
@@ -44,7 +44,7 @@ class PlacedFurniture:
 
 @dataclass
 class Furnisher:
-    """Puts things into one room after another of a house."""
+    """Places furniture designs in the rooms of a house."""
 
     canvas: WorldCanvas
     house: BlockHouse
@@ -52,22 +52,26 @@ class Furnisher:
     ways: ClearPaths
     things: list[PlacedFurniture] = field(default_factory=list)
     count: int = 0
-    reserved: np.ndarray = field(init=False)  # bool [X, Y, Z] of the canvas: must stay air.
+    reserved: np.ndarray = field(init=False)  # bool [X, Y, Z] of the canvas; must remain air.
 
     def __post_init__(self):
         self.reserved = np.zeros(self.canvas.states.shape, bool)
 
     def next_instance(self) -> int:
-        """Return a number that no thing has yet."""
+        """Return an unused instance number."""
         self.count += 1
         return self.count
 
     def of(self, instance: int) -> PlacedFurniture:
-        """Return a thing by its number."""
+        """Return a placed piece of furniture by its instance number."""
         return next(thing for thing in self.things if thing.instance == instance)
 
     def put_item(self, item: Item, room: BlockRoom, rng: np.random.Generator) -> int:
-        """Set a design that stands for a thing of the metric layout; 0 where none fits there."""
+        """Place a design for an item of a metric layout.
+
+        Returns:
+            The instance number, or 0 if no design fits.
+        """
         names = designs_for(item.model.name, item.model.size_m)
         turns = round(item.yaw_deg / 90) % 4
         for number in rng.permutation(len(names)):
@@ -90,7 +94,10 @@ class Furnisher:
         rng: np.random.Generator,
         size_m: Sequence[float] | None = None,
     ) -> BlockDesign | None:
-        """Return a design turned and in the room's materials; its size is drawn where none is."""
+        """Return a rotated design in the materials of a room, or None if it cannot be built.
+
+        The size is random if ``size_m`` is None.
+        """
         made = template(name)
         if size_m is None:
             share = rng.triangular(-1, 0, 1)
@@ -111,17 +118,17 @@ class Furnisher:
         above: int | None = None,
         size_m: Sequence[float] | None = None,
     ) -> int:
-        """Set one of some designs with its back to a wall that has nothing in it there.
+        """Place one of several designs with its back to a bare wall.
 
         Args:
-            names: designs, tried in a drawn order.
-            room: where.
-            rng: draws the design, its size and its place.
-            above: layers over the floor, for what hangs.
-            size_m: its size; drawn where none is given.
+            names: Names of the designs, which are tried in random order.
+            room: The room.
+            rng: Random generator for the design, its size and its position.
+            above: Number of layers above the floor, for hanging designs.
+            size_m: Size of the design in metres. The default is random.
 
         Returns:
-            The thing's number; 0 where there is no place.
+            The instance number, or 0 if no design fits.
         """
         for number in rng.permutation(len(names)):
             name = names[int(number)]
@@ -146,7 +153,11 @@ class Furnisher:
         size_m: Sequence[float] | None = None,
         tries: int = PLACES_TRIED,
     ) -> int:
-        """Set one of some designs anywhere on the floor, nearest to the middle of places drawn."""
+        """Place one of several designs on the floor, near the middle of the room if possible.
+
+        Returns:
+            The instance number, or 0 if the design does not fit.
+        """
         name = names[int(rng.integers(len(names)))]
         turns = int(rng.integers(4))
         found = self.design(name, room, turns, rng, size_m)
@@ -167,7 +178,11 @@ class Furnisher:
         return 0
 
     def put_on(self, names: Sequence[str], thing: PlacedFurniture, rng: np.random.Generator) -> int:
-        """Set one of some small designs on top of a thing; 0 where nothing is free there."""
+        """Place one of several small designs on top of a piece of furniture.
+
+        Returns:
+            The instance number, or 0 if there is no free space.
+        """
         room = self.house.rooms[thing.room]
         name = names[int(rng.integers(len(names)))]
         found = self.design(name, room, thing.quarter_turns, rng)
@@ -196,7 +211,13 @@ class Furnisher:
         turns: int | None = None,
         size_m: Sequence[float] | None = None,
     ) -> int:
-        """Lay a rug around a place, under what stands there already; drawn where not given."""
+        """Place a rug around a position, leaving out occupied blocks.
+
+        The rotation and the size are random if they are not given.
+
+        Returns:
+            The instance number, or 0 if the rug does not fit.
+        """
         turns = int(rng.integers(4)) if turns is None else turns
         found = self.design(name, room, turns, rng, size_m)
         if found is None:
@@ -222,7 +243,11 @@ class Furnisher:
         turns: int,
         nudges: Sequence[tuple[int, int]] = ((0, 0),),
     ) -> int:
-        """Set a design at a place or beside it where all its blocks are free; its number, or 0."""
+        """Place a design at a position or near it, if all its blocks are free.
+
+        Returns:
+            The instance number, or 0 if the design does not fit.
+        """
         cells, inside = self._cells(found), room.floor(self.house.size)
         for dx, dy in nudges:
             at = cells + np.array([low[0] + dx, low[1] + dy, low[2]])

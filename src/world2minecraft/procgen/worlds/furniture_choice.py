@@ -1,7 +1,7 @@
-"""Which designs of the furniture library may stand for a thing of a layout, and in what material.
+"""Choice of library designs and their materials for items of a layout.
 
-A layout knows a sofa; the library has eleven. One is drawn, so that many houses show all of them,
-and its woods, cloths and stones are those of the room.
+A layout contains, for example, a sofa, and the library has eleven designs for it. A random design
+is chosen, so that a series of houses shows all of them, with the wood, cloth and stone of the room.
 """
 
 from collections.abc import Sequence
@@ -110,7 +110,7 @@ FIRST_CHOICE_SHARE = 0.8  # How often a material that follows the room is the ro
 
 
 def designs_for(name: str, size_m: Sequence[float]) -> tuple[str, ...]:
-    """Return the designs that may stand for a thing of a layout; none where it is too small."""
+    """Return the names of the designs for an item of a layout, if there are any."""
     depth, width, height = size_m
     if name == "bed" and min(depth, width) < 1.3:
         name = "narrow_bed"
@@ -122,7 +122,7 @@ def designs_for(name: str, size_m: Sequence[float]) -> tuple[str, ...]:
 def recolour_design(
     design: BlockDesign, template: Template, look: RoomLook, rng: np.random.Generator
 ) -> BlockDesign:
-    """Return a design with those of its materials in the room's that take a colour."""
+    """Return a design whose recolourable materials are replaced by those of the room."""
     blocks = list(design.blocks)
     values: dict[str, str] = {}
     for role in sorted({block.role for block in blocks}):
@@ -143,7 +143,10 @@ def recolour_design(
 
 
 def find_swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
-    """Return the materials of a kind that have all the shapes, those not chosen by colour too."""
+    """Return the materials of a kind that have all the given shapes.
+
+    The result includes materials that are not available for a choice by colour.
+    """
     offered = {s.value: s for s in list_swatches(kind, shapes)}
     for value, blocks in kinds()[kind].blocks.items():
         if value not in offered and shapes <= set(blocks):

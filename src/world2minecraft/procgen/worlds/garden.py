@@ -1,7 +1,6 @@
-"""The garden around a house, as seen from its windows, with a hedge at its end.
+"""The garden around a house, which is visible through the windows and ends at a hedge.
 
-It is no part of the rooms, so its blocks are of the unknown class: nothing learns from them that
-they are floor or wall.
+Its blocks have the unknown class because they are not part of any room.
 """
 
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ TREES_A_HOUSE = 7
 
 @dataclass(frozen=True)
 class Garden:
-    """A kind of garden: its ground, its hedge, its trees, and whether plants grow."""
+    """A kind of garden, with its ground, hedge, trees and share of planted ground."""
 
     ground: tuple[str, ...]
     hedge: str
@@ -100,14 +99,14 @@ ANYWHERE = ("lawn", "birch", "blossom", "taiga")
 
 
 def garden_blocks(blocks_per_metre: float) -> int:
-    """Return how many blocks a garden is deep, with the wall before it and the hedge."""
+    """Return the depth of a garden in blocks, including the wall in front of it and the hedge."""
     return max(4, round(DEEP_M * blocks_per_metre))
 
 
 def put_garden(
     canvas: WorldCanvas, house: BlockHouse, style: str, deck: WareDeck, rng: np.random.Generator
 ) -> str:
-    """Set the garden around a house whose shell stands; return which kind it is."""
+    """Add a garden around a house whose shell exists, and return the kind of garden."""
     names = SUITS.get(style, ANYWHERE)
     name = names[int(rng.integers(len(names)))]
     garden, level = GARDENS[name], canvas.at(0, 0, 0)[2]

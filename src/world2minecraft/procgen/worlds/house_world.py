@@ -1,4 +1,4 @@
-"""One house as a world: planned, furnished and lit, from a seed to blocks with exact labels."""
+"""Generation of one house as a world from a seed: plan, furniture, lighting and block labels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -48,13 +48,16 @@ DAWN, DUSK = 7, 18  # Before and after, rooms are lit by more lamps.
 def count_reachable_floor(
     volume: BlockVolume, house: BlockHouse, spawn: tuple[float, float, float]
 ) -> list[tuple[int, int]]:
-    """Return for each room how many places on its floor are reached, and how many there are.
+    """Count the reachable places and all places on the floor of each room.
 
     Args:
-        volume: the blocks of the house.
-        house: its rooms.
-        spawn: the feet of who walks, in world block coordinates; they begin at the nearest place
-            where a person has room.
+        volume: The blocks of the house.
+        house: The plan of the house.
+        spawn: Start position of the feet in world block coordinates. The walk starts at the nearest
+            place where a person fits.
+
+    Returns:
+        A pair (reachable places, all places) for each room.
     """
     graph = walk_graph(volume)
     if not len(graph):
@@ -65,10 +68,10 @@ def count_reachable_floor(
 
 
 def find_walkable_spawn(volume: BlockVolume, house: BlockHouse) -> Spawn:
-    """Return where to stand on the lowest storey, with a way to as much of the house as may be.
+    """Find a spawn position on the lowest storey from which most of the house can be reached.
 
-    It is the place that is nearest to the one with the best sight; that one itself where a person
-    fits nowhere.
+    The result is the suitable place nearest to the position with the best view. If a person fits
+    nowhere, it is the position with the best view itself.
     """
     best = find_spawn(volume)
     graph = walk_graph(volume)
@@ -86,7 +89,7 @@ def find_walkable_spawn(volume: BlockVolume, house: BlockHouse) -> Spawn:
 
 
 def floor_places(graph: WalkGraph, house: BlockHouse, room: BlockRoom) -> np.ndarray:
-    """Return which places of a graph of a house are on the floor of a room, bool [N]."""
+    """Return which places of a walkable graph are on the floor of a room, as bool [N]."""
     east, up, south = np.array(ROOM_CORNER_BLOCK)
     x = np.floor(graph.feet[:, 0]).astype(int) - east
     y = house.size[1] - 1 - (np.floor(graph.feet[:, 2]).astype(int) - south)
@@ -99,10 +102,10 @@ def floor_places(graph: WalkGraph, house: BlockHouse, room: BlockRoom) -> np.nda
 
 @dataclass(frozen=True, eq=False)
 class HouseWorld:
-    """A house in blocks: the volume, which design each block is of, and what stands where."""
+    """A generated house in blocks, with the design of each block and the placed furniture."""
 
     volume: BlockVolume
-    design: np.ndarray  # uint16 [X, Y, Z] in block axes, into ``designs``
+    design: np.ndarray  # uint16 [X, Y, Z] in block axes, indices into ``designs``.
     designs: tuple[str, ...]
     house: BlockHouse
     things: tuple[PlacedFurniture, ...]
@@ -120,18 +123,20 @@ def generate_world(
     blocks_per_metre: float = BLOCKS_PER_METRE,
     deck: tuple[int, int] | None = None,
 ) -> HouseWorld:
-    """Return the world of a seed: the same seed and numbers give the same blocks.
+    """Generate the world of a house from a seed. The same arguments give the same blocks.
 
     Args:
-        seed: 0 or more.
-        rooms: how many rooms in all, 3 to 14, the hall of each storey among them.
-        storeys: 1 or 2; two need 4 rooms or more.
-        style: one of ``styles()``; drawn where none is given.
-        blocks_per_metre: from 2 to under 6.
-        deck: the seed of the order of wares and how many were dealt before; drawn where None.
+        seed: The random seed, at least 0.
+        rooms: Number of rooms, 3 to 14, including one hall per storey.
+        storeys: Number of storeys, 1 or 2. Two storeys need at least 4 rooms.
+        style: One of ``styles()``. The default is random.
+        blocks_per_metre: Scale of the house, from 2 to below 6.
+        deck: The seed of the order of decorative blocks and the number already used. The default is
+            random.
 
     Raises:
-        ValueError: a number is out of its range. UnknownNameError: no style has this name.
+        ValueError: If an argument is out of range.
+        UnknownNameError: If the style is unknown.
     """
     check_house(seed, rooms, storeys, 0.0)
     _check(blocks_per_metre, style)
@@ -163,7 +168,7 @@ def _check(blocks_per_metre: float, style: str | None) -> None:
     if not SCALES[0] <= blocks_per_metre < SCALES[1]:
         low, high = SCALES
         raise ValueError(
-            f"blocks_per_metre must be from {low:g} to under {high:g}, not {blocks_per_metre:g}"
+            f"blocks_per_metre must be from {low:g} to below {high:g}, got {blocks_per_metre:g}"
         )
     if style is not None and style not in styles():
         raise UnknownNameError("style", style, styles())

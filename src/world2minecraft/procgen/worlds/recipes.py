@@ -1,6 +1,6 @@
-"""Recipes of rooms in block houses: kinds that metric houses do not know, and additions to others.
+"""Recipes for rooms of block houses: additional kinds of rooms, and extra furniture.
 
-Each recipe is a list of steps, tried in order; what finds no place is left out.
+Each recipe is a list of steps that are tried in order. Furniture that does not fit is left out.
 """
 
 from collections.abc import Callable
@@ -101,7 +101,7 @@ SHELF_M = 1.3
 
 @dataclass(frozen=True)
 class RecipeContext:
-    """What a recipe works with."""
+    """The room, furnisher and random generator of a recipe."""
 
     furnisher: Furnisher
     show: StandBuilder
@@ -109,33 +109,33 @@ class RecipeContext:
     rng: np.random.Generator
 
     def one(self, *choices: str) -> str:
-        """Return one of some words."""
+        """Return a random choice of several strings."""
         return choices[int(self.rng.integers(len(choices)))]
 
     def wall(self, *names: str, above_m: float | None = None) -> PlacedFurniture | None:
-        """Set one of some designs at a wall."""
+        """Place one of several designs at a wall, and return it or None."""
         scale = self.furnisher.house.blocks_per_metre
         above = None if above_m is None else round(above_m * scale)
         number = self.furnisher.put_at_wall(names, self.room, self.rng, above=above)
         return self.furnisher.of(number) if number else None
 
     def free(self, *names: str) -> PlacedFurniture | None:
-        """Set one of some designs anywhere on the floor."""
+        """Place one of several designs on the floor, and return it or None."""
         number = self.furnisher.put_free(names, self.room, self.rng)
         return self.furnisher.of(number) if number else None
 
     def hang(self, name: str, count: int) -> None:
-        """Hang things of one design from the ceiling, in a row."""
+        """Hang a row of ``count`` copies of a design from the ceiling."""
         for n in range(count):
             hang_one(self.furnisher, self.room, name, (n + 0.5) / count, self.rng)
 
     def on(self, thing: PlacedFurniture | None, *names: str) -> None:
-        """Set one of some small designs on a thing."""
+        """Place one of several small designs on a piece of furniture, if there is one."""
         if thing is not None:
             self.furnisher.put_on(names, thing, self.rng)
 
     def seats(self, table: PlacedFurniture | None, most: int, *names: str) -> None:
-        """Set seats of one design around a table, looking at it."""
+        """Place at most ``most`` seats of one design around a table, facing it."""
         if table is None:
             return
         name = self.one(*names)
@@ -152,7 +152,11 @@ class RecipeContext:
             self.furnisher.put(name, found, low, self.room, turns, ((0, 0), (1, 0), (0, 1)))
 
     def racks(self, count: int, boards: tuple[int, ...] | None = None) -> int:
-        """Stand racks of one material along the walls; return how many wares they hold."""
+        """Place ``count`` racks of one material along the walls.
+
+        Returns:
+            The number of decorative blocks on the racks.
+        """
         board, held = self.one(*BOARDS), 0
         for _ in range(count):
             levels = (
@@ -293,7 +297,7 @@ BLOCK_RECIPES: dict[str, Callable[[RecipeContext], None]] = {
 
 
 def assign_room_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse:
-    """Return a house of which some rooms are of further kinds; one at least shows wares."""
+    """Change the kinds of some rooms, so that at least one displays decorative blocks."""
     rooms = []
     for room in house.rooms:
         kind, draw = room.kind, rng.random()
@@ -333,7 +337,7 @@ def _high(task: RecipeContext) -> int:
 
 
 def add_furniture(task: RecipeContext, wall_lamps: int = 0) -> None:
-    """Set further furniture, pictures, lamps and small wares into a room of a metric kind."""
+    """Add extra furniture, pictures, lamps and small blocks to a room of a metric kind."""
     room, rng = task.room, task.rng
     names = EXTRA_DESIGNS.get(room.kind, ())
     for number in rng.permutation(len(names))[: 2 + int(rng.integers(3))].tolist():

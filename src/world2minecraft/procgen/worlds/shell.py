@@ -1,4 +1,4 @@
-"""The shell of a house: floors, walls, ceilings, windows, doors and stairs in each room's look."""
+"""The shell of a house: floors, walls, ceilings, windows, doors and stairs in each room's style."""
 
 import numpy as np
 from scipy import ndimage
@@ -25,7 +25,7 @@ FACINGS = ("east", "north", "west", "south")
 
 
 def put_shell(canvas: WorldCanvas, house: BlockHouse, looks: tuple[RoomLook, ...]) -> None:
-    """Set floors, walls, ceilings, and cut doors and windows into the walls."""
+    """Set the floors, walls and ceilings of a house, with openings for doors and windows."""
     _put_levels(canvas, house, looks)
     for room in house.rooms:
         _put_walls(canvas, room, looks[room.number], house)
@@ -125,7 +125,7 @@ def _put_front_door(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
 
 
 def put_stairs(canvas: WorldCanvas, house: BlockHouse, look: RoomLook, instance: int) -> None:
-    """Set the stairs, open the floor over them, and guard the hole with a rail."""
+    """Set the stairs, open the floor above them, and add railings around the opening."""
     flight = house.flight
     if flight is None:
         return
@@ -149,9 +149,9 @@ def put_stairs(canvas: WorldCanvas, house: BlockHouse, look: RoomLook, instance:
 
 
 def rails(house: BlockHouse) -> list[tuple[tuple[int, int], tuple[int, int]]]:
-    """Return the columns, [low, high), of the rails beside and before the hole over the stairs.
+    """Return the columns, [low, high), of the railings around the opening above the stairs.
 
-    Where the floor beside or before it is too narrow for a rail and a person there is none.
+    A side has no railing if its floor is too narrow for a railing and a person.
     """
     flight = house.flight
     if flight is None:

@@ -1,6 +1,6 @@
-"""Styles of houses: palettes of blocks that go together, from which a room draws its look.
+"""Styles of houses, which are palettes of matching blocks, and the random look of a room.
 
-``data/styles.json`` holds the styles.
+The styles are defined in ``data/styles.json``.
 """
 
 import json
@@ -18,7 +18,7 @@ ACCENT_SHARE = 0.45  # Of rooms of which one wall differs from the others.
 
 @dataclass(frozen=True)
 class Style:
-    """A style: lists of blocks, of which rooms draw; of walls the first two are the calm ones."""
+    """A style with lists of blocks to choose from. The first two walls are plain."""
 
     name: str
     walls: tuple[str, ...]
@@ -36,10 +36,10 @@ class Style:
 
 @dataclass(frozen=True)
 class RoomLook:
-    """What one room is made of; states of blocks, and values of the kinds of material."""
+    """The materials of one room, as block states and as values of material kinds."""
 
     wall: str
-    accents: tuple[str, str, str, str]  # by the quarter turns of a front that looks off the wall
+    accents: tuple[str, str, str, str]  # Wall states by direction into the room, quarter turns.
     floor: tuple[str, ...]
     floor_pattern: str
     ceiling: str
@@ -55,24 +55,24 @@ class RoomLook:
 
     @property
     def stairs(self) -> str:
-        """The block of stairs."""
+        """The block name of the stairs."""
         return f"minecraft:{self.wood}_stairs"
 
     @property
     def frame(self) -> str:
-        """The block of frames, a shade off the planks of the same wood."""
+        """The block name of frames, which differs slightly from the planks of the same wood."""
         bare = {"crimson": "crimson_hyphae", "warped": "warped_hyphae", "bamboo": "bamboo_block"}
         return f"minecraft:stripped_{bare.get(self.wood, f'{self.wood}_wood')}"
 
     @property
     def handrail(self) -> str:
-        """The slab on top of rails."""
+        """The block name of the slab on top of railings."""
         return f"minecraft:{self.wood}_slab"
 
 
 @cache
 def styles() -> dict[str, Style]:
-    """Return the styles by name, in the file's order."""
+    """Load the styles by name, in the order of the file."""
     source = files("world2minecraft.procgen.worlds") / "data" / "styles.json"
     return {name: _style(name, raw) for name, raw in json.loads(source.read_text("utf-8")).items()}
 
@@ -86,7 +86,7 @@ def _style(name: str, raw: dict[str, Any]) -> Style:
 
 
 def draw_look(style: Style, kind: str, rng: np.random.Generator) -> RoomLook:
-    """Return the look of a room of a kind."""
+    """Choose a random look for a kind of room."""
 
     def one(choices: tuple[Any, ...]) -> Any:
         return choices[int(rng.integers(len(choices)))]

@@ -1,8 +1,8 @@
-"""Wares and the racks, plinths, planters and basins that show them.
+"""Display of all blocks of the game ("wares") on racks, plinths, planters and basins.
 
-A ware is any block of the game as something to look at. ``data/wares.json`` lists the blocks that
-do not simply stand on a board: what grows needs soil, what hangs a block above, what is two blocks
-high its other half. ``home`` names those that also lie about in homes.
+``data/wares.json`` lists the blocks that cannot simply be placed on a board: plants need soil,
+hanging blocks need a block above, and blocks of two halves need the other half. ``home`` lists the
+blocks that are also suitable for homes.
 """
 
 import json
@@ -30,9 +30,9 @@ Corner = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class Ware:
-    """Blocks in a column from its foot up, those of a bed one before the other.
+    """A displayed block: a column of states from bottom to top, or the two halves of a bed.
 
-    ``{facing}`` in a state is where its front looks.
+    ``{facing}`` in a state is replaced by the direction of its front.
     """
 
     name: str
@@ -40,20 +40,20 @@ class Ware:
     states: tuple[str, ...]
 
     def turned(self, facing: str) -> list[str]:
-        """Return its states with its front to a side."""
+        """Return the full states of the ware with its front facing a side."""
         return [f"minecraft:{state.replace('{facing}', facing)}" for state in self.states]
 
 
 @cache
 def mount_table() -> dict[str, Any]:
-    """Return the table of blocks that stand otherwise than on a board."""
+    """Load the table of blocks that cannot simply be placed on a board."""
     source = files("world2minecraft.procgen.worlds") / "data" / "wares.json"
     return json.loads(source.read_text("utf-8"))
 
 
 @cache
 def load_wares() -> tuple[Ware, ...]:
-    """Return all wares, sorted by name."""
+    """Load all wares, sorted by name."""
     raw = mount_table()
     by_name: dict[str, Ware] = {}
     for mount in MOUNTS[1:]:
@@ -79,11 +79,11 @@ def _pile(mount: str) -> list[Ware]:
 
 
 class WareDeck:
-    """Wares in a shuffled order, dealt one after another, so that a series shows them all.
+    """A shuffled sequence of all wares, so that a series of houses shows every ware.
 
     Args:
-        seed: of the order; one for a whole series.
-        start: how many of each mount were dealt before, about.
+        seed: Seed of the order, the same for a whole series.
+        start: Approximate number of wares already used per kind of mount.
     """
 
     def __init__(self, seed: int, start: int):
@@ -97,21 +97,21 @@ class WareDeck:
             self._next[mount] = round(start * len(pile) / every) if len(pile) < every else start
 
     def deal(self, mount: str) -> Ware:
-        """Return the next ware of a mount."""
+        """Return the next ware for a kind of mount."""
         pile = self._piles[mount]
         self._next[mount] += 1
         return pile[(self._next[mount] - 1) % len(pile)]
 
 
 class StandBuilder:
-    """Sets wares, and what they stand on, in the rooms of one house."""
+    """Places wares and their stands in the rooms of one house."""
 
     def __init__(self, furnisher: Furnisher, deck: WareDeck, rng: np.random.Generator):
         self.furnisher, self.deck, self.rng = furnisher, deck, rng
         self.canvas = furnisher.canvas
 
     def put_ware(self, ware: Ware, at: Corner, facing: str) -> bool:
-        """Set a ware with its foot at a free place of the house; say whether it fits."""
+        """Place a ware with its lowest block at a position, and return whether it fits."""
         states = ware.turned(facing)
         cells = [self.canvas.at(at[0], at[1], at[2] + n) for n in range(len(states))]
         if any(self.canvas.states[cell] or self.furnisher.reserved[cell] for cell in cells):
@@ -124,17 +124,17 @@ class StandBuilder:
     def put_rack(
         self, room: BlockRoom, boards: Sequence[int], board: str, *, least: int = 4, most: int = 99
     ) -> int:
-        """Stand a rack along the longest bare piece of wall, with wares on boards.
+        """Place a rack with wares along the longest bare stretch of wall.
 
         Args:
-            room: where.
-            boards: the layers of the boards over the floor.
-            board: the material of boards, a block that has a slab, such as ``oak``.
-            least: blocks that it is long at least.
-            most: blocks that it is long at most.
+            room: The room.
+            boards: Layers of the boards above the floor.
+            board: Material of the boards: a block that has a slab, such as ``oak``.
+            least: Minimum length in blocks.
+            most: Maximum length in blocks.
 
         Returns:
-            How many wares it holds; 0 where there is no room.
+            The number of wares on the rack, or 0 if the rack does not fit.
         """
         if not boards:  # At two blocks a metre a room is too low for some.
             return 0
@@ -161,7 +161,7 @@ class StandBuilder:
         return held
 
     def put_plinth(self, room: BlockRoom, pillar: str, height: int = 3) -> int:
-        """Stand a pillar somewhere in a room with a ware on it; 1 where it fits."""
+        """Place a pillar with a ware on top in a room. Return 1 if it fits, or else 0."""
         furnisher = self.furnisher
         for _ in range(12):
             x = int(self.rng.integers(room.low[0] + 1, max(room.high[0] - 1, room.low[0] + 2)))
@@ -182,7 +182,7 @@ class StandBuilder:
         return 0
 
     def put_bed(self, room: BlockRoom) -> int:
-        """Stand a bed of two blocks, a doll's, with its head to a wall; 1 where it fits."""
+        """Place a two-block bed with its head at a wall. Return 1 if it fits, or else 0."""
         furnisher = self.furnisher
         for _ in range(12):
             turns = int(self.rng.integers(4))  # Where its foot looks.
@@ -209,7 +209,7 @@ class StandBuilder:
     def put_on(
         self, thing: PlacedFurniture, mounts: Sequence[str] = ("board",), most: int = 3
     ) -> int:
-        """Set wares on top of a thing, with air between; return how many."""
+        """Place wares on top of a piece of furniture with gaps, and return their number."""
         held = 0
         spots = [
             (x, y)
@@ -229,7 +229,7 @@ class StandBuilder:
         return held
 
     def hang_on_walls(self, room: BlockRoom, count: int, level: int) -> int:
-        """Hang wall wares on bare walls at a layer over the floor; return how many."""
+        """Hang wares on bare walls at a layer above the floor, and return their number."""
         hung = 0
         for _ in range(count * 4):
             if hung >= count:
@@ -254,7 +254,7 @@ class StandBuilder:
         return hung
 
     def hang_from_ceiling(self, room: BlockRoom, count: int) -> int:
-        """Hang hanging wares under the ceiling; return how many."""
+        """Hang wares from the ceiling, and return their number."""
         hung = 0
         for _ in range(count * 3):
             if hung >= count:
@@ -276,9 +276,13 @@ class StandBuilder:
         return hung
 
     def put_trough(self, room: BlockRoom, rim: str, mount: str, size: tuple[int, int]) -> int:
-        """Stand a trough of soil, or a basin of water, with what grows in it; return how many.
+        """Place a planter with soil or a basin with water, and return the number of wares in it.
 
-        ``size`` counts the inner blocks along x and y.
+        Args:
+            room: The room.
+            rim: The block name of the rim.
+            mount: The kind of wares, ``soil`` or ``water``.
+            size: Number of inner blocks along x and y.
         """
         deep, wide = size[0] + 2, size[1] + 2
         spots = [

@@ -1,4 +1,4 @@
-"""Worlds of houses on disk: a folder per house, with the world, its scene and its designs."""
+"""Writing of generated houses to folders, each with a world, its scene and its designs."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ WARES_A_HOUSE = 37  # By so many the order of wares is further on from house to 
 
 
 def house_layouts(house: BlockHouse, things: tuple[PlacedFurniture, ...]) -> tuple[Layout, ...]:
-    """Return one layout a room, in the order of the rooms; objects are named by their design."""
+    """Return one layout per room, in order, with objects named by their designs."""
     return tuple(_layout(house, room, things) for room in house.rooms)
 
 
@@ -72,13 +72,15 @@ def _object(thing: PlacedFurniture, scale: float) -> LayoutObject:
 def write_house(
     made: HouseWorld, folder: str | Path, *, name: str, mc_version: str = DEFAULT_VERSION
 ) -> None:
-    """Write ``world/``, ``scene.json``, ``scene.npz``, ``designs.json`` and what stands where.
+    """Write the world, scene, designs, layout and description of a house to a folder.
 
-    ``layout.json`` has the rooms and their openings, ``house.json`` the style, the light, the kinds
-    of rooms and the furniture.
+    The folder contains ``world/``, ``scene.json``, ``scene.npz``, ``designs.json``, ``layout.json``
+    (the rooms and their openings) and ``house.json`` (the style, lighting, kinds of rooms and
+    furniture).
 
     Raises:
-        OutputError: the folder cannot be written. UnknownNameError: no such version.
+        OutputError: If the folder cannot be written.
+        UnknownNameError: If the Minecraft version is unknown.
     """
     target, version = Path(folder), game_version(mc_version)
     spawn = made.spawn
@@ -138,17 +140,20 @@ def write_worlds(
     style: str | None = None,
     progress: Progress = no_progress,
 ) -> list[Path]:
-    """Write ``house_0001`` to ``house_N`` below a folder; a longer series begins with a shorter.
+    """Generate a series of houses as the folders ``house_0001`` to ``house_N``.
+
+    A longer series starts with the houses of a shorter one.
 
     Args:
-        folder: where; made when it is not there.
-        houses: how many.
-        seed: of the series.
-        style: of all houses; each draws its own where None.
-        progress: called for each house.
+        folder: The output folder, which is created if it does not exist.
+        houses: Number of houses.
+        seed: Seed of the series.
+        style: The style of all houses. The default is a random style per house.
+        progress: Callback for each house.
 
     Raises:
-        OutputError: the folder cannot be written. UnknownNameError: no style has this name.
+        OutputError: If the folder cannot be written.
+        UnknownNameError: If the style is unknown.
     """
     target, written = Path(folder), []
     for number in range(1, houses + 1):
@@ -162,7 +167,7 @@ def write_worlds(
 
 
 def house_of(seed: int, number: int, *, style: str | None = None) -> HouseWorld:
-    """Return one house of a series, by its number from 1; its style is drawn where None."""
+    """Generate one house of a series, by its number from 1. The default style is random."""
     rng = np.random.default_rng([seed, number])
     rooms = int(rng.integers(ROOMS[0], ROOMS[1] + 1))
     storeys = 2 if rng.random() < STOREYS_SHARE else 1
