@@ -131,4 +131,4 @@ def test_a_generated_room_is_not_written_over(tmp_path, capsys):
 
 def test_a_folder_that_is_no_room_is_refused(tmp_path, capsys):
     assert w2m(["rooms", "scan", str(tmp_path), "--out", str(tmp_path / "cap")]) == 3
-    assert "layout.json: is not there" in capsys.readouterr().err
+    assert "layout.json: not found" in capsys.readouterr().err

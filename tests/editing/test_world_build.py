@@ -322,7 +322,7 @@ def test_a_world_that_is_open_in_the_game_is_left_alone(world):
                 act()
             assert str(raised.value) == (
                 f"{world}: is open in the game, a server or another program; close the "
-                "world there, then try again"
+                "world, then try again"
             )
         game.stdin.close()
     assert tree(world) == before

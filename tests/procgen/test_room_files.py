@@ -100,9 +100,18 @@ def test_layouts_that_are_no_object_are_refused(written, tmp_path):
             {"labels": np.zeros((3, 3), np.uint8)},
             r"array labels has an invalid dtype or shape: uint8 \(3, 3\)",
         ),
-        ({"labels": np.full((2, 2, 2), 1.0)}, "labels is float64"),
-        ({"instance": np.zeros((2, 2, 2), np.uint16)}, "instance is uint16"),
-        ({"colour": np.zeros((2, 2, 2, 3), np.uint8)}, "colour is uint8"),
+        (
+            {"labels": np.full((2, 2, 2), 1.0)},
+            "array labels has an invalid dtype or shape: float64",
+        ),
+        (
+            {"instance": np.zeros((2, 2, 2), np.uint16)},
+            "array instance has an invalid dtype or shape: uint16",
+        ),
+        (
+            {"colour": np.zeros((2, 2, 2, 3), np.uint8)},
+            "array colour has an invalid dtype or shape: uint8",
+        ),
         ({"origin_m": np.full(3, np.nan)}, "origin_m must be finite"),
         ({"voxel_m": np.array(0.0)}, "voxel_m must be from 0.005 to 0.5, got 0.0"),
         ({"voxel_m": np.array([0.02])}, "array voxel_m has an invalid dtype or shape: float64"),
@@ -134,7 +143,7 @@ def test_a_file_that_says_it_is_huge_is_not_read(written, monkeypatch):
 def test_bytes_that_are_no_archive_are_refused(written, tmp_path):
     folder = copy_of(written, tmp_path)
     (folder / "truth.npz").write_bytes(b"not a zip")
-    with pytest.raises(DamagedFileError, match=r"truth\.npz: is not a readable"):
+    with pytest.raises(DamagedFileError, match=r"truth\.npz: is not a valid .npz file"):
         read_generated(folder)
     (folder / "truth.npz").unlink()
     with pytest.raises(

@@ -89,8 +89,8 @@ def test_the_hash_of_a_place_equals_its_slow_reading():
 @pytest.mark.parametrize(
     "words, text",
     [
-        ({"with_labels": True}, "labels come with sensor rgbd or clean"),
-        ({"depth_scale_sigma": 0.1}, "photos has no depth"),
+        ({"with_labels": True}, "labels require the sensor rgbd or clean"),
+        ({"depth_scale_sigma": 0.1}, "photos, which has no depth"),
     ],
 )
 def test_a_phone_has_no_labels_and_no_depth(words, text):

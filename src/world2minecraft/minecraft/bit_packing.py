@@ -325,7 +325,7 @@ def straddle_section_words(words: np.ndarray, states: int) -> np.ndarray:
 
 
 def _find_bit_width(words: int, needed: int, straddles: bool) -> int | None:
-    """Return the bits of a number, at least those needed, that make so many words."""
+    """Return the number of bits, at least ``needed``, that gives the number of words, or None."""
     count = (lambda bits: straddled_word_count(SECTION, bits)) if straddles else _padded_count
     fitting = (bits for bits in range(needed, MAX_BITS + 1) if count(bits) == words)
     return next(fitting, None)

@@ -108,7 +108,7 @@ def colour_of(state: str) -> tuple[int, int, int]:
 
 
 def _hinted_colour(name: str) -> tuple[int, int, int] | None:
-    """Return the colour of the wood or dye that a name begins with: ``dark_oak_chair``."""
+    """Return the colour of the wood or dye at the start of a name such as ``dark_oak_chair``."""
     words = name.split("_")
     for count in (2, 1):
         for ending in ("_planks", "_wool"):

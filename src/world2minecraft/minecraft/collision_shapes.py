@@ -70,7 +70,7 @@ def is_full_cube(state: str) -> bool:
 
 
 def _twin(state: BlockState) -> BlockType | None:
-    """Return the known block that an unknown one is taken to be like."""
+    """Return the known block whose shape an unknown block is assumed to have."""
     if not state.properties:
         return None
     known = {key for key, _ in state.properties}

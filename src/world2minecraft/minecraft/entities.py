@@ -177,7 +177,7 @@ def _parse_display(entity: Entity) -> DisplayCube | None:
 
 
 def _matrix_of(transformation: Any) -> np.ndarray:
-    """Return the 4x4 of a transformation: of parts, or of 16 numbers row by row."""
+    """Return the 4x4 matrix of a transformation, given as components or as 16 numbers."""
     if transformation is None:
         return np.eye(4)
     if not isinstance(transformation, Mapping):
@@ -195,7 +195,7 @@ def _vector3(values: Any, default: float) -> np.ndarray:
 
 
 def _rotation_of(stated: Any) -> np.ndarray:
-    """Return the 3x3 of a quaternion x y z w, or of an axis and an angle in radians."""
+    """Return the 3x3 matrix of a quaternion (x, y, z, w), or of an axis and an angle in radians."""
     if stated is None:
         return np.eye(3)
     if isinstance(stated, Mapping):
@@ -216,7 +216,7 @@ def _rotation_of(stated: Any) -> np.ndarray:
 
 
 def _entity_rotation(nbt: Mapping[str, Any]) -> np.ndarray:
-    """Return the 4x4 of an entity's Rotation: its yaw is clockwise from above, its pitch down."""
+    """Return the 4x4 matrix of an entity's Rotation (yaw clockwise from above, pitch down)."""
     yaw, pitch = (float(value) for value in nbt.get("Rotation", (0.0, 0.0)))
     cosine, sine = np.cos(np.radians(pitch)), np.sin(np.radians(pitch))
     turn = np.eye(4)
@@ -225,13 +225,13 @@ def _entity_rotation(nbt: Mapping[str, Any]) -> np.ndarray:
 
 
 def _rotation_about_y(yaw_deg: float) -> np.ndarray:
-    """Return the 3x3 turn of block axes, counter-clockwise from above: east goes to north."""
+    """Return the 3x3 rotation about the y axis, counter-clockwise seen from above."""
     cosine, sine = np.cos(np.radians(yaw_deg)), np.sin(np.radians(yaw_deg))
     return np.array([[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]])
 
 
 def _rotate_box(box: np.ndarray, quarter_turns: int) -> np.ndarray:
-    """Return a box turned about the up axis by whole quarters: x goes to -z, z to x."""
+    """Rotate a box about the y axis by quarter turns: x becomes -z, and z becomes x."""
     for _ in range(quarter_turns % 4):
         x0, y0, z0, x1, y1, z1 = box
         box = np.array([z0, y0, -x1, z1, y1, -x0])
@@ -239,7 +239,7 @@ def _rotate_box(box: np.ndarray, quarter_turns: int) -> np.ndarray:
 
 
 def _floats(values: Iterable[float]) -> list[Float]:
-    """Return numbers as tags, rounded so that each machine writes the same bytes."""
+    """Convert numbers to tags, rounded so that every machine writes the same bytes."""
     return [Float(round(float(value), DECIMALS) + 0.0) for value in values]
 
 
@@ -251,6 +251,6 @@ def _state_nbt(state: str) -> dict[str, Any]:
 
 
 def _state_text(nbt: Mapping[str, Any]) -> str:
-    """Return the text of a state, checked: it may come from a file of anyone's."""
+    """Return the validated text of a block state from an untrusted file."""
     pairs = ",".join(f"{key}={value}" for key, value in dict(nbt.get("Properties", {})).items())
     return str(parse_state(f"{nbt['Name']}[{pairs}]" if pairs else str(nbt["Name"])))

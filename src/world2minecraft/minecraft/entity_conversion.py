@@ -57,7 +57,7 @@ def count_lost_data(volume: BlockVolume, data_version: int, losses: Losses) -> N
 
 
 def _item_stacks(value: Any, data_version: int) -> Iterator[Mapping[str, Any]]:
-    """Yield the stacks that are in the other form than a game's."""
+    """Yield the item stacks that are not in the form of a game version."""
     if isinstance(value, Mapping):
         if _is_other(value, data_version):
             yield value

@@ -316,8 +316,9 @@ class NbtReader:
 
     def damaged(self, reason: str) -> DamagedFileError:
         """Return an error that describes a problem at the current position."""
-        reason = f"is not valid {self.dialect}: {reason} (at byte {self.at})"
-        return DamagedFileError(self.path, reason)
+        return DamagedFileError(
+            self.path, f"is not valid {self.dialect}: {reason} (at byte {self.at})"
+        )
 
     def string(self) -> str:
         """Read a string."""
@@ -328,8 +329,9 @@ class NbtReader:
         self.at = end
         self.text_left -= end - start
         if self.text_left < 0:
-            reason = f"exceeds the limit of {self.limits.text_bytes:,} bytes of text"
-            raise LimitError(self.path, reason)
+            raise LimitError(
+                self.path, f"exceeds the limit of {self.limits.text_bytes:,} bytes of text"
+            )
         raw = self.data[start:end]
         try:
             return raw.decode("ascii") if raw.isascii() else self.decoded(raw)
@@ -352,8 +354,7 @@ class NbtReader:
         if tag in self.arrays:
             return self.array(self.arrays[tag])
         if depth > self.limits.depth:
-            reason = f"exceeds the limit of {self.limits.depth} nested tags"
-            raise LimitError(self.path, reason)
+            raise LimitError(self.path, f"exceeds the limit of {self.limits.depth} nested tags")
         if tag == COMPOUND:
             return self.compound(depth)
         if tag == LIST:
@@ -407,11 +408,10 @@ class NbtReader:
     def _take(self, count: int) -> None:
         self.values_left -= count
         if self.values_left < 0:
-            reason = f"exceeds the limit of {self.limits.values:,} NBT values"
-            raise LimitError(self.path, reason)
+            raise LimitError(self.path, f"exceeds the limit of {self.limits.values:,} NBT values")
 
 
 def _decode(raw: bytes) -> str:
-    """Read Java's modified UTF-8: a zero as two bytes, other planes as two surrogates."""
+    """Decode Java's modified UTF-8, in which zero has two bytes and surrogates are separate."""
     text = raw.replace(b"\xc0\x80", b"\0").decode("utf-8", "surrogatepass")
     return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le")

@@ -102,7 +102,7 @@ def _map_signs(
 
 
 def _component(text: Any) -> str:
-    """Return a line as JSON; before 1.8 it was plain text."""
+    """Return a line as JSON. Lines before 1.8 are plain text."""
     line = str(text)
     try:
         json.loads(line)
@@ -123,7 +123,7 @@ def _downgrade_sign(nbt: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _with_lines(nbt: Mapping[str, Any], change: Callable[[Any], Any]) -> dict[str, Any]:
-    """Return a sign's tags with each line of both sides changed."""
+    """Apply a function to each line on both sides of a sign."""
     result = dict(nbt)
     for side in SIDES:
         held = nbt.get(side)
@@ -136,7 +136,7 @@ def _with_lines(nbt: Mapping[str, Any], change: Callable[[Any], Any]) -> dict[st
 
 
 def _nbt_of_line(line: Any) -> dict[str, Any]:
-    """Return a line of JSON as NBT; one that is NBT already stays."""
+    """Convert a JSON line to NBT. An NBT line is returned unchanged."""
     if isinstance(line, Mapping):
         return dict(line)
     try:
@@ -146,7 +146,7 @@ def _nbt_of_line(line: Any) -> dict[str, Any]:
 
 
 def _nbt_of(text: Any, depth: int) -> dict[str, Any]:
-    """Return a text of JSON as a compound, so that lists of texts hold one kind."""
+    """Convert a JSON text to a compound, so that lists of texts have a single type."""
     if text is None or depth > MAX_DEPTH:
         return {"text": ""}
     if isinstance(text, list):
@@ -175,7 +175,7 @@ def _click_of_1_21_5(click: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _json_of_line(line: Any) -> str:
-    """Return a line of NBT as JSON."""
+    """Convert an NBT line to JSON."""
     text = {"text": line} if isinstance(line, str) else _json_of(line, 0)
     return json.dumps(text, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 

@@ -95,7 +95,7 @@ def turn_volume(volume: BlockVolume, quarter_turns: int) -> BlockVolume:
 
 
 def _move_sides(properties: Properties, sides: dict[str, str]) -> Properties:
-    """Carry every property that names a side: as a key, as a value or as a part of one."""
+    """Rename sides in property keys, values and parts of values."""
     moved = {sides.get(key, key): value for key, value in properties.items()}
     for key in ("facing", "orientation", "shape"):
         if key in moved:
@@ -105,7 +105,7 @@ def _move_sides(properties: Properties, sides: dict[str, str]) -> Properties:
 
 
 def _rail_order(words: list[str]) -> list[str]:
-    """A rail names its two ends north or south first, but a straight one east first."""
+    """Sort the two ends of a rail: north or south first, or east first if it is straight."""
     if len(words) != 2 or not set(words) <= set(SIDES):
         return words
     order = ("north", "south", "east", "west")
@@ -113,12 +113,12 @@ def _rail_order(words: list[str]) -> list[str]:
 
 
 def _mirror_slot(key: str) -> str:
-    """The slots of a chiseled bookshelf run from left to right in two rows of three."""
+    """Mirror a slot name of a chiseled bookshelf, which has two rows of three slots."""
     return key.replace(key[:6], _SLOTS.get(key[:6], key[:6]), 1)
 
 
 def _change_rotation(properties: Properties, change: Callable[[int], int]) -> None:
-    """A standing sign's rotation is in sixteenths, clockwise from above, 0 to the south."""
+    """Change the rotation of a standing sign, which is in sixteenths clockwise from south."""
     value = properties.get("rotation", "")
     if value.isdecimal():
         properties["rotation"] = str(change(int(value)) % 16)
@@ -163,7 +163,7 @@ def _turn_once(volume: BlockVolume) -> BlockVolume:
 
 
 def _quarter_turn(volume: BlockVolume) -> np.ndarray:
-    """The 4x4 from old to new block coordinates: x' = z, z' = X - x, about the corner."""
+    """Return the 4x4 transform from old to new block coordinates, x' = z and z' = X - x."""
     x, _, z = volume.corner
     transform = np.eye(4)
     transform[:3, :3] = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]
@@ -172,7 +172,7 @@ def _quarter_turn(volume: BlockVolume) -> np.ndarray:
 
 
 def _turn_nbt(nbt: dict[str, Any], kind: str) -> dict[str, Any]:
-    """An entity's yaw grows clockwise from above; what hangs says where it looks by a number."""
+    """Rotate the yaw and the facing in an entity's NBT by a quarter turn."""
     rotation = nbt.get("Rotation", [Float(0), Float(0)])  # Without one it looks south.
     if isinstance(rotation, list) and len(rotation) == 2:
         yaw = type(rotation[0])((float(rotation[0]) - 90.0 + 180.0) % 360.0 - 180.0)

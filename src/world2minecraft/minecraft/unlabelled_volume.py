@@ -32,8 +32,7 @@ def build_palette(texts: Iterable[str], path: str | Path) -> tuple[tuple[str, ..
     """
     palette = (AIR, *sorted(set(texts) - {AIR}))
     if len(palette) > MAX_STATES:
-        reason = f"has {len(palette):,} block states, the limit is {MAX_STATES:,}"
-        raise LimitError(path, reason)
+        raise LimitError(path, f"has {len(palette):,} block states, the limit is {MAX_STATES:,}")
     return palette, {state: number for number, state in enumerate(palette)}
 
 
@@ -45,8 +44,9 @@ def check_size(size: Iterable[int], path: str | Path) -> tuple[int, int, int]:
     """
     x, y, z = (int(side) for side in size)
     if min(x, y, z) < 1 or x * y * z > MAX_CELLS:
-        reason = f"declares a size of {x} x {y} x {z} blocks; expected 1 to {MAX_CELLS:,} blocks"
-        raise LimitError(path, reason)
+        raise LimitError(
+            path, f"declares a size of {x} x {y} x {z} blocks; expected 1 to {MAX_CELLS:,} blocks"
+        )
     return x, y, z
 
 
@@ -118,8 +118,9 @@ def stated_corner(tree: Mapping[str, Any], path: str | Path) -> Corner | None:
     try:
         x, y, z = (int(value) for value in tree[OWN_TAG]["Corner"])
     except MISSHAPEN as error:
-        reason = f"contains a tag {OWN_TAG} without a Corner of three numbers"
-        raise DamagedFileError(path, reason) from error
+        raise DamagedFileError(
+            path, f"contains a tag {OWN_TAG} without a Corner of three numbers"
+        ) from error
     return x, y, z
 
 

@@ -119,7 +119,7 @@ def _family(entry: Mapping[str, Any]) -> VisualFamily:
 
 
 def _table_boxes(state: BlockState) -> np.ndarray:
-    """Return the collision boxes within the unit cube."""
+    """Return the collision boxes clipped to the unit cube."""
     boxes = np.clip(boxes_of(str(state)), 0, 1)
     return boxes[(boxes[:, 3:] > boxes[:, :3]).all(axis=1)]
 
@@ -140,7 +140,7 @@ def _family_boxes(family: VisualFamily, state: BlockState) -> np.ndarray:
 
 
 def _part_boxes(part: Mapping[str, Any], values: Mapping[str, str]) -> Iterator[list[float]]:
-    """Yield the boxes of a part, in sixteenths, where the state draws it."""
+    """Yield the boxes of a part in sixteenths, if the state shows the part."""
     when = part.get("when", {})
     cases = when if isinstance(when, list) else [when]
     if not any(all(_holds(values, *pair) for pair in case.items()) for case in cases):
@@ -165,18 +165,18 @@ def _holds(values: Mapping[str, str], key: str, wanted: str) -> bool:
 
 
 def _quarter(facing: str) -> int:
-    """Return the quarter turns, clockwise from above, from north to a side."""
+    """Return the number of clockwise quarter turns from north to a side."""
     return QUARTERS.index(facing) if facing in QUARTERS else 0
 
 
 def _quarter_of_rotation(rotation: str) -> int:
-    """Return the nearest quarter turn from north: 0 looks south, and it grows clockwise."""
+    """Return the nearest quarter turn of a sign rotation, in which 0 is south, clockwise."""
     sixteenths = int(rotation) % 16 if rotation.isdecimal() and len(rotation) < 4 else 0
     return ((sixteenths + 2) // 4 + 2) % 4
 
 
 def _rotate(boxes: np.ndarray, quarters: int) -> np.ndarray:
-    """Turn boxes, float64 [N, 6] in sixteenths, clockwise from above: x' = 16 - z, z' = x."""
+    """Rotate boxes, float64 [N, 6] in sixteenths, clockwise from above: x' = 16 - z, z' = x."""
     for _ in range(int(quarters) % 4):
         x0, y0, z0, x1, y1, z1 = boxes.T
         boxes = np.stack([16 - z1, y0, x0, 16 - z0, y1, x1], axis=1)
@@ -184,7 +184,7 @@ def _rotate(boxes: np.ndarray, quarters: int) -> np.ndarray:
 
 
 def _tip(boxes: np.ndarray, facing: str) -> np.ndarray:
-    """Tip boxes that are written for up towards one of the six sides."""
+    """Tilt boxes that are defined for up towards one of the six sides."""
     x0, y0, z0, x1, y1, z1 = boxes.T
     if facing == "down":
         return np.stack([x0, 16 - y1, z0, x1, 16 - y0, z1], axis=1)

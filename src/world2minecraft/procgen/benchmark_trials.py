@@ -120,7 +120,7 @@ def _trial(difficulty: str, split: str, number: int) -> Trial:
 
 
 def _odd(number: int) -> dict[str, Any]:
-    """Return a room full of things, of a shape that is no box."""
+    """Return the settings of a cluttered room whose shape is not a box."""
     return {
         "kind": ODD_KINDS[number % len(ODD_KINDS)],
         "shape": ODD_SHAPES[number % len(ODD_SHAPES)],
@@ -129,7 +129,7 @@ def _odd(number: int) -> dict[str, Any]:
 
 
 def _home(number: int) -> dict[str, Any]:
-    """Return a flat of 3 to 5 rooms, or now and then a house of two storeys."""
+    """Return the settings of a flat with 3 to 5 rooms, or sometimes of a house with two storeys."""
     return {
         "kind": "house",
         "rooms": 3 + number % 3,

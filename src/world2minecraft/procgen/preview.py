@@ -50,7 +50,7 @@ def _storey_picture(room: Room, floor_z_m: float, width_px: int, height_px: int)
 
 
 def _open_storey(room: Room, floor_z_m: float) -> Room:
-    """Return one storey without what hides its inside."""
+    """Return one storey without the parts that hide its interior."""
     storey = [layout for layout in room.layouts if layout.floor_z_m == floor_z_m]
     slab = round(-room.origin_m[2] / room.voxel_m)
     low = round((floor_z_m - room.origin_m[2]) / room.voxel_m) - slab
@@ -72,14 +72,14 @@ def _open_storey(room: Room, floor_z_m: float) -> Room:
 
 
 def _drop_near_roofs(labels: np.ndarray) -> None:
-    """Empty what of a sloped ceiling hangs over the near half of the room."""
+    """Remove sloped ceilings above the near half of the room."""
     x, y = (side // 2 for side in labels.shape[:2])
     for part in (labels[x:], labels[:, :y]):
         part[part == int(SemanticClass.CEILING)] = 0
 
 
 def _drop_near_walls(room: Room, labels: np.ndarray, slab: int) -> None:
-    """Empty the walls at x = max and y = 0, where one looks from, down to a rim."""
+    """Remove the walls at x = max and y = 0, near the camera, down to a rim."""
     rim, deep = slab + round(RIM_M / room.voxel_m), slab + round(NEAR_M / room.voxel_m)
     labels[-slab:, :, rim:] = 0
     labels[:, :slab, rim:] = 0
@@ -90,7 +90,7 @@ def _drop_near_walls(room: Room, labels: np.ndarray, slab: int) -> None:
 
 
 def _camera(room: Room, kind: str, width_px: int, height_px: int) -> tuple[Camera, np.ndarray]:
-    """Return a camera and ``camera_to_room`` that see the whole from high x and low y."""
+    """Return a camera and ``camera_to_room`` that show everything from high x and low y."""
     size = np.array(room.labels.shape) * room.voxel_m
     corners = np.stack(np.meshgrid(*([0.0, 1.0],) * 3, indexing="ij"), -1).reshape(-1, 3) * size
     corners += room.origin_m

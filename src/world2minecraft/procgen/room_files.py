@@ -138,7 +138,7 @@ def _layout(row: dict[str, Any]) -> Layout:
 
 
 def _check_declared(path: Path) -> None:
-    """Refuse a file whose arrays say that they are larger than any room, before they are read."""
+    """Check the declared size of the arrays in a file before they are read."""
     if not path.is_file():
         raise InputError(path, "not found; it must be in the same folder as layout.json")
     try:
@@ -147,8 +147,9 @@ def _check_declared(path: Path) -> None:
     except UNREADABLE as error:
         raise DamagedFileError(path, f"is not a valid .npz file ({error})") from error
     if declared > MAX_CELLS * BYTES_A_CELL:
-        reason = f"has {declared:,} bytes, which exceeds the limit of {MAX_CELLS:,} cells"
-        raise LimitError(path, reason)
+        raise LimitError(
+            path, f"has {declared:,} bytes, which exceeds the limit of {MAX_CELLS:,} cells"
+        )
 
 
 def _check_arrays(path: Path, arrays: dict[str, np.ndarray], objects: int) -> None:
@@ -170,8 +171,9 @@ def _check_arrays(path: Path, arrays: dict[str, np.ndarray], objects: int) -> No
     if not math.isfinite(voxel_m) or not VOXEL_RANGE_M[0] <= voxel_m <= VOXEL_RANGE_M[1]:
         raise DamagedFileError(path, f"voxel_m must be from 0.005 to 0.5, got {voxel_m}")
     if labels.max() >= CLASS_COUNT:
-        reason = f"labels must be below {CLASS_COUNT}, got {labels.max()}"
-        raise DamagedFileError(path, reason)
+        raise DamagedFileError(path, f"labels must be below {CLASS_COUNT}, got {labels.max()}")
     if instance.max() > objects:
-        reason = f"instance must be at most {objects} (the number of objects), got {instance.max()}"
-        raise DamagedFileError(path, reason)
+        raise DamagedFileError(
+            path,
+            f"instance must be at most {objects} (the number of objects), got {instance.max()}",
+        )

@@ -112,7 +112,7 @@ def _shots(room: Room, how: ScanSettings) -> Iterator[Shot]:
 def _views(
     shots: Iterator[Shot], truths: list[FrameTruth], total: int, progress: Progress
 ) -> Iterator[View]:
-    """Pass the views on, and keep what is true of each; the pictures are not kept."""
+    """Yield the views and store their ground truth without the images."""
     for shot in shots:
         yield shot.view
         truths.append(shot.truth)

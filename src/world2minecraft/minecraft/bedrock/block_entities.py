@@ -48,7 +48,7 @@ def bedrock_data(
 def _data_from_state(
     state: BlockState, java: Mapping[str, Any], place: Place
 ) -> dict[str, Any] | None:
-    """Return what Bedrock keeps in data and Java in a state."""
+    """Return the block entity data that Java Edition stores in a block state."""
     name = state.name.partition(":")[2]
     stem, _, kind = name.rpartition("_")
     if kind == "bed" and stem in DYES:
@@ -74,7 +74,10 @@ def _data_from_state(
 
 
 def _partner_side(state: BlockState) -> str:
-    """Return where the other half of a double chest stands: clockwise of a left one's front."""
+    """Return the direction of the other half of a double chest.
+
+    The other half is clockwise of the front for a left half.
+    """
     step = 1 if state.get("type") == "left" else -1
     return CLOCKWISE[(CLOCKWISE.index(state.get("facing", "north")) + step) % 4]
 
@@ -172,7 +175,7 @@ def _patterns(data: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _sign_side(data: Mapping[str, Any], side: str) -> dict[str, Any]:
-    """Return one side of a sign; Java before 1.20 had one, in four tags of its own."""
+    """Return one side of a sign. Before 1.20, Java signs had a single side in four tags."""
     held = data.get(side)
     if isinstance(held, Mapping):
         lines, glows = _list(held.get("messages")), held.get("has_glowing_text", 0)

@@ -117,14 +117,14 @@ class McstructureFormat(FileFormat):
 
 
 def _bedrock(state: str) -> tuple[str, dict[str, Any]]:
-    """Return the Bedrock block of a state, air where there is none."""
+    """Return the Bedrock block of a Java state, or air if there is none."""
     return java_to_bedrock(state) or ("minecraft:air", {})
 
 
 def _bedrock_palette(
     states: Iterable[str],
 ) -> tuple[list[dict[str, Any]], np.ndarray, np.ndarray]:
-    """Return the palette, our states' numbers in it, int32 [P], and which stand in water."""
+    """Return the palette, the index of each state, int32 [P], and which states contain water."""
     number_of: dict[str, int] = {}
     palette: list[dict[str, Any]] = []
     numbers, is_wet = [], []
@@ -142,7 +142,7 @@ def _bedrock_palette(
 
 
 def _position_data(volume: BlockVolume) -> dict[str, Any]:
-    """Return the block entities by the number of their cell."""
+    """Return the block entities by cell index."""
     held = {entity.block_pos: (entity.id, entity.nbt) for entity in volume.block_entities}
     speaking = [n for n, state in enumerate(volume.palette) if bedrock_data(state)]
     cells = {tuple(cell) for cell in np.argwhere(np.isin(volume.states, speaking)).tolist()}
@@ -181,7 +181,7 @@ def _count_losses(volume: BlockVolume, losses: Losses) -> None:
 
 
 def _states_by_place(volume: BlockVolume) -> dict[tuple[int, int, int], str]:
-    """Return the states at the places of block entities."""
+    """Return the block states at the positions of block entities."""
     result = {}
     for entity in volume.block_entities:
         cell = tuple(int(a) - b for a, b in zip(entity.block_pos, volume.corner, strict=True))
@@ -199,8 +199,9 @@ def _volume_of(tree: Mapping[str, Any], source: Path, losses: Losses) -> BlockVo
     layers = [np.asarray(layer) for layer in structure["block_indices"]]
     count = int(np.prod(shape))
     if not layers or any(layer.shape != (count,) for layer in layers[:2]):
-        reason = f"declares {count:,} blocks, but a block layer has a different length"
-        raise DamagedFileError(source, reason)
+        raise DamagedFileError(
+            source, f"declares {count:,} blocks, but a block layer has a different length"
+        )
     held = structure["palette"]["default"]
     entries = held["block_palette"]
     if any(layer.size and not -1 <= layer.min() <= layer.max() < len(entries) for layer in layers):
@@ -239,7 +240,7 @@ def _trim_palette(
     corner: tuple[int, int, int],
     block_entities: list[BlockEntity],
 ) -> BlockVolume:
-    """Return the volume with the states of its palette that it has, and air."""
+    """Return a volume whose palette contains only air and the states that occur."""
     used = sorted({0, *np.unique(states).tolist()})
     lookup = np.zeros(len(palette), np.uint16)
     lookup[used] = np.arange(len(used))
@@ -248,7 +249,7 @@ def _trim_palette(
 
 
 def _java_text(entry: Mapping[str, Any], source: Path) -> str:
-    """Return the Java state of a palette's entry; an unknown block keeps its Bedrock name."""
+    """Return the Java state of a palette entry. An unknown block keeps its Bedrock name."""
     found = java_from_entry(entry)
     if found is not None:
         return found
@@ -266,7 +267,7 @@ def _count_unknown(entries: list[Any], cells: np.ndarray, losses: Losses) -> Non
 
 
 def _wet_cells(layers: list[np.ndarray], texts: list[str]) -> np.ndarray:
-    """Return which cells have water in the second layer, bool [N]."""
+    """Return which cells have water in the second layer, as bool [N]."""
     if len(layers) < 2:
         return np.zeros(len(layers[0]), bool)
     is_water = np.array([text.startswith("minecraft:water[") for text in texts] + [False])
@@ -274,7 +275,7 @@ def _wet_cells(layers: list[np.ndarray], texts: list[str]) -> np.ndarray:
 
 
 def _is_wet(state: str) -> str:
-    """Return a state as it stands in water, where it can."""
+    """Return the waterlogged state of a block if it has one."""
     parsed = complete(parse_state(state))
     return str(parsed.having(waterlogged="true")) if parsed.get("waterlogged") else state
 
@@ -282,12 +283,13 @@ def _is_wet(state: str) -> str:
 def _with_data(
     stated: Mapping[str, Any], cells: np.ndarray, names: list[str], shape: Any, source: Path
 ) -> dict[int, tuple[str, Mapping[str, Any]]]:
-    """Return state and data of the cells whose block entity says what they are."""
+    """Return the state and data of the cells whose block entity determines the state."""
     result = {}
     for key, row in stated.items():
         if not key.isdecimal() or int(key[:12]) >= len(cells):
-            reason = f"contains block entity data for the invalid block index {key[:20]!r}"
-            raise DamagedFileError(source, reason)
+            raise DamagedFileError(
+                source, f"contains block entity data for the invalid block index {key[:20]!r}"
+            )
         data = row.get("block_entity_data") if isinstance(row, Mapping) else None
         if isinstance(data, Mapping):
             result[int(key)] = (java_state(names[cells[int(key)]], data), data)

@@ -48,18 +48,18 @@ def read_little(
 
 
 class _LittleReader(NbtReader):
-    """Numbers the other way round, plain texts, and lists of Int as arrays."""
+    """A reader of little-endian NBT with plain UTF-8 strings and lists of Int as arrays."""
 
     dialect, encoding = "little-endian NBT", "UTF-8"
     numbers, arrays = number_layouts("<"), array_layouts("<")
     uint16, int32 = struct.Struct("<H"), struct.Struct("<i")
 
     def decoded(self, raw: bytes) -> str:
-        """Return a text that is not plain ASCII."""
+        """Decode a string that is not plain ASCII."""
         return raw.decode("utf-8")
 
     def items(self, depth: int) -> Any:
-        """Read a list."""
+        """Read a list, or an array for a list of Int."""
         if self.data[self.at] != INT:
             return super().items(depth)
         self.at += 1
@@ -67,21 +67,21 @@ class _LittleReader(NbtReader):
 
 
 class _LittleWriter(NbtWriter):
-    """The same for writing: an array is a list of Int."""
+    """A writer of little-endian NBT that writes arrays as lists of Int."""
 
     numbers, arrays = _LittleReader.numbers, _LittleReader.arrays
     uint16, int32 = _LittleReader.uint16, _LittleReader.int32
 
     def encoded(self, text: str) -> bytes:
-        """Return plain UTF-8."""
+        """Encode a string as plain UTF-8."""
         return text.encode("utf-8")
 
     def tag_of_array(self, value: np.ndarray) -> int:
-        """Return the tag of a list."""
+        """Return the list tag, which represents an array."""
         return LIST
 
     def put_list(self, values: Any) -> None:
-        """Add a list, or an array as one."""
+        """Append a list, or an array as a list of Int."""
         if not isinstance(values, np.ndarray):
             return super().put_list(values)
         if values.ndim != 1 or values.dtype != np.int32:

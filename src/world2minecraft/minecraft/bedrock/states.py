@@ -93,7 +93,7 @@ def is_preserved(state: str, back: str) -> bool:
 
 
 def _computed(name: str) -> set[str]:
-    """Return the properties of a block that the game works out from its neighbours."""
+    """Return the properties of a block that the game computes from neighbouring blocks."""
     sides = {"north", "east", "south", "west"}
     if name.endswith("_stairs"):
         return {"shape", "waterlogged"}

@@ -89,8 +89,10 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
     check_displays(volume, version)
     if not has_packs(version):
         first = game_versions()[0].name
-        reason = f"data packs require Minecraft {first} or later, got {version.name}"
-        raise UsageError(f"{reason}; choose another --mc-version")
+        raise UsageError(
+            f"data packs require Minecraft {first} or later, got {version.name}; "
+            "choose another --mc-version"
+        )
     volume = convert_volume(volume, version.data_version)
     files = {"pack.mcmeta": pack_mcmeta(f"Builds {name}", version)}
     files |= size_functions(volume.blocks_per_metre)
@@ -136,7 +138,7 @@ def build_job_files(
 
 
 def _probes(volume: BlockVolume) -> list[tuple[int, int]]:
-    """Corners of the box and points every 64 blocks between them."""
+    """Return the corners of the box and points every 64 blocks between them."""
     x, _, z = volume.corner
     x1, z1 = x + volume.states.shape[0] - 1, z + volume.states.shape[2] - 1
     xs, zs = sorted({*range(x, x1, 64), x1}), sorted({*range(z, z1, 64), z1})

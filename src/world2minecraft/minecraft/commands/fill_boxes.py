@@ -28,7 +28,7 @@ def cover_with_boxes(states: np.ndarray, limit: int = MAX_FILL) -> np.ndarray:
 
 @njit
 def _grow(states, limit, boxes):  # pragma: no cover
-    """Find the boxes; write them where ``boxes`` has room. Returns their count."""
+    """Find the boxes, write as many as fit into ``boxes``, and return their number."""
     size_x, size_y, size_z = states.shape
     done = np.zeros(states.shape, np.bool_)
     count = 0

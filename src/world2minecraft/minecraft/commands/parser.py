@@ -86,8 +86,7 @@ def read_datapack(path: str | Path, losses: Losses | None = None) -> BlockVolume
         with zipfile.ZipFile(source) as archive:
             parts = _parts(archive)
             if sum(part.file_size for part in parts) > MAX_BYTES:
-                reason = f"exceeds the limit of {MAX_BYTES:,} bytes of commands"
-                raise LimitError(source, reason)
+                raise LimitError(source, f"exceeds the limit of {MAX_BYTES:,} bytes of commands")
             texts = [archive.read(part) for part in parts]
             is_world = any(Path(name).name == "level.dat" for name in archive.namelist())
     except UNREADABLE as error:
@@ -97,15 +96,18 @@ def read_datapack(path: str | Path, losses: Losses | None = None) -> BlockVolume
             source, "contains a zipped world; extract it and use the folder with level.dat"
         )
     if not texts:
-        reason = "is not a data pack written by World2Minecraft (function build/part_0 is missing)"
-        raise InputError(source, f"{reason}; other data packs are not supported")
+        raise InputError(
+            source,
+            "is not a data pack written by World2Minecraft (function build/part_0 is missing); "
+            "other data packs are not supported",
+        )
     lines = (line for text in texts for line in _lines(text, source))
     return _build(lines, source, Losses() if losses is None else losses)
 
 
 @dataclass
 class _BuildState:
-    """What the commands have built so far."""
+    """The blocks, block data and entities that the commands have built so far."""
 
     path: Path
     losses: Losses
@@ -117,7 +119,7 @@ class _BuildState:
     reader: SnbtReader = field(default_factory=SnbtReader)
 
     def place(self, box: tuple[int, ...], text: str) -> None:
-        """Put a block, or a block and its data, into a box."""
+        """Fill a box with a block, and set the block's data if it has any."""
         name, brace, rest = text.partition("{")
         name = read_state(str(parse_state(name)), ANY_VERSION)
         number = self.states.setdefault(name, len(self.states))
@@ -136,13 +138,14 @@ class _BuildState:
         self.data[place] = self.data.get(place, {}) | self.compound(text)
 
     def compound(self, text: str) -> dict[str, Any]:
-        """Read data of a block or an entity."""
+        """Parse the data of a block or an entity."""
         value, _ = self.reader.read(text)
         if not isinstance(value, dict):
             raise UsageError(f"data {text[:40]!r} must have the form {{name:value}}")
         if len(self.data) + len(self.entities) >= MAX_DATA:
-            reason = f"exceeds the limit of {MAX_DATA:,} blocks and entities with data"
-            raise LimitError(self.path, reason)
+            raise LimitError(
+                self.path, f"exceeds the limit of {MAX_DATA:,} blocks and entities with data"
+            )
         return value
 
 
@@ -195,7 +198,7 @@ def _run_command(site: _BuildState, line: str) -> None:
 
 
 def _arguments(rest: str, count: int) -> list[str]:
-    """Return as many words and what is left."""
+    """Return ``count`` words and the rest of the text."""
     words = rest.split(" ", count)
     if len(words) <= count:
         raise UsageError(f"command {rest[:60]!r} must have {count} coordinates and a value")
@@ -210,7 +213,7 @@ def _whole(words: Iterable[str]) -> tuple[int, ...]:
 
 
 def _without_mode(state: str, losses: Losses) -> str:
-    """Return a block without the word behind it; nothing where it asks for more than replacing."""
+    """Return a block without the mode after it, or an empty string for an unsupported mode."""
     end = state.rfind("}") if "{" in state else state.rfind("]")
     head, _, mode = state[end + 1 :].partition(" ")
     mode = mode.strip()
@@ -251,7 +254,7 @@ def _block_entities(
 
 
 def _lines(data: bytes, path: str | Path) -> Iterator[str]:
-    """Yield the commands: lines that say something and are no remark."""
+    """Yield the commands, without empty lines and comments."""
     for number, raw in enumerate(io.BytesIO(data)):
         if number >= MAX_LINES:
             raise LimitError(path, f"exceeds the limit of {MAX_LINES:,} lines")
@@ -264,7 +267,7 @@ def _lines(data: bytes, path: str | Path) -> Iterator[str]:
 
 
 def _parts(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
-    """Return the parts of the function ``build``, in order, each once."""
+    """Return the parts of the function ``build`` in order, without duplicates."""
     found: dict[int, zipfile.ZipInfo] = {}
     for entry in archive.infolist():
         part = _PART.fullmatch(entry.filename)

@@ -123,7 +123,7 @@ def _quoted(text: str, at: int) -> tuple[str, int]:
 
 
 def _plain(word: str) -> Any:
-    """Return what a word without quotes means: a number, a truth value, or itself."""
+    """Return the value of an unquoted word: a number, a boolean or a string."""
     if word in ("true", "false"):
         return Byte(word == "true")
     number = _NUMBER.fullmatch(word)

@@ -75,8 +75,10 @@ def entity_commands(volume: BlockVolume) -> list[str]:
     commands = []
     for entity in volume.entities:
         if not _ENTITY_ID.fullmatch(entity.id):
-            reason = f"entity ID {entity.id!r} is invalid"
-            raise UsageError(f"{reason}; expected an ID such as minecraft:block_display")
+            raise UsageError(
+                f"entity ID {entity.id!r} is invalid; "
+                "expected an ID such as minecraft:block_display"
+            )
         x, y, z = entity.position
         tags = [*entity_tags(entity.nbt), entity_tag(volume)]
         place = f"{x:.6f} {y:.6f} {z:.6f}"
@@ -156,6 +158,6 @@ def snbt(value: Any) -> str:
 
 
 def _quoted(text: str) -> str:
-    """Commands stand on one line without control characters; a blank takes the place of each."""
+    """Return a text in quotes, with control characters replaced by spaces."""
     plain = text.replace("\\", "\\\\").replace('"', '\\"')
     return '"' + _CONTROLS.sub(" ", plain) + '"'

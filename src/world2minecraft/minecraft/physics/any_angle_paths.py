@@ -99,11 +99,12 @@ def straight_m(lattice, here, there):
 
 @njit
 def _lazy_theta_star(lattice, edges, back, sources):
-    """Return distances, bends and places in the order of their distance: a lazy Theta* search.
+    """Return distances, turning places, and the places in order of distance (lazy Theta* search).
 
-    ``edges`` and ``back`` are the steps from places and those to them, as ``Edges``. A
-    place takes over the bend of the one before it, unseen; when its turn comes one looks, and
-    where the bend is hidden, or steps are shorter, the best step to a place that is done is taken.
+    ``edges`` and ``back`` are the outgoing and incoming steps of each place. A place first inherits
+    the turning place of its predecessor without a check. The line of sight is checked when the
+    place is processed. If it is blocked, or a path along steps is shorter, the best step to a
+    finished place is used instead.
     """
     start, to = back.start, back.to
     count = len(start) - 1
@@ -136,7 +137,7 @@ def _lazy_theta_star(lattice, edges, back, sources):
 
 @njit
 def _confirm_bend(lattice, edges, done, away, bend, here):
-    """Make sure of the way of a place: straight to its bend, else a step to another place."""
+    """Check the straight path to a turning place, or use a step if that is shorter."""
     start, to, cost = edges.start, edges.to, edges.length_m
     away[here] = straight_m(lattice, here, bend[here]) + away[bend[here]]
     for edge in range(start[here], start[here + 1]):
@@ -147,7 +148,7 @@ def _confirm_bend(lattice, edges, done, away, bend, here):
 
 @njit
 def _relax_bends(lattice, edges, order, away, bend):
-    """Shorten ways, nearest places first, by the bends of their neighbours and those after them."""
+    """Shorten paths with the turning places of neighbours, starting with the nearest places."""
     start, to, cost = edges.start, edges.to, edges.length_m
     for here in order:
         for edge in range(start[here], start[here + 1]):

@@ -176,7 +176,7 @@ def find_standing_place(
 
 
 def _ring_offsets(ring: int) -> list[tuple[int, int]]:
-    """Return the places of a square ring, the nearest to its middle first."""
+    """Return the offsets of a square ring, ordered by distance from its middle."""
     span = range(-ring, ring + 1)
     places = [(x, z) for x in span for z in span if max(abs(x), abs(z)) == ring]
     return sorted(places, key=lambda place: (place[0] ** 2 + place[1] ** 2, place))
@@ -185,7 +185,7 @@ def _ring_offsets(ring: int) -> list[tuple[int, int]]:
 def _settle_on_ground(
     world: World, at: np.ndarray, scale: float
 ) -> tuple[float, float, float] | None:
-    """Return a place moved onto what lies under it, within a step; None where none can stand."""
+    """Move a position onto the ground within one step, or return None if a body does not fit."""
     reach = STEP_HEIGHT * scale
     x, y, z = at.tolist()
     box = body_box((x, y, z), scale)

@@ -83,14 +83,14 @@ def step(world: World, body: Body, keys: Keys, scale: float = 1.0) -> Body:
 
 
 def _around(world: World, body: Body, scale: float) -> np.ndarray:
-    """Return the boxes that this tick may meet."""
+    """Return the boxes that the player can touch in this tick."""
     box = body_box(body.position, scale)
     reach = np.abs(np.array(body.velocity)) + _MARGIN * scale
     return world.near(box[:3] - reach, box[3:] + reach)
 
 
 def _fits(boxes: np.ndarray, body: Body, scale: float) -> bool:
-    """Whether one can stand upright."""
+    """Return whether the player can stand upright."""
     return not find_overlaps(boxes, body_box(body.position, scale), TOUCH * scale).any()
 
 
@@ -109,7 +109,7 @@ def _accelerate(
 
 
 def _push(velocity: list[float], left: float, ahead: float, yaw_deg: float) -> None:
-    """Add to a velocity, in place, by where the player looks."""
+    """Add to a velocity in place, relative to the direction of view."""
     sine, cosine = math.sin(math.radians(yaw_deg)), math.cos(math.radians(yaw_deg))
     velocity[0] += left * cosine - ahead * sine
     velocity[2] += ahead * cosine + left * sine
@@ -118,7 +118,7 @@ def _push(velocity: list[float], left: float, ahead: float, yaw_deg: float) -> N
 def _move(
     boxes: np.ndarray, body: Body, way: np.ndarray, crouched: bool, scale: float
 ) -> tuple[float, float, float]:
-    """Return how far a body comes, up steps where it stands or lands."""
+    """Return the distance that a body moves, including steps up."""
     box = body_box(body.position, scale, crouched=crouched)
     touch = TOUCH * scale
     gone = sweep_box(boxes, box, way, touch)
@@ -132,7 +132,7 @@ def _move(
 
 
 def _stop_at_edges(boxes: np.ndarray, body: Body, way: np.ndarray, scale: float) -> np.ndarray:
-    """Return a way on the ground shortened so that something stays under the feet."""
+    """Shorten a movement on the ground so that there is always ground below the feet."""
     box = body_box(body.position, scale, crouched=True)
     back = EDGE_STEP * scale
 
@@ -151,7 +151,7 @@ def _stop_at_edges(boxes: np.ndarray, body: Body, way: np.ndarray, scale: float)
 
 
 def _towards_zero(value: float, by: float) -> float:
-    """Return a value brought nearer to 0."""
+    """Return a value moved towards 0."""
     return 0.0 if abs(value) <= by else value - math.copysign(by, value)
 
 

@@ -95,7 +95,7 @@ def _costs(graph: WalkGraph, weights: np.ndarray | None) -> np.ndarray:
 
 @njit
 def _search(start, to, cost, sources, goal, heuristic):
-    """Dijkstra's search, or A* with a heuristic to a goal; -1 for none. Returns away, before."""
+    """Return distances and predecessors from a Dijkstra search, or A* if a goal is given."""
     away = np.full(len(start) - 1, np.inf)
     before = np.full(len(start) - 1, -1, np.int32)
     keys, values = (

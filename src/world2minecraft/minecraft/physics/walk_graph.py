@@ -132,7 +132,7 @@ def _fill(solid, xs, zs, half, need, stands):
 
 @njit
 def _mask(solid, box, masks):
-    """Set in each layer's mask the sixteenths of its height that a box meets something in."""
+    """Set bits in each layer's mask for the sixteenths in which a box meets an obstacle."""
     masks[:] = 0
     nx, ny, nz = solid.kinds.shape
     for i in range(max(0, int(np.floor(box[0]))), min(nx - 1, int(np.floor(box[2]))) + 1):
@@ -151,7 +151,7 @@ def _mask(solid, box, masks):
 
 @njit
 def _cell_mask(solid, kind, box, i, k):
-    """Return the sixteenths, from its cell's bottom, of the boxes of a kind that a box meets."""
+    """Return the sixteenths, from the bottom of the cell, in which a shape meets a box."""
     mask = 0
     for n in range(solid.start[kind], solid.start[kind + 1]):
         b = solid.boxes[n]
@@ -197,7 +197,7 @@ def _add(solid, box, floor, ceiling, column, found, stands):
 
 @njit
 def _ground(solid, box, floor):
-    """Return the largest class of what a body stands on at a height; unknown counts as none."""
+    """Return the largest semantic class below the feet of a body. Unknown counts as 0."""
     nx, ny, nz = solid.kinds.shape
     top, found = (floor - 1) // HEIGHT_STEPS, 0
     for i in range(max(0, int(np.floor(box[0]))), min(nx - 1, int(np.floor(box[2]))) + 1):
@@ -356,7 +356,7 @@ def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
 
 
 def _columns(count: int, per_block: int, half: float | None) -> np.ndarray:
-    """Return where columns are along a side of so many cells, float64, in cells."""
+    """Return the positions of columns along one side, float64, in cells."""
     even = 0.5 + np.arange(per_block * (count - 1) + 1 if count else 0) / per_block
     if half is None:
         return even
@@ -393,7 +393,7 @@ def collision_grid(volume: BlockVolume, opens_doors: bool = True) -> CollisionGr
 
 
 def _drop_furniture(stands: StandingPlaces) -> StandingPlaces:
-    """Return the stands whose ground is none of chair, bed, sofa, table, screen and furniture."""
+    """Remove the standing places on chairs, beds, sofas, tables, screens and furniture."""
     low, high = _FURNITURE
     there = np.arange(stands.floor.shape[1]) < stands.counts[:, None]
     stays = there & ~((stands.ground >= low) & (stands.ground <= high))
@@ -404,10 +404,10 @@ def _drop_furniture(stands: StandingPlaces) -> StandingPlaces:
 
 @njit
 def _steps(stands, first, deep, need, limits):
-    """Return ``edge_start`` and ``edge_to`` of all places of ``StandingPlaces``.
+    """Return ``edge_start`` and ``edge_to`` of all standing places.
 
-    ``first`` int64 [C + 1] numbers the lowest place of each column, of which ``deep`` lie along z;
-    a body is ``need`` sixteenths high.
+    ``first``, int64 [C + 1], is the index of the lowest place of each column. ``deep`` is the
+    number of columns along z, and ``need`` is the height of the body in sixteenths.
     """
     count, floor, ceiling = stands.counts, stands.floor, stands.ceiling
     total = first[-1]
@@ -440,7 +440,7 @@ def _steps(stands, first, deep, need, limits):
 
 @njit
 def _step_target(stands, other, low, high, need, limits):
-    """Return the place of another column that one step leads to; -1 for none."""
+    """Return the level of another column to which one step leads, or -1 if there is none."""
     for n in range(stands.counts[other]):
         goal = stands.floor[other, n]
         lift = max(low, goal)
@@ -453,7 +453,7 @@ def _step_target(stands, other, low, high, need, limits):
 
 @njit
 def _can_brush_past(stands, side, lift, least, need):
-    """Whether a body at a height may brush a column that it passes by, and would not fall there."""
+    """Return whether a body can pass the edge of a column diagonally without falling."""
     for n in range(stands.counts[side]):
         if least <= stands.floor[side, n] <= lift and stands.ceiling[side, n] - lift >= need:
             return True

@@ -261,7 +261,7 @@ def update_connections(
 
 
 def _doors(grid: StateGrid) -> None:
-    """The upper half of a door follows its lower half."""
+    """Copy properties from the lower to the upper halves of doors."""
     cells = grid.cells_of(DOOR)
     if not len(cells):
         return
@@ -280,7 +280,7 @@ def _doors(grid: StateGrid) -> None:
 
 
 def _chests(grid: StateGrid) -> None:
-    """A half of a double chest without its other half is single; a chest joins a half facing it."""
+    """Set chests without another half to single, and join chests to halves that face them."""
     for rule in (_orphan_chests, _requested_chests):
         cells = grid.cells_of(CHEST)
         if len(cells):
@@ -312,12 +312,12 @@ def _requested_chests(grid: StateGrid, cells: np.ndarray) -> None:
 
 
 def _partner(grid: StateGrid) -> np.ndarray:
-    """Return the direction, int [P], of the other half: a left half's is clockwise."""
+    """Return the direction of the other half of each chest state, int [P]."""
     return (grid.column("facing") + np.where(grid.column("variant") == 1, 1, 3)) % 4
 
 
 def _stairs(grid: StateGrid) -> None:
-    """A stair bends around the stair before it, else into the one behind it."""
+    """Set the shape of stairs from the stairs in front of and behind them."""
     cells = grid.cells_of(STAIRS)
     if not len(cells):
         return
@@ -338,7 +338,7 @@ def _stairs(grid: StateGrid) -> None:
 
 
 def _gates(grid: StateGrid) -> None:
-    """A gate next to a wall hangs lower."""
+    """Lower the gates that are next to walls."""
     cells = grid.cells_of(GATE)
     if not len(cells):
         return
@@ -350,7 +350,7 @@ def _gates(grid: StateGrid) -> None:
 
 
 def _panes_and_fences(grid: StateGrid) -> None:
-    """Panes, bars and fences join what they know, and full faces."""
+    """Connect panes, bars and fences to compatible neighbours and to full faces."""
     for kind in (PANE, FENCE, BRICK_FENCE):
         cells = grid.cells_of(kind)
         if len(cells):
@@ -363,7 +363,7 @@ def _panes_and_fences(grid: StateGrid) -> None:
 
 
 def _joins_neighbour(grid: StateGrid, cells: np.ndarray, side: int, kind: int) -> np.ndarray:
-    """Return whether cells of a kind join their neighbours at a side, bool [N]."""
+    """Return whether cells of a kind connect to their neighbours at a side, bool [N]."""
     other = grid.at(cells, side)
     kinds = grid.column("kind")[other]
     joined = (grid.column("sturdy")[other] >> OPPOSITE[side] & 1).astype(bool)
@@ -377,7 +377,7 @@ def _joins_neighbour(grid: StateGrid, cells: np.ndarray, side: int, kind: int) -
 
 
 def _walls(grid: StateGrid) -> None:
-    """Walls from the top down: a wall's sides and post depend on what stands on it."""
+    """Set the sides and posts of walls from top to bottom, as each depends on the one above."""
     cells = grid.cells_of(WALL)
     if not len(cells):
         return
@@ -410,7 +410,7 @@ def _wall_layer(grid: StateGrid, cells: np.ndarray, joined: np.ndarray) -> None:
 
 
 def _leaves(grid: StateGrid) -> None:
-    """Leaves count the way to the nearest log through leaves, up to seven."""
+    """Set the distance of leaves to the nearest log through leaves, at most seven."""
     cells = grid.cells_of(LEAVES)
     if not len(cells):
         return
@@ -424,7 +424,7 @@ def _leaves(grid: StateGrid) -> None:
 
 
 def _snowy(grid: StateGrid) -> None:
-    """Grass and its kin are white under snow."""
+    """Set grass and similar blocks below snow to snowy."""
     cells = grid.cells_of(SNOWY)
     if len(cells):
         snow = grid.column("variant")[grid.at(cells, UP)] == 1
@@ -433,7 +433,7 @@ def _snowy(grid: StateGrid) -> None:
 
 
 def _campfires(grid: StateGrid) -> None:
-    """A campfire on hay smokes high."""
+    """Set campfires on hay to signal fires."""
     cells = grid.cells_of(CAMPFIRE)
     if len(cells):
         hay = grid.column("variant")[grid.at(cells, DOWN)] == 2

@@ -82,7 +82,7 @@ def flood_light(light, kinds, words, steps, seeds):
 
 @njit
 def _spread_cell(light, kinds, words, steps, cell, level, raised, found):
-    """Raise the neighbours of a cell; append them to ``raised``, return how many it holds."""
+    """Raise the light of a cell's neighbours and append them to ``raised``; return its length."""
     if light[cell] != level:  # A seed that was raised by a brighter one.
         return found
     word = words[kinds[cell]]

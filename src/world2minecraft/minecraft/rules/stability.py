@@ -53,7 +53,10 @@ class SupportOption(NamedTuple):
 
 
 class Demand(NamedTuple):
-    """Support that a block state needs. The reason applies if none of the options is met."""
+    """The support that a block state needs, as alternative options.
+
+    ``reason`` describes what happens if no option is met.
+    """
 
     options: tuple[SupportOption, ...]
     reason: str
@@ -179,7 +182,7 @@ def _is_exactly(state: BlockState, wanted: str) -> bool:
 
 @cache
 def _listed(names: str) -> Pattern[str]:
-    """Return the pattern of a list of names, in which @dirt stands for a list of the file."""
+    """Return the pattern of a list of names, where @dirt refers to the file's list ``dirt``."""
     groups = _raw()["names"]
     flat: list[str] = []
     for name in names.split(","):
@@ -276,7 +279,7 @@ def _place(grid: StateGrid, cell: int) -> tuple[int, int, int]:
 
 
 def _unmet(grid: StateGrid) -> Iterable[tuple[int, str]]:
-    """Yield the cells whose needs no neighbour meets, with the reason."""
+    """Yield the cells that lack support, with the reason."""
     demands = [support_demands(text) for text in grid.palette]
     asking = np.array([bool(held) for held in demands])
     if not asking.any():
@@ -291,7 +294,7 @@ def _unmet(grid: StateGrid) -> Iterable[tuple[int, str]]:
 
 
 def _is_met(grid: StateGrid, cells: np.ndarray, demand: Demand) -> np.ndarray:
-    """Return which cells, bool [N], have one of the neighbours that a demand wants."""
+    """Return which cells have a neighbour that meets a demand, as bool [N]."""
     met = np.zeros(len(cells), bool)
     for option in demand.options:
         answers = [
@@ -303,7 +306,7 @@ def _is_met(grid: StateGrid, cells: np.ndarray, demand: Demand) -> np.ndarray:
 
 
 def _offers_each(grid: StateGrid, neighbours: np.ndarray, offer: str, way: int) -> np.ndarray:
-    """Return which neighbours, uint16 [N], offer what is needed, bool [N]."""
+    """Return which neighbours, uint16 [N], offer a kind of support, as bool [N]."""
     met, index = np.unique(neighbours, return_inverse=True)
     return np.array([offers_support(grid.palette[one], offer, way) for one in met], bool)[
         index.ravel()
@@ -313,7 +316,7 @@ def _offers_each(grid: StateGrid, neighbours: np.ndarray, offer: str, way: int) 
 def _changing(
     states: np.ndarray, palette: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], str, str]]:
-    """Return the cells whose connections or shape an update would change."""
+    """Return the cells whose connections or shape would change in an update."""
     renewed, names = update_connections(states, palette)
     numbers: dict[BlockState, int] = {}  # The same for texts that leave defaults out.
     whole = np.array(
@@ -327,7 +330,7 @@ def _changing(
 
 
 def _flowing(grid: StateGrid) -> Iterable[tuple[int, str]]:
-    """Yield the cells whose water would run into a neighbour at its side or under it."""
+    """Yield the cells whose water would flow into a neighbour beside or below."""
     wet = np.array([holds_water(text) for text in grid.palette])
     if not wet.any():
         return
@@ -343,7 +346,7 @@ def _flowing(grid: StateGrid) -> Iterable[tuple[int, str]]:
 
 
 def _melting(volume: BlockVolume) -> list[tuple[tuple[int, int, int], str, str]]:
-    """Return snow and ice in bright block light."""
+    """Return the snow and ice in bright block light."""
     melts = np.array([parse_state(text).name in _MELTING for text in volume.palette])
     if not melts[volume.states].any():
         return []

@@ -104,7 +104,7 @@ def has_centre_below(state: BlockState) -> bool:
 
 
 def _face(boxes: np.ndarray, direction: int) -> np.ndarray:
-    """Return where a face is covered, bool [32, 32]: x then z; or x or z, then y."""
+    """Return the covered area of a face as bool [32, 32]: x then z, or x or z, then y."""
     axis = _AXES[direction]
     at = 1 - 1e-6 if direction in (EAST, SOUTH, UP) else 1e-6
     touching = boxes[(boxes[:, axis] < at) & (boxes[:, axis + 3] > at)]

@@ -123,7 +123,7 @@ def write_regions(
 
 
 def _version_for(version: GameVersion) -> int:
-    """The file's version: 7 since items have components, 6 since 1.20, 5 before."""
+    """Return the Litematica version for a game version."""
     return 7 if version.data_version >= 3837 else 6 if version.data_version >= 3463 else 5
 
 
@@ -224,14 +224,16 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
         _check_version(root, source)
         named = root["Regions"]
         if not 1 <= len(named) <= MAX_REGIONS:
-            reason = f"has {len(named)} regions; expected 1 to {MAX_REGIONS:,}"
-            raise DamagedFileError(source, reason)
+            raise DamagedFileError(
+                source, f"has {len(named)} regions; expected 1 to {MAX_REGIONS:,}"
+            )
         boxes = {name: _box(region, source) for name, region in named.items()}
         check_size(enclosing_box(list(boxes.values()))[1], source)
         cells = sum(math.prod(size.tolist()) for _, size in boxes.values())
         if cells > MAX_CELLS:  # Regions may lie in one another.
-            reason = f"has regions with {cells:,} blocks in total, the limit is {MAX_CELLS:,}"
-            raise LimitError(source, reason)
+            raise LimitError(
+                source, f"has regions with {cells:,} blocks in total, the limit is {MAX_CELLS:,}"
+            )
         shift, game = _shift(root, boxes, source), root.get("MinecraftDataVersion", DEFAULT_GAME)
         found = {
             name: _region_volume(region, boxes[name], shift, game, source)
@@ -261,7 +263,7 @@ def _box(region: Mapping[str, Any], source: Path) -> tuple[np.ndarray, np.ndarra
 
 
 def _shift(root: Mapping[str, Any], boxes: Mapping[str, Any], source: Path) -> np.ndarray:
-    """How far the file's coordinates are from those of the world that it was written from."""
+    """Return the offset from file coordinates to the coordinates of the original world."""
     corner = stated_corner(root, source)
     if corner is None:
         return np.zeros(3, np.int64)
@@ -286,8 +288,9 @@ def _region_volume(
         raise DamagedFileError(source, f"declares {states.size:,} blocks but contains fewer")
     wrong = int(unpack_straddled(words.view(np.uint64), bits, lookup, states.transpose(1, 2, 0)))
     if wrong >= 0:
-        reason = f"contains the block index {wrong}, which is not in the palette"
-        raise DamagedFileError(source, reason)
+        raise DamagedFileError(
+            source, f"contains the block index {wrong}, which is not in the palette"
+        )
     del words
     corner = low + shift
     x, y, z = corner.tolist()
@@ -317,7 +320,7 @@ def _entity(nbt: Mapping[str, Any], start: np.ndarray) -> Entity:
 
 
 def _count_losses(root: Mapping[str, Any], losses: Losses) -> None:
-    """Count what is in the file and has no place in a volume."""
+    """Count the data of a file that a volume cannot store."""
     for region in root["Regions"].values():
         for key in ("PendingBlockTicks", "PendingFluidTicks"):
             losses.add("scheduled ticks", len(region.get(key, [])))

@@ -69,8 +69,9 @@ def read_schematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
 def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolume:
     kind = root.get("Materials", "Alpha")
     if kind != "Alpha":
-        reason = f"has the materials {str(kind)[:40]!r}; only 'Alpha' (Java) is supported"
-        raise InputError(source, reason)
+        raise InputError(
+            source, f"has the materials {str(kind)[:40]!r}; only 'Alpha' (Java) is supported"
+        )
     sides = (int(root[key]) & 0xFFFF for key in ("Width", "Height", "Length"))
     size = check_size(sides, source)
     states, palette = _blocks(root, size, source, losses)
@@ -90,7 +91,7 @@ def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolum
 def _blocks(
     root: dict[str, Any], size: Corner, source: Path, losses: Losses
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Return the states by number and data value alone, and their palette."""
+    """Return the states given by block IDs and data values, and their palette."""
     count = math.prod(size)
     # Taken out of the tree, so that their memory is free when the blocks are made.
     numbers, values = root.pop("Blocks").view(np.uint8), root.pop("Data").view(np.uint8)
@@ -116,13 +117,13 @@ def _blocks(
 
 
 def _names(root: Mapping[str, Any]) -> dict[int, str]:
-    """What the file itself calls its numbers, as Schematica and MCEdit 2 write it."""
+    """Return the block names by ID that Schematica and MCEdit 2 store in the file."""
     names = {int(number): str(name) for name, number in root.get("SchematicaMapping", {}).items()}
     return names | {int(number): str(name) for number, name in root.get("BlockIDs", {}).items()}
 
 
 def _corner(root: Mapping[str, Any]) -> Corner:
-    """Where WorldEdit copied it from; where it does not say, the world's origin."""
+    """Return the position that WorldEdit copied from, or the world's origin if it is not stored."""
     x, y, z = (int(root.get(f"WEOrigin{axis}", 0)) for axis in "XYZ")
     return x, y, z
 
@@ -130,7 +131,7 @@ def _corner(root: Mapping[str, Any]) -> Corner:
 def _with_entities(
     states: np.ndarray, palette: tuple[str, ...], held: list[BlockEntity], corner: Corner
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Put into the states what their block entities say, such as the colour of a bed."""
+    """Add the properties in block entities, such as the colour of a bed, to the states."""
     texts = list(palette)
     number_of = {text: number for number, text in enumerate(palette)}
     for entity in held:
@@ -148,7 +149,7 @@ def _with_entities(
 def _trim_palette(
     states: np.ndarray, palette: tuple[str, ...], before: tuple[str, ...]
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Leave out the states that no block has any more, and sort the others."""
+    """Remove unused states from a palette and sort the others."""
     if palette == before == (AIR, *sorted(before[1:])):
         return states, palette
     used = np.flatnonzero(np.bincount(states.ravel(), minlength=len(palette)))

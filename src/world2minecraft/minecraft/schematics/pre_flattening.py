@@ -150,7 +150,7 @@ def _whole(value: Any, default: int) -> int:
 
 
 def _name(name: str) -> str:
-    """Return the name of today: until 1.10 they were like ``EnderChest``."""
+    """Return the current name of a block entity. Until 1.10, names were like ``EnderChest``."""
     if ":" in name:
         return name
     lowered = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
@@ -210,7 +210,7 @@ def _join(
     is_upper: np.ndarray,
     join: Callable[[BlockState, BlockState], Pair],
 ) -> None:
-    """Change every lower part with an upper one above it, and that one."""
+    """Replace each lower half below an upper half, and the upper half."""
     if not (is_lower.any() and is_upper.any()):
         return
     known = len(is_lower)  # States that were added since are finished.

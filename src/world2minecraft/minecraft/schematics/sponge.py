@@ -180,7 +180,7 @@ def _relative(entity: BlockEntity, volume: BlockVolume) -> np.ndarray:
 
 
 def _unsigned(side: int) -> Short:
-    """A side is an unsigned short in a tag that is signed."""
+    """Return an unsigned short as a signed short tag."""
     return Short(side - 0x10000 if side > 0x7FFF else side)
 
 
@@ -219,16 +219,17 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
 
 
 def _corner(tree: Mapping[str, Any]) -> Corner:
-    """Offset; where a file of version 2 has none, some tools keep it in WorldEdit's own keys."""
+    """Return Offset, or the WorldEdit keys that some tools use in version 2."""
     metadata = tree.get("Metadata", {})
     x, y, z = tree.get("Offset", [metadata.get(f"WEOffset{axis}", 0) for axis in "XYZ"])
     return int(x), int(y), int(z)
 
 
 def _shift(tree: Mapping[str, Any], version: int) -> Corner:
-    """How far what hangs moves: WorldEdit leaves world coordinates in the tags of its entities.
+    """Return the offset of attached entities, whose tags WorldEdit keeps in world coordinates.
 
-    In version 3 all else counts from the place where the player stood, which its own tags tell.
+    In version 3 all other positions are relative to the player's position, which is stored in
+    WorldEdit's metadata.
     """
     try:
         x, y, z = (int(step) for step in tree["Metadata"]["WorldEdit"]["Origin"])
@@ -240,7 +241,7 @@ def _shift(tree: Mapping[str, Any], version: int) -> Corner:
 def _palette(
     stated: Mapping[str, int], game: int, source: Path
 ) -> tuple[tuple[str, ...], dict[int, int]]:
-    """Return our palette, air first, and our number of each of the file's numbers."""
+    """Return the palette, with air first, and the new index of each of the file's indices."""
     text_of: dict[int, str] = {}
     for text, number in stated.items():
         try:
@@ -248,22 +249,24 @@ def _palette(
         except UsageError as error:
             raise DamagedFileError(source, f"contains an invalid palette entry: {error}") from error
         if not 0 <= number <= 0xFFFF or number in text_of:
-            reason = f"contains an invalid or repeated palette index {number}"
-            raise DamagedFileError(source, reason)
+            raise DamagedFileError(
+                source, f"contains an invalid or repeated palette index {number}"
+            )
         text_of[int(number)] = state
     palette, number_of = build_palette(text_of.values(), source)
     return palette, {number: number_of[state] for number, state in text_of.items()}
 
 
 def _fill(cells: np.ndarray, data: np.ndarray, number_of: Mapping[int, int], source: Path) -> None:
-    """Fill uint16 [Y, Z, X] with our numbers of the file's varints."""
+    """Fill uint16 [Y, Z, X] with palette indices decoded from the file's varints."""
     lookup = np.full(max(number_of, default=0) + 1, -1, np.int32)
     for number, ours in number_of.items():
         lookup[number] = ours
     used = int(read_varints(data, lookup, cells))
     if used <= -3:
-        reason = f"contains the block index {-3 - used}, which is not in the palette"
-        raise DamagedFileError(source, reason)
+        raise DamagedFileError(
+            source, f"contains the block index {-3 - used}, which is not in the palette"
+        )
     if used != len(data):
         reasons = {
             -1: "has block data that ends too early",

@@ -139,14 +139,14 @@ class BlockListReader(NbtReader):
         return [BlockList(places, states, nbt)]
 
     def _take(self, count: int) -> None:
-        """Records are numbers in arrays: they do not count as values. Their bytes bound them."""
+        """Exclude block records from the limit on values, because they are stored in arrays."""
         if self.key != "blocks":
             super()._take(count)
 
 
 @njit
 def _int_at(data, at):  # pragma: no cover
-    """Read a signed number of four bytes."""
+    """Read a signed 32-bit integer."""
     value = np.int64(0)
     for step in range(4):
         value = value << 8 | np.int64(data[at + step])
@@ -337,7 +337,7 @@ def structure_bytes(volume: BlockVolume, version: GameVersion, *, clears: bool =
 def _block_nbt(
     places: np.ndarray, held: Mapping[tuple[int, ...], BlockEntity]
 ) -> dict[int, dict[str, Any]]:
-    """Return what the block entities hold, by the number of their block in the list."""
+    """Return the data of block entities by block index in the list."""
     number_of = {tuple(place): number for number, place in enumerate(places.tolist())}
     return {
         number_of[place]: {**entity.nbt, "id": entity.id}
@@ -408,8 +408,9 @@ def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: i
     palette, number_of = build_palette(texts, source)
     places, numbers = blocks.places, blocks.states
     if len(numbers) and not 0 <= numbers.min() <= numbers.max() < len(texts):
-        reason = f"contains a block index that is not in its palette of {len(texts)} states"
-        raise DamagedFileError(source, reason)
+        raise DamagedFileError(
+            source, f"contains a block index that is not in its palette of {len(texts)} states"
+        )
     if len(places) and (places.min() < 0 or (places.max(axis=0) >= size).any()):
         raise DamagedFileError(source, f"contains a block outside its declared size {size}")
     ours = np.array([number_of[text] for text in texts] or [0], np.uint16)
@@ -425,7 +426,7 @@ def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: i
 
 
 def _put_air(states: np.ndarray) -> int:
-    """Put air where nothing is listed, and return in how many places."""
+    """Set unlisted positions to air and return their number."""
     count = 0
     for layer in states:
         is_unlisted = layer == _UNLISTED
@@ -439,8 +440,7 @@ def _palette(
 ) -> Sequence[Mapping[str, Any]]:
     palettes = root["palettes"] if "palettes" in root else [root["palette"]]
     if not 1 <= len(palettes) <= MAX_PALETTES:
-        reason = f"has {len(palettes)} palettes; expected 1 to {MAX_PALETTES:,}"
-        raise LimitError(source, reason)
+        raise LimitError(source, f"has {len(palettes)} palettes; expected 1 to {MAX_PALETTES:,}")
     if not 0 <= variant < len(palettes):
         last = len(palettes) - 1
         raise UsageError(f"variant of {source} must be 0 to {last}, got {variant}")

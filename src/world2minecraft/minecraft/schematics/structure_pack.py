@@ -108,8 +108,9 @@ def read_structure_pack(path: str | Path, losses: Losses | None = None) -> Block
             files = _list_placements(archive, source)
             sizes = [archive.getinfo(name).file_size for name, _ in files if name in names]
             if len(files) > MAX_PIECES or sum(sizes) > MAX_BYTES:
-                reason = f"exceeds the limit of {MAX_PIECES:,} pieces or {MAX_BYTES:,} bytes"
-                raise LimitError(source, reason)
+                raise LimitError(
+                    source, f"exceeds the limit of {MAX_PIECES:,} pieces or {MAX_BYTES:,} bytes"
+                )
             if len(sizes) < len(files):
                 raise DamagedFileError(source, "places a structure piece that it does not contain")
             parts, cells = [], 0
@@ -117,8 +118,9 @@ def read_structure_pack(path: str | Path, losses: Losses | None = None) -> Block
                 parts.append(_read_piece(archive.read(name), source, place, losses))
                 cells += parts[-1].states.size
                 if cells > MAX_CELLS:  # A piece of nothing but air says its size in a few bytes.
-                    reason = f"has pieces that exceed the limit of {MAX_CELLS:,} blocks in total"
-                    raise LimitError(source, reason)
+                    raise LimitError(
+                        source, f"has pieces that exceed the limit of {MAX_CELLS:,} blocks in total"
+                    )
     except UNREADABLE as error:
         raise DamagedFileError(source, f"is not a valid zip archive ({error})") from error
     return join_volumes(parts, source)
@@ -127,13 +129,14 @@ def read_structure_pack(path: str | Path, losses: Losses | None = None) -> Block
 def _list_placements(
     archive: zipfile.ZipFile, source: Path
 ) -> list[tuple[str, tuple[int, int, int]]]:
-    """Return the file of each piece, and where the function places it."""
+    """Return the file and the position of each piece."""
     parts = sorted(name for name in archive.namelist() if _PART.fullmatch(name))
     found = {}
     for name in parts:
         if archive.getinfo(name).file_size > MAX_BYTES:
-            reason = f"contains a function that exceeds the limit of {MAX_BYTES:,} bytes"
-            raise LimitError(source, reason)
+            raise LimitError(
+                source, f"contains a function that exceeds the limit of {MAX_BYTES:,} bytes"
+            )
         folder = FOLDERS[1] if "/functions/" in name else FOLDERS[0]
         for match in _PLACE.finditer(archive.read(name).decode("utf-8", "replace")):
             space, title, x, y, z = match.groups()
@@ -148,8 +151,9 @@ def _read_piece(
 ) -> BlockVolume:
     piece = parse_structure(data, source, losses)
     if piece.corner != place:
-        reason = f"places a piece at {place}, but the piece states the position {piece.corner}"
-        raise DamagedFileError(source, reason)
+        raise DamagedFileError(
+            source, f"places a piece at {place}, but the piece states the position {piece.corner}"
+        )
     return piece
 
 
@@ -167,7 +171,7 @@ def _piece(volume: BlockVolume, number: tuple[int, int, int]) -> BlockVolume:
     last = np.array(volume.states.shape) - 1
 
     def is_inside(place: tuple[float, ...]) -> bool:
-        """Entities that stand beside the box belong to the piece that is nearest."""
+        """Return whether a position is nearest to this piece."""
         cell = np.clip(np.floor(np.subtract(place, volume.corner)), 0, last)
         return bool((cell // PIECE == number).all())
 

@@ -125,7 +125,7 @@ class RconClient:
         return self._reply().decode("utf-8", "replace")
 
     def _reply(self) -> bytes:
-        """Return the whole reply to the command that was sent last."""
+        """Return the complete reply to the last command."""
         wanted = self._number
         number, body = self._receive()
         parts = [body]

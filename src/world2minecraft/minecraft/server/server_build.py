@@ -151,7 +151,7 @@ def _drop_long_commands(what: str, commands: Sequence[str], losses: Losses) -> l
 
 
 def _corners(volume: BlockVolume) -> tuple[tuple[int, int, int], ...]:
-    """Return the corners of the box's plan and places between them, one a few chunks."""
+    """Return the corners of the box and points between them as positions to check for loading."""
     x, y, z = volume.corner
     x1, z1 = x + volume.states.shape[0] - 1, z + volume.states.shape[2] - 1
     xs = sorted({*range(x, x1, PROBE_STEP), x1})
@@ -258,7 +258,7 @@ class LiveBuilder:
         return LiveResult(self._commands, self._reconnects, len(self._plan.probes), repaired)
 
     def _load(self) -> None:
-        """Have the chunks loaded, and wait until they are; those that were stay so in the end."""
+        """Force-load the chunks and wait for them. Chunks loaded before stay loaded."""
         replies = [self._send(command) for command in self._plan.load]
         if not self._done:
             rows = zip(replies, self._plan.release, strict=True)
@@ -285,7 +285,7 @@ class LiveBuilder:
         return _PASSED in reply or _FAILED in reply
 
     def _run(self, command: str) -> None:
-        """Send a command that must work, again while its chunk is not loaded."""
+        """Send a command that must succeed, and retry it while its chunk is not loaded."""
         for _ in range(LOAD_TRIES):
             reply = self._send(command)
             if _NOT_LOADED not in reply:
@@ -299,7 +299,7 @@ class LiveBuilder:
         raise ServerError(f"the server has not loaded the chunk of {command[:80]!r}; try again")
 
     def _send(self, command: str) -> str:
-        """Send a command and return the reply; reconnect where the connection is lost."""
+        """Send a command and return the reply, reconnecting if the connection is lost."""
         wait = FIRST_WAIT_S
         for tries in range(RETRIES + 1):
             try:
@@ -328,7 +328,7 @@ class LiveBuilder:
         return ServerError(f"{reason}; set enable-rcon=true in server.properties")
 
     def _check(self) -> int:
-        """Ask for the probes; where one is wrong, build once more and ask for it again."""
+        """Check the probe blocks, and rebuild once if some are wrong."""
         wrong = self._wrong(self._plan.probes)
         if not wrong:
             return 0
@@ -354,7 +354,7 @@ class LiveBuilder:
         return found
 
     def _read_note(self) -> int:
-        """Return how many commands a former run of this plan on this server has done."""
+        """Return the number of commands that an earlier run of this plan has completed."""
         if self._note is None or not self._note.is_file():
             return 0
         try:
@@ -383,7 +383,7 @@ class LiveBuilder:
 
 
 def _advice(reply: str) -> str:
-    """What to do about a command that was refused."""
+    """Return advice for a command that the server rejected."""
     if "Too many blocks" in reply:
         return "set the game rule commandModificationBlockLimit back to 32768"
     if "of this world" in reply or "of the world" in reply:

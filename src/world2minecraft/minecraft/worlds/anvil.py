@@ -107,7 +107,7 @@ def checksum(block: bytes) -> int:
 
 @njit
 def _rotate_left(value, bits):  # pragma: no cover
-    """Turn 32 bits to the left."""
+    """Rotate a 32-bit value to the left."""
     low = np.uint64(0xFFFFFFFF)
     value &= low
     return (value << bits | value >> (np.uint64(32) - bits)) & low
@@ -230,21 +230,21 @@ def read_region(
 
 
 def _slots(head: bytes, size: int, path: Path) -> Iterator[tuple[int, range]]:
-    """Return the chunks that a file's head names: the number of each and its sectors."""
+    """Yield the index and the sectors of each chunk in the header."""
     if size > MAX_REGION_BYTES:
         raise LimitError(path, f"has {size:,} bytes, the limit is {MAX_REGION_BYTES:,}")
     if not head:
         return  # The game leaves empty files where it never wrote a chunk.
     if len(head) < 2 * SECTOR:
-        reason = f"is not a valid region file: the header is incomplete ({len(head)} bytes)"
-        raise DamagedFileError(path, reason)
+        raise DamagedFileError(
+            path, f"is not a valid region file: the header is incomplete ({len(head)} bytes)"
+        )
     taken: set[int] = set()
     for slot, location in enumerate(np.frombuffer(head, ">u4", 1024).tolist()):
         if location:
             sectors = range(location >> 8, (location >> 8) + (location & 255))
             if sectors.start < 2 or not sectors or not taken.isdisjoint(sectors):
-                reason = f"chunk {slot} overlaps the header or another chunk"
-                raise DamagedFileError(path, reason)
+                raise DamagedFileError(path, f"chunk {slot} overlaps the header or another chunk")
             taken.update(sectors)
             yield slot, sectors
 
@@ -272,8 +272,9 @@ def _read_chunk(path: Path, stream: BinaryIO, position: tuple[int, int], sectors
     length, kind = _CHUNK_HEADER.unpack_from(record)
     packed = record[_CHUNK_HEADER.size : 4 + length]
     if not 1 <= length <= len(sectors) * SECTOR - 4 or len(packed) != length - 1:
-        reason = f"chunk {position} declares {length:,} bytes but contains fewer"
-        raise DamagedFileError(path, reason)
+        raise DamagedFileError(
+            path, f"chunk {position} declares {length:,} bytes but contains fewer"
+        )
     source = path
     if kind & EXTERNAL:
         source = path.parent / f"c.{position[0]}.{position[1]}.mcc"
@@ -298,20 +299,22 @@ def unpack_chunk(packed: bytes, kind: int, source: Path, position: tuple[int, in
     if kind == LZ4:
         return unpack_lz4(packed, source, MAX_CHUNK_BYTES)
     if kind not in (GZIP, ZLIB, PLAIN):
-        reason = f"chunk {position} uses {_compression_name(packed, kind)}, which is not supported"
-        advice = "set region-file-compression=deflate in server.properties and save the world again"
-        raise InputError(source, f"{reason}; {advice}")
+        name = _compression_name(packed, kind)
+        raise InputError(
+            source,
+            f"chunk {position} uses {name}, which is not supported; set "
+            "region-file-compression=deflate in server.properties and save the world again",
+        )
     if kind == PLAIN:
         return packed
     result = unpack(packed, source, MAX_CHUNK_BYTES)
     if result is packed:
-        reason = f"chunk {position} does not have its stated compression"
-        raise DamagedFileError(source, reason)
+        raise DamagedFileError(source, f"chunk {position} does not have its stated compression")
     return result
 
 
 def _compression_name(packed: bytes, kind: int) -> str:
-    """Return how a chunk is packed: a custom compression comes with a name, as texts do."""
+    """Return the name of a compression type. A custom compression stores its own name."""
     if kind == CUSTOM and len(packed) > 2:
         name = packed[2 : 2 + int.from_bytes(packed[:2], "big")][:80]
         return f"the custom compression {name.decode('ascii', 'replace')!r}"

@@ -133,8 +133,10 @@ def read_section(
     is_sized = 1 <= len(palette) <= SECTION
     packed = repack_section_words(words, len(palette), straddles=straddles) if is_sized else None
     if packed is None:
-        reason = f"section {height} has {len(palette)} states but {len(words)} words"
-        raise DamagedFileError(path, f"chunk {place} is damaged: {reason}")
+        states, count = len(palette), len(words)
+        raise DamagedFileError(
+            path, f"chunk {place}, section {height} has {states} states but {count} words"
+        )
     if palette == (AIR,):
         return None
     return Section((place[0], height, place[1]), palette, packed)
@@ -313,9 +315,9 @@ class ChunkWriter:
 
 
 class _ChunkReader(NbtReader):
-    """Reads the entries of palettes as texts of states, the same bytes only once.
+    """A reader of chunks that converts palette entries to state texts and caches them.
 
-    Most sections of a world share their states: it makes reading three times as fast.
+    Most sections of a world share their states, so the cache makes reading three times as fast.
     """
 
     # The game ignores bytes after a chunk, and servers that are not Mojang's leave some there.
@@ -326,7 +328,7 @@ class _ChunkReader(NbtReader):
         self._known = known
 
     def elements(self, tag: int, count: int, depth: int) -> list[Any]:
-        """Read a list's elements; of a palette those seen before are not parsed again."""
+        """Read the elements of a list, using cached palette entries."""
         ends = np.empty(count if tag == COMPOUND and self.key in PALETTES else 0, np.int64)
         if not len(ends) or not skip_text_compounds(
             np.frombuffer(self.data, np.uint8), self.at, ends
@@ -337,8 +339,9 @@ class _ChunkReader(NbtReader):
             raw = self.data[self.at : end]
             if raw not in self._known:
                 if len(self._known) >= MAX_STATE_TEXTS:
-                    reason = f"exceeds the limit of {MAX_STATE_TEXTS:,} block states"
-                    raise LimitError(self.path, reason)
+                    raise LimitError(
+                        self.path, f"exceeds the limit of {MAX_STATE_TEXTS:,} block states"
+                    )
                 self._known[raw] = state_text(self.compound(depth + 1))
             found.append(self._known[raw])
             self.at = end
@@ -364,13 +367,16 @@ def read_chunk(
     try:
         _, root = _ChunkReader(data, path, known).root()
     except UsageError as error:
-        reason = f"chunk {place} contains an invalid palette entry: {error}"
-        raise DamagedFileError(path, reason) from error
+        raise DamagedFileError(
+            path, f"chunk {place} contains an invalid palette entry: {error}"
+        ) from error
     version = root.get("DataVersion", 0)
     if not isinstance(version, int) or version < FIRST_DATA_VERSION:
-        reason = f"chunk {place} was saved before Minecraft 1.13 (data version {version})"
-        advice = "in a newer game, edit the world and choose Optimize World"
-        raise InputError(path, f"{reason}; {advice}, or use a --box with newer chunks")
+        raise InputError(
+            path,
+            f"chunk {place} was saved before Minecraft 1.13 (data version {version}); optimize "
+            "the world in a newer game (Edit, Optimize World), or use a --box with newer chunks",
+        )
     is_old = version < FIRST_WITHOUT_LEVEL or "Level" in root
     if is_old:
         root = upgrade_old_chunk(root, place, path)

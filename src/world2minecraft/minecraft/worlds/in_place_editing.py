@@ -109,8 +109,9 @@ def read_region_file(path: Path) -> RegionFile:
     if not data:
         return RegionFile(path)
     if len(data) < 2 * SECTOR:
-        reason = f"is not a valid region file: the header is incomplete ({len(data)} bytes)"
-        raise DamagedFileError(path, reason)
+        raise DamagedFileError(
+            path, f"is not a valid region file: the header is incomplete ({len(data)} bytes)"
+        )
     locations, times = np.frombuffer(data, ">u4", 2048).reshape(2, 1024).tolist()
     records: dict[Place, bytes] = {}
     saved: dict[Place, int] = {}
@@ -134,8 +135,7 @@ def _record(data: bytes, location: int, path: Path, place: Place) -> bytes:
     length = _RECORD_HEADER.unpack_from(data, start)[0]
     record = data[start + 4 : start + 4 + length]
     if not 1 <= length <= sectors * SECTOR - 4 or len(record) != length:
-        reason = f"chunk {place} declares {length:,} bytes but contains fewer"
-        raise DamagedFileError(path, reason)
+        raise DamagedFileError(path, f"chunk {place} declares {length:,} bytes but contains fewer")
     return record
 
 
@@ -200,16 +200,20 @@ def parse_chunk(data: bytes, place: Place, path: Path) -> dict[str, Any] | None:
     _, root = _Reader(data, path, LIMITS).root()
     version = root.get("DataVersion", 0)
     if not isinstance(version, int) or version < FIRST_DATA_VERSION:
-        reason = f"chunk {place} was saved before Minecraft 1.18 (data version {version})"
-        raise InputError(path, f"{reason}; visit this place in a newer game and save the world")
+        raise InputError(
+            path,
+            f"chunk {place} was saved before Minecraft 1.18 (data version {version}); "
+            "visit this place in a newer game and save the world",
+        )
     stated = (root.get("xPos"), root.get("zPos"))
     if stated != place:
         raise DamagedFileError(path, f"chunk {place} states the position {stated}")
     for key in ("sections", "block_entities"):
         held = root.setdefault(key, [])
         if not isinstance(held, list) or not all(isinstance(entry, dict) for entry in held):
-            reason = f"chunk {place} contains a tag {key} that is not a list of compounds"
-            raise DamagedFileError(path, reason)
+            raise DamagedFileError(
+                path, f"chunk {place} contains a tag {key} that is not a list of compounds"
+            )
     if not all(isinstance(section.get("Y"), int) for section in root["sections"]):
         raise DamagedFileError(path, f"chunk {place} contains a section without a Y position")
     return root if root.get("Status") in FULL else None
@@ -263,11 +267,12 @@ def read_sections(root: dict[str, Any], path: Path, numbers: StateNumbers) -> di
         is_sized = 1 <= len(local) <= SECTION
         packed = repack_section_words(words, len(local), straddles=False) if is_sized else None
         if packed is None:
-            reason = f"has {len(local)} states but {len(words)} words"
-            raise DamagedFileError(path, f"section {place} is damaged: it {reason}")
+            states, count = len(local), len(words)
+            raise DamagedFileError(path, f"section {place} has {states} states but {count} words")
         if not unpack_section(packed, np.array(local, np.uint16), cells, np.zeros(3, np.int64)):
-            reason = f"section {place} contains a block index that is not in its palette"
-            raise DamagedFileError(path, reason)
+            raise DamagedFileError(
+                path, f"section {place} contains a block index that is not in its palette"
+            )
         found[place] = cells
     return found
 
@@ -318,8 +323,9 @@ def read_block_entities(root: dict[str, Any], path: Path) -> list[BlockEntity]:
             position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
             found.append(BlockEntity(position, str(nbt["id"]), rest))
         except (KeyError, TypeError, ValueError, AttributeError) as error:
-            reason = "contains a block entity without ID or position"
-            raise DamagedFileError(path, reason) from error
+            raise DamagedFileError(
+                path, "contains a block entity without ID or position"
+            ) from error
     return found
 
 

@@ -107,7 +107,7 @@ def _put_under_free_name(draft: Path, saves: Path, wanted: str) -> Path:
 
 
 def _rename_level(world: Path, name: str) -> None:
-    """Give a world the name that the game's list shows; its file stays as it is where it has it."""
+    """Set the name of a world in its ``level.dat``, if it is different."""
     path = world / "level.dat"
     data = unpack(read_bytes(path, LEVEL_LIMITS.bytes), path, LEVEL_LIMITS.bytes)
     root_name, root = read_nbt(data, path, LEVEL_LIMITS)
@@ -117,7 +117,7 @@ def _rename_level(world: Path, name: str) -> None:
 
 
 def _files_of(world: Path) -> list[Path]:
-    """All plain files of a world; links are left out, and the lock of a game that had it open."""
+    """Return all regular files of a world except symbolic links and the session lock."""
     found = []
     for folder, folders, names in os.walk(world):
         folders.sort()
@@ -126,8 +126,9 @@ def _files_of(world: Path) -> list[Path]:
             if path.is_file() and not path.is_symlink() and name != LOCK_FILE:
                 found.append(path)
         if len(found) > MAX_FILES:
-            reason = f"contains more than {MAX_FILES:,} files, so it is not a room world"
-            raise InputError(world, reason)
+            raise InputError(
+                world, f"contains more than {MAX_FILES:,} files, so it is not a room world"
+            )
     return found
 
 
@@ -135,8 +136,9 @@ def _check_space(files: list[Path], saves: Path) -> None:
     needed = sum(path.stat().st_size for path in files) + SPARE_BYTES
     free = shutil.disk_usage(saves).free
     if free < needed:
-        reason = f"not enough disk space: {needed >> 20} MB required, {free >> 20} MB free"
-        raise OutputError(saves, reason)
+        raise OutputError(
+            saves, f"not enough disk space: {needed >> 20} MB required, {free >> 20} MB free"
+        )
 
 
 def find_world(source: Path) -> Path:

@@ -69,8 +69,10 @@ def choose_game(games: Sequence[Game], wanted: str) -> Game:
     if wanted.isdecimal():
         if not 1 <= int(wanted) <= len(games):
             count = f"{len(games)} games were" if len(games) > 1 else "1 game was"
-            reason = f"--game {wanted} does not exist, because only {count} found"
-            raise UsageError(f"{reason}; run w2m install --list")
+            raise UsageError(
+                f"--game {wanted} does not exist, because only {count} found; "
+                "run w2m install --list"
+            )
         return games[int(wanted) - 1]
     named = [game for game in games if wanted.casefold() in game.name.casefold()]
     if len(named) == 1:
@@ -95,7 +97,7 @@ def _launcher_folders(platform: str, home: Path, environment: Mapping[str, str])
 def _instance_roots(
     platform: str, home: Path, environment: Mapping[str, str]
 ) -> Iterator[tuple[str, Path]]:
-    """The data folders of the launchers with instances, there or not."""
+    """Yield the possible data folders of launchers with instances."""
     if "PRISMLAUNCHER_DATA_DIR" in environment:
         yield "Prism", Path(environment["PRISMLAUNCHER_DATA_DIR"])
     if platform == "win32":
@@ -162,7 +164,7 @@ def _version(instance: Path) -> str | None:
 
 
 def _setting(path: Path, key: str) -> str:
-    """A value of a settings file of lines KEY=VALUE; empty where it has none."""
+    """Return a value from a settings file with KEY=VALUE lines, or an empty string."""
     try:
         text = read_bytes(path, MAX_SETTINGS_BYTES).decode("utf-8", "replace")
     except InputError:
@@ -175,7 +177,7 @@ def _setting(path: Path, key: str) -> str:
 
 
 def _unquoted(value: str) -> str:
-    """A value in quotes has backslashes doubled, as Qt writes it."""
+    """Remove quotes and double backslashes from a value in Qt's format."""
     if len(value) < 2 or value[0] != '"' or value[-1] != '"':
         return value
     try:
@@ -193,13 +195,13 @@ def _json(path: Path) -> dict[str, Any]:
 
 
 def _line(value: Any) -> str:
-    """A text from a file as one short printable line."""
+    """Return a text from a file as one short printable line."""
     text = " ".join(value.split()) if isinstance(value, str) else ""
     return "".join(letter for letter in text if letter.isprintable())[:200]
 
 
 def _is_folder(path: Path) -> bool:
-    """Whether a folder is there that may be looked at: a drive may be away, a folder another's."""
+    """Return whether a path is an accessible folder."""
     try:
         return path.is_dir()
     except OSError:

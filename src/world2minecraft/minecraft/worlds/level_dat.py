@@ -106,7 +106,7 @@ def level_data(
 
 
 def _calm(day_time: int) -> dict[str, Any]:
-    """An hour, clear weather for years of play, no dragon, no trader."""
+    """Return the tags for a fixed hour and clear weather, without dragon fights and traders."""
     return {
         "Time": Long(0),
         "DayTime": Long(day_time),
@@ -129,7 +129,7 @@ def _calm(day_time: int) -> dict[str, Any]:
 
 
 def _generation(data_version: int) -> dict[str, Any]:
-    """Return the tags that make the overworld a void; until 1.15 they lay beside the others."""
+    """Return the tags that make the overworld a void, in the layout of the data version."""
     if data_version >= FIRST_WITH_DIMENSIONS:
         return {"WorldGenSettings": _dimensions(has_seeds=data_version < FIRST_WITHOUT_SEEDS)}
     void = {
@@ -147,7 +147,7 @@ def _generation(data_version: int) -> dict[str, Any]:
 
 
 def _dimensions(*, has_seeds: bool) -> dict[str, Any]:
-    """All three dimensions: the game writes them always; until 1.18 with a seed for each."""
+    """Return the three dimensions that the game requires, with seeds until 1.18."""
     void = {
         "biome": "minecraft:the_void",
         "features": Byte(0),  # With features the void gets a stone platform at its middle.
@@ -189,7 +189,7 @@ def _noise_dimension(
 
 
 def _player(spawn: tuple[float, float, float], yaw_deg: float, data_version: int) -> dict[str, Any]:
-    """The player of a world that is opened alone: a creative one who stands on the floor."""
+    """Return the player of a single-player world, in creative mode on the floor."""
     return {
         "DataVersion": data_version,
         "Dimension": 0 if data_version < FIRST_WITH_DIMENSIONS else "minecraft:overworld",

@@ -44,14 +44,15 @@ def session_lock(world: Path) -> Iterator[None]:
     try:
         stream = open(path, "r+b" if was_there else "x+b")  # noqa: SIM115  # Closed below.
     except OSError as error:
-        reason = f"cannot open {LOCK_FILE}: {error.strerror or error}"
-        raise OutputError(world, reason) from error
+        raise OutputError(world, f"cannot open {LOCK_FILE}: {error.strerror or error}") from error
     is_held = False
     try:
         is_held = _take(stream, world)
         if not is_held:
-            reason = "is open in the game, a server or another program"
-            raise ConflictError(world, f"{reason}; close the world, then try again")
+            raise ConflictError(
+                world,
+                "is open in the game, a server or another program; close the world, then try again",
+            )
         if not was_there:
             stream.write(SNOWMAN)
             stream.flush()
@@ -74,8 +75,7 @@ def _take(stream: Any, world: Path) -> bool:
     except OSError as error:
         if error.errno in (errno.EACCES, errno.EAGAIN, errno.EDEADLK):
             return False
-        reason = f"cannot lock {LOCK_FILE}: {error.strerror or error}"
-        raise OutputError(world, reason) from error
+        raise OutputError(world, f"cannot lock {LOCK_FILE}: {error.strerror or error}") from error
     return True
 
 

@@ -89,8 +89,11 @@ def read_level(folder: Path) -> dict[str, Any]:
     if not path.is_file():
         raise no_world(folder)
     if (folder / "db").is_dir() and not region_files(folder):
-        reason = "is a Bedrock Edition world, but only Java Edition worlds are supported"
-        raise InputError(folder, f"{reason}; export the blocks as .mcstructure in the game")
+        raise InputError(
+            folder,
+            "is a Bedrock Edition world, but only Java Edition worlds are supported; "
+            "export the blocks as .mcstructure in the game",
+        )
     data = unpack(read_bytes(path, LEVEL_LIMITS.bytes), path, LEVEL_LIMITS.bytes)
     _, root = read_nbt(data, path, LEVEL_LIMITS)
     if not isinstance(root.get("Data"), dict):
@@ -119,8 +122,11 @@ def _gather(regions: list[Path], box: Box | None) -> "_ChunkContents":
                 if box is None or _is_level(section, box):
                     found.add_section(section, path)
             if unpacked > MAX_UNPACKED_BYTES or len(found.sections) > MAX_SECTIONS:
-                reason = f"exceeds the limit of {MAX_CELLS:,} blocks or the memory limit"
-                raise LimitError(path, f"{reason}; use --box to read a part of the world")
+                raise LimitError(
+                    path,
+                    f"exceeds the limit of {MAX_CELLS:,} blocks or the memory limit; "
+                    "use --box to read a part of the world",
+                )
             held = _block_entities(root, path)
             found.block_entities += found.within(upgrade_signs(held, root["DataVersion"]), path)
             found.entities += found.within(_entities(root.get("Entities", []), path), path)
@@ -128,7 +134,7 @@ def _gather(regions: list[Path], box: Box | None) -> "_ChunkContents":
 
 
 class _ChunkContents:
-    """Contents of the chunks that were read, and the memory that they take."""
+    """The contents of the chunks read so far, with a limit on their memory."""
 
     def __init__(self) -> None:
         self.numbers: dict[str, int] = {}  # Of each state, in the order in which they were met.
@@ -138,27 +144,33 @@ class _ChunkContents:
         self._held_bytes = 0
 
     def add_section(self, section: Section, path: Path) -> None:
-        """Keep a section, its palette as numbers."""
+        """Add a section and replace its palette by indices."""
         numbers = self.numbers
         own = [numbers.setdefault(state, len(numbers)) for state in section.palette]
         if len(numbers) > MAX_STATES:
-            reason = f"exceeds the limit of {MAX_STATES:,} block states"
-            raise LimitError(path, f"{reason}; use --box to read a part of the world")
+            raise LimitError(
+                path,
+                f"exceeds the limit of {MAX_STATES:,} block states; "
+                "use --box to read a part of the world",
+            )
         self.sections.append((section.place, np.array(own, np.uint16), section.words))
 
     def add_entity_files(self, paths: list[Path], box: Box | None) -> None:
-        """Read files of entities; since 1.17 they are none of the regions'."""
+        """Read the entity files, which are separate from region files since 1.17."""
         for path in paths:
             for _, data in read_region(path, lambda place: _overlaps(place, box)):
                 _, root = read_nbt(data, path)
                 self.entities += self.within(_entities(root.get("Entities"), path), path)
 
     def within(self, held: Sequence[Kept], path: Path) -> Sequence[Kept]:
-        """Return entities where they do not take too much memory together."""
+        """Return the entities after checking that they are within the memory limit."""
         self._held_bytes += sum(tree_bytes(dict(entity.nbt)) for entity in held)
         if self._held_bytes > MAX_HELD_BYTES:
-            reason = f"exceeds the limit of {MAX_HELD_BYTES:,} bytes of entities"
-            raise LimitError(path, f"{reason}; use --box to read a part of the world")
+            raise LimitError(
+                path,
+                f"exceeds the limit of {MAX_HELD_BYTES:,} bytes of entities; "
+                "use --box to read a part of the world",
+            )
         return held
 
 
@@ -173,7 +185,7 @@ def entity_files(regions: list[Path], box: Box | None) -> list[Path]:
 
 
 def _may_overlap(path: Path, box: Box | None) -> bool:
-    """Whether a region may hold chunks of a box: of others not even the head is read."""
+    """Return whether a region can overlap a box, so that its file must be read."""
     if box is None:
         return True
     x, z = (side * 512 for side in region_position(path))
@@ -194,8 +206,9 @@ def _block_entities(root: dict[str, Any], path: Path) -> Iterator[BlockEntity]:
             position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
             yield BlockEntity(position, str(nbt["id"]), rest)
         except MISSHAPEN as error:
-            reason = "contains a block entity without ID or position"
-            raise DamagedFileError(path, reason) from error
+            raise DamagedFileError(
+                path, "contains a block entity without ID or position"
+            ) from error
 
 
 def _fill(
@@ -209,14 +222,18 @@ def _fill(
     size = high - low
     if (size <= 0).any() or size.astype(float).prod() > MAX_CELLS:
         shown = " x ".join(str(side) for side in size.tolist())
-        reason = f"has {shown} blocks, the limit is {MAX_CELLS:,}"
-        raise LimitError(root, f"{reason}; use --box to read a part of the world")
+        raise LimitError(
+            root,
+            f"has {shown} blocks, the limit is {MAX_CELLS:,}; "
+            "use --box to read a part of the world",
+        )
     states = np.zeros(tuple(size.tolist()), np.uint16)
     for place, own, words in sections:
         origin = np.array(place, np.int64) * 16 - low
         if not unpack_section(words, numbers[own], states, origin):
-            reason = f"section {place} contains a block index that is not in its palette"
-            raise DamagedFileError(root, reason)
+            raise DamagedFileError(
+                root, f"section {place} contains a block index that is not in its palette"
+            )
     x, y, z = low.tolist()
     return states, (x, y, z)
 
@@ -224,7 +241,7 @@ def _fill(
 def _trim(
     states: np.ndarray, corner: tuple[int, int, int]
 ) -> tuple[np.ndarray, tuple[int, int, int]]:
-    """Cut away the layers of air around the blocks."""
+    """Remove the outer layers of air."""
     cuts = []
     for axis in range(3):
         filled = np.flatnonzero(states.any(axis=tuple({0, 1, 2} - {axis})))
@@ -234,7 +251,7 @@ def _trim(
 
 
 def _entities(held: Any, path: Path) -> list[Entity]:
-    """Return the entities of a list of NBT."""
+    """Return the entities of an NBT list."""
     try:
         return [_entity(nbt) for nbt in held]
     except MISSHAPEN as error:

@@ -97,9 +97,9 @@ def _check_heights(volume: BlockVolume, version: GameVersion) -> None:
 
 
 def _check_free(target: Path) -> None:
-    """Refuse a folder with something in it that is not an untouched world of this program.
+    """Check that a folder is empty or contains an unchanged world of this program.
 
-    The game drops the mark when it saves; building into a world leaves it.
+    The game removes the program's mark when it saves a world. Building into a world keeps it.
     """
     try:
         if not target.exists() or (target.is_dir() and not any(target.iterdir())):
@@ -110,15 +110,21 @@ def _check_free(target: Path) -> None:
     except InputError:
         raise OutputError(target, "contains other files; choose another folder") from None
     if mark != MAKER:
-        reason = "contains a world that was played in or created by another program"
-        raise OutputError(target, f"{reason}; move it away or choose another folder")
+        raise OutputError(
+            target,
+            "contains a world that was played in or created by another program; "
+            "move it away or choose another folder",
+        )
     if any((target / UNDO_FOLDER).glob("*")):
-        reason = "contains a world into which w2m build --into has built"
-        raise OutputError(target, f"{reason}; revert that with w2m undo, or move the world")
+        raise OutputError(
+            target,
+            "contains a world into which w2m build --into has built; "
+            "revert that with w2m undo, or move the world",
+        )
 
 
 def _move(draft: Path, target: Path) -> None:
-    """Put the finished folder in its place, whole or not at all."""
+    """Move the finished folder to its destination, or change nothing if that fails."""
     old = draft.with_name(f"{draft.name}.old")
     try:
         if target.exists():
@@ -152,7 +158,7 @@ def _write_regions(volume: BlockVolume, folder: Path, version: GameVersion) -> N
 def _chunk_writer(
     volume: BlockVolume, version: GameVersion
 ) -> Callable[[Place, list[dict[str, Any]]], bytes | None]:
-    """Return what makes a chunk of its place and its block entities, as the version has them."""
+    """Return a function that writes a chunk, given its position and block entities."""
     if version.level_data_version >= FIRST_WITHOUT_LEVEL:
         today = ChunkWriter(volume.states, volume.palette, version)
         return lambda place, held: today.chunk(place, volume.corner, held)

@@ -74,7 +74,7 @@ def paint_house(
 def _paint_cell(
     canvas: Canvas, plan: HousePlan, cell: Cell, style: Style, rng: np.random.Generator
 ) -> None:
-    """Paint the walls, the slabs and the air of one room; walls are shared by their halves."""
+    """Fill in the walls, slabs and air of one room. Adjacent rooms share a wall."""
     air = _air(canvas, cell)
     near, half = dilate_mask(air, SHELL), dilate_mask(air, SHELL // 2)
     floor = SHELL + round(cell.storey * plan.pitch_m / VOXEL_M)
@@ -96,7 +96,7 @@ def _paint_cell(
 
 
 def _air(canvas: Canvas, cell: Cell) -> np.ndarray:
-    """Return bool [X, Y]: the columns of a room's floor."""
+    """Return the floor columns of a room as bool [X, Y]."""
     x, y = canvas.middles_m()
     x, y = x - cell.x_m, y - cell.y_m
     width, depth, _ = cell.ground.size_m
@@ -105,7 +105,7 @@ def _air(canvas: Canvas, cell: Cell) -> np.ndarray:
 
 
 def _paint_gap(canvas: Canvas, plan: HousePlan, gap: Gap) -> None:
-    """Cut a gap through its wall; a window or a front door only as deep as it lies in it."""
+    """Cut a gap through a wall, or only its recess for a window or front door."""
     floor_z = plan.cells[gap.cells[0]].storey * plan.pitch_m
     if len(gap.cells) == 1:
         hole = Hole(gap.kind, 0, gap.first_m, gap.last_m, gap.sill_m, gap.head_m)
@@ -119,7 +119,7 @@ def _paint_gap(canvas: Canvas, plan: HousePlan, gap: Gap) -> None:
 
 
 def _grown_slices(a: slice, b: slice, c: slice, across: int) -> tuple[slice, slice, slice]:
-    """Return the voxels of a gap with a frame of 6 cm around it; at the floor there is none."""
+    """Return the voxels of a gap with a frame of 6 cm, except at the floor."""
     sides = [a, b]
     run = sides[1 - across]
     sides[1 - across] = slice(run.start - 3, run.stop + 3)

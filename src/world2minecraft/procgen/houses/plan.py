@@ -135,7 +135,7 @@ def _kinds(rooms: int, storeys: int) -> list[tuple[str, ...]]:
 def _sides(
     kinds: tuple[str, ...], bay: float, rng: np.random.Generator
 ) -> tuple[list[tuple[str, float]], list[tuple[str, float]]]:
-    """Share the rooms out to both sides of the corridor, so that the sides come out as long."""
+    """Distribute the rooms to both sides of the corridor with similar lengths."""
     rooms = [(kind, round_to_step(rng.uniform(*ALONG_M[kind]))) for kind in kinds]
     sides: tuple[list, list] = ([], [])
     for room in sorted(rooms, key=lambda entry: -entry[1]):
@@ -245,7 +245,7 @@ def walls_of(cell: Cell) -> tuple[Wall, ...]:
 
 
 def _front_door(plan: HousePlan) -> Gap:
-    """Return the front door, at the far end of the corridor of the ground storey."""
+    """Return the front door at the end of the corridor on the ground floor."""
     wall = max((w for w in walls_of(plan.cells[0]) if w.turn == 2), key=lambda w: w.at_m)
     first = round_to_step((wall.first_m + wall.last_m - DOOR_M[0]) / 2)
     return Gap("door", (0,), wall, first, round_to_step(first + DOOR_M[0]), 0.0, DOOR_M[1])
@@ -264,7 +264,7 @@ def _hall_door(plan: HousePlan, number: int, rng: np.random.Generator) -> Gap:
 
 
 def _windows(plan: HousePlan, number: int, rng: np.random.Generator) -> list[Gap]:
-    """Return a window in each outer wall that is long enough, one at least where one is outer."""
+    """Return windows for the outer walls that are long enough, at least one if possible."""
     cell = plan.cells[number]
     outer = [
         wall for wall in walls_of(cell) if wall.length_m > 1.6 and _is_outer(plan, number, wall)
@@ -284,7 +284,7 @@ def _windows(plan: HousePlan, number: int, rng: np.random.Generator) -> list[Gap
 
 
 def _is_outer(plan: HousePlan, number: int, wall: Wall) -> bool:
-    """Return whether nothing of the same storey lies behind a wall."""
+    """Return whether no room of the same storey is behind a wall."""
     x0, y0, x1, y1 = wall.rect(wall.first_m, wall.last_m, -0.4, -0.04)
     storey = plan.cells[number].storey
     others = (c for n, c in enumerate(plan.cells) if n != number and c.storey == storey)
@@ -294,7 +294,7 @@ def _is_outer(plan: HousePlan, number: int, wall: Wall) -> bool:
 
 
 def _doorway(plan: HousePlan, number: int) -> list[Gap]:
-    """Return a wide doorway between two neighbours of which one eats where the other cooks."""
+    """Return a wide doorway between two adjacent kitchens, dining rooms or living rooms."""
     a, b = plan.cells[number], plan.cells[number + 1]
     adjacent = a.storey == b.storey and a.y_m == b.y_m and abs(a.rect[2] + WALL_M - b.x_m) < 0.01
     if not adjacent or a.kind not in SOCIAL or b.kind not in SOCIAL:

@@ -67,7 +67,7 @@ def furnish_galley(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
 def _run(
     plan: Plan, style: Style, wall: int, counters: tuple[float, float], backwards: bool
 ) -> list[Item] | None:
-    """Place the row along a wall from its start, or from its end, if all of it stands free."""
+    """Place the row along a wall from its start or end, if all items fit."""
     cool = storage.fridge(WHITE if style.front != WHITE else (190, 192, 196))
     models: list[Model] = [
         cool,
@@ -88,7 +88,7 @@ def _run(
 
 
 def _stands(plan: Plan, item: Item) -> bool:
-    """Return whether a piece fits; a sink may stand under a window, a fridge not before one."""
+    """Return whether an item fits. A sink can be under a window, but a fridge cannot."""
     box = item.box_m
     tall = item.model.name == "fridge"
     reserved = [other for other in plan.reserved if tall or other[2] < LOW_M]
@@ -98,7 +98,7 @@ def _stands(plan: Plan, item: Item) -> bool:
 
 
 def _hang(plan: Plan, style: Style, corner: Item, cooker: Item, sink: Item) -> None:
-    """Hang the hood and the cupboards where no window is."""
+    """Add the hood and the wall cabinets where there is no window."""
     hung = [(decor.hood(), cooker, 1.56)]
     for base in (corner, sink):
         hung.append((storage.wall_cabinet(base.model.size_m[1], style.front), base, 1.44))
@@ -108,7 +108,7 @@ def _hang(plan: Plan, style: Style, corner: Item, cooker: Item, sink: Item) -> N
 
 
 def _table(plan: Plan, style: Style) -> None:
-    """Put a table with chairs where the room has space, if it has."""
+    """Place a table with chairs if there is space."""
     rng = plan.rng
     model = seating.table("kitchen_table", 0.8, float(rng.choice([0.9, 1.2])), 0.74, style.wood)
     for _ in range(TABLE_TRIES):
@@ -219,7 +219,7 @@ def _furnish(
     clutter: float,
     seed: tuple[int, ...],
 ) -> tuple[list[Item], tuple[Rug, ...]]:
-    """Return what stands in a room; after many tries that fail, the bare room."""
+    """Return the items and rugs of a room, or a nearly empty room if all attempts fail."""
     floor_z = cell.storey * plan.pitch_m
     for attempt in range(ATTEMPTS):
         rng = np.random.default_rng([*seed, attempt])
@@ -241,7 +241,7 @@ def _try_cell(
     clutter: float,
     rng: np.random.Generator,
 ) -> tuple[RoomFrame, Plan, tuple[Rug, ...]] | None:
-    """Furnish a room once; None where the recipe does not fit or blocks a way."""
+    """Try to furnish a room, and return None if the recipe does not fit or blocks a path."""
     frame, room = _prepare_room(plan, cell, holes, leaves, style, rng)
     recipe = furnish_galley if cell.kind == "kitchen" else KINDS[cell.kind].furnish
     rugs = recipe(room, style)
@@ -262,7 +262,7 @@ def _prepare_room(
     style: Style,
     rng: np.random.Generator,
 ) -> tuple[RoomFrame, Plan]:
-    """Return the room with no more than its stairs and door leaves, and what they keep free."""
+    """Return a room with only stairs and door leaves, and with their space reserved."""
     frame = RoomFrame(cell, int(rng.integers(4)) if not cell.ground.blocks else 0)
     room = Plan(frame.ground, rng)
     _take_stairs(room, plan, cell, style)
@@ -274,7 +274,7 @@ def _prepare_room(
 
 
 def _take_stairs(room: Plan, plan: HousePlan, cell: Cell, style: Style) -> None:
-    """Put the stairs, or the rail around the stairwell, into a hall, and keep their air free."""
+    """Place the stairs, or the railing of the stairwell, in a hall and reserve their space."""
     if cell.kind != "hall" or plan.flight is None:
         return
     floor_z = cell.storey * plan.pitch_m
@@ -291,7 +291,7 @@ def _take_stairs(room: Plan, plan: HousePlan, cell: Cell, style: Style) -> None:
 
 
 def _leaf(room: Plan, hole: Hole) -> Item:
-    """Return the leaf of a door, open by a quarter turn beside the nearer corner."""
+    """Return the leaf of a door, opened by a quarter turn at the nearer corner."""
     wall = room.ground.walls[hole.wall]
     model = door(*LEAF_M, WHITE)
     at_start = hole.first_m - wall.first_m < wall.last_m - hole.last_m

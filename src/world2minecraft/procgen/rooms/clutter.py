@@ -64,7 +64,7 @@ def scatter(plan: Plan, clutter: float, rng: np.random.Generator, doors_m: Doors
 def _turn_seats(
     plan: Plan, clutter: float, rng: np.random.Generator, doors_m: Doors, body_m: float
 ) -> None:
-    """Pull chairs out and turn them; one that finds no room stays as it was."""
+    """Pull chairs out and rotate them, if there is space."""
     for n, seat in enumerate(plan.items):
         if seat.model.name not in SEATS or rng.random() > 0.3 + 0.7 * clutter:
             continue
@@ -88,7 +88,7 @@ def _lay(
     doors_m: Doors,
     body_m: float,
 ) -> None:
-    """Lay one thing on the floor, by a wall as often as not, where it blocks no way."""
+    """Place an object on the floor, half of the time at a wall, without blocking paths."""
     model = makers[int(rng.integers(len(makers)))](rng)
     for _ in range(TRIES):
         if plan.add(_floor_spot(plan, model, rng)) is None:
@@ -110,7 +110,7 @@ def _floor_spot(plan: Plan, model: Model, rng: np.random.Generator) -> Item:
 
 
 def _cover(plan: Plan, base: Item, clutter: float, rng: np.random.Generator) -> None:
-    """Lay things on a table, a chest or a bed."""
+    """Place objects on a table, a chest or a bed."""
     name = base.model.name
     if name in BED_TOPS:
         makers, top, count = ON_BEDS, BED_TOPS[name], rng.binomial(2, clutter)

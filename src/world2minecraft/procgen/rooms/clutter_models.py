@@ -155,7 +155,7 @@ def potted_plant(rng: np.random.Generator) -> Model:
 
 
 def _clip_at_floor(name: str, parts: list[Part]) -> Model:
-    """Return the model of parts with what lies under the floor cut away."""
+    """Return a model whose parts are clipped at the floor."""
     clipped = []
     for part in parts:
         x0, y0, z0, x1, y1, z1 = part.box_m

@@ -179,7 +179,7 @@ def dilate_mask(mask: np.ndarray, steps: int) -> np.ndarray:
 
 
 def _outline(size_m: tuple[float, float, float], blocks: tuple[Rect, ...]) -> list[tuple]:
-    """Return the corners around the box less the blocks that touch its sides."""
+    """Return the corners of the box without the blocks that touch its sides."""
     width, depth, _ = size_m
     outer = [b for b in blocks if b[0] <= 0 or b[1] <= 0 or b[2] >= width or b[3] >= depth]
     xs = sorted({0.0, width, *(min(max(v, 0.0), width) for b in outer for v in (b[0], b[2]))})
@@ -195,7 +195,7 @@ def _outline(size_m: tuple[float, float, float], blocks: tuple[Rect, ...]) -> li
 
 
 def _walk_around(free: np.ndarray, xs: list[float], ys: list[float]) -> list[tuple]:
-    """Walk along the edge of the free cells with them at the left; return the corners turned at."""
+    """Follow the edge of the free cells counter-clockwise and return its corners."""
     i, j = (int(v) for v in np.argwhere(free)[0] - 1)  # Lowest x, then y: a corner going +x.
     begin, heading, corners = (i, j), 0, [(xs[i], ys[j])]
     while True:
@@ -213,7 +213,7 @@ def _walk_around(free: np.ndarray, xs: list[float], ys: list[float]) -> list[tup
 
 
 def _chamfer(corners: list[tuple], spot: tuple[float, float], leg_m: float) -> list[tuple]:
-    """Replace one corner by two, ``leg_m`` before and after it."""
+    """Replace a corner by two corners at a distance of ``leg_m`` from it."""
     n = corners.index(spot)
     ends = []
     for other in (corners[n - 1], corners[(n + 1) % len(corners)]):
@@ -263,7 +263,7 @@ def cut_ground(size_m: Size, rng: np.random.Generator) -> Ground:
 
 
 def _between(free_m: float, margin_m: float, rng: np.random.Generator) -> float:
-    """Return where something begins that leaves ``free_m`` of a wall, a margin at both ends."""
+    """Return a random start position that leaves a margin at both ends of a wall."""
     margin_m = min(margin_m, 0.5 * free_m)
     return round_to_step(rng.uniform(margin_m, free_m - margin_m))
 

@@ -68,7 +68,7 @@ def _thing(
     wooden: np.ndarray,
     number: int,
 ) -> np.ndarray:
-    """Return the materials of a thing's voxels."""
+    """Return the materials of the voxels of an object."""
     base = Material.BARE
     if name == "picture":
         return np.full(colour.shape[:3], int(Material.PICTURE), np.uint8)
@@ -94,7 +94,7 @@ def _thing(
 
 
 def _rugs(room: Room) -> np.ndarray:
-    """Return which floor voxels belong to a rug: the box around what has one colour for long."""
+    """Return which floor voxels are part of a rug, as the boxes of large uniform areas."""
     rugs = np.zeros(room.labels.shape, bool)
     floor = room.labels == int(SemanticClass.FLOOR)
     for z in np.flatnonzero(floor.any(axis=(0, 1))):

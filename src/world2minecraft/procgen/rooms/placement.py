@@ -246,7 +246,7 @@ def paths_are_clear(plan: Plan, *doors_m: tuple[float, float], body_m: float = 0
 
 
 def _free_floor(plan: Plan, body_m: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the x and y of squares of 10 cm, and where a body fits, each [X, Y]."""
+    """Return the x and y of squares of 10 cm and whether a body fits there, each [X, Y]."""
     nx, ny = (int(side / SQUARE_M) for side in plan.size_m[:2])
     rows, columns = (np.arange(nx) + 0.5) * SQUARE_M, (np.arange(ny) + 0.5) * SQUARE_M
     x, y = np.meshgrid(rows, columns, indexing="ij")

@@ -143,7 +143,7 @@ def furnish_kitchen(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
 
 
 def _kitchen_run(plan: Plan, style: Style, wall: int) -> Item | None:
-    """Place counter, cooker, sink and fridge along a wall, and what hangs above them."""
+    """Place a counter, cooker, sink and fridge along a wall, with cabinets above them."""
     front, worktop = style.front, style.worktop
     corner, cooker = storage.counter(1.0, front, worktop), storage.oven(front, worktop)
     cool = storage.fridge(WHITE if front != WHITE else (190, 192, 196))
@@ -168,7 +168,7 @@ def _kitchen_run(plan: Plan, style: Style, wall: int) -> Item | None:
 
 
 def _kitchen_arm(plan: Plan, style: Style, wall: int) -> None:
-    """Place the other arm of the L along the wall that starts in the same corner."""
+    """Place the other arm of the L along the adjacent wall."""
     arm_wall = 1 - wall
     for length in (1.6, 1.2, 0.8):
         arm = storage.counter(length, style.front, style.worktop)
@@ -308,7 +308,7 @@ def furnish_hall(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
 
 
 def _gap_m(plan: Plan, item: Item, wall: int) -> float:
-    """Return how far an item's back is from a wall that it could stand at."""
+    """Return the distance from the back of an item to a wall."""
     side = plan.ground.walls[wall]
     if side.turn != round(item.yaw_deg / 90) % 4:
         return 1e9
@@ -350,7 +350,7 @@ def furnish_office(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
 
 
 def _work_place(plan: Plan, style: Style, wall: int) -> Item | None:
-    """Place a desk at a wall with its chair, screen and keyboard."""
+    """Place a desk with its chair, monitor and keyboard at a wall."""
     model = seating.desk(plan.rng.uniform(1.4, 1.6), style.wood, WHITE)
     desk = plan.add_at_walls(model, (wall,), along=(0.5, 0.3, 0.7), clear_m=0.9)
     if desk is None:

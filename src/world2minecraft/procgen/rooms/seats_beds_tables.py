@@ -70,7 +70,7 @@ def sofa(width: float, fabric: Colour, pillow: Colour, wood: Colour) -> Model:
 
 
 def _upholstery(d: float, w: float, h: float, seats: int, fabric: Colour, wood: Colour):
-    """Return feet, base, back, arms and seat cushions."""
+    """Return the feet, base, back, arms and seat cushions of an upholstered seat."""
     dark = shade(fabric, 0.88)
     parts = legs(d, w, 0.10, 0.06, wood)
     parts += [

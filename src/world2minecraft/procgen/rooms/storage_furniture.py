@@ -34,7 +34,7 @@ def bookshelf(width: float, height: float, wood: Colour, rng: np.random.Generato
 
 
 def _books(first: float, last: float, z: float, d: float, rng: np.random.Generator) -> list[Part]:
-    """Return books that stand on a board from ``first`` on, with a gap at the end at times."""
+    """Return books on a board, sometimes with a gap at the end."""
     books, y = [], first
     end = first + (last - first) * (0.62 + 0.38 * float(rng.random()))
     while y + 0.04 <= end:
@@ -67,7 +67,7 @@ def cabinet(
 
 
 def _front(x: float, a: float, b: float, low: float, high: float, colour: Colour) -> list[Part]:
-    """Return a door or drawer, 2 cm thick and ending at ``x``, with a handle before it."""
+    """Return a door or drawer of 2 cm thickness, ending at ``x``, with a handle."""
     panel = Part((x - 0.02, a + 0.01, low + 0.01, x, b - 0.01, high - 0.01), colour, "wood")
     grip: Colour = (84, 84, 86)
     if high - low > 0.45:

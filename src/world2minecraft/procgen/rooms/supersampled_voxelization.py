@@ -72,7 +72,7 @@ def _bounds_m(item: Item, part: Part | Bar) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _inside(part: Part | Bar, points: np.ndarray) -> np.ndarray:
-    """Return which points, float64 [..., 3] in the item's own frame, lie in a part."""
+    """Return which points, float64 [..., 3] in the item's local frame, are inside a part."""
     if isinstance(part, Bar):
         return _inside_bar(part, points)
     low, high = np.array(part.box_m[:3]), np.array(part.box_m[3:])

@@ -104,9 +104,9 @@ def paint_built(canvas: Canvas, ground: Ground, style: Style) -> None:
 
 
 def _outside(labels: np.ndarray) -> np.ndarray:
-    """Return bool [X, Y]: what lies farther than a wall's thickness from the room's floor.
+    """Return the columns farther from the floor than a wall's thickness, as bool [X, Y].
 
-    A thick column stays whole: outside is only what reaches the rim.
+    Thick columns inside the room are excluded.
     """
     floor = np.zeros(labels.shape[:2], bool)
     floor[SHELL:-SHELL, SHELL:-SHELL] = labels[SHELL:-SHELL, SHELL:-SHELL, SHELL] == 0
@@ -116,7 +116,7 @@ def _outside(labels: np.ndarray) -> np.ndarray:
 
 
 def _planks(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np.ndarray:
-    """Return uint8 [X, Y, 3]: boards 14 cm wide and 1.4 m long, each with its own tone."""
+    """Return the colours of boards of 14 cm x 1.4 m in different tones, uint8 [X, Y, 3]."""
     x, y = np.meshgrid(np.arange(shape[0]), np.arange(shape[1]), indexing="ij")
     row = y // 7
     offset = rng.integers(0, 70, row.max() + 1)[row]
@@ -128,7 +128,7 @@ def _planks(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> n
 
 
 def _tiles(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np.ndarray:
-    """Return uint8 [X, Y, 3]: tiles of 40 cm with light joints."""
+    """Return the colours of tiles of 40 cm with light joints, uint8 [X, Y, 3]."""
     x, y = np.meshgrid(np.arange(shape[0]), np.arange(shape[1]), indexing="ij")
     checker = np.where((x // 20 + y // 20) % 2 == 0, 1.0, 0.84)
     tones = rng.uniform(0.97, 1.03, (shape[0] // 20 + 1, shape[1] // 20 + 1))[x // 20, y // 20]
@@ -184,7 +184,7 @@ def _turned_box(item: Item, part: Part | Bar) -> tuple[float, ...]:
 
 
 def _grain(part: Part | Bar, shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
-    """Return the tone of each voxel of a part: streaks along wood, specks in cloth."""
+    """Return the tone of each voxel of a part, with streaks for wood and specks for fabric."""
     if part.grain == "wood" and _is_bare_wood(part.colour):
         along = int(np.argmax(shape))
         cross = tuple(1 if axis == along else side for axis, side in enumerate(shape))
@@ -194,7 +194,7 @@ def _grain(part: Part | Bar, shape: tuple[int, ...], rng: np.random.Generator) -
 
 
 def _is_bare_wood(colour: Colour) -> bool:
-    """Return whether a colour is that of bare wood: painted wood shows no streaks."""
+    """Return whether a colour is that of unpainted wood, which has streaks."""
     red, green, blue = colour
     return red - blue > 30 and 0.5 < green / max(red, 1) < 0.88
 
@@ -222,7 +222,7 @@ def paint_hole(canvas: Canvas, hole: Hole, wall: Wall, floor_z_m: float = 0.0) -
 def _frame(
     canvas: Canvas, hole: Hole, wall: Wall, deep: int, floor_z_m: float
 ) -> Iterator[tuple[slice, ...]]:
-    """Yield the bars of a window's frame, 6 cm wide, and its middle post."""
+    """Yield the bars of a window frame, 6 cm wide, including its middle post."""
     x, y, z = _in_wall(canvas, hole, wall, deep - 2, deep, floor_z_m)
     along = 1 - wall.turn % 2
     run = (x, y)[along]
@@ -242,7 +242,7 @@ def _frame(
 def _in_wall(
     canvas: Canvas, hole: Hole, wall: Wall, near: int, far: int, floor_z_m: float = 0.0
 ) -> tuple[slice, slice, slice]:
-    """Return the voxels of a hole between two depths behind the wall's inner face."""
+    """Return the voxels of a hole between two depths behind the inner face of the wall."""
     first, last = (round(value / VOXEL_M) + SHELL for value in (hole.first_m, hole.last_m))
     low, high = (
         round((floor_z_m + value) / VOXEL_M) + SHELL for value in (hole.sill_m, hole.head_m)

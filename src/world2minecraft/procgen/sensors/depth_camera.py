@@ -113,13 +113,13 @@ def depth_edges(depth_m: np.ndarray) -> np.ndarray:
 
 
 def _holes(model: Sensor, shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
-    """Return holes of 2x2 pixels that cover the sensor's share of the image."""
+    """Return random holes of 2 x 2 pixels that cover the sensor's share of the image."""
     half = rng.random(((shape[0] + 1) // 2, (shape[1] + 1) // 2), np.float32) < model.hole_share
     return half.repeat(2, axis=0).repeat(2, axis=1)[: shape[0], : shape[1]]
 
 
 def _below(values: np.ndarray, limit: float) -> np.ndarray:
-    """Return a chance that rises from 0 at ``limit`` to 1 at half of it."""
+    """Return a probability that rises from 0 at ``limit`` to 1 at half of it."""
     if not limit:
         return np.zeros(values.shape, np.float32)
     return np.clip((limit - values) / np.float32(limit / 2), 0, 1)

@@ -62,7 +62,7 @@ def build_navmesh(room: Room) -> NavMesh:
 
 
 def _squares(room: Room) -> np.ndarray:
-    """Return bool [A, B, Z]: whether anything solid is in a square of floor, by height."""
+    """Return whether each floor square contains solid voxels, by height, as bool [A, B, Z]."""
     step = _cells(room, STEP_M)
     nx, ny, nz = room.labels.shape
     rows = np.zeros((nx // step, ny // step, nz), bool)
@@ -73,15 +73,15 @@ def _squares(room: Room) -> np.ndarray:
 
 
 def _tops(room: Room, squares: np.ndarray, below: np.ndarray) -> np.ndarray:
-    """Return int64 [N, 3]: squares and the height index of what one stands on there."""
+    """Return the squares and height indices where a person can stand, int64 [N, 3]."""
     spots = np.argwhere(squares[:, :, :-1] & ~squares[:, :, 1:]) + np.array([0, 0, 1])
     return spots[_solid_between(below, spots, 0, _cells(room, HEAD_M)) == 0]
 
 
 def _solid_between(below: np.ndarray, spots: np.ndarray, low: int, high: int) -> np.ndarray:
-    """Count the solid cells from ``low`` to ``high`` above each spot; outside counts as solid.
+    """Count the solid cells from ``low`` to ``high`` above each spot. Cells outside are solid.
 
-    ``below`` int32 [A, B, Z + 1] counts the solid cells of each square under a height.
+    ``below``, int32 [A, B, Z + 1], is the cumulative number of solid cells in each square.
     """
     i, j, k = spots.T
     inside = (i >= 0) & (j >= 0) & (i < below.shape[0]) & (j < below.shape[1])
@@ -91,7 +91,7 @@ def _solid_between(below: np.ndarray, spots: np.ndarray, low: int, high: int) ->
 
 
 def _is_free_around(room: Room, below: np.ndarray, spots: np.ndarray, low_m: float) -> np.ndarray:
-    """Return where a body stands free from ``low_m`` above its feet to its shoulders."""
+    """Return where a body has free space from ``low_m`` above its feet to its shoulders."""
     low, high = _cells(room, low_m), _cells(room, SHOULDER_M)
     free = np.ones(len(spots), bool)
     for di, dj in _offsets():
@@ -100,7 +100,7 @@ def _is_free_around(room: Room, below: np.ndarray, spots: np.ndarray, low_m: flo
 
 
 def _offsets() -> np.ndarray:
-    """Return the squares, int64 [M, 2], that a body in the middle of a square reaches into."""
+    """Return the offsets of the squares that a body overlaps, int64 [M, 2]."""
     reach = round(BODY_M / STEP_M) + 1
     grid = np.mgrid[-reach : reach + 1, -reach : reach + 1].reshape(2, -1).T
     nearest = np.maximum(np.abs(grid) * STEP_M - STEP_M / 2, 0)
@@ -117,7 +117,7 @@ def _places_m(room: Room, spots: np.ndarray) -> np.ndarray:
 
 
 def _where(layouts: tuple[Layout, ...], places_m: np.ndarray):
-    """Return whether each place is in a room or its walls, in which room, and on its floor."""
+    """Return whether each place is near a room, its room index, and whether it is on a floor."""
     near, on_floor = np.zeros(len(places_m), bool), np.zeros(len(places_m), bool)
     index = np.full(len(places_m), -1)
     for n, layout in enumerate(layouts):
@@ -145,7 +145,7 @@ def is_inside(polygon: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def _links(room: Room, spots: np.ndarray, easy: np.ndarray) -> csr_matrix:
-    """Link neighbouring squares, corners too, whose heights differ by one step at most."""
+    """Link neighbouring squares, including diagonals, whose heights differ by at most one step."""
     stride = int(STRIDE_M / room.voxel_m + 1e-9)
     side = spots.max(axis=0, initial=0) + 2
     # Spots of one column follow each other, so that few candidates lie at each neighbour.

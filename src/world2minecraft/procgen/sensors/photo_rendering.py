@@ -58,7 +58,7 @@ def _lamp_m(room: Room, layout: Layout) -> list[float]:
 
 
 def _middle_m(polygon_m: np.ndarray) -> tuple[float, float]:
-    """Return the middle of a floor, or where it is no rectangle the place farthest from walls."""
+    """Return the middle of a rectangular floor, or else the point farthest from the walls."""
     low, high = polygon_m.min(axis=0), polygon_m.max(axis=0)
     if len(polygon_m) == 4:
         x, y = (low + high) / 2
@@ -160,15 +160,15 @@ def take_photo(scene: PhotoScene, camera: Camera, camera_to_room: np.ndarray) ->
 
 @njit
 def _render_photo(cells, colours, lighting, pose, rays, photo):
-    """Fill a photo by one ray a pixel.
+    """Render a photo with one ray per pixel.
 
     Args:
-        cells: the voxels as ``VoxelScene`` has them.
-        colours: uint8 [X, Y, Z, 3].
-        lighting: a ``Lighting``.
-        pose: float64 [3, 4], from the camera to voxels.
-        rays: float64 [4], the focal lengths and the centre of the camera in pixels.
-        photo: the ``Photo`` to fill, of zeros.
+        cells: The voxels of a ``VoxelScene``.
+        colours: Voxel colours, uint8 [X, Y, Z, 3].
+        lighting: The ``Lighting`` of the room.
+        pose: Transform from the camera to voxels, float64 [3, 4].
+        rays: Focal lengths and principal point in pixels, float64 [4].
+        photo: Output ``Photo``, filled with zeros.
     """
     image, depth, index, cosine = photo.colour, photo.depth_m, photo.voxel_index, photo.cosine
     height, width = depth.shape
@@ -224,7 +224,7 @@ def surface_light(lighting, px, py, pz, face):
 
 @njit
 def _interpolate_solid(solid, px, py, pz):
-    """Read the blurred grid between its cells."""
+    """Interpolate the blurred grid between its cells."""
     fx, fy, fz = px / COARSE - 0.5, py / COARSE - 0.5, pz / COARSE - 0.5
     nx, ny, nz = solid.shape
     i = min(max(int(np.floor(fx)), 0), nx - 2)
@@ -244,7 +244,7 @@ def _interpolate_solid(solid, px, py, pz):
 
 @njit
 def _grain(px, py, pz):
-    """Return a tone near 1 that belongs to a spot of half a centimetre."""
+    """Return a tone near 1 that depends on the position at half a centimetre."""
     fine = _hash(int(px * 4), int(py * 4), int(pz * 4))
     broad = _hash(int(px / 3), int(py / 3), int(pz / 3))
     return 1.0 + 0.03 * (fine - 0.5) + 0.02 * (broad - 0.5)
@@ -337,9 +337,9 @@ def develop(light: np.ndarray, rng: np.random.Generator, drift: float = 1.0) -> 
 
 @njit
 def _accumulate_light(cells, colours, lighting, marks, pose, rays, total):
-    """Add to ``total`` float32 [H, W, 3] the light of one ray a pixel.
+    """Add the light of one ray per pixel to ``total``, float32 [H, W, 3].
 
-    ``marks`` are ``SurfaceMarks``; the other arguments are as in ``_render_photo``.
+    ``marks`` are ``SurfaceMarks``. The other arguments are those of ``_render_photo``.
     """
     planes, voxel_m, strength = marks.planes, marks.voxel_m, marks.strength
     height, width = total.shape[:2]

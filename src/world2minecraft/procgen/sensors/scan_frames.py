@@ -178,7 +178,7 @@ def _noisy(colour: np.ndarray, model: Sensor, rng: np.random.Generator) -> np.nd
 
 
 def _labels(room: Room, photo: Photo, error: float, rng: np.random.Generator) -> np.ndarray:
-    """Return the label image; a share of its patches says another class."""
+    """Return the label image, in which a share of the patches has a wrong class."""
     labels = room.labels.reshape(-1)[np.maximum(photo.voxel_index, 0)]
     labels[photo.voxel_index < 0] = 255
     if error:

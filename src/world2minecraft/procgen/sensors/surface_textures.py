@@ -99,7 +99,7 @@ def tone(material, seed, x, y, z, face, foot):
 
 @njit
 def _wood(material, seed, x, y, z, face, foot):
-    """Streaks along the grain, and rings where it was cut across a knot."""
+    """Return the tone of wood with streaks along the grain and rings at knots."""
     if seed == FLOOR_SEED:  # Each row of boards was sawn from another tree.
         seed += 3 * int(y / 0.14)
     axis = material - WOOD_X
@@ -119,7 +119,7 @@ def _wood(material, seed, x, y, z, face, foot):
 
 @njit
 def _cloth(material, seed, x, y, z, face, foot):
-    """A weave and folds; with a print, stripes, checks or spots of its own."""
+    """Return the tone of fabric with a weave, and with a pattern for prints."""
     weave = noise(x, y, z, 0.004, foot, 17) + noise(x, y, z, 0.01, foot, 18)
     worn = noise(x, y, z, 0.05, foot, 19) + noise(x, y, z, 0.18, foot, 20)
     plain = 1 + 0.07 * weave + 0.035 * worn
@@ -144,7 +144,7 @@ def _cloth(material, seed, x, y, z, face, foot):
 
 @njit
 def _rug(x, y, z, foot):
-    """Diamonds with hearts, no two quite alike, and the pile of wool."""
+    """Return the tone of a rug with a pattern of irregular diamonds."""
     step = 0.22
     i, j = int(x / step), int(y / step)
     a, b = abs(x / step - i - 0.5), abs(y / step - j - 0.5)
@@ -165,7 +165,7 @@ def _rug(x, y, z, foot):
 
 @njit
 def _text(seed, x, y, z, face, foot):
-    """Rows of dark dashes, as on the backs of books, labels and screens."""
+    """Return the tone of rows of dark dashes, as on book spines, labels and screens."""
     axis = face // 2
     u, v = (y if axis == 0 else x), (y if axis == 2 else z)
     block = hash_to_unit(int(u / 0.06), int(v / 0.08), seed, 7)
@@ -225,7 +225,7 @@ def poster(u, v, plane, foot, found):
 
 @inlined
 def _paint(found, light, seed, colourful):
-    """Write a colour of a lightness of 0 to 1 and a hue that belongs to the seed."""
+    """Write a colour with a lightness from 0 to 1 and a hue that depends on the seed."""
     for n in range(3):
         hue = (hash_to_unit(seed, 17 + n, 0, 0) - 0.5) * colourful
         found[n] = 255.0 * min(max(light + hue, 0.02), 0.98)

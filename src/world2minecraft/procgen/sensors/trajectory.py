@@ -53,7 +53,7 @@ def plan_walk(room: Room, moments: int, rng: np.random.Generator) -> WalkPath:
 
 
 def _way(room: Room, stands: NavMesh, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Return the places of the way, float64 [N, 3], and how long one stays at each, in metres."""
+    """Return the places of the tour, float64 [N, 3], and the pause at each, in metres."""
     stops = _all_stops(room, stands, rng)
     if not stops:
         return _middles(room), np.full(len(room.layouts), STAY_M)
@@ -66,7 +66,7 @@ def _way(room: Room, stands: NavMesh, rng: np.random.Generator) -> tuple[np.ndar
 
 
 def _middles(room: Room) -> np.ndarray:
-    """Return the middle of each room's floor, for rooms without a place to stand."""
+    """Return the middle of each room's floor, for rooms without standing places."""
     return np.array(
         [
             [*(layout.floor_polygon_m.min(axis=0) + layout.floor_polygon_m.max(axis=0)) / 2,
@@ -77,7 +77,7 @@ def _middles(room: Room) -> np.ndarray:
 
 
 def _all_stops(room: Room, stands: NavMesh, rng: np.random.Generator) -> list[int]:
-    """Return the stops of all rooms in the order of the walk, as indices of places."""
+    """Return the stops of all rooms in tour order, as place indices."""
     free = {n: _free_of(stands, n) for n in range(len(room.layouts))}
     left = {n: places for n, places in free.items() if len(places)}
     if not left:
@@ -96,7 +96,7 @@ def _all_stops(room: Room, stands: NavMesh, rng: np.random.Generator) -> list[in
 
 
 def _free_of(stands: NavMesh, number: int) -> np.ndarray:
-    """Return the easy places of a room that hang together, the largest part of them."""
+    """Return the largest connected part of the easy places of a room."""
     places = np.flatnonzero(stands.easy & (stands.storey_room == number))
     if not len(places):
         return np.flatnonzero(stands.storey_room == number)
@@ -107,7 +107,7 @@ def _free_of(stands: NavMesh, number: int) -> np.ndarray:
 def _entrance(
     room: Room, stands: NavMesh, free: dict[int, np.ndarray], rng: np.random.Generator
 ) -> int:
-    """Return the place nearest to a door of the first room that has one, on the lowest floor."""
+    """Return the place nearest to a door of the first room with a door on the lowest floor."""
     layouts = room.layouts
     first = min(free, key=lambda n: (layouts[n].floor_z_m, not _doors(layouts[n]), n))
     doors = _doors(layouts[first])
@@ -124,7 +124,7 @@ def _doors(layout: Layout) -> list[Opening]:
 
 
 def _stops(stands: NavMesh, places: np.ndarray, first: int) -> list[int]:
-    """Return stops among the places of a room, far from each other, in the order of a short way."""
+    """Return stops in a room that are far from each other, in the order of a short path."""
     points = stands.places_m[places, :2]
     wanted = round(STOPS_PER_M2 * len(places) * STEP_M**2)
     count = min(max(wanted, STOPS[0]), STOPS[1], len(places))
@@ -137,7 +137,7 @@ def _stops(stands: NavMesh, places: np.ndarray, first: int) -> list[int]:
 
 
 def _short_order(points: np.ndarray, chosen: list[int]) -> list[int]:
-    """Return the order, beginning with the first, in which turning no stretch round is shorter."""
+    """Return an order that 2-opt exchanges do not shorten, with the first stop fixed."""
     order, better = list(chosen), True
 
     def length(route: list[int]) -> float:
@@ -154,7 +154,7 @@ def _short_order(points: np.ndarray, chosen: list[int]) -> list[int]:
 
 
 def _path(stands: NavMesh, start: int, end: int) -> list[int]:
-    """Return the places after ``start`` up to ``end`` on the shortest way."""
+    """Return the places after ``start`` up to ``end`` on the shortest path."""
     _, before = dijkstra(stands.links, directed=False, indices=start, return_predecessors=True)
     way, at = [end], int(before[end])
     while at >= 0 and at != start:
@@ -164,7 +164,7 @@ def _path(stands: NavMesh, start: int, end: int) -> list[int]:
 
 
 def _smooth_path(stands: NavMesh, way_m: np.ndarray) -> np.ndarray:
-    """Round the corners of a way; where that would leave the free floor, it stays as it was."""
+    """Round the corners of a path where the result stays on the free floor."""
     smooth = ndimage.uniform_filter1d(way_m, round(SMOOTH_M / STEP_M), axis=0, mode="nearest")
     gap, _ = KDTree(stands.places_m).query(smooth)
     return np.where((gap < STEP_M)[:, None], smooth, way_m)

@@ -85,7 +85,7 @@ class ViewPlanner:
         return self._yaw, self._pitch
 
     def _look_around(self, eye_m: np.ndarray):
-        """Return the patch, the worth of seeing it, and its side, [P, Y] by pitch and yaw."""
+        """Return the patch, the value of seeing it and its side, [P, Y] by pitch and yaw."""
         pitch, yaw = np.meshgrid(self._pitches, self._yaws, indexing="ij")
         cosine = np.cos(pitch)
         ahead = np.stack([np.cos(yaw) * cosine, np.sin(yaw) * cosine, np.sin(pitch)], axis=-1)
@@ -111,7 +111,7 @@ class ViewPlanner:
         return NEW_SIDE[np.minimum(others, SIDES - 1)] * REPEAT_WORTH ** here.astype(np.float64)
 
     def _windows(self, value: np.ndarray) -> np.ndarray:
-        """Return the sum of each picture's window, float64 [pitches, yaws]."""
+        """Return the sum over each image's window, float64 [pitches, yaws]."""
         across = self._half[0]
         wrapped = np.concatenate([value[:, -across:], value, value[:, : across + 1]], axis=1)
         sums = np.zeros((value.shape[0] + 1, wrapped.shape[1] + 1))
@@ -140,7 +140,7 @@ class ViewPlanner:
 
 @njit
 def _cast(cells, eye, ahead):
-    """Return the cell, the distance in cells and the cosine of what each direction meets."""
+    """Return the cell, distance in cells and cosine of the surface in each direction."""
     ny, nz = cells.shape[1], cells.shape[2]
     count = ahead.shape[0]
     index = np.full(count, -1, np.int64)

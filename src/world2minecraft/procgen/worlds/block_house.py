@@ -124,7 +124,7 @@ def plan_block_house(
 
 
 def _walls(low_m: float, high_m: float, scale: float) -> tuple[int, int]:
-    """Return the blocks between the walls on both sides of a stretch, [low, high)."""
+    """Return the blocks between the walls on both sides of a range, [low, high)."""
     first = int(np.floor((low_m - WALL_M / 2) * scale + 1e-9)) + 1
     last = int(np.floor((high_m + WALL_M / 2) * scale + 1e-9))
     return first, max(last, first + 1)
@@ -179,10 +179,10 @@ def _gap(gap: Gap, rooms: tuple[BlockRoom, ...], cells: tuple[Cell, ...], scale:
 def _flight(
     plan: HousePlan, rooms: tuple[BlockRoom, ...], pitch: int, scale: float
 ) -> BlockFlight | None:
-    """Return stairs of a block a step that end on the upper floor.
+    """Return stairs with one block per step that end on the upper floor.
 
-    They begin so far in their bay that the hole over them leaves the corridor of the upper floor
-    alone, where one then still comes to stand at their head.
+    They start at a row where their opening does not reach the corridor of the upper floor and a
+    person can stand at the top.
     """
     if plan.flight is None:
         return None

@@ -69,7 +69,7 @@ class ClearPaths:
         return ~self.taken[room.number]
 
     def _reached(self, room: BlockRoom, places: np.ndarray) -> np.ndarray | None:
-        """Return those of the places of a room's box that hang together with all ends, or None."""
+        """Return the places of a room that are connected to all ends, or None."""
         parts, count = label_components(places, corners=False)
         ends = np.array(self.ends[room.number]).reshape(-1, 2) - room.low
         if not count:
@@ -99,7 +99,7 @@ def _dilate(places: np.ndarray, body: int) -> np.ndarray:
 
 
 def _windows(mask: np.ndarray, body: int, axis: int, before: int) -> list[np.ndarray]:
-    """Return a mask shifted by 0 to ``body`` - 1 along an axis, nothing beyond its ends."""
+    """Return a mask shifted by 0 to ``body`` - 1 along an axis, with False beyond its ends."""
     size = mask.shape[axis]
     shape = [side + (body - 1) * (a == axis) for a, side in enumerate(mask.shape)]
     padded, rest = np.zeros(shape, bool), (slice(None),) * axis
@@ -108,7 +108,7 @@ def _windows(mask: np.ndarray, body: int, axis: int, before: int) -> list[np.nda
 
 
 def _before(gap: BlockGap, floor: np.ndarray, body: int) -> tuple[int, int]:
-    """Return the least column of a person who stands in a room, bool [X, Y], before a gap."""
+    """Return the lowest column of a person who stands in a room in front of a gap."""
     across, along = gap.turn % 2, 1 - gap.turn % 2
     corner, beyond = [0, 0], [0, 0]
     corner[along] = (gap.low[along] + gap.high[along] - body) // 2

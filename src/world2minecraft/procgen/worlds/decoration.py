@@ -33,7 +33,7 @@ def hang_leaves(furnisher: Furnisher, gaps: tuple[BlockGap, ...], rng: np.random
 def _hang_leaf(
     furnisher: Furnisher, gap: BlockGap, room: BlockRoom, at_low: bool, flat: bool
 ) -> bool:
-    """Hang a leaf before or after its door, along the wall or across; say whether it fits."""
+    """Place a leaf beside its door, along the wall or across, and return whether it fits."""
     canvas, look = furnisher.canvas, furnisher.looks[room.number]
     across, along = gap.turn % 2, 1 - gap.turn % 2
     width = gap.high[along] - gap.low[along]
@@ -81,7 +81,7 @@ def _hang(
     rng: np.random.Generator,
     is_long: bool,
 ) -> int:
-    """Hang a curtain or a blind before a window; 0 where something is in its way."""
+    """Place a curtain or a blind at a window, and return its instance number or 0."""
     scale = furnisher.house.blocks_per_metre
     along = 1 - gap.turn % 2
     wide = gap.high[along] - gap.low[along] + (4 if is_long else 0)

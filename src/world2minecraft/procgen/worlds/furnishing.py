@@ -259,7 +259,7 @@ class Furnisher:
         return 0
 
     def _cells(self, found: BlockDesign) -> np.ndarray:
-        """Return the cells of a design's blocks, x y z up from its least, int [N, 3]."""
+        """Return the cells of a design's blocks relative to its lowest corner, int [N, 3]."""
         offsets = np.array([block.offset for block in found.blocks])
         deep = found.size[2]
         return np.stack([offsets[:, 0], deep - 1 - offsets[:, 2], offsets[:, 1]], axis=1)
@@ -288,7 +288,7 @@ class Furnisher:
         return instance
 
     def _corner(self, item: Item, found: BlockDesign, room: BlockRoom) -> list[int]:
-        """Return the least block of a thing's design, x y z of the house."""
+        """Return the lowest block (x, y, z) of an item's design in the house."""
         scale = self.house.blocks_per_metre
         box, cell = item.box_m, self.house.plan.cells[room.number]
         wide, tall, deep = found.size
@@ -308,14 +308,14 @@ class Furnisher:
         return [*corner, room.ground + min(above, max(room.height - tall, 0))]
 
     def _on(self, low: list[int], found: BlockDesign) -> int:
-        """Return the layer on the highest thing under a design's middle, not over its place."""
+        """Return the layer above the highest block under the middle of a design."""
         x, y, _ = self.canvas.at(low[0] + found.size[0] // 2, low[1] + found.size[2] // 2, 0)
         top = self.canvas.at(0, 0, low[2] + 1)[2]
         filled = np.flatnonzero(self.canvas.states[x, y, : top + 1])
         return int(filled.max()) + 1 - self.canvas.at(0, 0, 0)[2] if len(filled) else low[2]
 
     def _carries(self, place: list[int], found: BlockDesign, thing: PlacedFurniture) -> bool:
-        """Whether each block of a design's foot would stand on a block of the thing."""
+        """Return whether each bottom block of a design is on a block of the furniture."""
         foot = self._cells(found)
         foot = foot[foot[:, 2] == 0] + np.array(place) - [0, 0, 1]
         at = tuple((foot + self.canvas.at(0, 0, 0)).T)
@@ -324,7 +324,7 @@ class Furnisher:
     def _along(
         self, found: BlockDesign, room: BlockRoom, turns: int, rng: np.random.Generator
     ) -> list[tuple[int, int]]:
-        """Return places at the wall behind a front, in a drawn order, corners rather first."""
+        """Return positions at a wall in random order."""
         wide, deep = found.size[0], found.size[2]
         most = room.high[0] - wide, room.high[1] - deep
         axis = 1 - turns % 2  # That the wall runs along.
@@ -336,7 +336,7 @@ class Furnisher:
         return [(at, one) if axis == 1 else (one, at) for one in order]
 
     def _has_wall(self, found: BlockDesign, low: Corner, turns: int) -> bool:
-        """Whether all of a design's back is before bare wall."""
+        """Return whether the whole back of a design is at a bare wall."""
         wide, tall, deep = found.size
         high = (low[0] + wide, low[1] + deep, low[2] + tall)
         axis = turns % 2
@@ -347,7 +347,7 @@ class Furnisher:
         return bool((behind == SemanticClass.WALL).all())
 
     def _front_is_free(self, found: BlockDesign, low: Corner, room: BlockRoom, turns: int) -> bool:
-        """Whether nothing stands right before a design's front."""
+        """Return whether the blocks in front of a design are free."""
         wide, tall, deep = found.size
         high = (low[0] + wide, low[1] + deep, low[2] + tall)
         axis = turns % 2

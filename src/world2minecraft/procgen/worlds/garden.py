@@ -144,7 +144,7 @@ def _plant_trees(
     house: BlockHouse,
     rng: np.random.Generator,
 ) -> None:
-    """Stand trees of a ball on a trunk where they hide no window wholly."""
+    """Place trees with round crowns where they do not hide a whole window."""
     scale = house.blocks_per_metre
     radius, trunk = max(1, round(0.7 * scale)), max(2, round(1.6 * scale))
     inner = np.zeros_like(away, bool)
@@ -173,7 +173,7 @@ def _plant(
     deck: WareDeck,
     rng: np.random.Generator,
 ) -> None:
-    """Plant wares that need soil, each with its own soil let into the ground."""
+    """Place plants, each with its own soil in the ground."""
     places = np.argwhere(away > 0)
     count = round(garden.planted * len(places))
     for x, y in places[rng.permutation(len(places))[:count]].tolist():

@@ -179,7 +179,7 @@ def _hour(style: Style, rng: np.random.Generator) -> int:
 
 
 def _put_flight(furnisher: Furnisher, house: BlockHouse, look: RoomLook) -> None:
-    """Set the stairs, and keep the ways to their foot and from their head."""
+    """Set the stairs, and keep the paths to their bottom and top free."""
     flight = house.flight
     if flight is None:
         return
@@ -206,7 +206,7 @@ def _is_night(hour: int) -> bool:
 
 
 def _furnish(furnisher: Furnisher, show: StandBuilder, seed: Sequence[int], by_night: bool) -> None:
-    """Furnish each room: the metric kinds by their layout first, the others by their recipe."""
+    """Furnish metric rooms by their layouts and other rooms by their recipes."""
     house = furnisher.house
     rng = np.random.default_rng(seed)
     metric = [choose_style(rng) for _ in house.plan.cells]
@@ -236,7 +236,7 @@ def _put_items(
 
 
 def _footprints(canvas: WorldCanvas, house: BlockHouse) -> tuple[np.ndarray, ...]:
-    """Return the columns of each storey's rooms, bool [X, Y] of the canvas."""
+    """Return the floor columns of each storey, bool [X, Y] of the canvas."""
     floors = []
     for storey in range(len(house.grounds)):
         rooms = [room.floor(house.size) for room in house.rooms if room.storey == storey]

@@ -323,7 +323,7 @@ def assign_room_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse
 
 
 def _lay_about(task: RecipeContext) -> None:
-    """Put small things of a home on half of the low cupboards and tables of a room."""
+    """Place small household blocks on half of the low cupboards and tables of a room."""
     room, furnisher = task.room, task.furnisher
     for thing in [thing for thing in furnisher.things if thing.room == room.number]:
         low = thing.high[2] - room.ground <= round(LOW_M * furnisher.house.blocks_per_metre)
@@ -332,7 +332,7 @@ def _lay_about(task: RecipeContext) -> None:
 
 
 def _high(task: RecipeContext) -> int:
-    """Return the layer of a shelf at the height of one's eyes."""
+    """Return the layer of a shelf at eye height."""
     return round(SHELF_M * task.furnisher.house.blocks_per_metre)
 
 

@@ -34,7 +34,7 @@ def put_shell(canvas: WorldCanvas, house: BlockHouse, looks: tuple[RoomLook, ...
 
 
 def _put_levels(canvas: WorldCanvas, house: BlockHouse, looks: tuple[RoomLook, ...]) -> None:
-    """Set the floor and the ceiling of each room, and under walls too."""
+    """Set the floor and the ceiling of each room, and the layers below and above walls."""
     shape = canvas.states.shape[:2]
     for storey, ground in enumerate(house.grounds):
         rooms = [room for room in house.rooms if room.storey == storey]
@@ -66,7 +66,7 @@ def _columns(canvas: WorldCanvas, room: BlockRoom, shape: tuple[int, ...]) -> np
 
 
 def _put_walls(canvas: WorldCanvas, room: BlockRoom, look: RoomLook, house: BlockHouse) -> None:
-    """Set the walls around a room, where no room before it has set them."""
+    """Set the walls around a room, except blocks that another room has already set."""
     inside = _columns(canvas, room, canvas.states.shape[:2])
     rim = ndimage.binary_dilation(inside, EIGHT) & ~inside
     others = [r for r in house.rooms if r.storey == room.storey and r is not room]
@@ -85,7 +85,7 @@ def _put_walls(canvas: WorldCanvas, room: BlockRoom, look: RoomLook, house: Bloc
 
 
 def _sides(rim: np.ndarray, inside: np.ndarray) -> list[np.ndarray]:
-    """Return the parts of a rim by where a front looks off them: +x, +y, -x, -y; corners last."""
+    """Split a rim by the direction into the room: +x, +y, -x, -y. Corners are in the last part."""
     steps = ((0, -1), (1, -1), (0, 1), (1, 1))
     left, sides = rim.copy(), []
     for axis, step in steps:
@@ -107,9 +107,9 @@ def _put_gap(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
 
 
 def _put_front_door(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
-    """Fill the front door with doors of iron, side by side and one on another.
+    """Fill the front door with iron doors.
 
-    Nobody opens those by hand: walks stay in the house.
+    Players cannot open iron doors by hand, so that walks stay inside the house.
     """
     facing = FACINGS[gap.turn]
     for n, (x, y) in enumerate(

@@ -327,7 +327,7 @@ class StandBuilder:
     def _fill(
         self, column: tuple[int, int], room: BlockRoom, boards: Sequence[int], turns: int
     ) -> int:
-        """Set wares into one column of a rack, as high as there is room between its boards."""
+        """Place wares in one column of a rack, as high as the boards allow."""
         held = 0
         tops = (*boards[1:], min(boards[-1] + 3, room.height))
         for level, top in zip(boards, tops, strict=True):
@@ -346,7 +346,7 @@ class StandBuilder:
     def _longest_wall(
         self, room: BlockRoom, layers: tuple[int, int], least: int
     ) -> tuple[list[tuple[int, int]], int] | None:
-        """Return the columns of the longest free stretch along a bare wall, and its front."""
+        """Return the columns of the longest free stretch of bare wall, and its direction."""
         best: tuple[list[tuple[int, int]], int] | None = None
         for turns in range(4):
             run: list[tuple[int, int]] = []
@@ -378,7 +378,7 @@ class StandBuilder:
         return bool(bare and room.floor(self.furnisher.house.size)[column])
 
     def _takes(self, room: BlockRoom, column: Sequence[int], level: int) -> bool:
-        """Take a column for what hangs at a layer over the floor; say whether ways allow it."""
+        """Reserve a column for a hanging ware, and return whether the paths remain clear."""
         ways, columns = self.furnisher.ways, np.array([column])
         if level >= ways.head:
             return True
@@ -388,7 +388,7 @@ class StandBuilder:
         return True
 
     def _is_top(self, cell: Corner) -> bool:
-        """Whether a block has a whole top that things stand on."""
+        """Return whether a block has a full top face."""
         from world2minecraft.minecraft.collision_shapes import boxes_of  # noqa: PLC0415
 
         boxes = boxes_of(self.canvas.palette[int(self.canvas.states[cell])])

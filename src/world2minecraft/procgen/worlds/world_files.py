@@ -50,7 +50,7 @@ def _outline(room: BlockRoom) -> np.ndarray:
 
 
 def _opening(gap: BlockGap, room: BlockRoom, scale: float) -> Opening:
-    """Return an opening on the face of its wall that looks into the room."""
+    """Return an opening at the wall face towards the room."""
     across, along = gap.turn % 2, 1 - gap.turn % 2
     faces_up = (gap.turn < 2) == (room.number == gap.rooms[0])
     at = gap.high[across] if faces_up else gap.low[across]
