@@ -148,5 +148,5 @@ def test_names_fit_the_sign(text, lines, expected):
 
 
 def test_a_fifth_line_is_refused():
-    with pytest.raises(UsageError, match="a sign can have 4 lines of text, got 5"):
+    with pytest.raises(UsageError, match="a sign must have at most 4 lines of text, got 5"):
         sign_entity((0, 0, 0), ["a"] * 5)

@@ -65,7 +65,7 @@ def test_an_empty_volume_and_a_plain_one_stay():
 
 def test_what_is_told():
     (found,) = find_unstable(built({"o": "torch"}))
-    assert found == ((0, 0, 0), "torch", "pops off: nothing under its middle")
+    assert found == ((0, 0, 0), "torch", "pops off: no support below its middle")
 
 
 @settings(deadline=None, max_examples=25)

@@ -425,5 +425,5 @@ def test_a_list_of_many_empty_blocks_is_refused_unread(tmp_path):
 
 def test_a_volume_of_too_many_blocks_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(our_structure, "MAX_BLOCKS", 50)
-    with pytest.raises(UsageError, match="contains 1 to 50 blocks, got 60; write a .schem"):
+    with pytest.raises(UsageError, match="must have 1 to 50 blocks, got 60; write a .schem"):
         write_structure(VOLUMES["small"], tmp_path / "a.nbt")

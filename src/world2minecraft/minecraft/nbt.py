@@ -192,7 +192,7 @@ class NbtWriter:
         except UnicodeError as error:
             raise UsageError(f"text {text[:40]!r} cannot be encoded as NBT") from error
         if len(raw) > 0xFFFF:
-            raise UsageError(f"text has {len(raw):,} bytes, but an NBT string can have 65,535")
+            raise UsageError(f"an NBT string must be at most 65,535 bytes, got {len(raw):,}")
         self.out += self.uint16.pack(len(raw))
         self.out += raw
 

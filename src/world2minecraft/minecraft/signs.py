@@ -219,7 +219,7 @@ def sign_entity(
         UsageError: If there are more than four lines.
     """
     if len(lines) > LINE_COUNT:
-        raise UsageError(f"a sign can have {LINE_COUNT} lines of text, got {len(lines)}")
+        raise UsageError(f"a sign must have at most {LINE_COUNT} lines of text, got {len(lines)}")
     texts: list[dict[str, Any]] = [{"text": line} for line in lines]
     texts += [{"text": ""}] * (LINE_COUNT - len(texts))
     if command:

@@ -52,7 +52,7 @@ def write_mcstructure(volume: BlockVolume, path: str | Path, losses: Losses | No
     counted = Losses() if losses is None else losses
     if not volume.states.size or volume.states.size * 8 > MAX_BYTES - (1 << 20):
         raise UsageError(
-            f".mcstructure files contain 1 to 12 million blocks, got {volume.states.size:,}"
+            f"a .mcstructure file must have 1 to 12 million blocks, got {volume.states.size:,}"
         )
     _count_losses(volume, counted)
     palette, numbers, is_wet = _bedrock_palette(volume.palette)

@@ -84,8 +84,10 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
             contents of the volume.
     """
     if not _NAMESPACE.fullmatch(name) or name == "minecraft":
-        wanted = "must contain only lower-case letters, digits, _ . or -, and not be minecraft"
-        raise UsageError(f"data pack name {name!r} {wanted}; try {to_namespace(name)}")
+        raise UsageError(
+            f"data pack name {name!r} must contain only lower-case letters, digits, _ . or -, "
+            f"and not be minecraft; try {to_namespace(name)}"
+        )
     check_displays(volume, version)
     if not has_packs(version):
         first = game_versions()[0].name

@@ -229,8 +229,9 @@ def _summon(site: _BuildState, rest: str) -> None:
     full = name if ":" in name else f"minecraft:{name}"
     numbers = [_NUMBER.fullmatch(word) for word in place]
     if len(place) != 3 or not all(numbers) or not _ID.fullmatch(full):
-        usage = "must have the form: summon minecraft:cat 1.0 64.0 2.0"
-        raise UsageError(f"summon {rest[:60]!r} {usage}")
+        raise UsageError(
+            f"summon {rest[:60]!r} must have the form: summon minecraft:cat 1.0 64.0 2.0"
+        )
     x, y, z = (float(match[1] or 0) for match in numbers if match)
     nbt = site.compound(data)
     if isinstance(nbt.get("Tags"), list):

@@ -314,7 +314,7 @@ def structure_bytes(volume: BlockVolume, version: GameVersion, *, clears: bool =
     listed = np.argwhere(np.ones_like(cells, bool) if clears else cells != air)
     if not volume.states.size or len(listed) > MAX_BLOCKS:
         raise UsageError(
-            f"a structure file contains 1 to {MAX_BLOCKS:,} blocks, got {len(listed):,}; write a "
+            f"a structure file must have 1 to {MAX_BLOCKS:,} blocks, got {len(listed):,}; write a "
             ".schem file, a .litematic file or a world instead"
         )
     places = np.ascontiguousarray(listed[:, [2, 0, 1]]).astype(np.int32)

@@ -116,7 +116,7 @@ class RconClient:
         body = text.encode()
         if len(body) > MAX_COMMAND_BYTES:
             raise UsageError(
-                f"an RCON command can have {MAX_COMMAND_BYTES} bytes, got {len(body)}: "
+                f"an RCON command must be at most {MAX_COMMAND_BYTES} bytes, got {len(body)}: "
                 f"{text[:60]}..."
             )
         if any(ord(letter) < 32 for letter in text):

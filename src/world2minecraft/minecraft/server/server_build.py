@@ -296,7 +296,7 @@ class LiveBuilder:
                     )
                 return
             self._sleep(LOAD_WAIT_S)
-        raise ServerError(f"the server has not loaded the chunk of {command[:80]!r}; try again")
+        raise ServerError(f"the server has not loaded the chunk for {command[:80]!r}; try again")
 
     def _send(self, command: str) -> str:
         """Send a command and return the reply, reconnecting if the connection is lost."""

@@ -118,8 +118,8 @@ def _check_free(target: Path) -> None:
     if any((target / UNDO_FOLDER).glob("*")):
         raise OutputError(
             target,
-            "contains a world into which w2m build --into has built; "
-            "revert that with w2m undo, or move the world",
+            "contains a world that was changed with w2m build --into; "
+            "revert the change with w2m undo, or move the world away",
         )
 
 
