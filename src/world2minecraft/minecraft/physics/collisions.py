@@ -50,7 +50,7 @@ def free_distance(
 def sweep_box(
     boxes: np.ndarray, box: np.ndarray, way: np.ndarray, touch: float = TOUCH
 ) -> tuple[float, float, float]:
-    """Return the part of a movement, float64 [3], that a box can make before collisions.
+    """Return how far a box can move along a movement vector, float64 [3], before it collides.
 
     As in the game, the box moves vertically first and then along the longer horizontal axis, so
     that it slides along obstacles.
@@ -67,7 +67,7 @@ def sweep_box(
 def sweep_with_step(
     boxes: np.ndarray, box: np.ndarray, way: np.ndarray, height: float, touch: float = TOUCH
 ) -> tuple[float, float, float]:
-    """Return the part of a movement that a box can make if it may step up by a given height."""
+    """Return how far a box can move along a movement vector if it may step up by a given height."""
     best = sweep_box(boxes, box, np.array([way[0], height, way[2]]), touch)
     reach = box.copy()  # All that it would pass over: as high as all of that lets it.
     reach[:3] += np.minimum([way[0], 0, way[2]], 0)
@@ -95,7 +95,7 @@ class World(Protocol):
     """Interface of a world with collision boxes."""
 
     def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Return boxes as float64 [N, 6] in blocks that include all boxes overlapping a region."""
+        """Return boxes as float64 [N, 6] in blocks, including all boxes that overlap a region."""
         ...
 
 

@@ -46,11 +46,11 @@ def paint_house(
     """Voxelize a house with its furniture.
 
     Args:
-        plan: The plan with the cells of the house.
+        plan: The plan with the rooms of the house.
         gaps: The openings in the walls.
-        styles: The colour scheme of each cell.
-        items: The objects in each cell, in the frame of the house.
-        rugs: The rugs in each cell, in the frame of the house.
+        styles: The colour scheme of each room.
+        items: The objects in each room, in the frame of the house.
+        rugs: The rugs in each room, in the frame of the house.
         rng: Random generator for the grain of floors and furniture.
     """
     canvas = Canvas(plan.size_m)

@@ -95,7 +95,7 @@ class HousePlan:
 
 
 def plan_house(rooms: int, storeys: int, rng: np.random.Generator) -> HousePlan:
-    """Generate a plan with ``rooms`` rooms, including halls, on one or two storeys."""
+    """Generate a house plan with ``rooms`` rooms, including halls, on one or two storeys."""
     risers, rise, tread = FLIGHTS[int(rng.integers(len(FLIGHTS)))]
     run = round_to_step((risers - 1) * tread)
     two = storeys == 2
@@ -189,7 +189,10 @@ def _row(
 
 @dataclass(frozen=True)
 class Gap:
-    """A wall opening as seen from the first of ``cells``. A second cell is behind the wall."""
+    """A wall opening as seen from the first room in ``cells``.
+
+    A second room in ``cells`` is on the other side of the wall.
+    """
 
     kind: Literal["window", "door", "doorway"]
     cells: tuple[int, ...]
@@ -200,7 +203,7 @@ class Gap:
     head_m: float
 
     def hole(self, cell: int, placed: Cell) -> Hole:
-        """Return the opening as a hole in a wall of one of its cells, in the frame of that cell."""
+        """Return the opening as a hole in a wall of one of its rooms, in the frame of that room."""
         turn, at = self.wall.turn, self.wall.at_m
         if cell != self.cells[0]:
             turn, at = (turn + 2) % 4, at + (-WALL_M if turn < 2 else WALL_M)
@@ -232,7 +235,7 @@ def house_gaps(plan: HousePlan, rng: np.random.Generator) -> tuple[Gap, ...]:
 
 
 def walls_of(cell: Cell) -> tuple[Wall, ...]:
-    """Return the walls of a cell in the frame of the house."""
+    """Return the walls of a room in the frame of the house."""
     moved = []
     for wall in cell.ground.walls:
         off = (cell.x_m, cell.y_m)

@@ -136,7 +136,7 @@ class RoomFrame:
 
     @property
     def ground(self) -> Ground:
-        """The ground of the room in its local frame. Only rectangular rooms are rotated."""
+        """The shape of the room in its local frame. Only rectangular rooms are rotated."""
         width, depth, height = self.cell.ground.size_m
         if self.turns == 0:
             return self.cell.ground
@@ -151,7 +151,7 @@ class RoomFrame:
         return x + self.cell.x_m, y + self.cell.y_m
 
     def hole(self, hole: Hole) -> Hole:
-        """Transform a hole from the frame of the cell to the local frame."""
+        """Transform a hole from the unrotated room to the local frame."""
         if self.turns == 0:
             return hole
         side = self.cell.ground.walls[hole.wall]
@@ -184,9 +184,9 @@ def furnish_cells(
     seed: tuple[int, ...],
     left_out: Collection[int] = (),
 ) -> tuple[list[list[Item]], list[tuple[Rug, ...]]]:
-    """Generate the items and rugs of each cell, in the frame of the house.
+    """Generate the items and rugs of each room, in the frame of the house.
 
-    Cells whose number is in ``left_out`` stay empty. This does not change the other cells.
+    Rooms whose number is in ``left_out`` stay empty. This does not change the other rooms.
     """
     items, rugs = [], []
     for number, cell in enumerate(plan.cells):

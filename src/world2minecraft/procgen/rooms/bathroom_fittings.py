@@ -18,7 +18,7 @@ GLASS: Colour = (176, 206, 214)
 
 
 def toilet() -> Model:
-    """Return a toilet with a cistern: 0.68 m deep, with the seat at 0.42 m."""
+    """Return a model of a toilet with a cistern: 0.68 m deep, with the seat at 0.42 m."""
     d, w, h = 0.68, 0.40, 0.80
     parts = (
         Part((-d / 2, -w / 2, 0.40, -d / 2 + 0.18, w / 2, h), CERAMIC),
@@ -31,7 +31,7 @@ def toilet() -> Model:
 
 
 def washstand(front: Colour, *, width: float = 0.8) -> Model:
-    """Return a washbasin with a tap on a cupboard with two drawers, with the rim at 0.86 m."""
+    """Return a model of a washbasin on a cupboard with two drawers. Its rim is at 0.86 m."""
     d, w, h = 0.52, round_to_step(width), 1.02
     light = shade(front, 1.06)
     parts = (
@@ -48,7 +48,7 @@ def washstand(front: Colour, *, width: float = 0.8) -> Model:
 
 
 def mirror(width: float) -> Model:
-    """Return a wall mirror, 0.7 m high."""
+    """Return a model of a wall mirror, 0.7 m high."""
     d, w, h = 0.04, round_to_step(width), 0.70
     parts = (
         Part((-d / 2, -w / 2, 0, d / 2, w / 2, h), STEEL),
@@ -58,7 +58,7 @@ def mirror(width: float) -> Model:
 
 
 def bathtub(length: float) -> Model:
-    """Return a bathtub, 0.76 m wide and 0.58 m high, whose back is a long side."""
+    """Return a model of a bathtub, 0.76 m wide and 0.58 m high, whose back is a long side."""
     d, w, h = 0.76, round_to_step(length), 0.58
     water = shade(CERAMIC, 0.86)
     parts = (
@@ -75,7 +75,7 @@ def bathtub(length: float) -> Model:
 
 
 def shower(side: float = 0.92) -> Model:
-    """Return a shower with a tray, two glass sides and a pipe with a shower head at its back."""
+    """Return a model of a shower with two glass sides and the shower head at its back."""
     d, h = round_to_step(side), 2.0
     half = d / 2
     parts = (
@@ -92,7 +92,7 @@ def shower(side: float = 0.92) -> Model:
 
 
 def washing_machine() -> Model:
-    """Return a front-loading washing machine: 0.60 x 0.60 x 0.86 m."""
+    """Return a model of a front-loading washing machine: 0.60 x 0.60 x 0.86 m."""
     d, w, h = 0.60, 0.60, 0.86
     x = d / 2
     parts = (
@@ -107,7 +107,7 @@ def washing_machine() -> Model:
 
 
 def towel(colour: Colour) -> Model:
-    """Return a towel on a wall rail."""
+    """Return a model of a towel on a wall rail."""
     parts = (
         Bar((0.0, -0.30, 0.62), (0.0, 0.30, 0.62), 0.011, STEEL),
         Part((-0.04, -0.24, 0.0, 0.04, 0.16, 0.64), colour, "fabric"),

@@ -24,14 +24,14 @@ def bright_colour(rng: np.random.Generator) -> Colour:
 
 
 def stool(colour: Colour) -> Model:
-    """Return a children's stool, 0.30 m high."""
+    """Return a model of a children's stool, 0.30 m high."""
     d, h = 0.30, 0.30
     seat = Part((-d / 2, -d / 2, h - 0.04, d / 2, d / 2, h), colour)
     return Model("stool", CHAIR, (d, d, h), (*legs(d, d, h - 0.04, 0.04, shade(colour, 0.8)), seat))
 
 
 def toy_shelf(wood: Colour, rng: np.random.Generator) -> Model:
-    """Return a low shelf of six compartments, some of which contain coloured crates."""
+    """Return a model of a low shelf of six compartments, some of which contain coloured crates."""
     d, w, h = 0.36, 1.12, 0.78
     parts = [Part((-d / 2, -w / 2, 0.0, -d / 2 + 0.02, w / 2, h), shade(wood, 0.85), "wood")]
     for z in (0.0, 0.36, h - 0.04):
@@ -49,7 +49,7 @@ def toy_shelf(wood: Colour, rng: np.random.Generator) -> Model:
 
 
 def shoe_cabinet(body: Colour) -> Model:
-    """Return a shallow shoe cabinet with tilting fronts: 0.26 m deep."""
+    """Return a model of a shallow shoe cabinet with tilting fronts: 0.26 m deep."""
     d, w, h = 0.26, 0.90, 1.04
     parts = [Part((-d / 2, -w / 2, 0.0, d / 2 - 0.02, w / 2, h), shade(body, 0.9))]
     for n in range(3):
@@ -60,7 +60,7 @@ def shoe_cabinet(body: Colour) -> Model:
 
 
 def coats(rng: np.random.Generator, wood: Colour) -> Model:
-    """Return a hook board with coats in several colours: 0.86 m high."""
+    """Return a model of a hook board with coats in several colours: 0.86 m high."""
     d, w, h = 0.20, 0.92, 0.86
     tones: tuple[Colour, ...] = ((58, 66, 88), (120, 74, 60), (88, 104, 82), (176, 150, 110))
     parts = [Part((-d / 2, -w / 2, h - 0.10, -d / 2 + 0.04, w / 2, h), wood, "wood")]
@@ -73,14 +73,14 @@ def coats(rng: np.random.Generator, wood: Colour) -> Model:
 
 
 def bench(wood: Colour) -> Model:
-    """Return a hall bench: 0.34 x 0.90 m, 0.46 m high."""
+    """Return a model of a hall bench: 0.34 x 0.90 m, 0.46 m high."""
     d, w, h = 0.34, 0.90, 0.46
     top = Part((-d / 2, -w / 2, h - 0.04, d / 2, w / 2, h), wood, "wood")
     return Model("bench", FURN, (d, w, h), (*legs(d, w, h - 0.04, 0.06, shade(wood, 0.85)), top))
 
 
 def whiteboard() -> Model:
-    """Return a whiteboard with writing on it."""
+    """Return a model of a whiteboard with writing on it."""
     d, w, h = 0.04, 1.52, 1.0
     parts = [
         Part((-d / 2, -w / 2, 0.0, d / 2, w / 2, h), (170, 174, 178)),
@@ -92,7 +92,7 @@ def whiteboard() -> Model:
 
 
 def printer() -> Model:
-    """Return a printer for a desk or a cabinet."""
+    """Return a model of a printer for a desk or a cabinet."""
     d, w, h = 0.40, 0.46, 0.28
     parts = (
         Part((-d / 2, -w / 2, 0.0, d / 2 - 0.08, w / 2, h), (72, 74, 80)),

@@ -35,14 +35,14 @@ def _pick_colour(rng: np.random.Generator, colours: tuple[Colour, ...]) -> Colou
 
 
 def cup(rng: np.random.Generator) -> Model:
-    """Return a mug with a handle."""
+    """Return a model of a mug with a handle."""
     colour = _pick_colour(rng, BRIGHT_COLOURS)
     body = Part((-0.04, -0.04, 0, 0.04, 0.04, 0.10), colour, form="drum")
     return make_model("cup", OBJS, (body, Bar((0, 0.05, 0.03), (0, 0.05, 0.07), 0.012, colour)))
 
 
 def bottle(rng: np.random.Generator) -> Model:
-    """Return a glass or plastic bottle."""
+    """Return a model of a glass or plastic bottle."""
     colour = _pick_colour(rng, ((52, 96, 62), (96, 60, 40), (120, 170, 200), (200, 70, 60)))
     high = round_to_step(rng.uniform(0.24, 0.32))
     body = Part((-0.04, -0.04, 0, 0.04, 0.04, high - 0.1), colour, form="drum")
@@ -51,7 +51,7 @@ def bottle(rng: np.random.Generator) -> Model:
 
 
 def plate(rng: np.random.Generator) -> Model:
-    """Return a plate with food."""
+    """Return a model of a plate with food."""
     food = _pick_colour(rng, ((206, 120, 60), (120, 150, 70), (180, 60, 50)))
     rim = Part((-0.12, -0.12, 0, 0.12, 0.12, 0.02), (240, 240, 236), form="drum")
     return make_model(
@@ -60,7 +60,7 @@ def plate(rng: np.random.Generator) -> Model:
 
 
 def laptop(rng: np.random.Generator) -> Model:
-    """Return an open laptop, 24 x 34 cm, whose front is the keyboard side."""
+    """Return a model of an open laptop, 24 x 34 cm, whose front is the keyboard side."""
     grey = (168, 172, 178)
     screen = Part((-0.14, -0.17, 0.02, -0.12, 0.17, 0.24), (40, 44, 52))
     shown = Part((-0.12, -0.15, 0.04, -0.115, 0.15, 0.22), (96, 140, 190))
@@ -70,7 +70,7 @@ def laptop(rng: np.random.Generator) -> Model:
 
 
 def shoes(rng: np.random.Generator) -> Model:
-    """Return a pair of shoes, one slightly ahead of the other."""
+    """Return a model of a pair of shoes, one slightly ahead of the other."""
     colour, parts = _pick_colour(rng, CLOTHES), []
     for y, x in ((-0.08, 0.0), (0.06, float(rng.uniform(-0.06, 0.06)))):
         parts.append(Part((x - 0.14, y - 0.05, 0, x + 0.14, y + 0.05, 0.03), shade(colour, 0.6)))
@@ -80,7 +80,7 @@ def shoes(rng: np.random.Generator) -> Model:
 
 
 def bag(rng: np.random.Generator) -> Model:
-    """Return a school bag or rucksack that stands on the floor."""
+    """Return a model of a school bag or rucksack that stands on the floor."""
     colour = _pick_colour(rng, BRIGHT_COLOURS + CLOTHES)
     parts = (
         Part((-0.12, -0.17, 0, 0.10, 0.17, 0.44), colour, "fabric", form="ball"),
@@ -92,7 +92,7 @@ def bag(rng: np.random.Generator) -> Model:
 
 
 def carton(rng: np.random.Generator) -> Model:
-    """Return a cardboard box of a random common size."""
+    """Return a model of a cardboard box of a random common size."""
     sides = [
         round_to_step(rng.uniform(low, high))
         for low, high in ((0.24, 0.4), (0.28, 0.6), (0.2, 0.4))
@@ -101,7 +101,7 @@ def carton(rng: np.random.Generator) -> Model:
 
 
 def laundry(rng: np.random.Generator) -> Model:
-    """Return a heap of clothes."""
+    """Return a model of a heap of clothes."""
     parts = []
     for _ in range(5):
         x, y = rng.uniform(-0.14, 0.14, 2)
@@ -112,14 +112,14 @@ def laundry(rng: np.random.Generator) -> Model:
 
 
 def ball(rng: np.random.Generator) -> Model:
-    """Return a toy ball."""
+    """Return a model of a toy ball."""
     r = float(rng.uniform(0.08, 0.12))
     part = Part((-r, -r, 0, r, r, 2 * r), _pick_colour(rng, BRIGHT_COLOURS), form="ball")
     return make_model("ball", OBJS, (part,))
 
 
 def bricks(rng: np.random.Generator) -> Model:
-    """Return toy bricks: a small tower and two bricks beside it."""
+    """Return a model of toy bricks: a small tower and two bricks beside it."""
     parts = [
         Part((-0.05, -0.05, 0.08 * n, 0.05, 0.05, 0.08 * (n + 1)), bright_colour(rng))
         for n in range(int(rng.integers(2, 5)))
@@ -130,7 +130,7 @@ def bricks(rng: np.random.Generator) -> Model:
 
 
 def teddy(rng: np.random.Generator) -> Model:
-    """Return a sitting teddy bear that faces the front."""
+    """Return a model of a sitting teddy bear that faces the front."""
     fur: Colour = _pick_colour(rng, ((156, 106, 64), (196, 160, 116), (120, 92, 72)))
     balls = (
         (0.0, 0.0, 0.10, 0.10), (0.02, 0.0, 0.27, 0.09), (0.0, -0.07, 0.35, 0.04),
@@ -144,7 +144,7 @@ def teddy(rng: np.random.Generator) -> Model:
 
 
 def potted_plant(rng: np.random.Generator) -> Model:
-    """Return a small potted plant for a table."""
+    """Return a model of a small potted plant for a table."""
     green: Colour = (60 + int(rng.integers(40)), 130, 62)
     high = float(rng.uniform(0.24, 0.36))
     parts = (
@@ -181,7 +181,7 @@ ON_FLOORS: tuple[ModelFactory, ...] = (
 
 
 def beanbag(rng: np.random.Generator) -> Model:
-    """Return a beanbag chair, 0.9 m across and higher at the back."""
+    """Return a model of a beanbag chair, 0.9 m across and higher at the back."""
     cloth = bright_colour(rng)
     parts = (
         Part((-0.45, -0.44, 0.0, 0.43, 0.44, 0.5), cloth, "fabric", form="ball"),
@@ -192,7 +192,7 @@ def beanbag(rng: np.random.Generator) -> Model:
 
 
 def rocking_horse(rng: np.random.Generator) -> Model:
-    """Return a rocking horse, 0.9 m long, on two curved runners."""
+    """Return a model of a rocking horse, 0.9 m long, on two curved runners."""
     coat, mane = (214, 186, 142), bright_colour(rng)
     parts: list[Part | Bar] = []
     for y in (-0.13, 0.13):
@@ -213,7 +213,7 @@ def rocking_horse(rng: np.random.Generator) -> Model:
 
 
 def easel(rng: np.random.Generator) -> Model:
-    """Return a painter's easel with a canvas, 1.6 m high."""
+    """Return a model of a painter's easel with a canvas, 1.6 m high."""
     parts: list[Part | Bar] = [
         Bar((0.24, -0.34, 0.0), (0.0, -0.04, 1.6), 0.02, WOOD, "wood"),
         Bar((0.24, 0.34, 0.0), (0.0, 0.04, 1.6), 0.02, WOOD, "wood"),
@@ -227,7 +227,7 @@ def easel(rng: np.random.Generator) -> Model:
 
 
 def guitar(rng: np.random.Generator) -> Model:
-    """Return a guitar on a stand."""
+    """Return a model of a guitar on a stand."""
     body: Colour = (186, 116, 58) if rng.random() < 0.6 else (60, 34, 26)
     parts: list[Part | Bar] = [
         Part((-0.06, -0.19, 0.12, 0.04, 0.19, 0.44), body, form="drum", axis=0),
@@ -243,7 +243,7 @@ def guitar(rng: np.random.Generator) -> Model:
 
 
 def bicycle(rng: np.random.Generator) -> Model:
-    """Return a bicycle on its stand, 1.7 m long with wheels of 0.66 m."""
+    """Return a model of a bicycle on its stand, 1.7 m long with wheels of 0.66 m."""
     paint, parts = bright_colour(rng), []
     for middle in (-0.5, 0.5):
         corners = np.linspace(0, 2 * np.pi, 17)
@@ -276,7 +276,7 @@ def _as_point(point: tuple[float, ...]) -> tuple[float, float, float]:
 
 
 def spiral_shelf(rng: np.random.Generator) -> Model:
-    """Return a spiral shelf with boards around a pole, 1.7 m high."""
+    """Return a model of a spiral shelf with boards around a pole, 1.7 m high."""
     parts: list[Part | Bar] = [Bar((0, 0, 0.03), (0, 0, 1.66), 0.03, METAL)]
     parts.append(Part((-0.2, -0.2, 0, 0.2, 0.2, 0.04), METAL, form="drum"))
     for n in range(8):
@@ -295,7 +295,7 @@ def spiral_shelf(rng: np.random.Generator) -> Model:
 
 
 def sculpture(rng: np.random.Generator) -> Model:
-    """Return a random sculpture of overlapping balls."""
+    """Return a model of a random sculpture of overlapping balls."""
     tone: Colour = (200, 196, 188) if rng.random() < 0.5 else bright_colour(rng)
     parts, place = [], np.array([0.0, 0.0, 0.22])
     for _ in range(6):
@@ -308,7 +308,7 @@ def sculpture(rng: np.random.Generator) -> Model:
 
 
 def cat_tree(rng: np.random.Generator) -> Model:
-    """Return a cat tree with posts, platforms at three heights and a cave."""
+    """Return a model of a cat tree with posts, platforms at three heights and a cave."""
     cloth: Colour = (186, 172, 150)
     rope: Colour = (206, 180, 130)
     parts: list[Part | Bar] = [
@@ -323,7 +323,7 @@ def cat_tree(rng: np.random.Generator) -> Model:
 
 
 def gym_ball(rng: np.random.Generator) -> Model:
-    """Return a gym ball, 0.65 m across."""
+    """Return a model of a gym ball, 0.65 m across."""
     return make_model(
         "gym_ball",
         OBJS,
@@ -332,7 +332,7 @@ def gym_ball(rng: np.random.Generator) -> Model:
 
 
 def floor_vase(rng: np.random.Generator) -> Model:
-    """Return a large floor vase with dry twigs."""
+    """Return a model of a large floor vase with dry twigs."""
     clay = bright_colour(rng)
     parts: list[Part | Bar] = [
         Part((-0.16, -0.16, 0.0, 0.16, 0.16, 0.5), clay, form="ball"),

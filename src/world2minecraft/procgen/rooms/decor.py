@@ -11,7 +11,7 @@ LIGHT: Colour = (255, 240, 205)
 
 
 def tv(width: float) -> Model:
-    """Return a flat television on a stand."""
+    """Return a model of a flat television on a stand."""
     d, w = 0.24, round_to_step(width)
     h = round_to_step(w * 0.58) + 0.06
     parts = (
@@ -24,7 +24,7 @@ def tv(width: float) -> Model:
 
 
 def monitor() -> Model:
-    """Return a computer monitor with a bright image."""
+    """Return a model of a computer monitor with a bright image."""
     d, w, h = 0.20, 0.60, 0.46
     parts = (
         Part((-d / 2, -0.14, 0, d / 2, 0.14, 0.02), BLACK),
@@ -37,7 +37,7 @@ def monitor() -> Model:
 
 
 def floor_lamp(shade_colour: Colour) -> Model:
-    """Return a floor lamp, 1.6 m high."""
+    """Return a model of a floor lamp, 1.6 m high."""
     d, h = 0.36, 1.60
     parts = (
         Part((-0.14, -0.14, 0, 0.14, 0.14, 0.02), BLACK),
@@ -48,7 +48,7 @@ def floor_lamp(shade_colour: Colour) -> Model:
 
 
 def table_lamp(foot: Colour) -> Model:
-    """Return a small table lamp."""
+    """Return a model of a small table lamp."""
     d, h = 0.24, 0.44
     parts = (
         Part((-0.08, -0.08, 0, 0.08, 0.08, 0.02), foot),
@@ -59,7 +59,7 @@ def table_lamp(foot: Colour) -> Model:
 
 
 def pendant(drop: float, colour: Colour) -> Model:
-    """Return a pendant lamp whose total length below the ceiling is ``drop`` metres."""
+    """Return a model of a pendant lamp whose total length below the ceiling is ``drop`` metres."""
     d, h = 0.40, round_to_step(drop)
     parts = (
         Part((-0.02, -0.02, 0.20, 0.02, 0.02, h), BLACK),
@@ -70,7 +70,7 @@ def pendant(drop: float, colour: Colour) -> Model:
 
 
 def plant(height: float, rng: np.random.Generator) -> Model:
-    """Return a potted plant with leaves in several shades of green."""
+    """Return a model of a potted plant with leaves in several shades of green."""
     d, h = 0.52, round_to_step(height)
     pot = round_to_step(0.28)
     clay: Colour = (186, 108, 76) if rng.random() < 0.5 else (226, 222, 214)
@@ -91,7 +91,7 @@ def plant(height: float, rng: np.random.Generator) -> Model:
 
 
 def picture(width: float, height: float, rng: np.random.Generator) -> Model:
-    """Return a framed picture of a simple landscape."""
+    """Return a model of a framed picture of a simple landscape."""
     d, w, h = 0.04, round_to_step(width), round_to_step(height)
     skies: tuple[Colour, ...] = ((150, 190, 214), (226, 196, 160), (190, 204, 196))
     lands: tuple[Colour, ...] = ((84, 116, 90), (176, 112, 74), (66, 92, 120))
@@ -112,7 +112,7 @@ def picture(width: float, height: float, rng: np.random.Generator) -> Model:
 
 
 def curtain(width: float, height: float, colour: Colour) -> Model:
-    """Return a curtain with folds."""
+    """Return a model of a curtain with folds."""
     d, w, h = 0.10, round_to_step(width), round_to_step(height)
     parts = []
     for n, y in enumerate(np.arange(-w / 2, w / 2 - 0.01, 0.06)):
@@ -124,7 +124,7 @@ def curtain(width: float, height: float, colour: Colour) -> Model:
 
 
 def crate(size: tuple[float, float, float], colour: Colour) -> Model:
-    """Return a cardboard box with tape across its top."""
+    """Return a model of a cardboard box with tape across its top."""
     d, w, h = (round_to_step(length) for length in size)
     parts = (
         Part((-d / 2, -w / 2, 0, d / 2, w / 2, h), colour),
@@ -134,7 +134,7 @@ def crate(size: tuple[float, float, float], colour: Colour) -> Model:
 
 
 def book_pile(rng: np.random.Generator) -> Model:
-    """Return a pile of three books."""
+    """Return a model of a pile of three books."""
     tones: tuple[Colour, ...] = ((150, 60, 52), (52, 88, 122), (208, 178, 96), (80, 110, 88))
     parts = []
     for n in range(3):
@@ -145,7 +145,7 @@ def book_pile(rng: np.random.Generator) -> Model:
 
 
 def vase(colour: Colour) -> Model:
-    """Return a vase with flowers."""
+    """Return a model of a vase with flowers."""
     parts = (
         Part((-0.06, -0.06, 0, 0.06, 0.06, 0.18), colour),
         Part((-0.02, -0.02, 0.18, 0.02, 0.02, 0.28), (86, 130, 70)),
@@ -156,7 +156,7 @@ def vase(colour: Colour) -> Model:
 
 
 def bowl() -> Model:
-    """Return a fruit bowl."""
+    """Return a model of a fruit bowl."""
     parts = (
         Part((-0.14, -0.14, 0, 0.14, 0.14, 0.06), (236, 232, 222)),
         Part((-0.10, -0.10, 0.06, 0.0, 0.02, 0.12), (206, 66, 50)),
@@ -167,7 +167,7 @@ def bowl() -> Model:
 
 
 def microwave() -> Model:
-    """Return a microwave oven."""
+    """Return a model of a microwave oven."""
     d, w, h = 0.36, 0.50, 0.30
     parts = (
         Part((-d / 2, -w / 2, 0, d / 2, w / 2, h), (200, 202, 204)),
@@ -178,7 +178,7 @@ def microwave() -> Model:
 
 
 def kettle(colour: Colour) -> Model:
-    """Return a kettle with a handle."""
+    """Return a model of a kettle with a handle."""
     parts = (
         Part((-0.08, -0.04, 0, 0.08, 0.12, 0.20), colour),
         Part((-0.02, -0.12, 0.04, 0.02, -0.08, 0.20), BLACK),
@@ -189,7 +189,7 @@ def kettle(colour: Colour) -> Model:
 
 
 def hood() -> Model:
-    """Return a steel extractor hood with a chimney."""
+    """Return a model of a steel extractor hood with a chimney."""
     d, w, h = 0.48, 0.60, 0.90
     steel: Colour = (184, 187, 190)
     parts = (
@@ -201,7 +201,7 @@ def hood() -> Model:
 
 
 def door(width: float, height: float, colour: Colour) -> Model:
-    """Return a closed door leaf with panels and a handle."""
+    """Return a model of a closed door leaf with panels and a handle."""
     d, w, h = 0.06, round_to_step(width), round_to_step(height)
     parts = [Part((-d / 2, -w / 2, 0, d / 2 - 0.02, w / 2, h), colour, "wood")]
     for low, high in ((0.16, h * 0.42), (h * 0.5, h - 0.16)):
@@ -213,7 +213,7 @@ def door(width: float, height: float, colour: Colour) -> Model:
 
 
 def waste_bin(colour: Colour) -> Model:
-    """Return a waste-paper bin."""
+    """Return a model of a waste-paper bin."""
     parts = (
         Part((-0.14, -0.14, 0, 0.14, 0.14, 0.32), colour),
         Part((-0.10, -0.10, 0.28, 0.10, 0.10, 0.32), (230, 228, 222)),
@@ -222,7 +222,7 @@ def waste_bin(colour: Colour) -> Model:
 
 
 def keyboard() -> Model:
-    """Return a computer keyboard."""
+    """Return a model of a computer keyboard."""
     parts = (
         Part((-0.08, -0.22, 0, 0.08, 0.22, 0.02), (58, 60, 64)),
         Part((-0.06, -0.20, 0, 0.06, 0.20, 0.02), (84, 86, 90)),

@@ -84,7 +84,10 @@ class Roof:
 
 @dataclass(frozen=True)
 class Ground:
-    """The shape of a room in its local frame, with the inner box from (0, 0) to ``size_m``."""
+    """The shape of a room in its local frame, with the inner box from (0, 0) to ``size_m``.
+
+    ``blocks`` are full-height rectangles x0, y0, x1, y1 that are not part of the room.
+    """
 
     size_m: tuple[float, float, float]
     blocks: tuple[Rect, ...] = ()
@@ -223,12 +226,12 @@ def _chamfer(corners: list[tuple], spot: tuple[float, float], leg_m: float) -> l
 
 
 def box_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return a rectangular ground."""
+    """Return a rectangular room shape."""
     return Ground(size_m)
 
 
 def ell_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return an L-shaped ground whose sides are 22 % longer than those of the box."""
+    """Return an L-shaped room shape whose sides are 22 % longer than those of the box."""
     width, depth = (round_to_step(1.22 * side) for side in size_m[:2])
     gone_x = round_to_step(width * rng.uniform(0.28, 0.4))
     gone_y = round_to_step(depth * rng.uniform(0.28, 0.4))
@@ -241,7 +244,7 @@ def ell_ground(size_m: Size, rng: np.random.Generator) -> Ground:
 
 
 def cut_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return a ground with a cut corner, a chimney breast or an alcove, chosen at random."""
+    """Return a room shape with a cut corner, a chimney breast or an alcove, chosen at random."""
     width, depth, height = size_m
     drawn = int(rng.integers(3))
     if drawn == 0:
@@ -269,7 +272,7 @@ def _between(free_m: float, margin_m: float, rng: np.random.Generator) -> float:
 
 
 def sloped_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return an attic ground with one or two roofs of 35 to 50 degrees above knee walls."""
+    """Return an attic shape with one or two roofs of 35 to 50 degrees above knee walls."""
     width, depth, height = size_m
     axis = 0 if width >= depth else 1
     knee = round_to_step(rng.uniform(0.9, 1.4))
@@ -283,7 +286,7 @@ def sloped_ground(size_m: Size, rng: np.random.Generator) -> Ground:
 
 
 def columns_ground(size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return a ground with one or two square columns outside its middle."""
+    """Return a room shape with one or two square columns outside its middle."""
     width, depth, _ = size_m
     side = round_to_step(rng.uniform(0.28, 0.4))
     blocks = []
@@ -303,7 +306,7 @@ SHAPES: dict[str, Callable[[Size, np.random.Generator], Ground]] = {
 
 
 def shaped_ground(shape: str, size_m: Size, rng: np.random.Generator) -> Ground:
-    """Return a ground of a given shape and approximate size.
+    """Return a room shape of a given kind and approximate size.
 
     Args:
         shape: One of ``SHAPES``.
@@ -314,7 +317,7 @@ def shaped_ground(shape: str, size_m: Size, rng: np.random.Generator) -> Ground:
 
 
 def draw_shape(seed: int) -> str:
-    """Return the random shape of a seed, used if no shape is given."""
+    """Return the name of the random room shape of a seed, used if no shape is given."""
     return sorted(SHAPES)[int(np.random.default_rng([seed, 1 << 20]).integers(len(SHAPES)))]
 
 

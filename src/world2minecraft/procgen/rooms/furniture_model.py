@@ -79,7 +79,7 @@ def shade(colour: Colour, factor: float) -> Colour:
 
 
 def legs(depth: float, width: float, height: float, side: float, colour: Colour) -> list[Part]:
-    """Return four legs at the corners of a footprint."""
+    """Return the box parts of four furniture legs at the corners of a footprint."""
     spots = []
     for x in (-depth / 2, depth / 2 - side):
         for y in (-width / 2, width / 2 - side):

@@ -1,9 +1,9 @@
 """Collision-free placement of furniture, independently or relative to other items.
 
-A ``Plan`` contains the ground of the room, its items, and reserved space such as the swing of a
-door, the area in front of a window and the space beside a bed. Walls are those of the ground. The
-first four are numbered by the yaw of furniture with its back to the wall, in quarter turns: 0 is at
-x = 0, 1 at y = 0, 2 at x = max and 3 at y = max.
+A ``Plan`` contains the shape of the room, its items, and reserved space such as the swing of a
+door, the area in front of a window and the space beside a bed. The first four walls are numbered by
+the yaw of furniture with its back to the wall, in quarter turns: 0 is at x = 0, 1 at y = 0, 2 at x
+= max and 3 at y = max.
 """
 
 from dataclasses import dataclass

@@ -19,7 +19,7 @@ SOFA, TABLE = int(SemanticClass.SOFA), int(SemanticClass.TABLE)
 
 
 def chair(wood: Colour, cushion: Colour) -> Model:
-    """Return a dining chair with a padded seat and a back with slats."""
+    """Return a model of a dining chair with a padded seat and a back with slats."""
     d, w, h = 0.46, 0.44, 0.90
     posts = [
         Part((-d / 2, y, 0.48, -d / 2 + 0.04, y + 0.04, h), wood, "wood")
@@ -37,7 +37,7 @@ def chair(wood: Colour, cushion: Colour) -> Model:
 
 
 def office_chair(cushion: Colour) -> Model:
-    """Return an office chair with a crossed foot, a high back and armrests."""
+    """Return a model of an office chair with a crossed foot, a high back and armrests."""
     d, w, h = 0.60, 0.60, 1.04
     dark = (48, 50, 54)
     parts = (
@@ -55,13 +55,13 @@ def office_chair(cushion: Colour) -> Model:
 
 
 def armchair(fabric: Colour, wood: Colour) -> Model:
-    """Return an upholstered armchair, which has the class chair."""
+    """Return a model of an upholstered armchair, which has the class chair."""
     d, w, h = 0.84, 0.80, 0.86
     return Model("armchair", CHAIR, (d, w, h), tuple(_upholstery(d, w, h, 1, fabric, wood)))
 
 
 def sofa(width: float, fabric: Colour, pillow: Colour, wood: Colour) -> Model:
-    """Return a sofa with arms, seat cushions and two loose pillows."""
+    """Return a model of a sofa with arms, seat cushions and two loose pillows."""
     d, w, h = 0.92, round_to_step(width), 0.84
     parts = _upholstery(d, w, h, 3 if w > 2.0 else 2, fabric, wood)
     for y in (-w / 2 + 0.24, w / 2 - 0.62):
@@ -88,7 +88,7 @@ def _upholstery(d: float, w: float, h: float, seats: int, fabric: Colour, wood: 
 
 
 def table(name: str, depth: float, width: float, height: float, wood: Colour) -> Model:
-    """Return a table with four legs, an apron and a top."""
+    """Return a model of a table with four legs, an apron and a top."""
     d, w, h = round_to_step(depth), round_to_step(width), round_to_step(height)
     under = shade(wood, 0.85)
     apron = Part(
@@ -102,7 +102,7 @@ def table(name: str, depth: float, width: float, height: float, wood: Colour) ->
 
 
 def desk(width: float, wood: Colour, body: Colour) -> Model:
-    """Return a desk with a drawer block, whose front is the side of the chair."""
+    """Return a model of a desk with a drawer block, whose front is the side of the chair."""
     d, w, h = 0.70, round_to_step(width), 0.74
     parts = [
         Part((-d / 2, -w / 2, h - 0.04, d / 2, w / 2, h), wood, "wood"),
@@ -119,7 +119,7 @@ def desk(width: float, wood: Colour, body: Colour) -> Model:
 
 
 def bed(width: float, wood: Colour, blanket: Colour) -> Model:
-    """Return a bed with pillows, a blanket and a headboard, whose front is the foot end."""
+    """Return a model of a bed with pillows and a blanket. Its front is the foot end."""
     d, w, h = 2.10, round_to_step(width), 1.04
     head = -d / 2 + 0.06
     white = (238, 236, 230)

@@ -17,7 +17,7 @@ BOOKS: tuple[Colour, ...] = (
 
 
 def bookshelf(width: float, height: float, wood: Colour, rng: np.random.Generator) -> Model:
-    """Return an open bookshelf with a row of books on each board."""
+    """Return a model of an open bookshelf with a row of books on each board."""
     d, w, h = 0.32, round_to_step(width), round_to_step(height)
     dark = shade(wood, 0.82)
     parts = [
@@ -51,7 +51,7 @@ def _books(first: float, last: float, z: float, d: float, rng: np.random.Generat
 def cabinet(
     name: str, size: tuple[float, float, float], columns: int, rows: int, body: Colour, top: Colour
 ) -> Model:
-    """Return a cabinet with a grid of doors or drawers, such as a wardrobe, dresser or TV board."""
+    """Return a model of a cabinet with a grid of doors or drawers, such as a wardrobe."""
     d, w, h = (round_to_step(length) for length in size)
     parts = [
         Part((-d / 2, -w / 2, 0.06, d / 2 - 0.04, w / 2, h - 0.04), shade(body, 0.92), "wood"),
@@ -80,7 +80,7 @@ def _front(x: float, a: float, b: float, low: float, high: float, colour: Colour
 
 
 def counter(width: float, front: Colour, worktop: Colour, *, sink: bool = False) -> Model:
-    """Return a kitchen counter with doors and a worktop, and optionally a sink with a tap."""
+    """Return a model of a kitchen counter with doors, and optionally a sink with a tap."""
     d, w, h = 0.64, round_to_step(width), 0.90
     parts = [
         Part((-d / 2, -w / 2, 0, d / 2 - 0.10, w / 2, 0.10), DARK),
@@ -104,7 +104,7 @@ def counter(width: float, front: Colour, worktop: Colour, *, sink: bool = False)
 
 
 def oven(front: Colour, worktop: Colour) -> Model:
-    """Return a cooker with an oven door, knobs and four hotplates."""
+    """Return a model of a cooker with an oven door, knobs and four hotplates."""
     d, w, h = 0.64, 0.60, 0.92
     parts = [
         Part((-d / 2, -w / 2, 0, d / 2 - 0.10, w / 2, 0.10), DARK),
@@ -124,7 +124,7 @@ def oven(front: Colour, worktop: Colour) -> Model:
 
 
 def wall_cabinet(width: float, front: Colour) -> Model:
-    """Return a kitchen wall cabinet."""
+    """Return a model of a kitchen wall cabinet."""
     d, w, h = 0.36, round_to_step(width), 0.70
     parts = [Part((-d / 2, -w / 2, 0, d / 2 - 0.04, w / 2, h), shade(front, 0.9))]
     doors = max(1, round(w / 0.5))
@@ -135,7 +135,7 @@ def wall_cabinet(width: float, front: Colour) -> Model:
 
 
 def fridge(colour: Colour) -> Model:
-    """Return a fridge above a freezer."""
+    """Return a model of a fridge above a freezer."""
     d, w, h = 0.68, 0.62, 1.82
     parts = [
         Part((-d / 2, -w / 2, 0, d / 2 - 0.06, w / 2, h), shade(colour, 0.94)),

@@ -1,7 +1,7 @@
 """Camera trajectories of scans: a person walks through all rooms and looks around while scanning.
 
-The tour enters a room through the door, visits a few stops that are far apart, in nearest-first
-order over free floor, pauses at each, and continues in the nearest unvisited room.
+The tour enters a room through the door and visits a few stops that are far apart, in the order of a
+short path over free floor. It pauses at each stop and then continues in the nearest unvisited room.
 ``view_planning`` chooses the viewing directions.
 """
 

@@ -1,4 +1,4 @@
-"""View planning for scans, which prefers surfaces that were seen least or from other sides.
+"""View planning for scans: the camera looks at surfaces that were seen least or from few sides.
 
 Coarse rays in all directions find the surfaces around a position. Every possible image is a window
 of these directions, so choosing among hundreds of views takes a few milliseconds.

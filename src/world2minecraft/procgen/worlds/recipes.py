@@ -130,7 +130,7 @@ class RecipeContext:
             hang_one(self.furnisher, self.room, name, (n + 0.5) / count, self.rng)
 
     def on(self, thing: PlacedFurniture | None, *names: str) -> None:
-        """Place one of several small designs on a piece of furniture, if there is one."""
+        """Place one of several small designs on top of a piece of furniture, if it is not None."""
         if thing is not None:
             self.furnisher.put_on(names, thing, self.rng)
 

@@ -55,18 +55,18 @@ class RoomLook:
 
     @property
     def stairs(self) -> str:
-        """The block name of the stairs."""
+        """The name of the stairs block."""
         return f"minecraft:{self.wood}_stairs"
 
     @property
     def frame(self) -> str:
-        """The block name of frames, which differs slightly from the planks of the same wood."""
+        """The name of the block for frames, slightly different from the planks of the wood."""
         bare = {"crimson": "crimson_hyphae", "warped": "warped_hyphae", "bamboo": "bamboo_block"}
         return f"minecraft:stripped_{bare.get(self.wood, f'{self.wood}_wood')}"
 
     @property
     def handrail(self) -> str:
-        """The block name of the slab on top of railings."""
+        """The name of the slab block on top of railings."""
         return f"minecraft:{self.wood}_slab"
 
 
