@@ -120,7 +120,7 @@ class NbtWriter:
         return packed.replace(b"\0", b"\xc0\x80")
 
     def tag_of_array(self, value: np.ndarray) -> int:
-        """Return the tag of an array.
+        """Return the NBT tag type of an array.
 
         Raises:
             UsageError: If no tag exists for the shape or dtype.
@@ -132,7 +132,7 @@ class NbtWriter:
         )
 
     def tag_of(self, value: Any) -> int:
-        """Return the tag of a Python value.
+        """Return the NBT tag type of a Python value.
 
         Raises:
             UsageError: If the type has no tag.
@@ -186,7 +186,7 @@ class NbtWriter:
             self.put(kind, value)
 
     def put_string(self, text: str) -> None:
-        """Append a string."""
+        """Append a string, preceded by its length."""
         try:
             raw = self.encoded(text)
         except UnicodeError as error:
@@ -321,7 +321,7 @@ class NbtReader:
         )
 
     def string(self) -> str:
-        """Read a string."""
+        """Read a length-prefixed string at the current position."""
         start = self.at + 2
         end = start + self.uint16.unpack_from(self.data, self.at)[0]
         if end > len(self.data):
@@ -376,7 +376,7 @@ class NbtReader:
         return result
 
     def items(self, depth: int) -> list[Any]:
-        """Read a list."""
+        """Read a list at the current position."""
         tag = self.data[self.at]
         count = self.int32.unpack_from(self.data, self.at + 1)[0]
         self.at += 5

@@ -68,7 +68,7 @@ class StructureFormat(FileFormat):
 
 
 class LegacySchematicFormat(FileFormat):
-    """The schematic format of MCEdit, WorldEdit and Schematica before 1.13, which is read-only."""
+    """The schematic format of MCEdit and WorldEdit before 1.13, which can only be read."""
 
     suffix = ".schematic"
     can_write = False

@@ -1,7 +1,7 @@
-"""Construction of volumes from game files, which have neither labels nor a scale.
+"""Construction of volumes from game files, which contain neither labels nor a scale.
 
-Readers provide a list of state texts, from which the volume's palette is built: air first, then the
-other states sorted and without duplicates.
+Readers provide a list of block states, from which the volume's palette is built: air first, then
+the other states sorted and without duplicates.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,10 +1,10 @@
-"""Reading and writing of Litematica files, which contain one or more regions with own palettes.
+"""Reading and writing of Litematica files, which contain one or more regions.
 
-The ``Position`` of a region is one of its corners, and its ``Size`` extends from there, backwards
-along axes on which it is negative. Positions of blocks and block entities are relative to the
-lowest corner, and those of entities are relative to ``Position``. In a region of width W and length
-L, the block (x, y, z) has index (y * L + z) * W + x. Palette indices have ``max(2, ceil log2)``
-bits and are packed without gaps.
+Each region has its own palette. The ``Position`` of a region is one of its corners, and its
+``Size`` extends from there, backwards along axes on which it is negative. Positions of blocks and
+block entities are relative to the lowest corner, and those of entities are relative to
+``Position``. In a region of width W and length L, the block (x, y, z) has index (y * L + z) * W +
+x. Palette indices have ``max(2, ceil(log2(palette size)))`` bits and are packed without gaps.
 """
 
 import math

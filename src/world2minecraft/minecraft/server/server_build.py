@@ -204,7 +204,7 @@ class LiveResult:
 
 
 class LiveBuilder:
-    """Runs a build plan on one server.
+    """A builder that runs a build plan on one server, with reconnection and a final check.
 
     Args:
         client: The RCON client. It connects when the build starts.

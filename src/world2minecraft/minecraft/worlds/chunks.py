@@ -63,7 +63,7 @@ class Section:
 
 
 class SectionPacker:
-    """Packs the sections of one volume."""
+    """A packer of the chunk sections of one volume."""
 
     def __init__(self, states: np.ndarray, palette: Sequence[str], data_version: int):
         self.entries = [state_entry(state, data_version) for state in palette]
@@ -182,7 +182,7 @@ def old_sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) ->
 
 
 class OldChunkWriter:
-    """Writes the chunks of one volume for a game from 1.13 to 1.17."""
+    """A writer of the chunks of one volume for a game from 1.13 to 1.17."""
 
     def __init__(self, states: np.ndarray, palette: Sequence[str], version: GameVersion):
         self._packer = SectionPacker(states, palette, version.level_data_version)
@@ -246,7 +246,7 @@ class OldChunkWriter:
 
 
 class ChunkWriter:
-    """Writes the chunks of one volume for a game since 1.18."""
+    """A writer of the chunks of one volume for a game since 1.18."""
 
     def __init__(self, states: np.ndarray, palette: Sequence[str], version: GameVersion):
         self._packer = SectionPacker(states, palette, version.level_data_version)

@@ -203,7 +203,7 @@ class Plan:
             self.reserved.append((x0 - width_m, y0, 0.0, x1 + width_m, y1, 2.0))
 
     def front_box(self, item: Item, depth_m: float) -> Box:
-        """Return the box of space in front of an item."""
+        """Return the box of free space up to ``depth_m`` in front of an item."""
         half, wide = item.model.size_m[0] / 2, item.model.size_m[1] / 2
         ax, ay = item.point(half, -wide)
         bx, by = item.point(half + depth_m, wide)

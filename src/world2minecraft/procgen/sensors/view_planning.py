@@ -34,7 +34,7 @@ CLASS_WORTH[5:] = 2.0  # Furniture and things.
 
 
 class ViewPlanner:
-    """Chooses viewing directions along one tour and remembers the surfaces already seen."""
+    """A planner of viewing directions along one tour that remembers the surfaces already seen."""
 
     def __init__(
         self,

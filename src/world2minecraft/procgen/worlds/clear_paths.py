@@ -65,7 +65,7 @@ class ClearPaths:
         self.taken[room.number][tuple(columns.T)] = True
 
     def free(self, room: BlockRoom) -> np.ndarray:
-        """Return the free columns of a room as bool [X, Y] of the house."""
+        """Return which columns of the house are free in a room, as bool [X, Y]."""
         return ~self.taken[room.number]
 
     def _reached(self, room: BlockRoom, places: np.ndarray) -> np.ndarray | None:

@@ -104,7 +104,7 @@ def _hang(
 def hang_lamps(
     furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator, *, by_night: bool
 ) -> int:
-    """Hang ceiling lamps of one kind in a room, more by night, and return their number."""
+    """Hang ceiling lamps of one kind in a room, more of them by night; return their number."""
     scale = furnisher.house.blocks_per_metre
     if room.kind in ("hall", "shop", "storage", "bathroom", "laundry"):
         names = CEILING_LAMPS[:1]

@@ -44,7 +44,7 @@ class PlacedFurniture:
 
 @dataclass
 class Furnisher:
-    """Places furniture designs in the rooms of a house."""
+    """A placer of furniture designs in the rooms of one house."""
 
     canvas: WorldCanvas
     house: BlockHouse

@@ -30,7 +30,7 @@ Corner = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class Ware:
-    """A displayed block: a column of states from bottom to top, or the two halves of a bed.
+    """A block to display: a column of states from bottom to top, or the two halves of a bed.
 
     ``{facing}`` in a state is replaced by the direction of its front.
     """
@@ -104,7 +104,7 @@ class WareDeck:
 
 
 class StandBuilder:
-    """Places wares and their stands in the rooms of one house."""
+    """A placer of wares and their stands in the rooms of one house."""
 
     def __init__(self, furnisher: Furnisher, deck: WareDeck, rng: np.random.Generator):
         self.furnisher, self.deck, self.rng = furnisher, deck, rng
@@ -229,7 +229,7 @@ class StandBuilder:
         return held
 
     def hang_on_walls(self, room: BlockRoom, count: int, level: int) -> int:
-        """Hang wares on bare walls at a layer above the floor, and return their number."""
+        """Hang up to ``count`` wares on bare walls at a layer above the floor; return the count."""
         hung = 0
         for _ in range(count * 4):
             if hung >= count:
@@ -254,7 +254,7 @@ class StandBuilder:
         return hung
 
     def hang_from_ceiling(self, room: BlockRoom, count: int) -> int:
-        """Hang wares from the ceiling, and return their number."""
+        """Hang up to ``count`` wares from the ceiling of a room, and return their number."""
         hung = 0
         for _ in range(count * 3):
             if hung >= count:
