@@ -88,7 +88,7 @@ def test_the_log_is_whole_after_its_lines_were_lost(scene, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "reason"),
     [
-        (["nowhere"], 3, "nowhere: has no edits; open it with w2m forge first"),
+        (["nowhere"], 3, "nowhere: no edits found; open the scene with w2m forge first"),
         (["nowhere", "--csv", "--json"], 2, "exclude each other; give one"),
     ],
 )

@@ -94,7 +94,8 @@ def test_what_is_written_is_kept_and_imported(client, folder):
          "instruction level must be one of goal, route, landmark, got 'dance'"),
         ({"number": 7}, "walk 7 not found; walks: 0 to 1"),
         ({"text": 5},
-         "the body needs an integer number and the texts level, text, annotator, language"),
+         "the body must contain an integer number and the strings level, text, annotator, "
+         "language"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_refused(client, folder, changed, error):

@@ -118,7 +118,7 @@ def test_a_build_that_was_made_is_not_made_again(server, script, monkeypatch):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        ("blocks_per_metre=lots", "blocks_per_metre must be a number such as 4, not 'lots'"),
+        ("blocks_per_metre=lots", "blocks_per_metre must be a number such as 4, got 'lots'"),
         ("blocks_per_metre=nan", "must be 0.25 to 100, not nan; try 1, 2, 4 or 12.5"),
         ("blocks_per_metre=0", "blocks_per_metre must be 0.25 to 100, not 0.0"),
         ("style=block", "no style is named 'block'; did you mean 'blocks'?"),
@@ -174,7 +174,7 @@ def test_voxels_stop_a_person_where_they_are(server, script):
 
 def test_an_unknown_kind_of_boxes_is_refused(script):
     answer = script.get("/api/collision?what=air")
-    assert answer.json()["error"] == "what must be build or voxels, not 'air'"
+    assert answer.json()["error"] == "what must be 'build' or 'voxels', got 'air'"
 
 
 def test_a_room_opened_during_a_build_never_gets_its_blocks(monkeypatch, tmp_path):

@@ -150,7 +150,7 @@ def test_damage_after_the_last_snapshot_keeps_earlier_edits(run, forge):
     damaged(forge / "journal.bin", steps[6].record.at + 12)
     again = Editor.open(run)
     assert held(again) == states[6]
-    assert any("; 4 edits of it are lost" in note for note in again.notes)
+    assert any("; 4 edits are lost" in note for note in again.notes)
     assert (forge / "journal-damaged-1.bin").exists()
     again.close()
     last = Editor.open(run)
@@ -247,7 +247,7 @@ def test_a_second_process_may_look_and_not_edit(run, forge):
     other = Editor.open(run)
     assert (
         other.read_only
-        == f"process {os.getpid()} is editing this scene; close it there, then open it again"
+        == f"process {os.getpid()} is editing this scene; close the scene there, then open it again"
     )
     assert held(other) == states[-1] and other.scene_json()["read_only"] == other.read_only
     before = {path.name: path.read_bytes() for path in forge.iterdir()}
@@ -355,8 +355,8 @@ def test_a_rewritten_scene_never_drops_unsaved_edits(run, forge):
     with pytest.raises(ConflictError) as refused:
         Editor.open(run)
     assert str(refused.value) == (
-        f"{run / 'objects.json'}: changed since it was edited, and den.forge holds 6 unsaved "
-        f"edits; open {forge} to continue with them, or move it away to start over"
+        f"{run / 'objects.json'}: the file has changed since it was edited, and den.forge has 6 "
+        f"unsaved edits; open {forge} to continue with them, or move it away to start over"
     )
     again = Editor.open(forge)
     assert held(again) == states[-1]

@@ -114,7 +114,7 @@ def test_a_capture_becomes_a_room_that_opens(server, script, scanned):
     assert script.get("/api/scene").status_code == 200
     assert script.get(f"/api/start/captures/{number}/room.png").status_code == 200
     refused = script.delete(f"/api/start/captures/{number}")
-    assert "its room is open in the editor; close it first" in refused.json()["error"]
+    assert "the room of this capture is open in the editor" in refused.json()["error"]
     script.post("/api/start/close")
     assert script.delete(f"/api/start/captures/{number}").status_code == 200
     assert script.get("/api/start").json()["captures"] == []
@@ -176,7 +176,7 @@ def test_more_than_was_said_is_not_taken(server, script):
     number = announced(script, {"a.mp4": b"1234"})["id"]
     answer = send(script, number, 0, b"12345")
     assert answer.status_code == 400
-    assert answer.json()["error"] == "a.mp4: has more than the announced 4 bytes"
+    assert answer.json()["error"] == "a.mp4: the upload exceeds the announced 4 bytes"
     assert server.workspace.captures.named(number).place_of(0).stat().st_size <= 4
 
 
@@ -184,7 +184,7 @@ def test_a_gigabyte_is_refused_before_a_byte_comes(server, script):
     files = [{"path": "a.mp4", "size": 1 << 30}]
     answer = script.post("/api/start/captures", json={"title": "a", "files": files})
     assert answer.status_code == 400
-    assert "has 1,024 MB; the upload limit is 64 MB" in answer.json()["error"]
+    assert "is 1,024 MB, the upload limit is 64 MB" in answer.json()["error"]
     assert list(server.workspace.home.rglob("*.mp4")) == []
 
 

@@ -92,11 +92,11 @@ def test_what_systems_leave_in_folders_is_left_out():
         ([one("a", True)], UsageError, "must be whole bytes"),
         ([one("a", 1.5)], UsageError, "must be whole bytes"),
         ([one("a"), one("A")], UsageError, "occurs twice"),
-        ([one("a"), one("a/b")], UsageError, "is both a file and a folder"),
-        ([one("a", 1 << 30)], LimitError, "has 1,024 MB; the upload limit is 512 MB"),
+        ([one("a"), one("a/b")], UsageError, "is used for both a file and a folder"),
+        ([one("a", 1 << 30)], LimitError, "is 1,024 MB, the upload limit is 512 MB"),
         ([one("a", 300 << 20), one("b", 300 << 20)], LimitError, "has 600 MB"),
         ([one("a", 1 << 80)], LimitError, "the upload limit is 512 MB"),
-        ([one("a")] * (MAX_FILES + 1), LimitError, "has 20,001 files; the limit is 20,000"),
+        ([one("a")] * (MAX_FILES + 1), LimitError, "contains 20,001 files, the limit is 20,000"),
     ],
 )
 def test_lists_that_cannot_be_taken_say_why(files, error, words):

@@ -1,1 +1,1 @@
-"""SceneForge: the web editor of a scene, its server and the Python that drives it."""
+"""SceneForge: the web editor for scenes, its server and its Python interface."""

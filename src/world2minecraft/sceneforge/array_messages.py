@@ -1,12 +1,12 @@
-"""Arrays as bytes for the page: ``W2MV``, one array of a scene, and packets of several arrays.
+"""Binary array messages for the page: ``W2MV`` for one array of a scene, and packets of arrays.
 
 ``W2MV``: magic, u16 version, u8 dtype (0 u8, 1 u16), u8 flags, 3 x u32 cells along x, y, z, f32
 cell size in metres, 3 x f32 minimum corner in metres, u32 number of labels; then the values in C
-order, all little-endian. Flag 1 says that each cell has three bytes, its colour.
+order, all little-endian. Flag 1 means that each cell has three bytes, its colour.
 
 A packet: ``magic`` (4 bytes), u32 length of the header, the header in UTF-8 padded with spaces,
 then the arrays, little-endian and in C order, each at a multiple of 8 bytes after the header. The
-header is JSON; its ``arrays`` is ``{name: {"dtype": "f4", "shape": [...], "offset": bytes after the
+header is JSON. Its ``arrays`` is ``{name: {"dtype": "f4", "shape": [...], "offset": bytes after the
 header}}``.
 """
 
@@ -31,7 +31,7 @@ VOLUMES = ("labels", "instance", "confidence", "colour")
 
 
 def pack_arrays(magic: bytes, facts: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
-    """Return the bytes of arrays and of the facts in their header."""
+    """Return a packet with arrays and additional header fields as bytes."""
     rows, parts, offset = {}, [], 0
     for name, values in arrays.items():
         kind = values.dtype.newbyteorder("<")
@@ -46,14 +46,14 @@ def pack_arrays(magic: bytes, facts: Mapping[str, Any], arrays: Mapping[str, np.
 
 @dataclass(frozen=True, eq=False)
 class Volume:
-    """A copy of one array of a scene, with what its header says."""
+    """A copy of one array of a scene, with the fields of its ``W2MV`` header."""
 
     values: np.ndarray  # [X, Y, Z], or [X, Y, Z, 3] of a colour
     voxel_m: float
     origin_m: np.ndarray  # float64 [3]
 
     def as_bytes(self) -> bytes:
-        """Return it as ``W2MV``; confidence is 0 to 255 then."""
+        """Return the array as a ``W2MV`` message, with confidence scaled to 0 to 255."""
         is_share = self.values.dtype == np.float16
         values = confidence_bytes(self.values) if is_share else self.values
         kind = DTYPE_U16 if values.dtype == np.uint16 else DTYPE_U8
@@ -67,7 +67,7 @@ def copy_volume(draft: SceneDraft, what: str) -> Volume:
     """Return a copy of the array named ``what``: labels, instance, confidence or colour.
 
     Raises:
-        UnknownNameError: there is no array of that name.
+        UnknownNameError: If the scene has no array of this name.
     """
     if what not in VOLUMES:
         raise UnknownNameError("volume", what, VOLUMES)
@@ -75,10 +75,10 @@ def copy_volume(draft: SceneDraft, what: str) -> Volume:
 
 
 def labels_bytes(draft: SceneDraft, labels: np.ndarray) -> bytes:
-    """Return labels uint8 [X, Y, Z] that lie on a scene's cells, as ``W2MV``."""
+    """Return labels uint8 [X, Y, Z] in a scene's cells as a ``W2MV`` message."""
     return Volume(labels, draft.voxel_m, draft.origin_m).as_bytes()
 
 
 def confidence_bytes(confidence: np.ndarray) -> np.ndarray:
-    """Return confidence, 0 to 1, as uint8 of the same shape, 0 to 255."""
+    """Return confidence values 0 to 1 as uint8 0 to 255 of the same shape."""
     return np.round(confidence.astype(np.float32) * 255).astype(np.uint8)

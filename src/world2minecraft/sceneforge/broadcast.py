@@ -1,8 +1,8 @@
-"""The tabs that are open: each gets every message in order, or starts again.
+"""Delivery of messages to the open browser tabs, in order.
 
-A tab that does not read (its laptop sleeps) costs a bounded queue: when that is full it is
-emptied, and once the tab reads again its first message is a fresh ``hello``, at which it gets the
-scene again. No tab waits for another.
+The queue of a tab that does not read, for example on a sleeping laptop, is bounded. When it is full
+it is emptied, and once the tab reads again it first receives a new ``hello``, upon which it loads
+the scene again. Tabs do not wait for each other.
 """
 
 import asyncio
@@ -17,7 +17,7 @@ MAX_TABS = 64
 
 
 class Tab:
-    """One open page and the messages that wait for it."""
+    """An open browser tab and its queue of messages."""
 
     def __init__(self, actor: str):
         self.actor = actor
@@ -27,7 +27,7 @@ class Tab:
         self._something = asyncio.Event()
 
     def put(self, text: str) -> None:
-        """Add a message, or drop all where the tab does not keep up."""
+        """Add a message to the queue, or empty the queue if it is full."""
         self._something.set()
         if self._lost:
             return
@@ -37,13 +37,13 @@ class Tab:
             self.reset()
 
     def reset(self) -> None:
-        """Drop what waits; the tab starts again."""
+        """Empty the queue, so that the tab loads the scene again."""
         self._queue.clear()
         self._bytes, self._lost = 0, True
         self._something.set()
 
     async def get(self, hello: Callable[[], dict[str, Any]]) -> str:
-        """Return the next message; a ``hello`` of now where some were lost."""
+        """Return the next message, or a current ``hello`` if messages were lost."""
         while True:
             if self._lost:
                 self._lost = False
@@ -57,9 +57,9 @@ class Tab:
 
 
 class Broadcaster:
-    """All tabs of a server.
+    """All open browser tabs of a server.
 
-    Its methods are called on the server's loop, but for ``broadcast_threadsafe``.
+    Its methods must be called on the server's event loop, except ``broadcast_threadsafe``.
     """
 
     def __init__(self):
@@ -69,11 +69,11 @@ class Broadcaster:
 
     @property
     def count(self) -> int:
-        """How many tabs are open."""
+        """The number of open tabs."""
         return len(self._tabs)
 
     def open(self) -> Tab | None:
-        """Return a new tab, None where there are too many."""
+        """Return a new tab, or None if too many are open."""
         if len(self._tabs) >= MAX_TABS:
             return None
         self._loop = asyncio.get_running_loop()
@@ -83,26 +83,26 @@ class Broadcaster:
         return tab
 
     def close(self, tab: Tab) -> None:
-        """Forget a tab."""
+        """Remove a tab."""
         self._tabs.remove(tab)
 
     def broadcast(self, message: dict[str, Any]) -> None:
-        """Send a message of wire.ts to every tab."""
+        """Send a message of ``wire.ts`` to every tab."""
         text = to_json_text(message)
         for tab in self._tabs:
             tab.put(text)
 
     def broadcast_threadsafe(self, message: dict[str, Any]) -> None:
-        """The same from any thread; nothing happens where no tab is open."""
+        """Send a message to every tab, from any thread."""
         if self._loop is not None and not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self.broadcast, message)
 
     def restart(self) -> None:
-        """Let every tab start again: another document is open."""
+        """Make every tab load the scene again after another document was opened."""
         for tab in self._tabs:
             tab.reset()
 
 
 def to_json_text(message: dict[str, Any]) -> str:
-    """Return a message as it is sent."""
+    """Return a message as JSON text."""
     return json.dumps(message, separators=(",", ":"), allow_nan=False)

@@ -1,7 +1,7 @@
-"""The blocks of the scene as it is edited now, as the game will show them.
+"""The edited scene as blocks, as it will look in the game.
 
-A build is made as ``w2m build`` makes it, mended too, and becomes a mesh for the Build view and
-collision boxes for walking in it. Nothing is written.
+A build is made and repaired as in ``w2m build``, and converted to a mesh for the Build view and to
+collision boxes for walking. Nothing is written.
 """
 
 from dataclasses import dataclass, replace
@@ -30,7 +30,7 @@ SCALE_RANGE = (0.25, 100.0)  # Blocks a metre, as ``Parameters`` allows.
 
 @dataclass(frozen=True)
 class BuildOptions:
-    """How the page wants the blocks; checked."""
+    """Validated options of a build preview."""
 
     blocks_per_metre: float = 4.0
     style: str = "blocks"
@@ -38,7 +38,7 @@ class BuildOptions:
     def __post_init__(self):
         low, high = SCALE_RANGE
         if not low <= self.blocks_per_metre <= high:
-            text = f"blocks_per_metre must be {low} to {high:.0f}, not {self.blocks_per_metre}"
+            text = f"blocks_per_metre must be {low} to {high:.0f}, got {self.blocks_per_metre}"
             raise UsageError(f"{text}; try 1, 2, 4 or 12.5")
         if self.style not in STYLES:
             raise UnknownNameError("style", self.style, STYLES)
@@ -46,9 +46,10 @@ class BuildOptions:
 
 @dataclass(frozen=True, eq=False)
 class SceneSnapshot:
-    """A scene at one moment, so that it can be built while it is edited further.
+    """A copy of a scene, so that it can be built while editing continues.
 
-    ``shown`` tells it from other rooms of the server at the same revision, as ``Session.shown``.
+    ``shown`` distinguishes it from other documents of the server at the same revision, as in
+    ``Session.shown``.
     """
 
     rev: int
@@ -60,7 +61,7 @@ class SceneSnapshot:
 
     @classmethod
     def of(cls, editor: Editor) -> "SceneSnapshot":
-        """Copy the scene of an editor; to be called in the editor's turn."""
+        """Copy the scene of an editor. Call this while no other request uses the editor."""
         objects = tuple(editor.draft.objects.values())
         grid = editor.draft.grid()
         return cls(editor.rev, editor.name, editor.opened.source, grid, objects)
@@ -68,7 +69,7 @@ class SceneSnapshot:
 
 @dataclass(frozen=True, eq=False)
 class BlockBuild:
-    """The blocks of a scene, and what the page is sent of them."""
+    """The blocks of a scene, and the data that the page receives about them."""
 
     rev: int
     options: BuildOptions
@@ -76,17 +77,17 @@ class BlockBuild:
 
     @classmethod
     def of(cls, scene: SceneSnapshot, options: BuildOptions) -> "BlockBuild":
-        """Build a scene; takes a second for a room.
+        """Build a scene. This takes about a second for a room.
 
         Raises:
-            UsageError: it would be too many blocks.
+            UsageError: If the build would need too many blocks.
         """
         size = options.blocks_per_metre * scene.grid.voxel_m
         cells = float(np.prod(np.array(scene.grid.shape) * size + 4))
         if cells > MAX_CELLS:
             raise UsageError(
-                f"{options.blocks_per_metre:g} blocks per metre need {cells:.3g} blocks; the limit "
-                f"is {MAX_CELLS:,}. Choose fewer blocks per metre"
+                f"{options.blocks_per_metre:g} blocks per metre need {cells:.3g} blocks, the limit "
+                f"is {MAX_CELLS:,}; choose fewer blocks per metre"
             )
         volume = build_volume(
             scene.grid,
@@ -101,14 +102,14 @@ class BlockBuild:
 
     @cached_property
     def grid_to_room(self) -> np.ndarray:
-        """Carry cells of the volume to room metres, float64 [4, 4]."""
+        """The transform from cells of the volume to room metres, float64 [4, 4]."""
         moved = np.eye(4)
         moved[:3, 3] = self.volume.corner
         return self.volume.block_to_room @ moved
 
     @cached_property
     def start(self) -> tuple[tuple[float, float, float], float]:
-        """Where a person begins to walk: feet in cells of the volume, and the game's yaw."""
+        """The start of a walk: the feet position in cells of the volume, and Minecraft's yaw."""
         spawn = find_spawn(self.volume)
         world = BlockWorld.of_volume(self.volume)
         place = find_standing_place(world, spawn.position, self.options.blocks_per_metre)
@@ -116,7 +117,7 @@ class BlockBuild:
         return (x, y, z), spawn.yaw_deg
 
     def mesh_bytes(self) -> bytes:
-        """Return the mesh as the page reads it, see ``web/src/build/mesh.ts``."""
+        """Return the mesh in the format that ``web/src/build/mesh.ts`` reads."""
         mesh = mesh_of(self.volume)
         header = {
             **self.facts(),
@@ -129,7 +130,7 @@ class BlockBuild:
         return pack_arrays(MAGIC, header, _arrays(mesh))
 
     def facts(self) -> dict[str, Any]:
-        """Return what the page is told of any build: its revision, its place and where to begin."""
+        """Return the header fields for the page: revision, transform and start position."""
         feet, yaw_deg = self.start
         return {
             "rev": self.rev,
@@ -159,10 +160,11 @@ def _arrays(mesh: BlockMesh) -> dict[str, np.ndarray]:
 
 
 def filled_texels(mesh: BlockMesh) -> np.ndarray:
-    """Return the finest level of each texture, uint8 [L, N, N, 4], with colours in its holes.
+    """Return the finest level of each texture with transparent texels coloured.
 
-    A graphics card averages what it draws small: holes have the mean colour of their texture, so
-    that leaves and panes get no dark or pink rims.
+    The result is uint8 [L, N, N, 4]. Graphics cards average textures that are drawn small.
+    Transparent texels get the mean colour of their texture, so that leaves and glass panes do not
+    get dark or pink edges.
     """
     side = mesh.atlas.side_px
     texels = mesh.atlas.texels[:, : side * side].copy()

@@ -1,6 +1,6 @@
-"""Another occupancy of the same room, laid on the cells of the document: a truth, a prediction.
+"""Resampling of another occupancy of the same room, such as a prediction, to a document's cells.
 
-The page counts what was added, removed and changed, and the IoU, from the two arrays of labels.
+From the two label arrays, the page computes the added, removed and changed cells and the IoU.
 """
 
 from pathlib import Path
@@ -21,19 +21,19 @@ SUFFIXES = (".npz", ".npy", ".json")
 
 
 def read_file_labels(path: Path, draft: SceneDraft) -> np.ndarray:
-    """Return the labels uint8 [X, Y, Z] of an occupancy file in the cells of a scene.
+    """Return the labels of an occupancy file in the cells of a scene, as uint8 [X, Y, Z].
 
-    A cell takes the label at its centre, 255 where the file does not reach.
+    Each cell gets the label at its centre, or 255 outside the extent of the file.
 
     Raises:
-        InputError: it is no occupancy file.
-        UsageError: it lies beside the scene, or has larger cells.
+        InputError: If the file is not an occupancy file.
+        UsageError: If the occupancy does not overlap the scene, or if its cells are larger.
     """
     return resample_labels(read_occupancy(path), draft)
 
 
 def find_truth_folder(run: Path, capture: Path | None) -> Path | None:
-    """Return where the truth of a generated room lies, None where there is none."""
+    """Return the folder with the ground truth of a generated room, or None."""
     for folder in (run / "capture", capture):
         if folder is not None and (folder / "truth.npz").is_file():
             return folder
@@ -41,10 +41,10 @@ def find_truth_folder(run: Path, capture: Path | None) -> Path | None:
 
 
 def read_truth_labels(folder: Path, draft: SceneDraft, scan_to_room: np.ndarray) -> np.ndarray:
-    """Return the truth uint8 [X, Y, Z] of a generated room in the cells of a scene.
+    """Return the ground truth of a generated room in the cells of a scene, as uint8 [X, Y, Z].
 
     Raises:
-        InputError: it cannot be read.
+        InputError: If the ground truth cannot be read.
     """
     truth = read_truth(folder)
     truth_to_room = scan_to_room @ truth.truth_to_scan
@@ -53,24 +53,28 @@ def read_truth_labels(folder: Path, draft: SceneDraft, scan_to_room: np.ndarray)
 
 
 def mask_unreached(labels: np.ndarray, source: np.ndarray) -> np.ndarray:
-    """Return labels with 255 where a scan never came near: a truth's walls are thick.
+    """Return labels in which cells that the scan did not reach are set to 255.
+
+    This excludes the inside of walls, which are thick in a ground truth.
 
     Args:
-        labels: uint8 [X, Y, Z] of a truth.
-        source: uint8 [X, Y, Z] of the scene as it was opened; cells that were reached, and those
-            beside one, count.
+        labels: Ground truth labels, uint8 [X, Y, Z].
+        source: Labels of the scene as it was first opened, uint8 [X, Y, Z]. Reached cells and their
+            neighbours are kept.
     """
     near = binary_dilation(source != UNSEEN, np.ones((3, 3, 3), bool))
     return np.where(near, labels, np.uint8(UNKNOWN))
 
 
 def check_suffix(name: str) -> str:
-    """Return the suffix of a file to compare with.
+    """Return the suffix of the name of a file to compare with.
 
     Raises:
-        InputError: it is of no kind that is read.
+        InputError: If the file type is not supported.
     """
     suffix = Path(name).suffix.lower()
     if suffix not in SUFFIXES:
-        raise InputError(name[:80], "not an occupancy file; use .npz, .npy or .json")
+        raise InputError(
+            name[:80], "unsupported file type; use an occupancy file in .npz, .npy or .json format"
+        )
     return suffix

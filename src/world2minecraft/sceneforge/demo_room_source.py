@@ -1,7 +1,7 @@
-"""The room that SceneForge shows first: ``w2m demo``, as it was reconstructed.
+"""The demo room that SceneForge shows first: a reconstruction made by ``w2m demo``.
 
-Its files lie in ``demo_room``; ``python tools/make_demo_room.py`` makes them anew. It has the
-floaters, holes and doubtful objects of a real run, so that there is something to mend.
+Its files are in ``demo_room``; ``python tools/make_demo_room.py`` regenerates them. The room has
+the floaters, holes and doubtful objects of a real run, so that there is something to edit.
 """
 
 from pathlib import Path
@@ -10,5 +10,5 @@ from world2minecraft.sceneforge.scene_sources import OpenedScene, read_source
 
 
 def demo_room(folder: Path | None = None) -> OpenedScene:
-    """Return a living room with its objects; ``folder`` is where it would be saved."""
+    """Return a living room with its objects. ``folder`` is where it would be saved."""
     return read_source(None, folder)

@@ -1,6 +1,6 @@
-"""The Python of SceneForge: a scene is opened, edited by commands, asked and saved.
+"""The Python interface of SceneForge: open a scene, edit it by commands, query it and save it.
 
-The server drives this class, and so may a script or a language model::
+The server uses this class, and scripts or language models may use it too::
 
     editor = Editor.open(Path("OUT"))
     editor.do("set_cells", cells=[[1200, 3]], class_id=0)
@@ -35,11 +35,12 @@ MAX_IDS = 1 << 16
 
 
 class Editor:
-    """One scene that is edited. All methods may be called from any thread; one runs at a time.
+    """An open scene that is edited by commands.
 
-    ``document`` is its folder, with ``notes`` for the user. ``cells_of`` int64 [65536] counts
-    each object's cells. ``has`` is what there is beside the scene, for the page; ``progress`` is
-    told how far a long question is.
+    All methods are thread-safe and run one at a time. ``document`` is the scene's document, with
+    ``notes`` for the user. ``cells_of`` int64 [65536] is the number of cells of each object.
+    ``has`` lists the additional data that the page can show. ``progress`` is a callback for the
+    progress of long queries.
     """
 
     progress: Progress = staticmethod(no_progress)
@@ -66,68 +67,71 @@ class Editor:
         out: Path | None = None,
         clock: Callable[[], float] = time.time,
     ) -> "Editor":
-        """Open a scene where it was left; edits that were not saved are still there.
+        """Open a scene in its last state, including unsaved edits.
 
-        Where another process edits it, it is opened to be read only; ``read_only`` says why.
+        If another process edits the scene, it is opened read-only and ``read_only`` states the
+        reason.
 
         Args:
-            source: a run's folder, any occupancy file, a ``.forge`` folder; None is the demo room.
-            out: the folder that ``save`` writes, where it is not the source's own.
-            clock: gives the time in seconds since 1970.
+            source: A run folder, an occupancy file or a ``.forge`` folder. None opens the demo
+                room.
+            out: Folder that ``save`` writes. None uses the source's own folder.
+            clock: Function that returns the time in seconds since 1970.
 
         Raises:
-            InputError: it cannot be read. OutputError: its ``.forge`` folder cannot be made.
-            ConflictError: the source changed since, and there are edits that were not saved.
+            InputError: If the source cannot be read.
+            OutputError: If its ``.forge`` folder cannot be created.
+            ConflictError: If the source has changed since and there are unsaved edits.
         """
         return cls(Document.open(source, out=out, clock=clock))
 
     @property
     def draft(self) -> SceneDraft:
-        """The scene as it is now, to be read only."""
+        """The current scene, which must not be modified directly."""
         return self.document.draft
 
     @property
     def opened(self) -> OpenedScene:
-        """The scene as it was opened first, and what it was read from."""
+        """The scene as it was first opened, with its source."""
         return self.document.opened
 
     @property
     def rev(self) -> int:
-        """How many steps led here, those of undo and redo too."""
+        """The number of steps so far, including undo and redo."""
         return self.document.rev
 
     @property
     def saved_rev(self) -> int:
-        """The revision that was saved last."""
+        """The revision that was last saved."""
         return self.document.saved_rev
 
     @property
     def read_only(self) -> str:
-        """Why the scene cannot be edited; empty where it can."""
+        """The reason why the scene cannot be edited, or an empty string."""
         return self.document.read_only
 
     @property
     def notes(self) -> list[str]:
-        """Sentences for the user: what was recovered, what could not be written."""
+        """Messages for the user about recovered edits and files that could not be written."""
         return self.document.notes
 
     def holds(self, source: Path | None) -> bool:
-        """Whether this is the scene that ``open`` would give for a source."""
+        """Return whether this editor has the scene open that ``open`` would return for a source."""
         document = self.document
         return isinstance(document, Document) and document.folder == document_folder(source)
 
     def do(self, op: str | Command | Operation, *, actor: str = "", **fields: Any) -> Operation:
-        """Do a command and return what it did.
+        """Run a command and return the operation that it performed.
 
         Args:
-            op: a command, its name (with its fields as ``fields``), or an operation that was
-                planned on the scene as it is.
-            actor: who does it; only recorded.
-            fields: of the command.
+            op: A command, the name of a command (with its fields as ``fields``), or an operation
+                that was planned on the current scene.
+            actor: Name of the user, which is recorded but not checked.
+            fields: Fields of the command.
 
         Raises:
-            UsageError: the command is wrong, or cannot be done to this scene.
-            ConflictError: the scene changed since the operation was planned.
+            UsageError: If the command is invalid or cannot be applied to this scene.
+            ConflictError: If the scene has changed since the operation was planned.
         """
         with self._lock:
             planned = op if isinstance(op, Operation) else self.preview(op, **fields)
@@ -135,34 +139,39 @@ class Editor:
             return self._tell("do", self.document.do(replace(planned, actor=who, time_s=now)))
 
     def undo(self, *, actor: str = "") -> Operation:
-        """Take the last operation back; return the operation that did so, its inverse.
+        """Undo the last operation and return its inverse.
 
         Raises:
-            UsageError: there is nothing to undo.
+            UsageError: If there is nothing to undo.
         """
         with self._lock:
             return self._tell("undo", self.document.undo(actor))
 
     def redo(self, *, actor: str = "") -> Operation:
-        """Do again what was last undone; return it.
+        """Redo the operation that was last undone, and return it.
 
         Raises:
-            UsageError: nothing was undone since the last edit.
+            UsageError: If nothing was undone since the last edit.
         """
         with self._lock:
             return self._tell("redo", self.document.redo(actor))
 
     def preview(self, op: str | Command, **fields: Any) -> Operation:
-        """Return what a command would do, without doing it. Raises what ``do`` raises."""
+        """Return the operation that a command would perform, without performing it.
+
+        Raises:
+            UsageError: If the command is invalid or cannot be applied to this scene.
+        """
         command = parse_command({"op": op, **fields}) if isinstance(op, str) else op
         with self._lock:
             return command.plan(self.draft, self.tools)
 
     def ask(self, name: str, **fields: Any) -> Any:
-        """Return the answer of a query as JSON values.
+        """Return the answer to a query as JSON values.
 
         Raises:
-            UnknownNameError: there is no such query. UsageError: it cannot be answered.
+            UnknownNameError: If no query has this name.
+            UsageError: If the query cannot be answered for this scene.
         """
         query = parse_query(name, fields)
         with self._lock:
@@ -192,32 +201,34 @@ class Editor:
 
     @property
     def undo_kind(self) -> str:
-        """The kind of what ``undo`` would take back; empty where there is nothing."""
+        """The kind of the operation that ``undo`` would undo, or an empty string."""
         return self.document.history.line.undo_kind
 
     @property
     def redo_kind(self) -> str:
-        """The kind of what ``redo`` would do again; empty where there is nothing."""
+        """The kind of the operation that ``redo`` would redo, or an empty string."""
         return self.document.history.line.redo_kind
 
     def read(self, look: Callable[[], Value]) -> Value:
-        """Return what ``look`` returns; no step is done meanwhile."""
+        """Call a function on the scene while no step can change it, and return its result."""
         with self._lock:
             return look()
 
     def on_change(self, listener: Listener) -> Callable[[], None]:
-        """Call ``listener(rev, step, operation)`` after each step; return how to stop it.
+        """Call ``listener(rev, step, operation)`` after each step, and return a cancel function.
 
-        ``step`` is ``do``, ``undo`` or ``redo``; the operation is what was done to the scene, so
-        of an undo the inverse. It is called on the thread of the step, one step at a time.
+        ``step`` is ``do``, ``undo`` or ``redo``. The operation is the change that was made to the
+        scene, so for an undo it is the inverse. The listener is called on the thread of the step,
+        for one step at a time.
         """
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
     def active(self, actor: str = "") -> None:
-        """Note that a person is at work, so that the effort log knows time from idle time.
+        """Record that a person is at work, so that the effort log can separate work from idle time.
 
-        While a step is done nothing is noted: the step is sign enough, and this never waits.
+        Nothing is recorded while a step is running, since the step itself is recorded. The call
+        never blocks.
         """
         if self._lock.acquire(blocking=False):
             try:
@@ -226,17 +237,17 @@ class Editor:
                 self._lock.release()
 
     def save(self) -> Path:
-        """Write the scene to the files that the other verbs read; return their folder.
+        """Save the scene to the files that other w2m commands read, and return their folder.
 
         Raises:
-            OutputError: the folder cannot be written. ConflictError: a file there was changed by
-            another program; nothing is written.
+            OutputError: If the folder cannot be written.
+            ConflictError: If a file there was changed by another program. Nothing is written.
         """
         with self._lock:
             return self.document.save()
 
     def close(self) -> None:
-        """Let go of the scene; what was not saved stays in its ``.forge`` folder."""
+        """Close the scene. Unsaved edits remain in its ``.forge`` folder."""
         with self._lock:
             self.document.close()
 

@@ -1,4 +1,4 @@
-"""The paper's efficiency table over any set of scenes, from their effort logs."""
+"""The paper's efficiency table for any set of scenes, computed from their effort logs."""
 
 import csv
 import io
@@ -41,20 +41,20 @@ MORE_ROWS = (
 
 
 def effort_at(place: Path) -> Effort:
-    """Return the effort of a scene, given by its ``.forge`` folder or by what was opened.
+    """Return the effort for a scene, given by its ``.forge`` folder or by its source.
 
     Raises:
-        InputError: it was never opened, or its log cannot be read.
+        InputError: If the scene was never opened, or if its effort log cannot be read.
     """
     folder = document_folder(place)
     if not folder.is_dir():
-        raise InputError(place, "has no edits; open it with w2m forge first")
+        raise InputError(place, "no edits found; open the scene with w2m forge first")
     identity = read_identity(folder)
     return effort_of(identity.name, read_effort(folder), automatic_s(identity.source))
 
 
 def automatic_s(source: Path) -> float | None:
-    """Return how long the reconstruction of a run took, in seconds; None where nothing tells."""
+    """Return the duration of a run's reconstruction in seconds, or None if it was not recorded."""
     try:
         seconds = read_json(source / "run.json", 1 << 20)["stage_s"].values()
         return float(sum(map(float, seconds)))
@@ -63,7 +63,7 @@ def automatic_s(source: Path) -> float | None:
 
 
 def stats_json(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> dict[str, Any]:
-    """Return every scene, the means, those from nothing and the paper's, as JSON values."""
+    """Return all scenes, their means, the means from scratch and the paper's values as JSON."""
     return {
         "scenes": [{**asdict(one), "total_s": one.total_s} for one in efforts],
         "mean": mean_row(efforts),
@@ -73,7 +73,7 @@ def stats_json(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> dic
 
 
 def stats_csv(efforts: Iterable[Effort]) -> str:
-    """Return one line for each scene, with a head."""
+    """Return a CSV table with a header and a line for each scene."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     kinds = ("add", "delete", "orient", "move", "relabel", "other")
@@ -91,7 +91,7 @@ def stats_csv(efforts: Iterable[Effort]) -> str:
 
 
 def stats_text(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str:
-    """Return the table of means as plain text, the paper's beside ours."""
+    """Return the table of means as plain text, beside the values of the paper."""
     ours, nothing = mean_row(efforts), mean_row(scratch)
     scenes = "1 scene" if len(efforts) == 1 else f"{len(efforts)} scenes"
     lines = [
@@ -112,7 +112,7 @@ def stats_text(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str
 
 
 def stats_latex(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str:
-    """Return the table of means as the paper prints it."""
+    """Return the table of means in the LaTeX layout of the paper."""
     ours, nothing = mean_row(efforts), mean_row(scratch)
     lines = [
         r"\begin{tabular}{l c c c}",

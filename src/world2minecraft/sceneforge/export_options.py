@@ -1,7 +1,7 @@
-"""The scene as it is edited, for other programs: what can be made of it, and where it can go.
+"""The export formats and destinations for the edited scene.
 
-Data (``occ.json``, ``room.npz`` ...) is written here at once. What needs blocks is built by a
-worker from a ``write_snapshot`` of the scene, while the scene is edited further.
+Data files (``occ.json``, ``room.npz`` ...) are written directly. Formats that need blocks are built
+by a worker process from a snapshot (``write_snapshot``), while the scene can still be edited.
 """
 
 import csv
@@ -40,7 +40,7 @@ COPIED = ("scan.json", "layout.json")  # The scene's name, and where its inner c
 
 @dataclass(frozen=True)
 class ExportForm:
-    """One thing to download; ``built`` says that it is made of blocks, at a scale."""
+    """An export format. ``built`` says whether the format consists of blocks at a chosen scale."""
 
     id: str
     group: str  # game, 3d, data
@@ -48,7 +48,7 @@ class ExportForm:
 
 
 def export_forms() -> tuple[ExportForm, ...]:
-    """Return all forms that a scene can be downloaded in."""
+    """Return all export formats."""
     others = [name for name in writable_format_names() if name not in (*BUILT_FIRST, *MODELS)]
     game = [ExportForm(name, "game", True) for name in (*BUILT_FIRST, *others)]
     models = [ExportForm(name, "3d", True) for name in MODELS]
@@ -56,7 +56,11 @@ def export_forms() -> tuple[ExportForm, ...]:
 
 
 def get_export_form(name: str) -> ExportForm:
-    """Return a form by its id. Raises UnknownNameError."""
+    """Return an export format by its id.
+
+    Raises:
+        UnknownNameError: If no format has this id.
+    """
     known = {one.id: one for one in export_forms()}
     if name not in known:
         raise UnknownNameError("export", name, known)
@@ -64,10 +68,10 @@ def get_export_form(name: str) -> ExportForm:
 
 
 def write_snapshot(editor: Editor, folder: Path) -> None:
-    """Write the scene as it is now to a folder, as ``Editor.save`` would to its own.
+    """Write the current scene to a folder, with the files that ``Editor.save`` writes.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the folder cannot be written.
     """
     grid, objects = editor.read(lambda: (editor.draft.grid(), tuple(editor.draft.objects.values())))
     folder.mkdir(parents=True, exist_ok=True)
@@ -81,10 +85,10 @@ def write_snapshot(editor: Editor, folder: Path) -> None:
 
 
 def write_data(editor: Editor, form: str, folder: Path) -> Path:
-    """Write one of ``DATA_FILES`` of the scene as it is now; return the file.
+    """Write one of the ``DATA_FILES`` for the current scene and return its path.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the folder cannot be written.
     """
     path = folder / DATA_FILES[form]
     grid, objects = editor.read(lambda: (editor.draft.grid(), tuple(editor.draft.objects.values())))
@@ -105,7 +109,7 @@ def write_data(editor: Editor, form: str, folder: Path) -> Path:
 
 
 def stats_csv(editor: Editor) -> str:
-    """Return what the scene holds by class: cells, objects, and the cubic metres of the cells."""
+    """Return a CSV table with the cells, objects and volume in cubic metres of each class."""
     counts, objects = editor.read(
         lambda: (editor.draft.counts.copy(), tuple(editor.draft.objects.values()))
     )
@@ -123,13 +127,13 @@ def stats_csv(editor: Editor) -> str:
 
 
 def games_here() -> dict[str, Game]:
-    """Return the games of this machine by an id that says nothing of their paths."""
+    """Return the Minecraft installations of this machine, by ids that do not reveal their paths."""
     found = find_games(sys.platform, Path.home(), os.environ)
     return {_id_of(game.saves): game for game in found}
 
 
 def worlds_here() -> dict[str, tuple[Game, Path]]:
-    """Return the worlds of the games of this machine, each by an id, with its game."""
+    """Return the Minecraft worlds of this machine by id, each with its installation."""
     found = {}
     for game in games_here().values():
         folders = sorted(game.saves.iterdir()) if game.saves.is_dir() else []

@@ -1,7 +1,7 @@
-"""Questions about a scene, by name: what ``Editor.ask`` and ``POST /api/ask`` answer.
+"""Read-only queries about a scene, which ``Editor.ask`` and ``POST /api/ask`` answer by name.
 
-Like a command, a query is a small checked value; it changes nothing. A new one is a class and
-its line in ``QUERIES``.
+Like a command, a query is a small validated object. To add a query, define a class and register it
+in ``QUERIES``.
 """
 
 from abc import abstractmethod
@@ -58,23 +58,23 @@ MAX_PLACES = 200
 
 
 class QueriedScene(Protocol):
-    """What a question may look at: an open editor has all of it."""
+    """The part of a scene that a query may read. An open ``Editor`` satisfies this protocol."""
 
     progress: Progress
 
     @property
     def draft(self) -> SceneDraft:
-        """The scene as it is now."""
+        """The current scene."""
         ...
 
     @property
     def opened(self) -> OpenedScene:
-        """The scene as it was opened first."""
+        """The scene as it was first opened."""
         ...
 
 
 class Query(BaseModel):
-    """A small checked value, as a command is; it changes nothing."""
+    """A read-only query about a scene, with validated fields."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -83,12 +83,13 @@ class Query(BaseModel):
         """Return the answer as JSON values.
 
         Raises:
-            UsageError: it cannot be answered for this scene; the message says why.
+            UsageError: If the query cannot be answered for this scene. The message states the
+                reason.
         """
 
 
 class Floaters(Query):
-    """Pieces of at most ``max_cells`` that hold to nothing, the largest first."""
+    """Unsupported pieces of at most ``max_cells`` cells, largest first."""
 
     max_cells: Annotated[int, Field(ge=1)] = MAX_CELLS
 
@@ -109,11 +110,11 @@ class Floaters(Query):
 
 
 class Holes(Query):
-    """The planes of the room, and the holes and openings of each.
+    """The planes of the room (floors, ceilings and walls) with their holes and openings.
 
-    ``share`` is the part of the plane that is holes; openings, such as doors, are left out of it.
-    ``runs`` are the cells that ``fill_holes`` would fill, ``openings`` what it leaves open unless
-    a cell of it is named.
+    ``share`` is the fraction of the plane that is holes. It does not include openings such as
+    doors. ``runs`` are the cells that ``fill_holes`` would fill. ``openings`` are the cells that
+    ``fill_holes`` leaves open unless it is given a cell of the opening.
     """
 
     hole_m2: Annotated[float, Field(ge=0)] = HOLE_M2
@@ -149,17 +150,17 @@ class Holes(Query):
 
 
 class Compare(Query):
-    """How the scene differs from another occupancy of the same room, and the IoU.
+    """The differences between the scene and another occupancy of the same room, with the IoU.
 
-    ``path`` is a file in the scene's folder, such as a prediction; or ``truth``, of a generated
-    room that was scanned; or ``opened``: the scene as it was when it was opened, its unseen cells
-    taken for empty. The other one counts as the truth.
+    ``path`` names the reference: a file in the scene's folder, such as a prediction; ``truth`` for
+    the ground truth of a generated room that was scanned; or ``opened`` for the scene as it was
+    first opened, with unseen cells treated as empty.
     """
 
     path: Annotated[str, Field(max_length=1000)] = OPENED
 
     def answer(self, scene: QueriedScene) -> Any:
-        """Return ``{"added", "removed", "changed"}`` runs, ``cells`` of each and the figures."""
+        """Return ``added``, ``removed`` and ``changed`` runs, their ``cells``, and the IoUs."""
         return compare_draft(scene.draft, self._other(scene))
 
     def _other(self, scene: QueriedScene) -> np.ndarray:
@@ -176,7 +177,7 @@ class Compare(Query):
 
 
 def compare_draft(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:
-    """Return what ``compare`` answers for other labels uint8 [X, Y, Z] in the scene's cells."""
+    """Return the answer of ``compare`` for reference labels uint8 [X, Y, Z] in scene cells."""
     found = compare_labels(draft.labels, other)
     masks = {"added": found.added, "removed": found.removed, "changed": found.changed}
     counts = count_occupancy(draft.labels, other)
@@ -191,10 +192,10 @@ def compare_draft(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:
 
 
 def file_within(folder: Path, path: str) -> Path:
-    """Return a file in a folder or below it.
+    """Return the path of a file in a folder or below it.
 
     Raises:
-        UsageError: the path leads out of it.
+        UsageError: If the path leads out of the folder.
     """
     place = (folder / path).resolve()
     if not place.is_relative_to(folder.resolve()):
@@ -203,12 +204,12 @@ def file_within(folder: Path, path: str) -> Path:
 
 
 def runs_of_mask(mask: np.ndarray, draft: SceneDraft) -> list[list[int]]:
-    """Return the runs of a mask bool [X, Y, Z]."""
+    """Return the runs of the True cells of a mask bool [X, Y, Z]."""
     return runs_of_cells(np.argwhere(mask), draft.shape).tolist()
 
 
 def middle_m(draft: SceneDraft, cells: np.ndarray) -> list[float]:
-    """Return the middle of cells int [N, 3] in the room, rounded to a millimetre."""
+    """Return the centre of cells int [N, 3] in room coordinates, rounded to a millimetre."""
     return np.round(draft.origin_m + (cells.mean(axis=0) + 0.5) * draft.voxel_m, 3).tolist()
 
 
@@ -226,12 +227,12 @@ def _odd(value: int) -> int:
 
 
 class Alternatives(Query):
-    """The best five templates for an object, each in its best turn, with the IoU of its cells."""
+    """The five best furniture templates for an object, each at its best rotation, with IoU."""
 
     id: Id
 
     def answer(self, scene: QueriedScene) -> Any:
-        """Return ``[{"template", "quarter_turns", "iou"}]``, best first; none without cells."""
+        """Return ``[{"template", "quarter_turns", "iou"}]``, best first, or ``[]`` if no cells."""
         one = object_by_id(scene.draft, self.id)
         found = instance_of(one, scene.draft.cells_of(one.id))
         rows = ranked_matches(scene.draft.grid(), found, OFFERED, scene.opened.rooms)
@@ -239,9 +240,10 @@ class Alternatives(Query):
 
 
 class Centers(Query):
-    """The paper's centres for some figures of its clustering, as a preview; nothing is changed.
+    """The object centres that given clustering parameters yield, as a preview without changes.
 
-    ``recluster`` goes on from these clusters: it parts what they join and joins what they part.
+    ``recluster`` uses these clusters: it splits objects that span several clusters, and merges
+    objects that share a cluster.
     """
 
     density_kernel: Annotated[int, Field(ge=1, le=31), AfterValidator(_odd)]
@@ -250,7 +252,7 @@ class Centers(Query):
     class_id: ObjectClass | None = None
 
     def answer(self, scene: QueriedScene) -> Any:
-        """Return ``[{"class_id", "at_m", "cells"}]``: a centre and how many cells it has."""
+        """Return ``[{"class_id", "at_m", "cells"}]``: each centre with the number of its cells."""
         draft = scene.draft
         binary = object_cells(draft.labels)
         density = density_map(binary, self.density_kernel)
@@ -270,23 +272,26 @@ class Centers(Query):
 
 
 class Warnings(Query):
-    """Furniture that collides or reaches out of its room, by the metrics of the report."""
+    """Furniture that collides or extends beyond its room, by the metrics of the report."""
 
     def answer(self, scene: QueriedScene) -> Any:
-        """Return ``[{"kind": "collision" or "outside", "ids", "at_m"}]``, in the order of ids."""
+        """Return ``[{"kind": "collision" or "outside", "ids", "at_m"}]``, sorted by id."""
         return list(_clashes(scene))
 
 
 class Doubtful(Query):
-    """Places worth a look, the most doubtful first, each with the reason in ``why``.
+    """Places that may need correction, most doubtful first, each with the reason in ``why``.
 
-    ``kind`` is ``outside``, ``collision``, ``floater``, ``unsupported``, ``low_iou``,
-    ``near_tie``, ``no_template`` (built from its cells), ``low_confidence``, ``unsure_cells``,
-    ``crumb`` or ``completed``.
+    ``kind`` is ``outside``, ``collision``, ``floater``, ``unsupported``, ``low_iou``, ``near_tie``,
+    ``no_template`` (built from its cells), ``low_confidence``, ``unsure_cells``, ``crumb`` or
+    ``completed``.
     """
 
     def answer(self, scene: QueriedScene) -> Any:
-        """Return ``[{"at_m", "why", "kind", "doubt" 0 to 1, "object_id" or null}]``."""
+        """Return ``[{"at_m", "why", "kind", "doubt", "object_id"}]``.
+
+        ``doubt`` is 0 to 1, and ``object_id`` is null if the place belongs to no object.
+        """
         found = rank_diagnostics(
             [*_clash_doubts(scene), *find_diagnostics(scene.draft, scene.progress)]
         )
@@ -307,7 +312,7 @@ def _clash_doubts(scene: QueriedScene) -> Iterator[Diagnostic]:
     for clash in _clashes(scene):
         number = clash["ids"][-1]
         name = display_name(scene.draft.objects[number].class_id)
-        doubt, why = 1.0, f"{name}: reaches outside the room"
+        doubt, why = 1.0, f"{name}: extends beyond the room"
         if clash["kind"] == "collision":
             other = scene.draft.objects[clash["ids"][0]]
             doubt, why = 0.95, f"{name}: collides with {display_name(other.class_id)} {other.id}"
@@ -335,10 +340,10 @@ OBJECT_QUERIES: dict[str, type[Query]] = {
 
 
 class Counts(Query):
-    """How many cells each class has, and how many objects there are."""
+    """The number of cells of each class, and the number of objects."""
 
     def answer(self, scene: QueriedScene) -> Any:
-        """Return ``{"cells": by class id, "objects": number}``."""
+        """Return ``{"cells": [number for each class id], "objects": number}``."""
         counts = scene.draft.counts[:12].tolist()
         return {"cells": counts, "objects": len(scene.draft.objects)}
 
@@ -347,10 +352,11 @@ QUERIES: dict[str, type[Query]] = {"counts": Counts, **CELL_QUERIES, **OBJECT_QU
 
 
 def parse_query(name: str, fields: dict[str, Any]) -> Query:
-    """Return the query of a name.
+    """Return the query of a given name with its fields.
 
     Raises:
-        UnknownNameError: there is none. UsageError: a field is wrong; the message names it.
+        UnknownNameError: If no query has this name.
+        UsageError: If a field is invalid. The message names the field.
     """
     if name not in QUERIES:
         raise UnknownNameError("query", name, QUERIES)

@@ -1,8 +1,8 @@
-"""The photos of a run: where each was taken in the room, and the picture as an ideal camera has it.
+"""The photos of a run, with their camera poses in the room, undistorted for a pinhole camera.
 
-What goes to the page is a camera without distortion, with square pixels and its axis through the
-middle of the picture, so that a view of the room with the same place and vertical field of view
-lies on the photo line for line. Pictures are decoded when they are asked for.
+The page receives images of a camera without distortion, with square pixels and a centred principal
+point, so that a view of the room from the same pose and with the same vertical field of view
+matches the photo exactly. Images are decoded on demand.
 """
 
 import io
@@ -31,7 +31,7 @@ QUALITY = 84
 
 @dataclass(frozen=True, eq=False)
 class PlacedPhoto:
-    """One photo: ``camera_to_room`` float64 [4, 4] with OpenCV axes, and its ideal camera."""
+    """A photo with its ``camera_to_room`` float64 [4, 4] (OpenCV axes) and its pinhole camera."""
 
     frame: FrameFiles
     camera_to_room: np.ndarray
@@ -39,7 +39,7 @@ class PlacedPhoto:
     ideal: Camera
 
     def as_json(self, number: int) -> dict[str, Any]:
-        """Return what the page is told of it."""
+        """Return the description of the photo for the page."""
         height = self.ideal.height_px
         return {
             "n": number,
@@ -53,7 +53,7 @@ class PlacedPhoto:
 
 @dataclass(eq=False)
 class RunPhotos:
-    """The photos of one run. Pictures may be asked for from any thread; one is made at a time."""
+    """The photos of one run. Any thread may request images, which are decoded one at a time."""
 
     photos: tuple[PlacedPhoto, ...]
     encoding: DepthEncoding
@@ -61,14 +61,15 @@ class RunPhotos:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def as_json(self) -> list[dict[str, Any]]:
-        """Return what the page is told of all photos, in their order."""
+        """Return the descriptions of all photos for the page, in order."""
         return [photo.as_json(number) for number, photo in enumerate(self.photos)]
 
     def jpeg(self, number: int, small: bool) -> bytes:
-        """Return a photo as its ideal camera has it, or a small picture of it for the strip.
+        """Return the undistorted photo or its thumbnail as JPEG.
 
         Raises:
-            UnknownNameError: there is no such photo. InputError: it cannot be decoded.
+            UnknownNameError: If no photo has this number.
+            InputError: If the photo cannot be decoded.
         """
         if not 0 <= number < len(self.photos):
             raise UnknownNameError("photo", str(number), map(str, range(min(3, len(self.photos)))))
@@ -94,15 +95,16 @@ class RunPhotos:
 
 
 def read_photos(run: Path, capture: Path, scan_to_room: np.ndarray) -> RunPhotos:
-    """Return the photos of a run that it used, in the room's frame.
+    """Return the photos that a run used, with poses in the room's frame.
 
     Args:
-        run: the run's folder; its ``poses.npz`` says how poses were corrected.
-        capture: what was reconstructed.
-        scan_to_room: float64 [4, 4].
+        run: Run folder. Its ``poses.npz`` contains the corrected poses.
+        capture: Path of the reconstructed capture.
+        scan_to_room: Transform from the scan's frame to the room's frame, float64 [4, 4].
 
     Raises:
-        CaptureError: the capture cannot be read. UsageError: none of its frames is of this run.
+        CaptureError: If the capture cannot be read.
+        UsageError: If none of its frames was used by this run.
     """
     judged = judge_capture_of(run, capture)
     photos = tuple(
@@ -115,14 +117,14 @@ def read_photos(run: Path, capture: Path, scan_to_room: np.ndarray) -> RunPhotos
 
 
 def find_capture_of(run: Path, given: Path | None) -> Path:
-    """Return where the photos of a run lie.
+    """Return the path of the capture with the photos of a run.
 
     Args:
-        run: the run's folder.
-        given: where the user says that they lie.
+        run: Run folder.
+        given: Path of the capture as given by the user, if any.
 
     Raises:
-        UsageError: nobody says so.
+        UsageError: If neither the user nor the run folder gives the path of the capture.
     """
     own = computed(run)
     if own is not None:
@@ -130,15 +132,15 @@ def find_capture_of(run: Path, given: Path | None) -> Path:
     if given is not None:
         return given
     raise UsageError(
-        f"{run.name} has no record of its photos; run w2m forge {run.name} "
+        f"{run.name} does not record where its photos are; run w2m forge {run.name} "
         "--capture PATH_OF_THE_CAPTURE"
     )
 
 
 def count_photos(run: Path, capture: Path | None) -> int:
-    """Return how many photos a run says it was made of; 0 where they lie nowhere.
+    """Return the number of photos that a run used, or 0 if the photos cannot be found.
 
-    The pictures themselves are not looked at, so this takes no time.
+    The images themselves are not read.
     """
     try:
         find_capture_of(run, capture)
@@ -148,14 +150,15 @@ def count_photos(run: Path, capture: Path | None) -> int:
 
 
 def ideal_camera(camera: Camera, longest_px: int = MAX_SIDE_PX) -> Camera:
-    """Return a camera that sees the largest part of a picture around its principal point.
+    """Return the pinhole camera that sees the largest part of an image around its principal point.
 
     Args:
-        camera: of the picture, with any distortion.
-        longest_px: of the result's longer side; a smaller picture stays as large as it is.
+        camera: Camera of the image, with any distortion.
+        longest_px: Maximum length in pixels of the result's longer side. Smaller images are not
+            enlarged.
 
     Returns:
-        No distortion, one focal length, the principal point in the middle.
+        A camera without distortion, with one focal length and a centred principal point.
     """
     half_x = max(min(camera.cx_px, camera.width_px - camera.cx_px), 1.0)
     half_y = max(min(camera.cy_px, camera.height_px - camera.cy_px), 1.0)
@@ -169,7 +172,7 @@ def ideal_camera(camera: Camera, longest_px: int = MAX_SIDE_PX) -> Camera:
 def _depth_picture(frame: FrameFiles, encoding: DepthEncoding, longest_px: int) -> np.ndarray:
     """Near is light, far is dark, holes are black; for captures without colour."""
     if frame.depth_path is None:
-        raise InputError(frame.name, "has neither colour nor depth")
+        raise InputError(frame.name, "frame has neither a colour image nor a depth image")
     depth = read_depth(frame.depth_path, encoding)
     seen = depth > 0
     far = float(np.percentile(depth[seen], 98)) if seen.any() else 1.0

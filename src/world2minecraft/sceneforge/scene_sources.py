@@ -1,11 +1,11 @@
-"""What SceneForge opens, as a scene with objects; nothing is written.
+"""Reading of the sources that SceneForge can open, as scenes with objects. Nothing is written.
 
 ==============================  ================================================================
-a run's folder, its room.npz    its grid, objects and placements as they stand
-``occ.json``                    in any of the forms of ``formats/occupancy_files.py``, its objects
-                                from ``centers.json`` beside it, where there is one
-any other occupancy file        objects are found and matched first, as ``w2m build`` does
-nothing                         the demo room that comes with the program
+a run folder or its room.npz    its grid, objects and placements are used unchanged
+``occ.json``                    any form that ``formats/occupancy_files.py`` reads, with objects
+                                from ``centers.json`` beside it, if that file exists
+any other occupancy file        objects are detected and matched first, as in ``w2m build``
+None                            the demo room that is part of the package
 ==============================  ================================================================
 """
 
@@ -47,17 +47,19 @@ DEMO_OUT = Path("demo-room")
 def instances_from_centers(
     grid: OccupancyGrid, centers: Sequence[Center]
 ) -> tuple[OccupancyGrid, tuple[ObjectInstance, ...]]:
-    """Return the grid with instances, and one object for each centre of an object class.
+    """Return the grid with instance ids, and one object for each centre of an object class.
 
-    Each cell belongs to the nearest centre of its class; cells of a class without a centre belong
-    to no object. A centre without cells is an object of one cell's size.
+    Each cell belongs to the nearest centre of its class. Cells of a class without a centre belong
+    to no object. A centre without cells becomes an object with the size of one cell.
 
     Raises:
-        LimitError: there are more centres than ids.
+        LimitError: If there are more centres than instance ids.
     """
     wanted = [one for one in centers if one.class_id in OBJECT_CLASSES]
     if len(wanted) > MAX_CENTERS:
-        raise LimitError("centers", f"are {len(wanted):,}; at most {MAX_CENTERS:,} are read")
+        raise LimitError(
+            "centers", f"contains {len(wanted):,} object centers, the limit is {MAX_CENTERS:,}"
+        )
     instance = np.zeros(grid.shape, np.uint16)
     around = read_surroundings(grid.labels)
     objects: list[ObjectInstance] = []
@@ -102,11 +104,11 @@ def _object(
 
 @dataclass(frozen=True, eq=False)
 class OpenedScene:
-    """A scene as it was found.
+    """A scene as it was read from its source.
 
-    ``folder`` is where it is saved; ``is_run`` tells that the files that stand there may be
-    written over. ``inputs`` are the files that were read; ``source`` is their folder or file.
-    Furniture stays within ``rooms``.
+    ``folder`` is the folder to save it to. ``is_run`` says whether the existing files there may be
+    overwritten. ``inputs`` are the files that were read, and ``source`` is their folder or file.
+    Furniture must stay within ``rooms``.
     """
 
     name: str
@@ -122,7 +124,7 @@ class OpenedScene:
 
 
 def resolve_source(source: Path | None) -> Path:
-    """Return what a path means: a run for its ``room.npz``, the demo's folder for None."""
+    """Return the source for a path: a run folder for its ``room.npz``, or the demo for None."""
     if source is None:
         return DEMO_OUT.absolute()
     if source.name == "room.npz" and (source.parent / "objects.json").is_file():
@@ -131,15 +133,16 @@ def resolve_source(source: Path | None) -> Path:
 
 
 def read_source(source: Path | None, out: Path | None = None) -> OpenedScene:
-    """Read a scene from where it lies.
+    """Read a scene from its source.
 
     Args:
-        source: a run's folder or an occupancy file; None for the demo room.
-        out: where it is saved, where not with the source.
+        source: A run folder or an occupancy file. None reads the demo room.
+        out: Folder to save the scene to. None saves beside the source.
 
     Raises:
-        InputError: there is nothing, or nothing that can be read. DamagedFileError: a file is not
-        what its format says. LimitError: it is too large.
+        InputError: If the source does not exist or cannot be read.
+        DamagedFileError: If a file is not valid in its format.
+        LimitError: If the scene is too large.
     """
     place = resolve_source(source)
     if source is None:
@@ -157,7 +160,7 @@ def read_source(source: Path | None, out: Path | None = None) -> OpenedScene:
 
 
 def read_source_rooms(source: Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
-    """Return the rooms that furniture stays within; none where nothing tells of them."""
+    """Return the rooms that furniture must stay within, or none if the source has no rooms."""
     try:
         return read_rooms(source, grid) if source.is_dir() else ()
     except InputError:
@@ -209,12 +212,12 @@ def detect_objects(
     rooms: Sequence[Layout] = (),
     centers: Sequence[Center] | None = None,
 ) -> tuple[OccupancyGrid, tuple[SceneObject, ...]]:
-    """Return a grid with its instances, and the objects with the furniture that is matched.
+    """Return a grid with instance ids, and its objects with their matched furniture.
 
     Args:
-        grid: the occupancy.
-        rooms: that the furniture stays within.
-        centers: of the objects; None to find them.
+        grid: The occupancy.
+        rooms: Rooms that the furniture must stay within.
+        centers: Object centres. None detects the objects.
     """
     instances: tuple[ObjectInstance, ...]
     if centers is None:

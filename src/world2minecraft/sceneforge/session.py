@@ -1,11 +1,11 @@
-"""What one server process holds: the document, its tabs, and the order of what is done to it.
+"""The state of a server process: the document, its tabs, and the order of requests.
 
-Whatever asks something of the document takes its turn, first come, first served. A small edit is
-done at once; what takes long (objects detected or matched again, questions about the whole grid) is
-worked out by a thread, so that pages, pings and volumes are answered meanwhile, and then done as
-one operation, still in its turn. What takes seconds of a large scene runs as a job on a copy, so
-that nobody's turn waits for it. ``change_message`` makes ``Change`` of ``wire.ts``,
-``preview_message`` makes ``Preview`` of ``connection.ts``.
+Requests that use the document are served one at a time, first come, first served. Small edits are
+applied at once. Longer work, such as detecting or matching objects again or queries about the whole
+grid, is computed in a thread, so that pages, pings and volumes are still served, and then applied
+as one operation before the next request. Work that takes seconds on a large scene runs as a job on
+a copy and does not delay other requests. ``change_message`` returns ``Change`` of ``wire.ts``,
+``preview_message`` returns ``Preview`` of ``connection.ts``.
 """
 
 import asyncio
@@ -34,9 +34,9 @@ LOG = logging.getLogger(__name__)
 
 
 def change_message(editor: Editor, rev: int, step: str, operation: Operation) -> dict[str, Any]:
-    """Return what every tab is told of a step that was just done to the scene.
+    """Return the message that informs every tab of a step that was applied to the scene.
 
-    Objects are those that changed, and those that gained or lost cells.
+    It lists the objects that changed and those that gained or lost cells.
     """
     draft = editor.draft
     named = {one.id for one in (*operation.objects_before, *operation.objects_after)}
@@ -59,7 +59,7 @@ def change_message(editor: Editor, rev: int, step: str, operation: Operation) ->
 
 
 def preview_message(draft: SceneDraft, operation: Operation) -> dict[str, Any]:
-    """Return what an operation would do: its cells as they would be, its objects, the gone."""
+    """Return the cells and objects that an operation would change, and removed objects."""
     counts = np.bincount(operation.after.instance, minlength=1)
     after = [
         object_json(one, counts[one.id] if one.id < len(counts) else 0)
@@ -78,9 +78,9 @@ def preview_message(draft: SceneDraft, operation: Operation) -> dict[str, Any]:
 def encode_runs(
     cells: np.ndarray, held: GridCells, shape: tuple[int, int, int]
 ) -> list[list[int]] | None:
-    """Return what cells int [N, 3] hold as [first, length, label, instance, confidence].
+    """Return cells int [N, 3] as runs of [first, length, label, instance, confidence].
 
-    Confidence is 0 to 255. None where there would be more than ``MAX_RUNS``.
+    Confidence is 0 to 255. Return None if there would be more than ``MAX_RUNS`` runs.
     """
     if not len(cells):
         return []
@@ -101,10 +101,11 @@ Value = TypeVar("Value")
 
 
 class Session:
-    """The one document of a server, and the tabs that show it.
+    """The document of a server and the tabs that show it.
 
-    ``editor`` is None before one is opened. ``shown`` counts the documents that were shown, so
-    that a tab knows a new one from a new revision; 0 is none. ``jobs`` is the long work beside.
+    ``editor`` is None until a document is opened. ``shown`` counts the documents opened so far, so
+    that a tab can tell a new document from a new revision. It is 0 before the first document.
+    ``jobs`` are the background jobs.
     """
 
     def __init__(self, editor: Editor | None = None):
@@ -120,10 +121,10 @@ class Session:
 
     @property
     def document(self) -> Editor:
-        """The open document.
+        """The editor of the open document.
 
         Raises:
-            UsageError: none is open.
+            UsageError: If no document is open.
         """
         if self.editor is None:
             raise UsageError(NO_ROOM)
@@ -131,11 +132,11 @@ class Session:
 
     @property
     def rev(self) -> int:
-        """The revision of the document, 0 where none is open."""
+        """The revision of the document, or 0 if no document is open."""
         return self.editor.rev if self.editor else 0
 
     async def show(self, editor: Editor | None) -> None:
-        """Put another document in the place of this one, closing it; every tab starts anew."""
+        """Close the current document, show another one and reload every tab."""
         async with self._turn:
             old = self.editor
             self._unlisten()
@@ -145,17 +146,17 @@ class Session:
         self.broadcaster.restart()
 
     async def do(self, command: Any, actor: str = "") -> dict[str, Any]:
-        """Do a command; every tab is told.
+        """Run a command and inform every tab.
 
         Args:
-            command: as JSON, with ``op``.
-            actor: who does it; only recorded.
+            command: The command as a JSON object with ``op``.
+            actor: Name of the user, which is only recorded.
 
         Returns:
-            ``rev``, ``kind``, ``counts_as`` and how many ``cells`` changed.
+            ``rev``, ``kind``, ``counts_as`` and the number of changed ``cells``.
 
         Raises:
-            World2MinecraftError: it cannot be done; nothing is changed.
+            World2MinecraftError: If the command cannot be applied. Nothing is changed.
         """
         checked = parse_command(command)
         if command["op"] in TITLES and not self._is_small:
@@ -168,19 +169,23 @@ class Session:
             return await self._step(lambda: document.do(planned, actor=actor))
 
     async def undo(self, actor: str = "") -> dict[str, Any]:
-        """Take the last operation back. Returns and raises as ``do``."""
+        """Undo the last operation. The result and the errors are those of ``do``."""
         async with self._turn:
             document = self.document
             return await self._step(lambda: document.undo(actor=actor))
 
     async def redo(self, actor: str = "") -> dict[str, Any]:
-        """Do again what was taken back last. Returns and raises as ``do``."""
+        """Redo the last undone operation. The result and the errors are those of ``do``."""
         async with self._turn:
             document = self.document
             return await self._step(lambda: document.redo(actor=actor))
 
     async def preview(self, command: Any) -> dict[str, Any]:
-        """Return what a command would do, without doing it. Raises as ``do``."""
+        """Return the effect of a command without applying it.
+
+        Raises:
+            World2MinecraftError: If the command cannot be applied.
+        """
         checked = parse_command(command)
 
         def work(document: Editor) -> dict[str, Any]:
@@ -191,7 +196,11 @@ class Session:
         return await self._read(work)
 
     async def ask(self, name: str, fields: Mapping[str, Any]) -> Any:
-        """Return the answer to a question about the scene. Raises as ``do``."""
+        """Return the answer to a query about the scene.
+
+        Raises:
+            World2MinecraftError: If the query cannot be answered.
+        """
 
         def question(document: Editor) -> Any:
             return document.ask(name, **fields)
@@ -201,11 +210,15 @@ class Session:
         return await self._read(question)
 
     async def read(self, question: Callable[[Editor], Value]) -> Value:
-        """Return what a function of the document gives; it runs in a thread, in its turn."""
+        """Call a function with the document in a thread, in its turn, and return its result."""
         return await self._read(question)
 
     async def save(self) -> int:
-        """Write the files of the scene; return the revision that they hold. Raises as ``do``."""
+        """Save the files of the scene and return the saved revision.
+
+        Raises:
+            World2MinecraftError: If the files cannot be written.
+        """
         async with self._turn:
             document = self.document
             await asyncio.to_thread(document.save)
@@ -213,15 +226,23 @@ class Session:
         return document.saved_rev
 
     async def scene(self) -> dict[str, Any]:
-        """Return the scene as wire.ts has it. Raises UsageError where none is open."""
+        """Return the scene as ``Scene`` of ``wire.ts``.
+
+        Raises:
+            UsageError: If no document is open.
+        """
         document = {"document": self.shown}
         return document | await asyncio.to_thread(self.document.scene_json)
 
     async def volume(self, what: str, zipped: bool) -> tuple[int, bytes]:
-        """Return the revision and one array as ``W2MV``, in gzip where ``zipped``.
+        """Return the revision and one array as a ``W2MV`` message.
+
+        Args:
+            what: Name of the array.
+            zipped: Whether to compress the message with gzip.
 
         Raises:
-            UsageError: there is no array of that name, or no document.
+            UsageError: If there is no array of this name, or if no document is open.
         """
         document = self.document
         cached = self._volumes.get(what)
@@ -233,20 +254,20 @@ class Session:
         return rev, data
 
     async def active(self, actor: str = "") -> None:
-        """Note that a person is at work: effort is measured without idling."""
+        """Record that a person is at work, so that the effort log can exclude idle time."""
         if self.editor is not None:
             await asyncio.to_thread(self.editor.active, actor)  # It waits where a question is on.
 
     def hello(self) -> dict[str, Any]:
-        """Return what a tab is told first, and again where it is to begin anew."""
+        """Return the first message for a tab, which also tells it to reload the scene."""
         return {"type": "hello", "protocol": PROTOCOL, "rev": self.rev, "document": self.shown}
 
     def report(self, error: BaseException) -> None:
-        """Write what went wrong by a mistake of ours to the terminal."""
+        """Print the traceback of an internal error to the terminal."""
         LOG.error("unexpected %s", type(error).__name__, exc_info=error)
 
     async def close(self) -> None:
-        """End the jobs and close the document."""
+        """Cancel the jobs and close the document."""
         await asyncio.to_thread(self.jobs.close)
         await self.show(None)
 

@@ -1,4 +1,4 @@
-"""The stages that commands may ask for, wired to a scene."""
+"""The pipeline stages that editing commands use, bound to a scene."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -21,7 +21,7 @@ from world2minecraft.reconstruction.retrieval import (
 
 
 def tools_of(rooms: Sequence[Layout] = ()) -> Tools:
-    """Return the tools for a scene whose furniture stays within ``rooms``, where any are given."""
+    """Return the stage tools for a scene. Furniture stays within ``rooms`` if any are given."""
 
     def match(grid: OccupancyGrid, one: ObjectInstance) -> tuple[Placement, ...]:
         return place_templates(grid, (one,), RetrievalParameters(), rooms)
@@ -35,14 +35,15 @@ def tools_of(rooms: Sequence[Layout] = ()) -> Tools:
 def find_instances(
     grid: OccupancyGrid, parameters: dict[str, Any]
 ) -> tuple[np.ndarray, tuple[ObjectInstance, ...]]:
-    """Return the instance ids uint16 [X, Y, Z] and the objects that ``find`` finds.
+    """Detect objects, and return their instance ids uint16 [X, Y, Z] and the objects.
 
     Raises:
-        UnknownNameError: ``find`` has no such parameter. UsageError: one is out of its range.
+        UnknownNameError: If ``find`` contains an unknown parameter.
+        UsageError: If a parameter is out of range.
     """
     known = InstanceParameters.__dataclass_fields__
     for name in parameters:
         if name not in known:
-            raise UnknownNameError("parameter of find", name, known)
+            raise UnknownNameError("find parameter", name, known)
     result = find_objects(grid, InstanceParameters(**parameters))
     return result.grid.instance, result.instances

@@ -1,7 +1,7 @@
-"""``web/src/commands.ts`` from commands, queries and class names, so each is defined once.
+"""The generator of ``web/src/commands.ts``, from the Python commands, queries and class names.
 
-``python -m world2minecraft.sceneforge.typescript`` writes it; with ``--check`` it only reports
-whether it would change.
+``python -m world2minecraft.sceneforge.typescript`` writes the file. With ``--check`` it only
+reports whether the file is up to date.
 """
 
 import json
@@ -30,7 +30,7 @@ MAX_SPELLED = 4  # Longer arrays of one length are arrays like any other.
 
 
 def main(words: Sequence[str]) -> int:
-    """Write the file, or with ``--check`` return 1 where it is not what it should be."""
+    """Write the file, or with ``--check`` return 1 if it is not up to date."""
     if "--check" in words:
         return int(not TARGET.is_file() or TARGET.read_text() != typescript())
     write_text(TARGET, typescript())
@@ -38,7 +38,7 @@ def main(words: Sequence[str]) -> int:
 
 
 def typescript() -> str:
-    """Return the whole file."""
+    """Return the contents of ``commands.ts``."""
     parts = [HEAD, _display_names()]
     shared: dict[str, Any] = {}
     for models in (COMMANDS, QUERIES):
@@ -54,7 +54,7 @@ def typescript() -> str:
 
 def _display_names() -> str:
     lines = "".join(f"  {json.dumps(name)},\n" for name in CLASS_DISPLAY_NAMES)
-    comment = "/** What people read for each class, by id. */"
+    comment = "/** Display name of each class, by id. */"
     return f"{comment}\nexport const CLASS_DISPLAY_NAMES: readonly string[] = [\n{lines}];\n"
 
 
@@ -104,7 +104,9 @@ def _type(schema: Mapping[str, Any]) -> str:
         return PLAIN[kind]
     if kind is None:
         return "unknown"
-    raise World2MinecraftError(f"no TypeScript is known for {json.dumps(schema)}")
+    raise World2MinecraftError(
+        f"cannot express this JSON schema in TypeScript: {json.dumps(schema)}"
+    )
 
 
 def _array(schema: Mapping[str, Any]) -> str:
@@ -152,7 +154,7 @@ def _long_union(name: str, names: Sequence[str]) -> str:
 
 def _fields_of(name: str, types: Mapping[str, str]) -> str:
     lines = "".join(f"  {key}: {kind};\n" for key, kind in types.items())
-    return f"/** What each query is asked with. */\nexport interface {name} {{\n{lines}}}\n"
+    return f"/** The fields of each query. */\nexport interface {name} {{\n{lines}}}\n"
 
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
-"""The captures of the start page: each a folder of its own below one home; uploads to them.
+"""The captures of the start page, each in its own folder below a home folder, and their uploads.
 
 ::
 
-    HOME/captures/ID/capture.json   what it is called, and the files that come or its path
-    HOME/captures/ID/upload/NAME    the capture, a folder or a file
-    HOME/captures/ID/survey.json    what was found in it, with survey.png
-    HOME/captures/ID/run            what came of it: a run's folder
+    HOME/captures/ID/capture.json   title, and the list of files to upload or the path
+    HOME/captures/ID/upload/NAME    the uploaded capture, a folder or a file
+    HOME/captures/ID/survey.json    the survey of the capture, with survey.png
+    HOME/captures/ID/run            the run folder of the reconstructed room
 
-HOME is ``SceneForge`` in the user's data folder. Names of uploaded files are hostile until they are
-checked, then safe as paths on every system.
+HOME is ``SceneForge`` in the user's data folder. Names of uploaded files are untrusted. They are
+checked to be safe as paths on every operating system.
 """
 
 import os
@@ -53,27 +53,27 @@ _RECEIVING: set[Path] = set()  # The files that bytes come to now, in this proce
 
 @dataclass(frozen=True)
 class UploadFile:
-    """One file that is to come: its checked path below the capture's folder, and its bytes."""
+    """A file to be uploaded: its checked path below the capture's folder, and its size in bytes."""
 
     path: str
     size: int
 
 
 def check_files(data: Any, max_bytes: int) -> tuple[UploadFile, ...]:
-    """Return the files that a page says it will send.
+    """Check the list of files that a page announces for upload, and return it.
 
     Args:
-        data: JSON, a list of ``{"path", "size"}``.
-        max_bytes: of all files together.
+        data: JSON value, a list of ``{"path", "size"}``.
+        max_bytes: Maximum total size of all files in bytes.
 
     Raises:
-        UsageError: a path leaves the folder, is no name, or stands there twice.
-        LimitError: there are too many files or bytes.
+        UsageError: If a path leads out of the folder, is not a valid name, or occurs twice.
+        LimitError: If there are too many files or bytes.
     """
     if not isinstance(data, list) or not data:
-        raise UsageError('"files" must be a list of {"path", "size"}, one for each file')
+        raise UsageError('"files" must be a list of objects {"path", "size"}, one for each file')
     if len(data) > MAX_FILES:
-        raise LimitError("the capture", f"has {len(data):,} files; the limit is {MAX_FILES:,}")
+        raise LimitError("the capture", f"contains {len(data):,} files, the limit is {MAX_FILES:,}")
     files = tuple(one for one in map(_check_file, data) if not _ignored(one.path))
     if not files:
         raise UsageError("no files found; upload a folder of photos, a ZIP file or a video")
@@ -81,8 +81,8 @@ def check_files(data: Any, max_bytes: int) -> tuple[UploadFile, ...]:
     if total > max_bytes:
         raise LimitError(
             "the capture",
-            f"has {total >> 20:,} MB; the upload limit is {max_bytes >> 20:,} MB. "
-            "Run w2m forge with the path of the capture, or raise --max-upload",
+            f"is {total >> 20:,} MB, the upload limit is {max_bytes >> 20:,} MB; "
+            "run w2m forge with the path of the capture, or increase --max-upload",
         )
     _check_distinct(one.path for one in files)
     return files
@@ -93,15 +93,15 @@ def _check_file(data: Any) -> UploadFile:
         raise UsageError('each file must be {"path": "folder/name.jpg", "size": bytes}')
     size = data.get("size")
     if not isinstance(size, int) or isinstance(size, bool) or size < 0:
-        raise UsageError(f"the size of {data['path'][:80]!r} must be whole bytes, not {size!r:.40}")
+        raise UsageError(f"the size of {data['path'][:80]!r} must be an integer, got {size!r:.40}")
     return UploadFile(check_path(data["path"]), size)
 
 
 def check_path(name: str) -> str:
-    """Return a relative path with ``/`` that stays below its folder, on every system.
+    """Check that a relative path stays below its folder on every operating system, and return it.
 
     Raises:
-        UsageError: it does not.
+        UsageError: If the path is invalid.
 
     Example:
         >>> check_path("kitchen/rgb/0.jpg")
@@ -109,10 +109,12 @@ def check_path(name: str) -> str:
     """
     shown = repr(name[:80])
     if name.startswith("/") or "\\" in name or _FORBIDDEN.search(name):
-        raise UsageError(f"invalid file name {shown}: absolute, or with a forbidden character")
+        raise UsageError(
+            f"invalid file name {shown}: the path is absolute or has a forbidden character"
+        )
     parts = PurePosixPath(name).parts
     if not parts or len(parts) > MAX_DEPTH or len(name.encode(errors="replace")) > MAX_PATH_BYTES:
-        raise UsageError(f"invalid file name {shown}: empty, too long or too deep")
+        raise UsageError(f"invalid file name {shown}: the path is empty, too long or too deep")
     for part in parts:
         _check_part(part, shown)
     return "/".join(parts)
@@ -122,7 +124,7 @@ def _check_part(part: str, shown: str) -> None:
     try:
         size = len(part.encode())
     except UnicodeEncodeError as error:
-        raise UsageError(f"invalid file name {shown}: not valid text") from error
+        raise UsageError(f"invalid file name {shown}: not valid Unicode text") from error
     if part == ".." or part != part.strip() or part.endswith(".") or _RESERVED.fullmatch(part):
         raise UsageError(f"invalid file name {shown}: {part!r} is not allowed")
     if size > MAX_PART_BYTES or not part.isprintable():
@@ -140,22 +142,22 @@ def _check_distinct(paths: Iterable[str]) -> None:
     for path in paths:
         key = path.casefold()
         if key in seen:
-            raise UsageError(f"{path[:80]!r} occurs twice; rename one of the files")
+            raise UsageError(f"the path {path[:80]!r} occurs twice; rename one of the files")
         seen.add(key)
         folders.update(str(parent) for parent in PurePosixPath(key).parents)
     if both := seen & folders:
-        raise UsageError(f"{min(both)[:80]!r} is both a file and a folder")
+        raise UsageError(f"the path {min(both)[:80]!r} is used for both a file and a folder")
 
 
 def common_folder(files: Iterable[UploadFile]) -> str:
-    """Return the one folder that all files lie in, empty where there is none."""
+    """Return the top-level folder shared by all files, or an empty string if there is none."""
     firsts = {one.path.partition("/") for one in files}
     tops = {top for top, _, _ in firsts}
     return min(tops) if len(tops) == 1 and all(rest for _, _, rest in firsts) else ""
 
 
 def user_home() -> Path:
-    """Return the folder where SceneForge keeps captures and rooms, made or not."""
+    """Return SceneForge's folder for captures and rooms. The folder may not exist yet."""
     home = Path.home()
     if "W2M_FORGE_HOME" in os.environ:
         return Path(os.environ["W2M_FORGE_HOME"])
@@ -168,7 +170,11 @@ def user_home() -> Path:
 
 @dataclass(frozen=True)
 class CaptureFolder:
-    """One capture: ``files`` are those that come by upload, none where it lies elsewhere."""
+    """The folder of one capture.
+
+    ``files`` are the files to be uploaded. It is empty for a capture that is read from its own
+    path.
+    """
 
     folder: Path
     title: str
@@ -177,24 +183,24 @@ class CaptureFolder:
 
     @property
     def id(self) -> str:
-        """Its name for the page."""
+        """The id of the capture in the HTTP API."""
         return self.folder.name
 
     @property
     def run(self) -> Path:
-        """Where its room is made."""
+        """The run folder of the reconstructed room."""
         return self.folder / RUN
 
     @property
     def has_room(self) -> bool:
-        """Whether a room came of it that can be opened."""
+        """Whether the capture has a reconstructed room that can be opened."""
         return (self.run / "placements.json").is_file()
 
     def place_of(self, number: int) -> Path:
-        """Return where one of its files lies, or comes to lie.
+        """Return the path of an uploaded file, which may not exist yet.
 
         Raises:
-            UsageError: it has no file of this number.
+            UsageError: If the capture has no file of this number.
         """
         if not 0 <= number < len(self.files):
             raise UsageError(f"file {number} not found; this capture has {len(self.files)} files")
@@ -203,37 +209,41 @@ class CaptureFolder:
         return self.source / self.files[number].path
 
     def received_bytes(self) -> list[int]:
-        """Return how many bytes of each file have come."""
+        """Return the number of bytes received of each file."""
         return [_size(self.place_of(number)) for number in range(len(self.files))]
 
     @property
     def complete(self) -> bool:
-        """Whether all files are there whole."""
+        """Whether all files are completely uploaded."""
         return all(
             _size(self.place_of(n)) == one.size and self.place_of(n).is_file()
             for n, one in enumerate(self.files)
         )
 
     def survey(self) -> dict[str, Any] | None:
-        """Return what was found in it, None where nobody looked."""
+        """Return the survey of the capture, or None if it has not been surveyed."""
         try:
             return read_json(self.folder / SURVEY)
         except InputError:
             return None
 
     async def receive(self, number: int, start: int, chunks: AsyncIterator[bytes]) -> int:
-        """Append to a file what comes, and return how many bytes of it are there.
+        """Append received bytes to a file, and return the number of its bytes so far.
 
-        What came before a connection was cut off stays: the page asks and goes on from there.
+        Bytes received before a lost connection are kept. The page asks for their number and
+        continues from there.
 
         Args:
-            number: of the file.
-            start: how many bytes of it were there; the sender's and this side's must agree.
-            chunks: its next bytes.
+            number: Number of the file.
+            start: Offset in bytes at which the sender continues. It must equal the number of bytes
+                received so far.
+            chunks: The next bytes of the file.
 
         Raises:
-            ConflictError: another number of bytes is there, or another connection still brings
-            some. LimitError: more comes than was said. OutputError: the disk is full.
+            ConflictError: If ``start`` differs from the bytes received, or if another connection is
+                still uploading this file.
+            LimitError: If the file exceeds its announced size.
+            OutputError: If the disk is full.
         """
         place, path = self.place_of(number), self.files[number].path
         held = _size(place)
@@ -257,18 +267,20 @@ class CaptureFolder:
         with place.open("ab") as stream:
             async for chunk in chunks:
                 if held + len(chunk) > file.size:
-                    raise LimitError(file.path, f"has more than the announced {file.size} bytes")
+                    raise LimitError(
+                        file.path, f"the upload exceeds the announced {file.size} bytes"
+                    )
                 stream.write(chunk)
                 held += len(chunk)
         return held
 
 
 class CaptureStore:
-    """All captures below a home.
+    """All captures below a home folder.
 
     Args:
-        home: the folder of SceneForge's own; made when first needed.
-        max_bytes: the most that one upload may hold.
+        home: SceneForge's home folder. It is created when it is first needed.
+        max_bytes: Maximum size of one upload in bytes.
     """
 
     def __init__(self, home: Path, max_bytes: int = MAX_UPLOAD_BYTES):
@@ -276,7 +288,7 @@ class CaptureStore:
         self.folder = home / "captures"
 
     def all(self) -> list[CaptureFolder]:
-        """Return all captures, the newest first; folders that are none are left out."""
+        """Return all captures, newest first. Folders that are not captures are skipped."""
         if not self.folder.is_dir():
             return []
         names = [entry.name for entry in self.folder.iterdir() if (entry / CAPTURE).is_file()]
@@ -289,10 +301,11 @@ class CaptureStore:
         return sorted(found, key=lambda one: (one.folder / CAPTURE).stat().st_mtime, reverse=True)
 
     def named(self, number: str) -> CaptureFolder:
-        """Return one capture by its id.
+        """Return the capture with a given id.
 
         Raises:
-            UnknownNameError: there is none. DamagedFileError: its file is not whole.
+            UnknownNameError: If no capture has this id.
+            DamagedFileError: If its ``capture.json`` is not valid.
         """
         folder = self.folder / number
         if not _ID.fullmatch(number) or not (folder / CAPTURE).is_file():
@@ -307,15 +320,16 @@ class CaptureStore:
             raise DamagedFileError(folder / CAPTURE, f"is not a capture ({error})") from error
 
     def create(self, title: str, files: Any) -> CaptureFolder:
-        """Make room for a capture that a page is about to send.
+        """Create the folder for a capture that a page is about to upload.
 
         Args:
-            title: what it is called, for people.
-            files: JSON, a list of ``{"path", "size"}``.
+            title: Title that is shown to people.
+            files: JSON value, a list of ``{"path", "size"}``.
 
         Raises:
-            UsageError: a name cannot be used. LimitError: it is too large.
-            OutputError: the disk is full.
+            UsageError: If a file name is invalid.
+            LimitError: If the capture is too large.
+            OutputError: If the disk is full.
         """
         checked = check_files(files, self.max_bytes)
         self._check_space(sum(one.size for one in checked))
@@ -327,10 +341,10 @@ class CaptureStore:
         return self._made(title or top or name, name, inner, "")
 
     def register(self, path: Path) -> CaptureFolder:
-        """Return the capture that lies at a path of this machine; it is read where it is.
+        """Register a capture at a path of this machine without copying it, and return it.
 
         Raises:
-            InputError: nothing is there.
+            InputError: If the path does not exist.
         """
         place = path.resolve()
         if not place.exists():
@@ -341,7 +355,7 @@ class CaptureStore:
         return self._made(place.stem if place.is_file() else place.name, "", (), str(place))
 
     def delete(self, number: str) -> None:
-        """Delete a capture with all that came of it; one that lies elsewhere stays there."""
+        """Delete a capture and its room. A registered capture's own files are not deleted."""
         shutil.rmtree(self.named(number).folder, ignore_errors=True)
 
     def _made(
@@ -376,7 +390,7 @@ class CaptureStore:
 
 
 def is_capture(place: Path) -> bool:
-    """Whether a capture or a plan lies at a path, and no room that could be opened."""
+    """Return whether a path is a capture or a floor plan rather than a room that can be opened."""
     if (place / "room.npz").is_file() or place.suffix in (".npz", ".npy", ".forge"):
         return False
     try:

@@ -1,4 +1,4 @@
-"""The scene in the words of the page: ``web/src/wire.ts`` has the same shapes, field by field."""
+"""The JSON messages that describe a scene to the page, with the types of ``web/src/wire.ts``."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,7 +12,7 @@ PROTOCOL = 1
 
 
 def classes_json() -> list[dict[str, Any]]:
-    """Return the twelve classes with their colours, as ``ClassInfo``."""
+    """Return the twelve classes with their colours, as ``ClassInfo`` objects."""
     rows = zip(CLASS_NAMES, CLASS_COLOURS, strict=True)
     return [
         {"id": number, "name": name, "colour": list(colour)}
@@ -21,12 +21,12 @@ def classes_json() -> list[dict[str, Any]]:
 
 
 def counts_json(counts: np.ndarray) -> list[int]:
-    """Return how many cells each of the classes has; ``counts`` int [256] is by label."""
+    """Return the number of cells of each class. ``counts`` int [256] is indexed by label."""
     return counts[:CLASS_COUNT].tolist()
 
 
 def object_json(one: SceneObject, cells: int) -> dict[str, Any]:
-    """Return an object with the number of its cells, as ``SceneObject``."""
+    """Return an object with the number of its cells, as a ``SceneObject``."""
     return {
         "id": one.id,
         "class_id": one.class_id,
@@ -40,7 +40,7 @@ def object_json(one: SceneObject, cells: int) -> dict[str, Any]:
 
 
 def placed_json(placed: Placement) -> dict[str, Any]:
-    """Return one piece of furniture, as ``Placed``."""
+    """Return a piece of placed furniture, as a ``Placed`` object."""
     return {
         "template": placed.template,
         "center_m": _metres(placed.center_m),
@@ -56,7 +56,7 @@ def placed_json(placed: Placement) -> dict[str, Any]:
 
 
 def objects_json(objects: Mapping[int, SceneObject], owned: np.ndarray) -> list[dict[str, Any]]:
-    """Return all objects by id; ``owned`` int [65536] counts the cells of each id."""
+    """Return all objects by id. ``owned`` int [65536] is the number of cells of each id."""
     return [object_json(objects[number], owned[number]) for number in sorted(objects)]
 
 

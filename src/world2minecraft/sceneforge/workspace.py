@@ -1,4 +1,4 @@
-"""What stands around the document: jobs, captures, and the rooms that were open before."""
+"""The state of a server besides its document: jobs, captures and recently opened rooms."""
 
 import asyncio
 import tempfile
@@ -31,7 +31,7 @@ PLACES = "captures.json"  # Where the capture of each run lies, as the user said
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """What the document is compared with: labels uint8 [X, Y, Z] in the cells of an editor."""
+    """An occupancy to compare with: labels uint8 [X, Y, Z] in the cells of an editor's scene."""
 
     name: str
     labels: np.ndarray
@@ -39,13 +39,13 @@ class Comparison:
 
 
 class Workspace:
-    """The start page's state; one for each server.
+    """The state of the start page. Each server has one workspace.
 
     Args:
-        session: holds the document and the tabs (``session.broadcaster.broadcast_threadsafe``).
-        home: the folder for captures and rooms made here.
-        max_bytes: the most that one upload may hold.
-        capture: where the capture of the open run lies, where its folder does not say so.
+        session: The document and the tabs (``session.broadcaster.broadcast_threadsafe``).
+        home: Folder for the captures and rooms created on the page.
+        max_bytes: Maximum size of one upload in bytes.
+        capture: Path of the open run's capture. None uses the path recorded in the run folder.
     """
 
     def __init__(
@@ -70,17 +70,17 @@ class Workspace:
 
     @property
     def editor(self) -> Editor:
-        """The open document.
+        """The editor of the open document.
 
         Raises:
-            UsageError: none is open.
+            UsageError: If no document is open.
         """
         if self.session.editor is None:
             raise UsageError(NO_ROOM)
         return self.session.editor
 
     async def open(self, source: Path) -> None:
-        """Open a room in the place of what is open; every tab begins anew."""
+        """Open another room instead of the current one, and reload every tab."""
         async with self._opening:  # A second click finds the room open, not at work.
             if self.session.editor is not None and self.session.editor.holds(source):
                 return  # Opened again it would find its own lock, and be read only.
@@ -94,25 +94,29 @@ class Workspace:
 
     @property
     def exports(self) -> Path:
-        """The folder of what was exported; it goes with the server."""
+        """The folder for exported files, which is deleted when the server closes."""
         if self._exports is None:
             self._exports = tempfile.TemporaryDirectory(prefix="w2m-exports-")
         return Path(self._exports.name)
 
     @contextmanager
     def snapshot(self, editor: Editor) -> Iterator[Path]:
-        """Give a folder with the scene as it is now; it is gone afterwards."""
+        """Create a temporary folder with the current scene, for use in a ``with`` statement."""
         with tempfile.TemporaryDirectory(prefix="w2m-scene-") as scratch:
             write_snapshot(editor, Path(scratch))
             yield Path(scratch)
 
     @property
     def run(self) -> Path:
-        """The folder of the open document. Raises UsageError where none is open."""
+        """The folder of the open document.
+
+        Raises:
+            UsageError: If no document is open.
+        """
         return self.editor.opened.folder
 
     def capture_of_run(self) -> Path | None:
-        """Return where the capture of the open run lies, as far as anybody said so."""
+        """Return the path of the open run's capture, if it is known."""
         run = self.run.resolve()
         noted = read_text_map(self.home / PLACES)
         if self._capture is not None:
@@ -128,11 +132,11 @@ class Workspace:
         return Path(place) if place and Path(place).exists() else None
 
     def photos(self) -> RunPhotos:
-        """Return the photos of the open run; the first time takes seconds.
+        """Return the photos of the open run. The first call takes several seconds.
 
         Raises:
-            UsageError: it has none, or does not say where they are. CaptureError: they cannot be
-            read.
+            UsageError: If the run has no photos or does not record where they are.
+            CaptureError: If the photos cannot be read.
         """
         editor = self.editor
         with self._lock:
@@ -143,34 +147,34 @@ class Workspace:
             return self._photos[1]
 
     def extras(self) -> dict[str, Any]:
-        """Return what there is beside the open scene, as ``Scene.has`` of ``wire.ts``."""
+        """Return the additional data available for the scene, as ``Scene.has`` of ``wire.ts``."""
         photos = count_photos(self.run, self.capture_of_run())
         return {"photos": photos, "truth": self.truth_folder() is not None}
 
     def truth_folder(self) -> Path | None:
-        """Return where the truth of the open run lies, None where there is none."""
+        """Return the folder with the open run's ground truth, or None."""
         return find_truth_folder(self.run, self.capture_of_run()) if self.session.editor else None
 
     def begin_with(self, source: Path, is_capture: bool) -> None:
-        """Show a capture of this machine first, or note that a room was opened."""
+        """Preselect a capture on the start page, or add a room to the recent rooms."""
         if is_capture:
             self.wanted = self.captures.register(source).id
         else:
             self.try_add_recent(source)
 
     def try_add_recent(self, source: Path) -> None:
-        """Note that a room was opened; a home that cannot be written keeps nobody from editing."""
+        """Add a room to the recent rooms, and ignore a home folder that is not writable."""
         with suppress(OutputError):
             self.add_recent(source)
 
     def add_recent(self, source: Path) -> None:
-        """Note that a room was opened; the newest come first."""
+        """Add a room to the front of the recent rooms."""
         place = str(source.resolve())
         kept = [place, *(old for old in self._noted() if old != place)][:MAX_RECENT]
         write_json(self.home / "recent.json", kept)
 
     def recent(self) -> list[Path]:
-        """Return the rooms that were open before and are still there, but for those of captures."""
+        """Return the recent rooms that still exist, except those of captures."""
         own = {one.run for one in self.captures.all()}
         places = [Path(text) for text in self._noted()]
         return [place for place in places if place.exists() and place not in own]
@@ -179,7 +183,8 @@ class Workspace:
         """Return the room of a capture's id, or of ``recent-N``.
 
         Raises:
-            UnknownNameError: there is none. UsageError: the capture has no room yet.
+            UnknownNameError: If no capture or recent room has this id.
+            UsageError: If the capture has no room yet.
         """
         kind, _, index = number.partition("-")
         if kind == "recent" and index.isdecimal():
@@ -194,11 +199,11 @@ class Workspace:
         return found.run
 
     def job_of(self, capture: CaptureFolder) -> str | None:
-        """Return the id of the job that is at work on a capture, None where none is."""
+        """Return the id of the job that is running on a capture, or None."""
         return self.job_at(capture.id)
 
     def job_at(self, what: str) -> str | None:
-        """Return the id of the job under a key of ``running_jobs``, None where none runs."""
+        """Return the id of the running job under a key of ``running_jobs``, or None."""
         number = self.running_jobs.get(what)
         if number is None:
             return None
@@ -217,7 +222,7 @@ class Workspace:
 
 
 def read_text_map(path: Path) -> dict[str, str]:
-    """Return the texts by text of a JSON object; none where the file is not there or not whole."""
+    """Return a JSON object of strings, or an empty dict if the file cannot be read."""
     try:
         noted = read_json(path)
     except InputError:

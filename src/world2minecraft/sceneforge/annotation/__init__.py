@@ -1,1 +1,1 @@
-"""The annotation page: a person sees a walk as pictures and writes what to tell the next one."""
+"""The annotation page, on which people write navigation instructions for recorded walks."""

@@ -1,4 +1,4 @@
-"""What the annotation page asks of its server, behind the guard of SceneForge."""
+"""The HTTP routes of the annotation page, protected by the SceneForge guard."""
 
 from pathlib import Path
 
@@ -22,12 +22,12 @@ MAX_BODY = 64 << 10
 
 
 def annotation_server(desk: AnnotationStore, port: int | None = None) -> PageServer:
-    """Return the server of a desk; only this machine can reach it, and only with its link."""
+    """Return a server for an annotation store that listens on loopback and requires its link."""
     return PageServer(lambda token, port: build_app(desk, token, port), port=port)
 
 
 def build_app(desk: AnnotationStore, token: str, port: int) -> Starlette:
-    """Return the application that serves a desk."""
+    """Return the web application that serves an annotation store."""
     app = Starlette(
         routes=[
             Route("/api/walks", _walks),
@@ -80,5 +80,7 @@ async def _fields(request: Request, *names: str) -> tuple:
     fields = await read_json_object(request)
     number, texts = fields.get("number"), [fields.get(name) for name in names]
     if not isinstance(number, int) or not all(isinstance(text, str) for text in texts):
-        raise UsageError(f"the body needs an integer number and the texts {', '.join(names)}")
+        raise UsageError(
+            f"the body must contain an integer number and the strings {', '.join(names)}"
+        )
     return (number, *texts)

@@ -1,7 +1,8 @@
-"""The walks of a set, and what people write of them, kept in a file that ``vln build`` imports.
+"""The walks of a data set and the instructions that people write for them.
 
-A line is {trajectory_id, annotator_id, instruction, language, level}. Lines are added, never
-changed: a walk may have many, of one person or of several.
+Instructions are stored in a JSON Lines file that ``w2m vln build`` imports. Each line is an object
+{trajectory_id, annotator_id, instruction, language, level}. Lines are only ever appended. A walk
+may have several instructions, from one or more people.
 """
 
 import json
@@ -27,15 +28,15 @@ KINDS = {".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".png": "image/png"}
 
 
 class AnnotationStore:
-    """A set to be told of.
+    """The walks of a data set, with the human-written instructions in its annotation file.
 
     Args:
-        folder: of the set: ``trajectories.jsonl`` and the pictures that it names.
-        out: where to write; ``annotations.jsonl`` in the folder if None.
+        folder: Folder of the data set, with ``trajectories.jsonl`` and the images it refers to.
+        out: Annotation file to write. None writes ``annotations.jsonl`` in the folder.
 
     Raises:
-        InputError: the set has no walk, or a file cannot be read.
-        DamagedFileError: a line is wrong.
+        InputError: If the data set has no walks, or if a file cannot be read.
+        DamagedFileError: If a line of the annotation file is invalid.
     """
 
     def __init__(self, folder: Path, out: Path | None = None):
@@ -50,7 +51,7 @@ class AnnotationStore:
         self._lines = self._read()
 
     def listed(self) -> list[dict[str, Any]]:
-        """Return each walk in a line: what it is, and how many people told of it."""
+        """Return a summary of each walk, with the number of instructions written for it."""
         counts: dict[str, int] = {}
         for line in self._lines:
             counts[line["trajectory_id"]] = counts.get(line["trajectory_id"], 0) + 1
@@ -68,7 +69,7 @@ class AnnotationStore:
         ]
 
     def walk(self, number: int) -> dict[str, Any]:
-        """Return a walk: its pictures, what is done after each, and all that is told of it."""
+        """Return a walk: its images, the move after each image, and its instructions."""
         one = self._walk(number)
         instructions = [
             {"level": each.level, "text": each.text, "by": each.annotator or each.source}
@@ -91,7 +92,12 @@ class AnnotationStore:
         }
 
     def image(self, number: int, frame: int) -> tuple[bytes, str]:
-        """Return a picture of a walk and its media type. Raises InputError: it cannot be read."""
+        """Return the bytes and the media type of an image of a walk.
+
+        Raises:
+            UsageError: If the walk has no image of this number.
+            InputError: If the image file cannot be read, or is not a JPEG or PNG image.
+        """
         keyframes = self._walk(number).keyframes
         if not 0 <= frame < len(keyframes):
             raise UsageError(
@@ -104,7 +110,7 @@ class AnnotationStore:
         return read_bytes(path, MAX_IMAGE_BYTES), kind
 
     def check(self, number: int, level: str, text: str) -> list[dict[str, Any]]:
-        """Return what is to be said of a text, what is wrong first."""
+        """Return the problems found in an instruction, errors first."""
         one = self._walk(number)
         return [
             found._asdict()
@@ -114,10 +120,11 @@ class AnnotationStore:
     def add(
         self, number: int, level: str, text: str, annotator: str, language: str = "en"
     ) -> dict[str, Any]:
-        """Keep an instruction and return its line.
+        """Append an instruction to the annotation file and return its line.
 
         Raises:
-            UsageError: something about it is wrong, see ``check``, or nobody says who wrote it.
+            UsageError: If ``check`` finds an error in the text, or if the annotator's name or the
+                language code is invalid.
         """
         one = self._walk(number)
         wrong = [found["text"] for found in self.check(number, level, text) if found["is_wrong"]]

@@ -1,1 +1,1 @@
-"""A scene on disk while it is edited: snapshots, journal, recovery and saving."""
+"""Documents: scenes on disk while they are edited, with snapshots, journal, recovery and saving."""

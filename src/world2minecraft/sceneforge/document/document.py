@@ -1,16 +1,16 @@
-"""A scene on the disk while it is edited: the folder ``NAME.forge`` beside its source.
+"""A scene on disk while it is edited: the folder ``NAME.forge`` beside its source.
 
 =====================  =========================================================================
-``document.json``      what the scene was opened from, and where it is saved
-``base.npz``           the scene as it was opened first; never written again
-``journal.bin``        every step since, on the disk before it is seen
-``snapshot-*.npz``     whole scenes, so that opening takes no long time
-``effort.jsonl``       how much work it was
-``saved.json``         what was saved last; ``saving``: the files of a save under way
-``lock``               who edits it
+``document.json``      the source of the scene, and where it is saved
+``base.npz``           the scene as it was first opened; never changed
+``journal.bin``        all steps since then; each is written before its effect is shown
+``snapshot-*.npz``     complete scenes, so that opening the document is fast
+``effort.jsonl``       the effort log
+``saved.json``         the state of the last save; ``saving``: the files of a save in progress
+``lock``               the process that edits the document
 =====================  =========================================================================
 
-No file outside of the folder is written before ``save``.
+No file outside the folder is written before ``save`` is called.
 """
 
 import hashlib
@@ -55,10 +55,11 @@ MAX_SNAPSHOTS = 2
 
 
 class Document(MemoryDocument):
-    """One scene with its folder. One thread at a time may use it; the editor sees to that.
+    """A scene with its ``.forge`` folder on disk.
 
-    ``notes`` tell what was found at opening, and what went wrong since. ``recovered`` counts the
-    steps that were found and not saved.
+    Only one thread at a time may use a document, which ``Editor`` ensures. ``notes`` are messages
+    for the user about problems found when opening or editing. ``recovered`` is the number of
+    unsaved steps that were found when opening.
     """
 
     def __init__(self, folder: Path, clock: Callable[[], float], lock: Lock | None, reason: str):
@@ -75,7 +76,7 @@ class Document(MemoryDocument):
             edits = "1 unsaved edit" if self.recovered == 1 else f"{self.recovered} unsaved edits"
             self.notes.append(f"Recovered {edits}.")
         if found.fault:
-            lost = f"; {found.lost} edits of it are lost" if found.lost else ""
+            lost = f"; {found.lost} edits are lost" if found.lost else ""
             self.notes.append(f"{found.fault}{lost}.")
         self._take(found)
         self.opened = self.identity.opened(found.base)
@@ -87,19 +88,22 @@ class Document(MemoryDocument):
     def open(
         cls, source: Path | None, *, out: Path | None = None, clock: Callable[[], float]
     ) -> "Document":
-        """Open the document of a source, or begin it.
+        """Open the document of a source, and create it if it does not exist.
 
-        Where another process edits it, or its folder may not be written, it is opened to be read
-        only, and ``read_only`` says why.
+        If another process edits the document, or if its folder is not writable, the document is
+        opened read-only and ``read_only`` states the reason.
 
         Args:
-            source: what ``scene_sources.py`` reads, or a document's folder; None for the demo room.
-            out: where it is saved, and what its folder lies beside, where not the source.
-            clock: gives the time in seconds since 1970.
+            source: A source that ``scene_sources.py`` reads, or a document folder. None opens the
+                demo room.
+            out: Folder to save to, beside which the document folder is created. None uses the
+                source's folder.
+            clock: Function that returns the time in seconds since 1970.
 
         Raises:
-            InputError: the source cannot be read. OutputError: the folder cannot be made.
-            ConflictError: the source changed since, and there are edits that were not saved.
+            InputError: If the source cannot be read.
+            OutputError: If the document folder cannot be created.
+            ConflictError: If the source has changed since and the document has unsaved edits.
         """
         folder = document_folder(source, out)
         opened = None if is_document(folder) else read_source(source, out)
@@ -121,16 +125,16 @@ class Document(MemoryDocument):
         return document
 
     def active(self, actor: str = "") -> None:
-        """Note that someone is at work, for the effort log."""
+        """Record in the effort log that someone is at work."""
         if self._effort is not None:
             self._effort.active(self.clock(), actor)
 
     def save(self) -> Path:
-        """Write the five files of the scene to their places; return their folder.
+        """Save the five files of the scene and return their folder.
 
         Raises:
-            ConflictError: a file there was changed by another program. OutputError: they cannot
-            be written.
+            ConflictError: If a file there was changed by another program.
+            OutputError: If the files cannot be written.
         """
         self.check_writable()
         state = self.state()
@@ -142,17 +146,17 @@ class Document(MemoryDocument):
 
     @property
     def generation(self) -> str:
-        """The name of the journal that goes on from here."""
+        """The name of the current journal generation."""
         return self._journal.generation
 
     def wait(self) -> None:
-        """Wait until the snapshot that is being written lies on the disk."""
+        """Wait until the snapshot in progress is on disk."""
         if self._writer is not None:
             self._writer.join()
             self._writer = None
 
     def close(self) -> None:
-        """Let go of the document; what was not saved stays in its journal."""
+        """Close the document. Unsaved edits remain in its journal."""
         if self._lock is None:
             return
         if self.rev > self._snapshot_rev:
@@ -242,7 +246,7 @@ class Document(MemoryDocument):
             write_state(snapshot_path(self.folder, state.rev, state.generation), state)
             _prune(self.folder, state.generation)
         except OutputError as error:
-            self.notes.append(f"No snapshot was written: {error}. The journal holds every edit.")
+            self.notes.append(f"No snapshot was written: {error}. The journal contains all edits.")
 
 
 def _take_lock(folder: Path) -> tuple[Lock | None, str]:
@@ -255,7 +259,7 @@ def _take_lock(folder: Path) -> tuple[Lock | None, str]:
         who = lock.holder()
         if not is_document(folder):
             raise
-        return None, f"{who} is editing this scene; close it there, then open it again"
+        return None, f"{who} is editing this scene; close the scene there, then open it again"
     except (OutputError, OSError) as error:
         if not is_document(folder):
             raise OutputError(folder, f"cannot be created ({error})") from error
@@ -280,7 +284,7 @@ def _prepare(
 
 
 def generation_of(opened: OpenedScene) -> str:
-    """Return the name of the first generation of a scene's journal: a hash of its cells."""
+    """Return the name of the first journal generation of a scene: a hash of its cells."""
     held = (opened.grid.labels, opened.grid.instance, opened.grid.colour)
     return hashlib.sha256(b"".join(np_bytes.tobytes() for np_bytes in held)).hexdigest()[:8]
 

@@ -1,7 +1,7 @@
-"""Where a document lies, what it was opened from and where it is saved: ``document.json``.
+"""The metadata file ``document.json``: the source of a document and where it is saved.
 
-``{"format": "world2minecraft/forge", "version": 1, "name", "source", "target", "inputs":
-{path: SHA-256}, "is_demo"}``; paths are relative to the folder that holds the document.
+``{"format": "world2minecraft/forge", "version": 1, "name", "source", "target", "inputs": {path:
+SHA-256}, "is_demo"}``. Paths are relative to the folder that contains the document.
 """
 
 import os
@@ -31,7 +31,7 @@ _MAX_BYTES = 1 << 20
 
 @dataclass(frozen=True)
 class Identity:
-    """What ``document.json`` tells, with whole paths."""
+    """The contents of ``document.json``, with absolute paths."""
 
     name: str
     source: Path
@@ -40,7 +40,7 @@ class Identity:
     is_demo: bool = False
 
     def opened(self, base: State) -> OpenedScene:
-        """Return the scene as it was opened first, with what stands beside its source now."""
+        """Return the scene as it was first opened, with the current side files of its source."""
         source = DEMO_FOLDER if self.is_demo else self.source
         fields = (self.name, self.target, tuple(self.inputs), base.grid, base.scan_to_room)
         rooms = read_source_rooms(source, base.grid)
@@ -48,7 +48,7 @@ class Identity:
 
 
 def document_folder(source: Path | None, out: Path | None = None) -> Path:
-    """Return the document's folder of a source: beside it, or beside where it is saved."""
+    """Return the document folder of a source, which is beside the source or beside ``out``."""
     if source is not None and is_document(source):
         return source
     place = (out or resolve_source(source)).absolute()
@@ -57,12 +57,16 @@ def document_folder(source: Path | None, out: Path | None = None) -> Path:
 
 
 def is_document(path: Path) -> bool:
-    """Whether a document lies at a path."""
+    """Return whether a path is a document folder."""
     return (path / DOCUMENT_FILE).is_file()
 
 
 def write_identity(folder: Path, opened: OpenedScene, generation: str) -> None:
-    """Make a document of a scene that was read. Raises OutputError."""
+    """Create a document for a scene that was read.
+
+    Raises:
+        OutputError: If the files cannot be written.
+    """
     outputs = [opened.folder / name for name in saving.SAVED_FILES] if opened.is_run else []
     held = {path: saving.sha256(path) for path in (*opened.inputs, *outputs)}
     state = State(opened.grid, opened.objects, opened.scan_to_room, generation=generation)
@@ -82,16 +86,17 @@ def write_identity(folder: Path, opened: OpenedScene, generation: str) -> None:
 
 
 def read_identity(folder: Path) -> Identity:
-    """Read what a document is of.
+    """Read the ``document.json`` of a document.
 
     Raises:
-        InputError: there is none. DamagedFileError: its ``document.json`` is none.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a valid ``document.json``.
     """
     path = folder / DOCUMENT_FILE
     data = read_json(path, _MAX_BYTES)
     try:
         if (data["format"], data["version"]) != (FORMAT, VERSION):
-            raise ValueError(f"it is {data['format']} {data['version']}, not {FORMAT} {VERSION}")
+            raise ValueError(f"expected {FORMAT} {VERSION}, got {data['format']} {data['version']}")
         return Identity(
             str(data["name"]),
             _place(data["source"], folder),
@@ -104,13 +109,13 @@ def read_identity(folder: Path) -> Identity:
 
 
 def retire_outdated(folder: Path) -> str:
-    """Set a document aside whose source was written anew by another program; tell so.
+    """Rename a document whose source was replaced by another program.
 
     Returns:
-        A sentence for the user, empty where the source is what it was.
+        A message for the user, or an empty string if the source has not changed.
 
     Raises:
-        ConflictError: the document has edits that were not saved; nothing is changed.
+        ConflictError: If the document has unsaved edits. Nothing is changed.
     """
     changed = changed_inputs(folder)
     if not changed:
@@ -119,7 +124,7 @@ def retire_outdated(folder: Path) -> str:
     if unsaved > 0:
         raise ConflictError(
             changed[0],
-            f"changed since it was edited, and {folder.name} holds {unsaved} unsaved "
+            f"the file has changed since it was edited, and {folder.name} has {unsaved} unsaved "
             f"edits; open {folder} to continue with them, or move it away to start over",
         )
     aside = _retire(folder)
@@ -127,7 +132,7 @@ def retire_outdated(folder: Path) -> str:
 
 
 def changed_inputs(folder: Path) -> list[Path]:
-    """Return the files a document was opened from that hold something else now."""
+    """Return the input files of a document whose contents have changed since it was opened."""
     saved = saving.saved_hashes(folder)
     identity = read_identity(folder)
     return [

@@ -1,7 +1,7 @@
-"""The effort log of a document, ``effort.jsonl``: a line for each step, and for signs of life.
+"""The effort log of a document, ``effort.jsonl``, with a line for each edit and activity signal.
 
-The journal is what edits are recovered from; this file only says how much work they were. What
-it lacks after a kill is written anew from the journal.
+Edits are recovered from the journal; the effort log only records how much work they were. Lines
+lost when the program was killed are restored from the journal.
 """
 
 import json
@@ -19,9 +19,10 @@ STEPS = ("open", "do", "undo", "redo", "active")
 
 
 class EffortLog:
-    """The end of the log: lines are added. ``last_rev`` is the last revision that it tells of.
+    """The effort log of an open document, to which lines are appended.
 
-    ``fault`` is why the last line could not be written, empty where it could.
+    ``last_rev`` is the last revision in the log. ``fault`` is the reason why the last line could
+    not be written, or empty.
     """
 
     def __init__(self, folder: Path):
@@ -36,11 +37,11 @@ class EffortLog:
             self.last_rev = max((e.get("rev", 0) for e in _events(data[: self._end])), default=0)
 
     def opened(self, time_s: float) -> None:
-        """Note that a session begins."""
+        """Record that a session starts."""
         self._add({"step": "open", "time_s": time_s})
 
     def step(self, rev: int, step: str, operation: Operation, actor: str, time_s: float) -> None:
-        """Note a step; ``operation`` is what was done to the scene."""
+        """Record a step. ``operation`` is the change that was made to the scene."""
         self.last_rev = max(self.last_rev, rev)
         self._active_s = time_s
         self._add(
@@ -58,7 +59,7 @@ class EffortLog:
         )
 
     def active(self, time_s: float, actor: str = "") -> None:
-        """Note that someone is at work, at most once in ``ACTIVE_EVERY_S``."""
+        """Record that someone is at work, at most once every ``ACTIVE_EVERY_S`` seconds."""
         if not 0 <= time_s - self._active_s < ACTIVE_EVERY_S:
             self._active_s = time_s
             self._add({"step": "active", "actor": actor, "time_s": time_s})
@@ -73,18 +74,19 @@ class EffortLog:
             self._end += len(line)
             self.fault = ""
         except OSError as error:  # The edit itself is safe in the journal.
-            self.fault = f"{self.path}: cannot be written: {error.strerror or error}"
+            self.fault = f"cannot write {self.path}: {error.strerror or error}"
 
 
 def read_effort(folder: Path) -> list[dict[str, Any]]:
-    """Return the events of a document's log, in order; lines that are damaged are left out.
+    """Return the events of a document's effort log in order. Damaged lines are skipped.
 
     Raises:
-        InputError: the document has none. LimitError: it is too large.
+        InputError: If the document has no effort log.
+        LimitError: If the effort log is too large.
     """
     path = folder / EFFORT_FILE
     if not path.is_file():
-        raise InputError(folder, "no effort log found; give a NAME.forge folder or its scene")
+        raise InputError(folder, "no effort log found; pass a NAME.forge folder or its scene")
     return _events(read_bytes(path, MAX_EFFORT_BYTES))
 
 

@@ -1,4 +1,4 @@
-"""An open scene: edited step by step, its history in memory and not on disk."""
+"""An open scene whose edit history is in memory, not on disk."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -12,12 +12,12 @@ from world2minecraft.sceneforge.scene_sources import OpenedScene
 
 
 class MemoryDocument:
-    """One scene that is edited; ``Document`` is one on disk.
+    """A scene that is edited in memory. ``Document`` is the subclass for a scene on disk.
 
-    ``draft`` is the scene, ``history`` changes it. ``rev`` counts the steps so far, those of undo
-    and redo too; ``saved_rev`` is its value when the scene was saved last. ``read_only`` is why
-    nothing may be edited, empty where it may. ``notes`` are sentences for the user. ``opened``
-    is the scene as it was opened first.
+    ``draft`` is the scene, and ``history`` changes it. ``rev`` counts the steps so far, including
+    undo and redo. ``saved_rev`` is the value of ``rev`` at the last save. ``read_only`` is the
+    reason why the scene cannot be edited, or empty. ``notes`` are messages for the user. ``opened``
+    is the scene as it was first opened.
     """
 
     draft: SceneDraft
@@ -33,41 +33,57 @@ class MemoryDocument:
         self.read_only, self.notes = "", []
 
     def do(self, operation: Operation) -> Operation:
-        """Do an operation. Raises ConflictError or OutputError; then nothing has changed."""
+        """Apply an operation to the scene.
+
+        Raises:
+            ConflictError: If the scene has changed since the operation was planned. Nothing is
+                changed.
+            OutputError: If the journal cannot be written. Nothing is changed.
+        """
         self.check_writable()
         return self._stepped("do", self.history.do(operation), operation.actor, operation.time_s)
 
     def undo(self, actor: str = "") -> Operation:
-        """Take the last operation back; return its inverse. Raises UsageError, OutputError."""
+        """Undo the last operation and return its inverse.
+
+        Raises:
+            UsageError: If there is nothing to undo, or if the scene is read-only.
+            OutputError: If the journal cannot be written.
+        """
         self.check_writable()
         now = self.clock()
         return self._stepped("undo", self.history.undo(actor, now), actor, now)
 
     def redo(self, actor: str = "") -> Operation:
-        """Do again what was last undone. Raises UsageError, OutputError."""
+        """Redo the operation that was last undone, and return the operation.
+
+        Raises:
+            UsageError: If there is nothing to redo, or if the scene is read-only.
+            OutputError: If the journal cannot be written.
+        """
         self.check_writable()
         now = self.clock()
         return self._stepped("redo", self.history.redo(actor, now), actor, now)
 
     def active(self, actor: str = "") -> None:
-        """Note that someone is at work."""
+        """Record that someone is at work."""
 
     def state(self) -> State:
-        """Return the scene as it is now, a copy."""
+        """Return a copy of the current scene."""
         objects = tuple(self.draft.objects[number] for number in sorted(self.draft.objects))
         fields = (self.opened.scan_to_room, self.rev, self.generation, self.history.line)
         return State(self.draft.grid(), objects, *fields)
 
     @property
     def generation(self) -> str:
-        """The name of the journal that goes on from here; empty where there is none."""
+        """The name of the current journal generation, or an empty string without a journal."""
         return ""
 
     def save(self) -> Path:
-        """Write the five files of the scene to their places; return their folder.
+        """Save the five files of the scene and return their folder.
 
         Raises:
-            OutputError: they cannot be written.
+            OutputError: If the files cannot be written.
         """
         self.check_writable()
         write_scene_files(self.opened.folder, self.state())
@@ -75,11 +91,15 @@ class MemoryDocument:
         return self.opened.folder
 
     def close(self) -> None:
-        """Let go of the scene."""
+        """Close the scene."""
         self.read_only = self.read_only or "the scene is closed"
 
     def check_writable(self) -> None:
-        """Raise UsageError where the scene may only be looked at."""
+        """Check that the scene may be edited.
+
+        Raises:
+            UsageError: If the scene is read-only or closed.
+        """
         if self.read_only:
             raise UsageError(f"{self.opened.name} is open read-only: {self.read_only}")
 

@@ -1,8 +1,8 @@
-"""How a document's files become the scene again: the newest whole snapshot, then the journal.
+"""Recovery of a scene from its document: the newest intact snapshot, then the journal.
 
-A record that was being written when the program ended is cut off. Where bytes were damaged later,
-as much is recovered as the snapshots and the journal allow, the damaged journal is set aside and
-a new one is begun.
+A record that was being written when the program ended is discarded. If bytes were damaged later,
+the snapshots and the journal restore as much as possible, the damaged journal is set aside, and a
+new journal is started.
 """
 
 import hashlib
@@ -30,10 +30,10 @@ JOURNAL_FILE, BASE_FILE = "journal.bin", "base.npz"
 
 @dataclass(frozen=True, eq=False)
 class RecoveredScene:
-    """A scene as its document's files give it.
+    """A scene as restored from the files of its document.
 
-    ``fault`` says what is wrong with the journal, empty where nothing is; ``lost`` counts the
-    steps that could not be done again.
+    ``fault`` describes the damage to the journal, or is empty. ``lost`` is the number of steps that
+    could not be restored.
     """
 
     draft: SceneDraft
@@ -46,21 +46,24 @@ class RecoveredScene:
 
 
 def recover(folder: Path) -> RecoveredScene:
-    """Return the scene of a document; nothing is written.
+    """Restore the scene of a document without writing anything.
 
     Raises:
-        InputError: the document has no base. DamagedFileError: no state of it can be read.
+        InputError: If the document has no base snapshot.
+        DamagedFileError: If none of its snapshots can be read.
     """
     base = _base(folder)
     journal, fault = _journal(folder, base)
     state = _newest(folder, journal, base)
     if state.generation != journal.generation:
         is_new = not journal.generation and state is base
-        fault = fault or ("" if is_new else f"{journal.file.path} is of another scene or missing")
+        fault = fault or (
+            "" if is_new else f"{journal.file.path} is missing or belongs to another scene"
+        )
         return RecoveredScene(state.draft(), journal, Timeline(), state.rev, base, fault)
     steps = journal.steps[state.rev - journal.start :]
     if state.rev > journal.rev:
-        fault = fault or f"{journal.file.path} ends before the edits that were in it"
+        fault = fault or f"{journal.file.path} is truncated: the latest edits are missing"
     draft, line, done, reason = _replay(state, journal, steps)
     fault = fault or reason
     line = _reachable(line, journal)
@@ -70,22 +73,22 @@ def recover(folder: Path) -> RecoveredScene:
 def rewrite_journal(
     folder: Path, found: RecoveredScene, keep_bytes: int
 ) -> tuple[SceneJournal, Timeline, int]:
-    """Begin a new journal with the newest operations of an old one.
+    """Start a new journal with the newest operations of an old journal.
 
-    The new one's snapshots are written first, then it takes the place of the old one, so that a
-    kill leaves either.
+    The snapshots of the new journal are written first, and then the new journal replaces the old
+    one, so that either journal is intact if the program is killed.
 
     Args:
-        folder: of the document.
-        found: the scene with its old journal; ``rev`` is where it stands.
-        keep_bytes: the operations that undo still reaches take at most so many bytes.
+        folder: Folder of the document.
+        found: The scene with its old journal. ``rev`` is its current revision.
+        keep_bytes: Maximum size in bytes of the operations that can still be undone.
 
     Returns:
-        The new journal, what undo and redo reach in it, and the revision, which is higher only
-        where the old journal was damaged.
+        The new journal, the operations that can be undone and redone, and the revision. The
+        revision increases only if the old journal was damaged.
 
     Raises:
-        OutputError: it cannot be written; the old journal goes on.
+        OutputError: If the new journal cannot be written. The old journal then remains in use.
     """
     line = _trim_line(found.line, found.journal, keep_bytes)
     undone = len(line.numbers) - line.done
@@ -117,7 +120,11 @@ def rewrite_journal(
 
 
 def copy_damaged(path: Path) -> Path:
-    """Keep a damaged file under another name too; return that. Raises OutputError."""
+    """Copy a damaged file to another name and return the path of the copy.
+
+    Raises:
+        OutputError: If the copy cannot be written.
+    """
     names = (path.with_name(f"{path.stem}-damaged-{n}{path.suffix}") for n in count(1))
     aside = next(path for path in names if not path.exists())
     try:

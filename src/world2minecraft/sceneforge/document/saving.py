@@ -1,9 +1,10 @@
-"""Saving a scene to the files of a run, all of them or none, and never over what others wrote.
+"""Saving of a scene to the files of a run: all files or none, without overwriting foreign changes.
 
-The files are first written within the document, then told of in ``saved.json``, then copied to
-their places; what a kill cuts off after that is finished when the document is opened next.
-``saved.json`` is ``{"rev", "known": [SHA-256, ...], "pending": {"rev", "files"}}``: what was saved
-last, which files are ours, and the save under way, if one is.
+The files are first written within the document, then listed in ``saved.json``, then copied to their
+destination. A save that is interrupted after that point is completed when the document is next
+opened. ``saved.json`` is ``{"rev", "known": [SHA-256, ...], "pending": {"rev", "files"}}``: the
+last saved revision, the hashes of files that the document may overwrite, and the save in progress,
+if any.
 """
 
 import hashlib
@@ -26,7 +27,11 @@ SAVED_FILES = ("room.npz", "objects.json", "placements.json", "occ.json", "cente
 
 
 def write_scene_files(folder: Path, state: State) -> None:
-    """Write the five files of a scene into a folder. Raises OutputError."""
+    """Write the five files of a scene into a folder.
+
+    Raises:
+        OutputError: If a file cannot be written.
+    """
     instances = instances_of(state.objects, state.grid.instance)
     write_room(folder / "room.npz", state.grid, state.scan_to_room)
     write_objects(folder / "objects.json", instances)
@@ -36,10 +41,10 @@ def write_scene_files(folder: Path, state: State) -> None:
 
 
 def sha256(path: Path) -> str:
-    """Return the SHA-256 of a file, empty where it is not there.
+    """Return the SHA-256 of a file as a hex string, or an empty string if the file does not exist.
 
     Raises:
-        InputError: it cannot be read.
+        InputError: If the file cannot be read.
     """
     try:
         with path.open("rb") as stream:
@@ -53,22 +58,22 @@ def sha256(path: Path) -> str:
 def save(
     document: Path, source: Path, target: Path, state: State, known: Iterable[str]
 ) -> dict[str, str]:
-    """Save a scene to ``target``; return the SHA-256 of each file.
+    """Save a scene to ``target`` and return the SHA-256 of each file.
 
-    Where it is saved elsewhere than its source, what other verbs read beside the five files goes
-    with them.
+    If ``target`` is not the source, the other files of the source that w2m commands read are copied
+    too.
 
     Args:
-        document: its ``.forge`` folder.
-        source: the run that it was opened from.
-        target: where the files go.
-        state: the scene.
-        known: the SHA-256 of files that may be overwritten, beside those that a save wrote.
+        document: The ``.forge`` folder of the document.
+        source: The run from which the scene was opened.
+        target: Folder for the files.
+        state: The scene.
+        known: SHA-256 of files that may be overwritten, in addition to those of earlier saves.
 
     Raises:
-        ConflictError: a file there is from somewhere else; nothing is written.
-        OutputError: the disk is full or may not be written; what is missing is written when the
-        scene is saved again or opened next.
+        ConflictError: If a file in ``target`` was changed by another program. Nothing is written.
+        OutputError: If the disk is full or not writable. The missing files are written when the
+            scene is next saved or opened.
     """
     staged = document / STAGED
     _remove_staged(staged)
@@ -93,12 +98,13 @@ def save(
 
 
 def finish_interrupted_save(document: Path, target: Path) -> bool:
-    """Finish a save to ``target`` that was cut off; return whether there was one.
+    """Complete an interrupted save to ``target``, and return whether there was one.
 
-    A target that is not beside the document is left alone: the document may come from elsewhere.
+    A ``target`` that is not beside the document is not touched, because the document may have been
+    moved from another place.
 
     Raises:
-        OutputError: the disk is full or may not be written.
+        OutputError: If the disk is full or not writable.
     """
     pending = _read_record(document).get("pending", {})
     files = pending.get("files", {})
@@ -113,12 +119,12 @@ def finish_interrupted_save(document: Path, target: Path) -> bool:
 
 
 def saved_rev(document: Path) -> int:
-    """Return the revision that was last saved, 0 for none."""
+    """Return the revision that was last saved, or 0 if the scene was never saved."""
     return _read_record(document)["rev"]
 
 
 def saved_hashes(document: Path) -> set[str]:
-    """Return the SHA-256 of all files that saves wrote, or were about to write."""
+    """Return the SHA-256 of all files that saves have written or were about to write."""
     return {str(value) for value in _read_record(document)["known"]}
 
 

@@ -1,8 +1,9 @@
-"""A whole scene at one revision, as a file: the base of a document and its snapshots.
+"""Snapshots: files that contain a complete scene at one revision of a document.
 
-Arrays of a ``.npz``: those of ``room.npz``; ``objects`` uint8, as ``editing.scene.journal`` packs
-them; ``state`` uint8, a JSON object with ``rev``, ``generation`` (of the journal that goes on from
-here) and ``line`` (what undo and redo reach).
+The ``.npz`` file contains the arrays of ``room.npz``; ``objects`` uint8, as packed by
+``editing.scene.journal``; and ``state`` uint8, a JSON object with ``rev``, ``generation`` (of the
+journal that continues from the snapshot) and ``line`` (the operations that can be undone and
+redone).
 """
 
 import json
@@ -25,7 +26,7 @@ NOTHING_DONE = Timeline()
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A scene at revision ``rev`` of a journal's generation."""
+    """A scene at revision ``rev`` of a journal generation."""
 
     grid: OccupancyGrid
     objects: tuple[SceneObject, ...]
@@ -35,12 +36,16 @@ class State:
     line: Timeline = NOTHING_DONE
 
     def draft(self) -> SceneDraft:
-        """Return the scene to be edited."""
+        """Return the scene as an editable draft."""
         return SceneDraft(self.grid, self.objects)
 
 
 def write_state(path: Path, state: State) -> None:
-    """Write a state, whole or not at all. Raises OutputError."""
+    """Write a snapshot atomically.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     arrays = {name: np.asarray(getattr(state.grid, name)) for name in GRID_ARRAYS}
     data = {
         "rev": state.rev,
@@ -58,11 +63,12 @@ def write_state(path: Path, state: State) -> None:
 
 
 def read_state(path: Path) -> State:
-    """Read a state.
+    """Read a snapshot.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is no state, or its bytes are not
-        those that were written. LimitError: it is too large.
+        InputError: If the file is missing.
+        DamagedFileError: If the file is not a valid snapshot, or if its checksum does not match.
+        LimitError: If the snapshot is too large.
     """
     arrays = read_npz(path, (*GRID_ARRAYS, "scan_to_room", "objects", "state"))
     objects = unpack_objects(arrays.pop("objects").tobytes(), path)
@@ -83,12 +89,12 @@ def read_state(path: Path) -> State:
 
 
 def snapshot_path(folder: Path, rev: int, generation: str) -> Path:
-    """Return where the snapshot of a revision lies."""
+    """Return the path of the snapshot of a revision."""
     return folder / f"snapshot-{rev:09d}-{generation}.npz"
 
 
 def snapshot_paths(folder: Path) -> Iterator[Path]:
-    """Go through the snapshots of a document, newest first."""
+    """Yield the paths of a document's snapshots, newest first."""
     yield from sorted(folder.glob("snapshot-*.npz"), reverse=True)
 
 
@@ -96,5 +102,5 @@ def _line(data: Any) -> Timeline:
     numbers, kinds = tuple(map(int, data["numbers"])), tuple(map(str, data["kinds"]))
     done = int(data["done"])
     if len(numbers) != len(kinds) or not 0 <= done <= len(numbers):
-        raise ValueError("its line of edits is none")
+        raise ValueError("its list of undoable edits is invalid")
     return Timeline(numbers, kinds, done)

@@ -1,1 +1,1 @@
-"""Long work of the editor, in threads and processes beside it."""
+"""Long-running work of the editor, in background threads and processes."""

@@ -1,7 +1,7 @@
-"""Long questions and long plans about a large scene: done on a copy of it, as a job beside.
+"""Long queries and plans about a large scene, computed by a job on a copy of the scene.
 
-Nobody's edits wait meanwhile; every tab sees how far it is and may cancel it. What was planned on
-the copy is done only where the cells that it changes are still what they were.
+Editing continues meanwhile. Every tab sees the progress of the job and may cancel it. An operation
+planned on the copy is applied only if the cells that it changes are still the same.
 """
 
 import asyncio
@@ -30,7 +30,7 @@ Value = TypeVar("Value")
 
 
 def copy_editor(editor: Editor) -> Editor:
-    """Return a scene as it is now, to be looked at and planned on by another thread."""
+    """Return a copy of the current scene that another thread can read and plan on."""
     held, draft = editor.opened, editor.draft
     return Editor(replace(held, grid=draft.grid(), objects=tuple(draft.objects.values())))
 
@@ -38,16 +38,16 @@ def copy_editor(editor: Editor) -> Editor:
 async def run_in_background(
     jobs: Jobs, name: str, copy: Editor, work: Callable[[Editor], Value]
 ) -> Value:
-    """Run work on a copy of the scene as a job, and return what it gives.
+    """Run a function on a copy of the scene as a job, and return its result.
 
     Args:
-        jobs: those of the server.
-        name: of ``TITLES``.
-        copy: which nobody else uses; the job reports what its ``progress`` is told.
-        work: what is done.
+        jobs: The jobs of the server.
+        name: Name of the job, a key of ``TITLES``.
+        copy: Copy of the scene, for this job only. The job reports the calls to its ``progress``.
+        work: Function to run on the copy.
 
     Raises:
-        UsageError: somebody cancelled it. What ``work`` raises.
+        UsageError: If the job is cancelled. Exceptions of ``work`` are passed on.
     """
     loop = asyncio.get_running_loop()
     answer: asyncio.Future[Value] = loop.create_future()

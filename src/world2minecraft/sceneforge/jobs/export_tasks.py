@@ -1,7 +1,7 @@
-"""What a worker makes of a scene as it is edited: files of every form, worlds in the game, builds.
+"""The worker tasks that export the edited scene: files, worlds in the game, and builds on a server.
 
-Each takes a folder with ``room.npz``, ``objects.json`` and ``placements.json`` (``snapshot``), and
-JSON values, and gives JSON values.
+Each task accepts a folder with ``room.npz``, ``objects.json`` and ``placements.json`` (see
+``write_snapshot``) and JSON values, and returns JSON values.
 """
 
 import shutil
@@ -36,17 +36,18 @@ WORLD, PICTURE = "world", "png"
 def export(
     folder: str, form: str, target: str, choice: dict[str, Any], progress: Progress
 ) -> dict[str, Any]:
-    """Write a scene in one form into the folder ``target``.
+    """Write a scene in one format into the folder ``target``.
 
     Args:
-        folder: the scene.
-        form: a name of ``formats.volume_formats``, ``world`` or ``png``.
-        target: where the file goes.
-        choice: as ``reconstruct_tasks.parameters_of_choice``.
-        progress: told of building and writing.
+        folder: Folder with the scene.
+        form: Format: a name of ``formats.volume_formats``, ``world`` or ``png``.
+        target: Folder for the exported file.
+        choice: Options, as for ``reconstruct_tasks.parameters_of_choice``.
+        progress: Callback for the progress of building and writing.
 
     Returns:
-        ``file``, its name; ``bytes``; ``lost`` [[what, count]], what the form could not carry.
+        A dict with ``file``, the file name; ``bytes``, its size; and ``lost`` [[description,
+        count]], the content that the format cannot represent.
     """
     chosen, losses = parameters_of_choice(choice), Losses()
     volume = _blocks(Path(folder), chosen, progress)
@@ -90,14 +91,14 @@ def _zipped(folder: Path, path: Path) -> Path:
 def install(
     folder: str, choice: dict[str, Any], game: list[str | None], name: str, progress: Progress
 ) -> dict[str, Any]:
-    """Build the world and copy it into a game, overwriting nothing.
+    """Build the world and copy it into a Minecraft installation without overwriting any world.
 
     Args:
-        folder: the scene.
-        choice: as ``reconstruct_tasks.parameters_of_choice``.
-        game: its name, its saves folder and its version or None.
-        name: what the world is called; the scene's name where it is empty.
-        progress: told of each step.
+        folder: Folder with the scene.
+        choice: Options, as for ``reconstruct_tasks.parameters_of_choice``.
+        game: Name, saves folder and version (or None) of the installation.
+        name: Name of the world. An empty name uses the name of the scene.
+        progress: Callback for the progress of each step.
     """
     chosen = parameters_of_choice(choice)
     into = Game(str(game[0]), Path(str(game[1])), game[2])
@@ -121,7 +122,7 @@ def into_world(
     air: str,
     progress: Progress,
 ) -> dict[str, Any]:
-    """Build the scene into a world of the user, as ``w2m build --into`` does, with its backups."""
+    """Build the scene into an existing world, as ``w2m build --into`` does, after backing it up."""
     chosen = parameters_of_choice(choice)
     volume = _blocks(Path(folder), chosen, progress)
     progress("write", 0, 1)
@@ -148,7 +149,7 @@ def on_server(
     air: str,
     progress: Progress,
 ) -> dict[str, Any]:
-    """Build the scene on a running server, as ``w2m build --rcon`` does; it cannot be undone."""
+    """Build the scene on a running server, as ``w2m build --rcon`` does. This cannot be undone."""
     chosen = parameters_of_choice(choice)
     host, port = parse_address(address)
     volume = _blocks(Path(folder), chosen, progress)

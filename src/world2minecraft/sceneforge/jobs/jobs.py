@@ -1,9 +1,9 @@
-"""Long work beside the editor: each job has a stage, a share, the time left and an end.
+"""Background jobs of the editor, with their progress, remaining time and results.
 
-A job runs in a thread of its own. What may be cut off at any moment runs in a process that the
-thread listens to (``subprocess_job.run_in_subprocess``); other work is cancelled at its next
-report. Every state is a ``JobState`` of ``wire.ts`` and goes to all tabs, at most ten a second for
-each job.
+Each job runs in its own thread. Work that must be stoppable at any moment runs in a subprocess of
+that thread (``subprocess_job.run_in_subprocess``). Other work is cancelled at its next progress
+report. Every state is a ``JobState`` of ``wire.ts`` and is sent to all tabs, at most ten times a
+second for each job.
 """
 
 import threading
@@ -26,12 +26,16 @@ MAX_RUNNING = 4
 
 
 class CancelledError(Exception):
-    """Raised within a job's work when it was cancelled: the work ends there."""
+    """A job was cancelled. It is raised within the job's work, which thereby ends."""
 
 
 @dataclass(frozen=True)
 class JobState:
-    """What a tab shows of a job; ``share`` is of all of it, ``done`` and ``total`` of its stage."""
+    """The state of a job as shown in a tab.
+
+    ``share`` is the completed share of the whole job. ``done`` and ``total`` refer to its current
+    stage.
+    """
 
     id: str
     title: str
@@ -45,19 +49,19 @@ class JobState:
     result: Any = None
 
     def message(self) -> dict[str, Any]:
-        """Return the message of ``wire.ts``."""
+        """Return the state as a message of ``wire.ts``."""
         return {"type": "job"} | asdict(self)
 
 
 class JobProgress(Protocol):
-    """What work is given: it calls it as ``Progress``, and may say how it is cut off."""
+    """A ``Progress`` callback for a job's work, which can also register how to stop the work."""
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
         """Report one step. Raises CancelledError where the job was cancelled."""
         ...
 
     def on_cancel(self, stop: Callable[[], None]) -> None:
-        """Call ``stop`` when the job is cancelled; at once where it was already."""
+        """Register a function to call when the job is cancelled, or call it if it already is."""
         ...
 
 
@@ -65,11 +69,11 @@ JobFunction = Callable[[JobProgress], Any]
 
 
 class Jobs:
-    """All jobs of one server.
+    """All background jobs of one server.
 
     Args:
-        tell: takes each state's message; called from the jobs' threads.
-        clock: seconds that only grow.
+        tell: Function that receives the message of each state. The threads of the jobs call it.
+        clock: Monotonic clock in seconds.
     """
 
     def __init__(
@@ -89,16 +93,19 @@ class Jobs:
         usual_s: Mapping[str, float] | None = None,
         ended: Callable[[JobState], None] = lambda state: None,
     ) -> str:
-        """Begin a job and return its id.
+        """Start a job and return its id.
 
         Args:
-            title: for people.
-            work: is given a ``JobProgress``; what it returns, JSON values, is the job's result.
-            usual_s: its stages in order with their usual seconds, for the time left.
-            ended: called with the last state, in the job's thread, before it is told.
+            title: Title that is shown to people.
+            work: Function that receives a ``JobProgress`` and returns the job's result as JSON
+                values.
+            usual_s: Stages in order with their typical durations in seconds, to estimate the
+                remaining time.
+            ended: Function called with the last state, in the job's thread, before the state is
+                sent to the tabs.
 
         Raises:
-            ConflictError: too many run already.
+            ConflictError: If too many jobs are already running.
         """
         with self._lock:
             running = [one for one in self._jobs.values() if one.state.state == "running"]
@@ -117,29 +124,33 @@ class Jobs:
         return state.id
 
     def cancel(self, number: str) -> None:
-        """End a job; one that has ended stays as it is.
+        """Cancel a running job. A job that has ended is not changed.
 
         Raises:
-            UnknownNameError: there is no such job.
+            UnknownNameError: If no job has this id.
         """
         self._named(number).cancel()
 
     def state(self, number: str) -> JobState:
-        """Return the state of a job. Raises UnknownNameError."""
+        """Return the state of a job.
+
+        Raises:
+            UnknownNameError: If no job has this id.
+        """
         return self._named(number).state
 
     def states(self) -> list[dict[str, Any]]:
-        """Return the messages of all jobs, in the order that they began."""
+        """Return the messages of all jobs in the order in which they started."""
         return [job.state.message() for job in list(self._jobs.values())]
 
     def wait(self, number: str, timeout_s: float | None = None) -> JobState:
-        """Return the last state of a job once it has ended, or its state when the time is over."""
+        """Wait until a job ends or the timeout expires, and return its state."""
         job = self._named(number)
         job.thread.join(timeout_s)
         return job.state
 
     def close(self, patience_s: float = 5.0) -> None:
-        """Cancel all jobs, and wait for their ends."""
+        """Cancel all jobs and wait until they have ended."""
         for job in list(self._jobs.values()):
             job.cancel()
         deadline = time.monotonic() + patience_s
@@ -222,7 +233,7 @@ class _Job:
 
 
 def describe_error(error: BaseException) -> str:
-    """Return what went wrong as one line."""
+    """Return a one-line description of an exception."""
     if isinstance(error, World2MinecraftError):
         return one_line(error)
     if isinstance(error, MemoryError):

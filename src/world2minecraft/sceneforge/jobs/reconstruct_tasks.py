@@ -1,6 +1,6 @@
-"""What a worker does on the way from a capture to a room: look, reconstruct, make a demo room.
+"""The worker tasks that turn a capture into a room: survey, reconstruct and generate a demo room.
 
-Each takes JSON values and gives JSON values, so that it can run in a process of its own.
+Each task accepts and returns JSON values, so that it can run in a separate process.
 """
 
 from dataclasses import replace
@@ -25,15 +25,15 @@ DEMO_SEED, DEMO_FRAMES = 5, 40  # Those of ``w2m demo``.
 
 
 def survey(capture: str, folder: str, progress: Progress) -> dict[str, Any]:
-    """Look at a capture; write ``survey.json`` and, where frames are there, ``survey.png``.
+    """Survey a capture and write ``survey.json`` and, if the capture has frames, ``survey.png``.
 
     Returns:
-        What ``survey.json`` holds: ``kind`` (``frames`` or ``plan``), ``called``, ``lines``
+        The contents of ``survey.json``: ``kind`` (``frames`` or ``plan``), ``called``, ``lines``
         [[name, text]], ``diagnostics`` [{level, text, advice}], ``can_start``, ``about_s``,
-        ``frames``, ``has_scale`` and ``data``, all that ``w2m scan --json`` prints.
+        ``frames``, ``has_scale`` and ``data``, which is the output of ``w2m scan --json``.
 
     Raises:
-        CaptureError: it is no capture; the message says what is.
+        CaptureError: If the path is not a capture. The message describes the supported captures.
     """
     source, target = Path(capture), Path(folder)
     progress("look", 0, 3)
@@ -90,14 +90,14 @@ def _rows(lines: list[str]) -> list[list[str]]:
 
 
 def parameters_of_choice(choice: dict[str, Any]) -> Parameters:
-    """Return the parameters of what a person chose.
+    """Return the build parameters for the options that a user chose.
 
     Args:
-        choice: any of ``blocks_per_metre``, ``style``, ``known`` [name, metres], ``mc_version``,
+        choice: Any of ``blocks_per_metre``, ``style``, ``known`` [name, metres], ``mc_version`` and
             ``voxel_m``.
 
     Raises:
-        UsageError: a value cannot be used; the message says what can.
+        UsageError: If a value is invalid. The message states the valid values.
     """
     plain = {"blocks_per_metre": float, "voxel_m": float, "mc_version": str}
     given = {key: kind(choice[key]) for key, kind in plain.items() if choice.get(key) is not None}
@@ -112,7 +112,7 @@ def parameters_of_choice(choice: dict[str, Any]) -> Parameters:
 def reconstruct(
     capture: str, out: str, choice: dict[str, Any], progress: Progress
 ) -> dict[str, Any]:
-    """Turn a capture into a run's folder; return ``out`` and what came of it."""
+    """Reconstruct a capture into a run folder, and return the folder as ``out`` with a summary."""
     source, target, chosen = Path(capture), Path(out), parameters_of_choice(choice)
     plan = find_lone_roomplan(source)
     if plan is not None:

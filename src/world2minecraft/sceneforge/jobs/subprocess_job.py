@@ -1,8 +1,8 @@
-"""Work in a process of its own, which can be cut off at any moment.
+"""Jobs that run in a subprocess, which can be stopped at any moment.
 
-The process is ``python -m world2minecraft.sceneforge.jobs.worker``. It is given one JSON line, a
-task and what it needs, and answers with JSON lines: steps, then a result or an error. It ends by
-itself when the program that began it is gone.
+The subprocess is ``python -m world2minecraft.sceneforge.jobs.worker``. It receives one JSON line
+with a task and its arguments, and answers with JSON lines: progress steps, then a result or an
+error. It exits by itself when the program that started it has exited.
 """
 
 import json
@@ -24,16 +24,16 @@ ON_WINDOWS = sys.platform == "win32"
 
 
 class ReportedError(World2MinecraftError):
-    """What a process said went wrong, as it said it."""
+    """An error reported by a worker process, with the message of that process."""
 
 
 def run_in_subprocess(task: str, within: Path | None = None, **needs: Any) -> JobFunction:
-    """Return the work of a job that does a task of ``worker.TASKS`` in a process.
+    """Return a work function for a job that runs a task of ``worker.TASKS`` in a subprocess.
 
     Args:
-        task: its name.
-        within: a folder whose path is left out of what is said went wrong: it tells nobody more.
-        needs: JSON values that the task is given.
+        task: Name of the task.
+        within: Folder whose path is removed from error messages, because it does not help the user.
+        needs: Arguments of the task as JSON values.
     """
 
     def work(report: JobProgress) -> Any:
@@ -48,7 +48,7 @@ def run_in_subprocess(task: str, within: Path | None = None, **needs: Any) -> Jo
 
 
 def start_worker(task: str, needs: Mapping[str, Any]) -> "subprocess.Popen[bytes]":
-    """Start a process that does a task."""
+    """Start a worker process that runs a task."""
     process = subprocess.Popen(
         WORKER,
         stdin=subprocess.PIPE,
@@ -65,7 +65,7 @@ def start_worker(task: str, needs: Mapping[str, Any]) -> "subprocess.Popen[bytes
 def _pipe(stream: Any) -> Any:
     """Return a stream of a process that was opened with pipes."""
     if stream is None:
-        raise WorkerError("a process was begun without pipes")
+        raise WorkerError("the job process was started without pipes for stdin and stdout")
     return stream
 
 
@@ -90,7 +90,7 @@ def _relay(process: "subprocess.Popen[bytes]", report: JobProgress) -> Any:
 
 
 def stop_worker(process: "subprocess.Popen[bytes]") -> None:
-    """End a process and what it began."""
+    """Terminate a worker process and its child processes."""
     with suppress(OSError):
         _pipe(process.stdin).close()
     if process.poll() is None:

@@ -1,9 +1,9 @@
-"""How much of a job of several stages is done, and how long the rest takes.
+"""Estimates of the progress and the remaining time of a job with several stages.
 
-Each stage has a length in seconds that it usually takes; what it takes here is measured. Early on
-the usual lengths decide, later the pace of this machine. The lengths of a reconstruction's stages
-are seconds on two cores, measured on the demo room's 40 frames and on 100 photos of a generated
-room.
+Each stage has a typical duration in seconds. The actual durations on this machine are measured:
+early in a job the estimate relies on the typical durations, later on the measured speed. The
+typical durations of reconstruction stages were measured on two cores, with the 40 frames of the
+demo room and with 100 photos of a generated room.
 """
 
 from collections.abc import Mapping
@@ -17,10 +17,10 @@ PRIOR_S = 4.0  # For so long the usual lengths weigh as much as the clock.
 
 
 def reconstruct_stage_seconds(survey: Mapping[str, Any] | None) -> dict[str, float]:
-    """Return the stages of a capture's way to a room, each with its usual seconds.
+    """Return the stages of a reconstruction with their typical durations in seconds.
 
     Args:
-        survey: what ``tasks.survey`` told of it.
+        survey: The result of ``survey`` for the capture.
     """
     if survey and survey.get("route") == "plan":
         return {"plan": 2.0, "build": 2.0, "report": 3.0}
@@ -36,15 +36,15 @@ def reconstruct_stage_seconds(survey: Mapping[str, Any] | None) -> dict[str, flo
 
 
 def demo_stage_seconds() -> dict[str, float]:
-    """Return the stages of the demo room, from nothing."""
+    """Return the stages of creating the demo room, with their typical durations in seconds."""
     return {"room": 0.3, "capture": 4.0} | reconstruct_stage_seconds(None)
 
 
 class TimeLeft:
-    """Follows one job.
+    """An estimator of the progress and the remaining time of one job.
 
     Args:
-        usual_s: the stages in their order, each with the seconds that it usually takes.
+        usual_s: The stages in order, each with its typical duration in seconds.
 
     Example:
         >>> left = TimeLeft({"scan": 10.0, "fuse": 10.0})
@@ -64,10 +64,10 @@ class TimeLeft:
     def report(
         self, stage: str, done: int, total: int, elapsed_s: float
     ) -> tuple[float | None, float | None]:
-        """Return the share of the whole job that is done, 0 to 1, and the seconds left.
+        """Return the completed share of the whole job, 0 to 1, and the remaining seconds.
 
-        Both are None where nothing is known of the job; neither ever jumps back for a stage that
-        is not among the usual ones.
+        Both values are None if the job has no known stages. A stage without a typical duration does
+        not lower the share.
         """
         if not self._total_s:
             return None, None

@@ -1,8 +1,8 @@
-"""The process that does a task for a job; see ``subprocess_job``.
+"""The worker process that runs a task for a job; ``subprocess_job`` starts it.
 
-In: one JSON line on stdin, ``[task, {what it needs}]``. Out: JSON lines, each a step
-``{"stage", "done", "total", "note"}``, then ``{"result"}`` or ``{"error"}``. When stdin is closed
-the process ends: whoever wanted the work is gone.
+Input: one JSON line on stdin, ``[task, {arguments}]``. Output: JSON lines, first a line ``{"stage",
+"done", "total", "note"}`` for each step, then ``{"result"}`` or ``{"error"}``. The process exits
+when its stdin is closed, because the program that started it has then exited.
 """
 
 import json
@@ -30,7 +30,7 @@ TASKS = Registry(
 
 
 def main() -> None:
-    """Do the task that stdin names."""
+    """Run the task that is named on stdin."""
     answers = take_stdout()
     task, needs = json.loads(sys.stdin.buffer.readline())
     threading.Thread(target=_end_with_stdin, daemon=True).start()
@@ -38,7 +38,7 @@ def main() -> None:
 
 
 def run_task(task: str, needs: dict[str, Any], progress: Progress) -> dict[str, Any]:
-    """Do a task and return its last line."""
+    """Run a task and return its last output line, with the result or the error."""
     try:
         return {"result": TASKS.load(task)(progress=progress, **needs)}
     except Exception as error:  # Whatever it is, it is said as one line.
@@ -46,7 +46,7 @@ def run_task(task: str, needs: dict[str, Any], progress: Progress) -> dict[str, 
 
 
 class LineProgress:
-    """The ``Progress`` of a task: each step is a line."""
+    """A ``Progress`` callback that writes each step as a line of JSON."""
 
     def __init__(self, answers: IO[str]):
         self._answers = answers
@@ -58,7 +58,7 @@ class LineProgress:
 
 
 def write_line(answers: IO[str], line: dict[str, Any]) -> None:
-    """Write one line; when nobody reads it, the process ends."""
+    """Write one output line, and exit the process if stdout is closed."""
     try:
         answers.write(json.dumps(line) + "\n")
         answers.flush()
@@ -67,7 +67,7 @@ def write_line(answers: IO[str], line: dict[str, Any]) -> None:
 
 
 def take_stdout() -> IO[str]:
-    """Return the stream of answers; what libraries print goes to stderr instead."""
+    """Return the stream for output lines, and redirect what libraries print to stderr."""
     stdout_copy = os.dup(1)
     os.dup2(2, 1)
     return os.fdopen(stdout_copy, "w", encoding="utf-8")

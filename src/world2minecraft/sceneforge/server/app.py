@@ -1,4 +1,4 @@
-"""The web application: a page, a small HTTP API and a websocket, all behind the guard."""
+"""The web application: a page, a small HTTP API and a websocket, all protected by the guard."""
 
 import asyncio
 from collections.abc import Iterable
@@ -36,7 +36,7 @@ def build_app(
     hosts: Iterable[str] = (),
     any_address: bool = False,
 ) -> Starlette:
-    """Return the application that serves a session; see ``Guard`` for the arguments."""
+    """Return the application that serves a session. See ``Guard`` for the arguments."""
     guard = Middleware(Guard, token=token, port=port, hosts=hosts, any_address=any_address)
     app = Starlette(
         routes=[
@@ -55,7 +55,7 @@ def build_app(
 
 
 def routes() -> list[BaseRoute]:
-    """All that is served under /api/."""
+    """Return all routes under ``/api/``."""
     return [
         Route("/api/scene", _scene),
         Route("/api/volume", _volume),
@@ -72,7 +72,7 @@ def routes() -> list[BaseRoute]:
 
 
 def session_of(request: Request) -> Session:
-    """Return the session that a request is for."""
+    """Return the session of the server that received a request."""
     return request.app.state.session
 
 

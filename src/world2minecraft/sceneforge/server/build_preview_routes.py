@@ -1,9 +1,9 @@
-"""``GET /api/build`` and ``GET /api/collision``: the blocks of the scene as it is now.
+"""The ``GET /api/build`` and ``GET /api/collision`` routes, which return the scene as blocks.
 
-A build is made by a thread, one at a time, while the scene is edited further; the last few are
-cached. One that takes longer is announced to all tabs as a job. Who walks in the page does so by
-the physics of ``minecraft.physics``: it is sent the shape of each cell, the boxes of each shape,
-and where to begin.
+Builds are made by a thread, one at a time, while the scene can still be edited. The last few builds
+are cached. A build that takes longer is announced to all tabs as a job. Walking in the page follows
+the physics of ``minecraft.physics``: the page receives the shape of each cell, the boxes of each
+shape, and the start position.
 """
 
 import asyncio
@@ -39,7 +39,7 @@ def build_collision(build: BlockBuild) -> bytes:
 
 
 def voxel_collision(scene: SceneSnapshot) -> bytes:
-    """Return the occupied cells of a scene as full cubes, a block a voxel, in block axes."""
+    """Return the occupied cells of a scene as full cubes in block axes, one block per voxel."""
     grid = scene.grid
     solid = np.moveaxis(grid.occupied[:, ::-1], 1, 2)  # Room -y is block z.
     world = BlockWorld.of_cells(solid)
@@ -98,7 +98,7 @@ Key = tuple[Any, ...]
 
 
 class BuildCache:
-    """The builds of one server: made one after another, the last ones kept."""
+    """The builds of a server, made one after another, of which the latest are cached."""
 
     def __init__(self, session: Session):
         self.session = session
@@ -107,13 +107,17 @@ class BuildCache:
         self._packed: OrderedDict[Key, bytes] = OrderedDict()
 
     async def build(self, options: BuildOptions) -> tuple[int, bytes]:
-        """Return the revision that was built and its packed mesh."""
+        """Return the revision of the scene that was built, and the packed mesh of the build."""
         return await self._made(
             ("mesh", options), lambda scene: self._of(scene, options).mesh_bytes()
         )
 
     async def collision(self, options: BuildOptions | None) -> tuple[int, bytes]:
-        """Return the revision and the packed boxes of a build, or of the voxels for None."""
+        """Return the revision and the packed collision boxes of a build, or of the voxels.
+
+        Args:
+            options: Options of the build. None returns the boxes of the voxels.
+        """
         if options is None:
             return await self._made(("voxels",), voxel_collision)
         return await self._made(
@@ -166,7 +170,7 @@ class BuildCache:
 
 
 def build_routes() -> list[BaseRoute]:
-    """Return the two routes; the application's ``state.session`` is what they build."""
+    """Return the two routes. They build the scene of ``state.session`` of the application."""
     return [Route("/api/build", _build), Route("/api/collision", _collision)]
 
 
@@ -178,7 +182,7 @@ async def _build(request: Request) -> Response:
 async def _collision(request: Request) -> Response:
     what = request.query_params.get("what", "build")
     if what not in ("build", "voxels"):
-        raise UsageError(f"what must be build or voxels, not {what!r}")
+        raise UsageError(f"what must be 'build' or 'voxels', got {what!r}")
     options = _options(request) if what == "build" else None
     return _answer(request, *await _builds(request).collision(options))
 
@@ -197,7 +201,7 @@ def _options(request: Request) -> BuildOptions:
     try:
         size = float(text)
     except ValueError as error:
-        raise UsageError(f"blocks_per_metre must be a number such as 4, not {text!r}") from error
+        raise UsageError(f"blocks_per_metre must be a number such as 4, got {text!r}") from error
     return BuildOptions(size, query.get("style", "blocks"))
 
 

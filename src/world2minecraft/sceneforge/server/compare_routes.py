@@ -1,12 +1,12 @@
-"""``/api/compare``: another occupancy of the room, in the cells of the document.
+"""The ``/api/compare`` routes, which compare the document with another occupancy of its room.
 
 ====================================  ========================================================
-GET    /api/compare                   ``{name, has_truth}``: what is compared with, if anything
-POST   /api/compare/truth             with the truth of a generated room
-POST   /api/compare/opened            with the scene as it was when it was opened
-POST   /api/upload/compare?name=NAME  with a file: room.npz, occ.json, .npz or .npy of labels
-GET    /api/compare/labels            its labels in the document's cells, as ``W2MV``
-DELETE /api/compare                   with nothing any more
+GET    /api/compare                   ``{name, has_truth}``: name of the open comparison, if any
+POST   /api/compare/truth             compare with the ground truth of a generated room
+POST   /api/compare/opened            compare with the scene as it was first opened
+POST   /api/upload/compare?name=NAME  compare with an uploaded room.npz, occ.json, .npz or .npy
+GET    /api/compare/labels            labels of the comparison in the document's cells (``W2MV``)
+DELETE /api/compare                   end the comparison
 ====================================  ========================================================
 """
 
@@ -31,7 +31,7 @@ from world2minecraft.sceneforge.workspace import Comparison, Workspace
 
 
 def routes() -> list[BaseRoute]:
-    """All that comparing asks for."""
+    """Return the routes for comparisons."""
     return [
         Route("/api/compare", _status),
         Route("/api/compare", _end, methods=["DELETE"]),

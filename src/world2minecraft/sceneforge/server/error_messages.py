@@ -1,4 +1,4 @@
-"""What went wrong, as the one line that a page or a script is told."""
+"""One-line error messages for the page and for scripts."""
 
 import errno
 
@@ -10,7 +10,7 @@ from world2minecraft.core.errors import World2MinecraftError, one_line
 
 
 def explain_error(error: BaseException) -> str:
-    """Return one line: what was expected, or what to do."""
+    """Return a one-line message that states the problem or what to do about it."""
     if isinstance(error, World2MinecraftError):
         return one_line(error)
     if isinstance(error, MemoryError):

@@ -1,12 +1,12 @@
-"""``/api/exports``, ``/api/install`` and ``/api/build``: where a scene can go.
+"""The ``/api/exports``, ``/api/install`` and ``/api/build`` routes, which export a scene.
 
 ===============================  ==============================================================
-GET  /api/exports                forms, scales, styles, versions, games and worlds of this machine
-POST /api/exports                ``{form, blocks_per_metre, style, mc_version}``: a job
-GET  /api/exports/files/ID       what came of it, to download
-POST /api/install                ``{game, name, ...}``: a job; nothing is overwritten
-POST /api/build/world            ``{world, at, turns, air, ...}``: a job; ``w2m undo`` undoes it
-POST /api/build/server           ``{address, password, at, turns, air, ...}``: a job
+GET  /api/exports                list formats, scales, styles, game versions, games and worlds
+POST /api/exports                ``{form, blocks_per_metre, style, mc_version}``: start a job
+GET  /api/exports/files/ID       download an exported file
+POST /api/install                ``{game, name, ...}``: start a job; never overwrites a world
+POST /api/build/world            ``{world, at, turns, air, ...}``: start a job; ``w2m undo`` reverts
+POST /api/build/server           ``{address, password, at, turns, air, ...}``: start a job
 ===============================  ==============================================================
 """
 
@@ -37,7 +37,7 @@ STAGE_SECONDS = {"build": 3.0, "write": 1.0}
 
 
 def routes() -> list[BaseRoute]:
-    """All that exporting asks for."""
+    """Return the routes for exports."""
     return [
         Route("/api/exports", _options),
         Route("/api/exports", _export, methods=["POST"]),
@@ -111,7 +111,7 @@ async def _install(request: Request) -> Response:
     if key not in games:
         raise UsageError("choose one of the listed Minecraft installations")
     if not isinstance(name, str) or len(name) > 100:
-        raise UsageError("the world name must be a short text")
+        raise UsageError("the world name must be a string of limited length")
     choice, game = _choice(body), games[key]
     place = [game.name, str(game.saves), game.version]
     return _start_subprocess_job(workspace, "install", choice=choice, game=place, name=name)
@@ -143,24 +143,26 @@ async def _on_server(request: Request) -> Response:
 
 
 def parse_place(body: dict[str, Any]) -> dict[str, Any]:
-    """Take ``at``, ``turns`` and ``air`` out of what was told, and return them.
+    """Remove ``at``, ``turns`` and ``air`` from a request body, check them and return them.
 
     Raises:
-        UsageError: one of them is no place; the message says what is.
+        UsageError: If a value is invalid. The message states the valid values.
     """
     at, turns, air = body.pop("at", None), body.pop("turns", 0), body.pop("air", "room")
     whole = isinstance(at, list) and len(at) == 3 and all(type(one) is int for one in at)
     if not whole or any(abs(one) > MAX_COORDINATE for one in at):
-        raise UsageError("at must be three whole numbers, x, y and z, as the F3 screen shows")
+        raise UsageError(
+            "at must be three integers x, y and z, as shown on the F3 screen of Minecraft"
+        )
     if type(turns) is not int or not -3 <= turns <= 3:
-        raise UsageError(f"turns must be -3 to 3 quarter turns, not {str(turns)[:20]!r}")
+        raise UsageError(f"turns must be -3 to 3 quarter turns, got {str(turns)[:20]!r}")
     check_air(str(air))
     return {"at": at, "turns": turns, "air": str(air)}
 
 
 def _choice(body: dict[str, Any]) -> dict[str, Any]:
     if strange := sorted(body.keys() - set(CHOICES)):
-        raise UsageError(f"{strange[0][:40]!r} is not an option; options: {', '.join(CHOICES)}")
+        raise UsageError(f"unknown option {strange[0][:40]!r}; options: {', '.join(CHOICES)}")
     return check_choice(body)
 
 

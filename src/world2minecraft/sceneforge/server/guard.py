@@ -1,11 +1,12 @@
-"""Who may talk to SceneForge: one guard before everything, HTTP and websocket alike.
+"""Access control for SceneForge, applied to every HTTP request and websocket connection.
 
-Binding to loopback is no boundary: any page that the user has open can send to it, and by DNS
-rebinding it can even read. So each request must name a host that is ours (``Host``), come from
-our own page or from no page at all (``Origin``, ``Sec-Fetch-Site``), and know the token: 256 bits
-that are printed in the link, exchanged at the first visit for a cookie that scripts cannot read
-and other sites do not send, and then gone from the address bar. A program sends the token as
-``Authorization: Bearer TOKEN`` instead.
+Binding to loopback is not sufficient protection: any page that the user has open can send requests
+to loopback, and DNS rebinding even lets it read the answers. Each request must therefore name an
+allowed host (``Host``), come from the server's own page or from no page (``Origin``,
+``Sec-Fetch-Site``), and present a 256-bit token. The token is part of the printed link. At the
+first visit it is exchanged for a cookie that scripts cannot read and other sites do not send, and
+is then removed from the address bar. Programs send the token as ``Authorization: Bearer TOKEN``
+instead.
 """
 
 import json
@@ -40,15 +41,16 @@ OPEN_THE_LINK = "open the link that w2m forge printed; it contains the access to
 
 
 class Guard:
-    """The outermost layer of the server; what it lets through is the user's own.
+    """The outermost ASGI middleware, which rejects all requests that do not come from the user.
 
     Args:
-        app: what it guards.
-        token: what the link holds; 43 characters of ``new_token``.
-        port: where the server listens, so that the cookies of two servers differ.
-        hosts: names, beside those of loopback, under which the server may be called.
-        any_address: whether an IP address will do too, as it must where the server is bound to
-            others than loopback; a rebound name is never one.
+        app: The ASGI application to protect.
+        token: Access token from ``new_token``, 43 characters, as contained in the link.
+        port: Port of the server. It is part of the cookie's name, so that the cookies of two
+            servers differ.
+        hosts: Host names, besides those of loopback, under which the server may be addressed.
+        any_address: Whether the ``Host`` header may also be any IP address. This is required if the
+            server is not bound to loopback, and safe because DNS rebinding always uses a name.
     """
 
     def __init__(
@@ -119,7 +121,7 @@ class Guard:
 
 
 def new_token() -> str:
-    """Return 256 random bits, 43 characters that stand in a link."""
+    """Return a random 256-bit token as 43 characters that are safe in a URL."""
     return secrets.token_urlsafe(TOKEN_BYTES)
 
 

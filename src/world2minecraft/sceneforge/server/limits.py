@@ -1,7 +1,7 @@
-"""What a request may weigh: bytes of a body, depth and numbers of JSON.
+"""Limits for requests: the size of a body, and the size and nesting depth of JSON.
 
-Sizes are checked before anything is kept: by ``Content-Length`` where it is told, else by
-counting as chunks come.
+Sizes are checked before any data is stored, by the ``Content-Length`` header if there is one, and
+by counting the received bytes.
 """
 
 import json
@@ -21,16 +21,16 @@ STRINGS = re.compile(rb'"(?:[^"\\]|\\.)*"', re.DOTALL)
 
 
 class TooLargeError(Exception):
-    """A body is larger than its path allows."""
+    """A request body is larger than the limit for its path."""
 
 
 class BodyLimit:
-    """Refuse bodies that are too large, with 413, however they are sent.
+    """An ASGI middleware that answers 413 to requests with too large a body.
 
     Args:
-        app: what is guarded.
-        json_bytes: the most bytes of a body.
-        upload_bytes: the most where the path begins with ``/api/upload``.
+        app: The ASGI application to protect.
+        json_bytes: Maximum body size in bytes.
+        upload_bytes: Maximum body size in bytes for paths that start with ``/api/upload``.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class BodyLimit:
         self.app, self.json_bytes, self.upload_bytes = app, json_bytes, upload_bytes
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass a request on, counting what comes."""
+        """Pass a request to the application while counting the bytes of its body."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -80,10 +80,11 @@ class BodyLimit:
 
 
 def parse_json(data: bytes | str) -> Any:
-    """Return what JSON text says.
+    """Parse JSON text and return its value.
 
     Raises:
-        UsageError: it is no JSON, holds NaN or infinity, or is too large or too deep.
+        UsageError: If the text is not valid JSON, contains NaN or infinity, is larger than
+            ``MAX_JSON_BYTES``, or is nested more than ``MAX_JSON_DEPTH`` levels deep.
     """
     raw = data.encode("utf-8", "surrogatepass") if isinstance(data, str) else data
     if len(raw) > MAX_JSON_BYTES:
@@ -106,7 +107,7 @@ def _depth(raw: bytes) -> int:
 
 
 def _no_constant(name: str) -> Any:
-    raise ValueError(f"{name} is not a number")
+    raise ValueError(f"{name} is not allowed in JSON")
 
 
 def _length(value: bytes | None) -> int:

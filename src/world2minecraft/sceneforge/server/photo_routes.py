@@ -1,9 +1,9 @@
-"""``/api/photos``: the camera strip.
+"""The ``/api/photos`` routes, which serve the photos of the camera strip.
 
 ==================================  ===========================================================
-GET /api/photos                     ``{frames: [...], why}``: each photo's pose and field of view
-GET /api/photos/N/small.jpg         for the strip
-GET /api/photos/N/picture.jpg       as an ideal camera of that place has it
+GET /api/photos                     ``{frames: [...], why}``: pose and field of view of each photo
+GET /api/photos/N/small.jpg         the thumbnail of a photo
+GET /api/photos/N/picture.jpg       the undistorted photo, as a pinhole camera would take it
 ==================================  ===========================================================
 """
 
@@ -20,7 +20,7 @@ from world2minecraft.sceneforge.server.request_parsing import get_workspace
 
 
 def routes() -> list[BaseRoute]:
-    """All that the camera strip asks for."""
+    """Return the routes of the camera strip."""
     return [
         Route("/api/photos", _all),
         Route("/api/photos/{number:int}/small.jpg", _small),

@@ -1,4 +1,4 @@
-"""What a request is about: the workspace that it is for, and the JSON object that it brings."""
+"""Functions that read the workspace and the JSON body of a request."""
 
 from typing import Any
 
@@ -10,10 +10,10 @@ from world2minecraft.sceneforge.workspace import Workspace
 
 
 def get_workspace(request: Request) -> Workspace:
-    """Return the workspace of the server.
+    """Return the workspace of the server that received a request.
 
     Raises:
-        UsageError: the server has none.
+        UsageError: If the server has no workspace.
     """
     workspace = getattr(request.app.state, "workspace", None)
     if workspace is None:
@@ -22,10 +22,10 @@ def get_workspace(request: Request) -> Workspace:
 
 
 async def read_json_object(request: Request) -> dict[str, Any]:
-    """Return the JSON object of a request's body; an empty body is an empty object.
+    """Return the JSON object in the body of a request, or an empty object if the body is empty.
 
     Raises:
-        UsageError: it is none.
+        UsageError: If the body is not a JSON object.
     """
     body = await request.body()
     value = parse_json(body) if body else {}

@@ -1,4 +1,4 @@
-"""The server itself: a socket, a token, a link, and uvicorn until it is told to stop."""
+"""The server process: a socket, an access token, a link, and uvicorn until it is stopped."""
 
 import asyncio
 import os
@@ -28,16 +28,16 @@ STOPPING_S = 3
 
 
 class PageServer:
-    """A page and what it asks, for one user: ``run`` serves here, ``start`` in a thread.
+    """A web server for one user: ``run`` serves in this thread, ``start`` in a background thread.
 
     Args:
-        build: makes the application of a token and a port.
-        host: where to listen; other than loopback for others to come in.
-        port: where to listen; None for 8484, or any that is free where it is taken.
-        token: what the link holds; a new one where None.
+        build: Function that creates the application from a token and a port.
+        host: Address to listen on. Use an address other than loopback to allow remote connections.
+        port: Port to listen on. None uses 8484, or any free port if 8484 is taken.
+        token: Access token in the link. None creates a new one.
 
     Raises:
-        UsageError: the port is taken, or there is no such address here.
+        UsageError: If the port is taken, or if this machine does not have the address.
     """
 
     def __init__(
@@ -67,32 +67,32 @@ class PageServer:
 
     @property
     def url(self) -> str:
-        """Where the page is, without the token."""
+        """The URL of the page, without the token."""
         name = f"[{self.host}]" if ":" in self.host else self.host
         return f"http://{name if name not in ('0.0.0.0', '[::]') else LOOPBACK}:{self.port}/"
 
     @property
     def link(self) -> str:
-        """What the user opens."""
+        """The URL that the user opens, including the token."""
         return f"{self.url}?token={self.token}"
 
     def run(self, ready: Callable[[], None] = lambda: None) -> None:
-        """Serve until interrupted; ``ready`` is called once pages can be opened."""
+        """Serve until interrupted, and call ``ready`` as soon as pages can be opened."""
         with suppress(KeyboardInterrupt):  # uvicorn raises it again after it has stopped.
             asyncio.run(self._serve(ready))
 
     def start(self) -> Self:
-        """Serve in a thread; returns once pages can be opened."""
+        """Start serving in a background thread, and return when pages can be opened."""
         begun = threading.Event()
         self._thread = threading.Thread(target=self.run, args=(begun.set,), daemon=True)
         self._thread.start()
         while not begun.wait(0.05):
             if not self._thread.is_alive():
-                raise UsageError("the server did not start; see the terminal")
+                raise UsageError("the server did not start; see its log in the terminal")
         return self
 
     def stop(self) -> None:
-        """Stop, and close what was served; returns when that is done."""
+        """Stop the server, release its resources and return when this is done."""
         self._server.should_exit = True
         if self._thread is not None:
             self._thread.join()
@@ -117,22 +117,26 @@ class PageServer:
             await self.close()
 
     async def close(self) -> None:
-        """Close what was served; called once nothing is served any more."""
+        """Release the resources of the application after the last request."""
 
 
 class ForgeServer(PageServer):
-    """A server of one document.
+    """A web server that edits one document.
 
     Args:
-        editor: the document; None for the start page.
-        host, port, token: as ``PageServer`` takes them.
-        hosts: further names under which the server may be called.
-        home: the folder for captures and rooms made here; the user's own where None.
-        max_upload_bytes: the most that one dropped capture may hold.
-        capture: where the photos of the room lie, where its folder does not say so.
+        editor: The editor of the document. None shows the start page.
+        host: Address to listen on, as for ``PageServer``.
+        port: Port to listen on, as for ``PageServer``.
+        token: Access token, as for ``PageServer``.
+        hosts: Additional host names under which the server may be addressed.
+        home: Folder for the captures and rooms created on the page. None uses the user's data
+            folder.
+        max_upload_bytes: Maximum size in bytes of an uploaded capture.
+        capture: Path of the capture with the room's photos. None uses the path recorded in the
+            room's folder.
 
     Raises:
-        UsageError: the port is taken, or there is no such address here.
+        UsageError: If the port is taken, or if this machine does not have the address.
     """
 
     def __init__(

@@ -1,20 +1,20 @@
-"""``/api/start``: from a capture, or nothing, to a room that is open in the editor.
+"""The ``/api/start`` routes, which turn a capture or a demo into a room that is open in the editor.
 
 =========================================  ====================================================
-GET    /api/start                          what there is: captures, recent rooms, choices
-POST   /api/start/captures                 ``{title, files: [{path, size}]}``: one is announced
-PUT    /api/start/captures/ID/files/N      ``?at=OFFSET``: the next bytes of a file
-POST   /api/start/captures/ID/look         a job: what was found in it
-GET    /api/start/captures/ID              the same, with what was found
-GET    /api/start/captures/ID/picture.png  the picture of ``w2m scan``
-GET    /api/start/captures/ID/room.png     the picture of the room that came of it
-POST   /api/start/captures/ID/reconstruct  ``{blocks_per_metre, style, known}``: a job
-DELETE /api/start/captures/ID              it and what came of it
-POST   /api/start/demo                     ``{kind, seed}``: a job that makes a room of nothing;
-                                           the same one while it runs
-POST   /api/start/open                     ``{id}``: the room opens in the editor
-POST   /api/start/close                    back to the start page
-GET    /api/jobs                           all jobs; POST /api/jobs/ID/cancel ends one
+GET    /api/start                          list the captures, recent rooms and options
+POST   /api/start/captures                 ``{title, files: [{path, size}]}``: announce an upload
+PUT    /api/start/captures/ID/files/N      ``?at=OFFSET``: upload the next bytes of a file
+POST   /api/start/captures/ID/look         start a job that surveys the capture
+GET    /api/start/captures/ID              return the capture and its survey
+GET    /api/start/captures/ID/picture.png  return the image that ``w2m scan`` draws
+GET    /api/start/captures/ID/room.png     return an image of the reconstructed room
+POST   /api/start/captures/ID/reconstruct  ``{blocks_per_metre, style, known}``: start a job
+DELETE /api/start/captures/ID              delete the capture and its room
+POST   /api/start/demo                     ``{kind, seed}``: start a job that generates a room, or
+                                           return the running job with the same parameters
+POST   /api/start/open                     ``{id}``: open a room in the editor
+POST   /api/start/close                    close the room and return to the start page
+GET    /api/jobs                           list all jobs; POST /api/jobs/ID/cancel cancels one
 =========================================  ====================================================
 """
 
@@ -46,7 +46,7 @@ CHUNK_BYTES = 4 << 20  # What a page sends at once; a lost connection costs at m
 
 
 def routes() -> list[BaseRoute]:
-    """All that the start page asks for."""
+    """Return the routes of the start page."""
     one = "/api/start/captures/{id}"
     return [
         Route("/api/start", _overview),
@@ -120,7 +120,7 @@ async def _receive(request: Request) -> Response:
     one = _named(request)
     offset = request.query_params.get("at", "0")
     if not offset.isdecimal() or len(offset) > 15:
-        raise UsageError(f"at must be the number of bytes already uploaded, not {offset[:20]!r}")
+        raise UsageError(f"at must be the number of bytes already uploaded, got {offset[:20]!r}")
     number = request.path_params["number"]
     try:
         held = await one.receive(number, int(offset), _body(request))
@@ -143,7 +143,9 @@ async def _forget(request: Request) -> Response:
     workspace, one = get_workspace(request), _named(request)
     opened = getattr(getattr(workspace.session.editor, "opened", None), "folder", None)
     if opened is not None and Path(opened).resolve() == one.run.resolve():
-        raise ConflictError(one.title, "its room is open in the editor; close it first")
+        raise ConflictError(
+            one.title, "the room of this capture is open in the editor; close it first"
+        )
     number = workspace.job_of(one)
     await asyncio.to_thread(_delete_capture, workspace, one.id, number)
     return JSONResponse({})
@@ -180,14 +182,15 @@ async def _reconstruct(request: Request) -> Response:
 
 
 def check_choice(body: dict[str, Any]) -> dict[str, Any]:
-    """Return what a person chose for a reconstruction.
+    """Check the options that a user chose for a reconstruction, and return them unchanged.
 
     Raises:
-        UsageError: a value cannot be used; the message says what can.
+        UsageError: If an option is unknown or its value is invalid. The message lists the valid
+            values.
     """
     known = ("blocks_per_metre", "style", "known", "mc_version", "voxel_m")
     if strange := sorted(body.keys() - set(known)):
-        raise UsageError(f"{strange[0][:40]!r} is not an option; options: {', '.join(known)}")
+        raise UsageError(f"unknown option {strange[0][:40]!r}; options: {', '.join(known)}")
     try:
         parameters_of_choice(body)
     except (TypeError, ValueError) as error:
@@ -206,12 +209,12 @@ async def _demo(request: Request) -> Response:
     workspace, body = get_workspace(request), await read_json_object(request)
     kind, seed = body.get("kind", BASE_KINDS[0]), body.get("seed", 5)
     if kind not in BASE_KINDS:
-        raise UsageError(f"kind must be one of {', '.join(BASE_KINDS)}, not {str(kind)[:40]!r}")
+        raise UsageError(f"kind must be one of {', '.join(BASE_KINDS)}, got {str(kind)[:40]!r}")
     if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed < 1 << 31:
-        raise UsageError(f"seed must be a whole number of 0 or more, not {str(seed)[:40]!r}")
+        raise UsageError(f"seed must be an integer from 0 to 2147483647, got {str(seed)[:40]!r}")
     frames = body.get("frames", 40)
     if not isinstance(frames, int) or not 3 <= frames <= 200:
-        raise UsageError(f"frames must be 3 to 200, not {str(frames)[:40]!r}")
+        raise UsageError(f"frames must be an integer from 3 to 200, got {str(frames)[:40]!r}")
     name, title = f"demo/{kind}-{seed}", f"A {kind} room"
     if (running := workspace.job_at(name)) is not None:
         return JSONResponse({"job": running})  # Whoever asks again sees how far it is.
@@ -252,7 +255,7 @@ async def _room_picture(request: Request) -> Response:
 
 def _file(path: Path) -> Response:
     if not path.is_file():
-        raise InputError(path.name, "not created yet; create the room first")
+        raise InputError(path.name, "file not found; create the room first")
     return FileResponse(path)
 
 

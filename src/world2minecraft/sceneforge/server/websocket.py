@@ -1,7 +1,8 @@
-"""``/api/live``: what a tab asks over its websocket, and what it is told.
+"""The ``/api/live`` websocket, which receives requests of a browser tab and sends it changes.
 
-Messages are those of wire.ts. Each has an answer, ``done`` or ``refused``, with the number that
-the tab gave; a change is told to every tab before it is told done.
+The messages are those in ``wire.ts``. Each request is answered with ``done`` or ``refused`` and the
+number that the tab assigned to it. A change is sent to every tab before the request that caused it
+is answered with ``done``.
 """
 
 import asyncio
@@ -20,7 +21,7 @@ TOO_MANY = 1013  # The websocket code for "try again later".
 
 
 async def live(socket: WebSocket) -> None:
-    """Serve one tab until it goes."""
+    """Serve one browser tab until it disconnects."""
     session: Session = socket.app.state.session
     tab = session.broadcaster.open()
     if tab is None:
@@ -60,7 +61,7 @@ async def _answer(received: Mapping[str, Any], tab: Tab, session: Session) -> No
     try:
         message = parse_json(received.get("text") or received.get("bytes") or b"")
         if not isinstance(message, dict):
-            raise UsageError('a message is an object with "type"')
+            raise UsageError('a message must be a JSON object with a "type" field')
         if await _do(message, tab, session):
             tab.put(to_json_text({"type": "done", "seq": _seq(message), "rev": session.rev}))
     except Exception as error:

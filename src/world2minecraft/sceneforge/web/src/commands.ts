@@ -1,7 +1,7 @@
 // Made from core.classes, the commands of editing.scene and the queries of sceneforge by
 // `python -m world2minecraft.sceneforge.typescript`; do not edit.
 
-/** What people read for each class, by id. */
+/** Display name of each class, by id. */
 export const CLASS_DISPLAY_NAMES: readonly string[] = [
   "empty",
   "ceiling",
@@ -205,33 +205,33 @@ export interface TurnObjects {
   quarter_turns: number;
 }
 
-/** How many cells each class has, and how many objects there are. */
+/** The number of cells of each class, and the number of objects. */
 export type CountsQuery = Record<string, never>;
 
-/** Pieces of at most ``max_cells`` that hold to nothing, the largest first. */
+/** Unsupported pieces of at most ``max_cells`` cells, largest first. */
 export interface FloatersQuery {
   /** >= 1 */
   max_cells?: number;
 }
 
-/** The planes of the room, and the holes and openings of each. */
+/** The planes of the room (floors, ceilings and walls) with their holes and openings. */
 export interface HolesQuery {
   /** >= 0 */
   hole_m2?: number;
 }
 
-/** How the scene differs from another occupancy of the same room, and the IoU. */
+/** The differences between the scene and another occupancy of the same room, with the IoU. */
 export interface CompareQuery {
   path?: string;
 }
 
-/** The best five templates for an object, each in its best turn, with the IoU of its cells. */
+/** The five best furniture templates for an object, each at its best rotation, with IoU. */
 export interface AlternativesQuery {
   /** >= 1, <= 65535 */
   id: number;
 }
 
-/** The paper's centres for some figures of its clustering, as a preview; nothing is changed. */
+/** The object centres that given clustering parameters yield, as a preview without changes. */
 export interface CentersQuery {
   /** >= 1, <= 31 */
   density_kernel: number;
@@ -242,10 +242,10 @@ export interface CentersQuery {
   class_id?: number | null;
 }
 
-/** Places worth a look, the most doubtful first, each with the reason in ``why``. */
+/** Places that may need correction, most doubtful first, each with the reason in ``why``. */
 export type DoubtfulQuery = Record<string, never>;
 
-/** Furniture that collides or reaches out of its room, by the metrics of the report. */
+/** Furniture that collides or extends beyond its room, by the metrics of the report. */
 export type WarningsQuery = Record<string, never>;
 
 /** A plane square to an axis of the room, such as x = 1.4 m. */
@@ -279,7 +279,7 @@ export type Command =
   | SplitObjects
   | TurnObjects;
 
-/** What each query is asked with. */
+/** The fields of each query. */
 export interface Queries {
   counts: CountsQuery;
   floaters: FloatersQuery;
