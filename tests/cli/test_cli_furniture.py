@@ -72,7 +72,7 @@ def test_nothing_is_replaced_unless_it_is_said(own, volume, tmp_path, capsys):
     [
         (("add", "none.schem", "--class", "chair", "--blocks-per-metre", 1), 3, "is not there"),
         (("add", "x.schem", "--class", "chair", "--blocks-per-metre", 1, "--name", "../x"), 2,
-         "a name of furniture begins with a letter"),
+         "a furniture name must start with a letter"),
         (("show", "bathtup"), 2, "no template is named 'bathtup'; did you mean 'bathtub'?"),
         (("list", "--class", "kitchen"), 2, "no class is named 'kitchen'"),
         (("sheet", "nothing"), 2, "no template is named 'nothing'"),

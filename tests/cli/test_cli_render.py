@@ -77,13 +77,15 @@ def test_a_build_is_seen_from_where_its_player_starts(build, tmp_path, capsys):
     assert line["image"] == "build.png" and line["scene_id"] == "build"
     assert image(tmp_path / "build.png").shape == (36, 48, 3)
     told = capsys.readouterr().out
-    assert "note: seen from where the player starts; --tour and --orbit show more" in told
+    assert "note: rendered from the player's start position; --tour and --orbit show more" in told
     assert f"  next   w2m render {build} --tour --out build_tour.gif" in told
 
 
 def test_a_file_is_seen_from_outside(schem, tmp_path, capsys):
     assert render(schem) == 0
-    assert "this build has no player start and is seen from outside" in capsys.readouterr().out
+    assert (
+        "the build has no player start, so it is rendered from outside" in capsys.readouterr().out
+    )
     assert image(tmp_path / "room.png").shape == (36, 48, 3)
 
 
@@ -134,7 +136,7 @@ def test_a_tour_to_a_folder_comes_again_from_its_poses(build, tmp_path):
 
 def test_an_orbit_and_a_turntable_move(build, tmp_path, capsys):
     assert render(build, "--orbit", "--frames", "3", "--out", "orbit.gif") == 0
-    assert "ceilings and near walls are left out" in capsys.readouterr().out
+    assert "ceilings and near walls are removed" in capsys.readouterr().out
     assert render(build, "--turntable", "--frames", "2", "--out", "turn.webp") == 0
     for name, count in (("orbit.gif", 3), ("turn.webp", 2)):
         with Image.open(tmp_path / name) as opened:
@@ -173,54 +175,54 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["--pose", "1,2,3"], "--pose must be x,y,z,yaw,pitch or x,y,z,yaw,pitch,eye, not '1,2,3'"),
-        (["--pose", "1,2,3,4,95"], "pitch is -90 (up) to 90 (down) degrees, not 95"),
+        (["--pose", "1,2,3"], "--pose must be x,y,z,yaw,pitch or x,y,z,yaw,pitch,eye, got '1,2,3'"),
+        (["--pose", "1,2,3,4,95"], "pitch must be -90 (up) to 90 (down) degrees, got 95"),
         (["--orbit", "--tour"], "--orbit and --tour exclude each other; give one of them"),
         (["--orbit", "--pose", "1,2,3,4,5"],
          "--orbit and --pose exclude each other; give one of them"),
         (["--pose", "1,2,3,4,5", "--frames", "3"],
-         "--frames is for an orbit, a tour or a turntable, not for --pose"),
+         "--frames requires --orbit, --tour or --turntable and cannot be used with --pose"),
         (["--vfov", "70", "--hfov", "90"],
-         "--vfov and --hfov exclude each other; give one of them"),
-        (["--vfov", "0"], "a field of view must be above 0 and up to 170 degrees, not 0"),
-        (["--frames", "0"], "--frames must be 1 to 1,000,000, not 0"),
-        (["--fps", "0"], "--fps must be 1 to 240, not 0"),
-        (["--box", "1,2,3"], "--box must be six integers x0,y0,z0,x1,y1,z1, not '1,2,3'"),
+         "--vfov and --hfov cannot be combined; give only one of them"),
+        (["--vfov", "0"], "the field of view must be above 0 and at most 170 degrees, got 0"),
+        (["--frames", "0"], "--frames must be 1 to 1,000,000, got 0"),
+        (["--fps", "0"], "--fps must be 1 to 240, got 0"),
+        (["--box", "1,2,3"], "--box must be six integers x0,y0,z0,x1,y1,z1, got '1,2,3'"),
         (["--box", "1,2,3,1,5,6"],
          "--box must end after it begins on each axis, not '1,2,3,1,5,6'"),
         (["--box", "100,0,0,101,1,1"],
          "--box lies beside the build, which is 8 x 5 x 7 blocks from"),
-        (["--format", "bmp"], "--format must be png, jpg or webp, not 'bmp'"),
-        (["--depth-format", "tif"], "--depth-format must be png, exr or npy, not 'tif'"),
-        (["--quality", "0"], "--quality must be 1 to 100, not 0"),
-        (["--depth-scale", "0"], "--depth-scale must be 1 to 65535, not 0"),
+        (["--format", "bmp"], "--format must be png, jpg or webp, got 'bmp'"),
+        (["--depth-format", "tif"], "--depth-format must be png, exr or npy, got 'tif'"),
+        (["--quality", "0"], "--quality must be 1 to 100, got 0"),
+        (["--depth-scale", "0"], "--depth-scale must be 1 to 65535, got 0"),
         (["--outputs", "rbg"], "no output is named 'rbg'; did you mean 'rgb'?"),
         (["--out", "a.tiff"],
          "a.tiff: --out must end in .png, .jpg, .jpeg, .webp, .exr, .npy, .gif, .apng, .mp4, "
-         ".webm, or have no suffix for a folder"),
+         ".webm, or have no suffix to write a folder"),
         (["--orbit", "--frames", "3", "--out", "a.png"],
-         "a.png holds one picture, not 3; choose a folder for --out, or a name that ends in .gif, "
+         "cannot write 3 images to a.png; choose a folder for --out, or a name that ends in .gif, "
          ".webp or .mp4"),
         (["--tour", "--out", "a.gif", "--outputs", "rgb,depth"],
-         "a.gif: an animation holds rgb alone; give a folder for depth"),
+         "a.gif: an animation can only contain rgb; use a folder for depth"),
         (["--turntable", "--out", "a", "--outputs", "depth"],
-         "--turntable draws rgb alone; use --orbit for depth and ids"),
+         "--turntable can only output rgb; use --orbit for depth and ids"),
         (["--turntable", "--photo"],
-         "--turntable cannot be traced with --photo; use --orbit --photo"),
-        (["--samples", "9"], "--samples must be 1 to 4, not 9"),
-        (["--textures", "24"], "--textures must be 16, 32, 64 or 128, not 24"),
+         "--turntable cannot be combined with --photo; use --orbit --photo"),
+        (["--samples", "9"], "--samples must be 1 to 4, got 9"),
+        (["--textures", "24"], "--textures must be 16, 32, 64 or 128, got 24"),
         (["--light", "disco"],
-         "light: preset may be shader, game, neutral, not 'disco'"),
-        (["--exposure", "0"], "light: exposure may be 0.01 to 100, not 0.0"),
-        (["--device", "tpu"], "--device must be auto, cpu or gpu, not 'tpu'"),
-        (["--jobs", "0"], "--jobs must be 1 to 256, not 0"),
+         "light: preset must be one of shader, game, neutral, got 'disco'"),
+        (["--exposure", "0"], "light: exposure must be 0.01 to 100, got 0.0"),
+        (["--device", "tpu"], "--device must be auto, cpu or gpu, got 'tpu'"),
+        (["--jobs", "0"], "--jobs must be 1 to 256, got 0"),
         (["--jobs", "2", "--photo"],
-         "--jobs draws on the CPU without tracing; leave out --photo"),
+         "--jobs cannot be combined with -; remove one of them-photo"),
         (["--jobs", "2", "--device", "gpu"],
-         "--jobs draws on the CPU without tracing; leave out --device gpu"),
+         "--jobs cannot be combined with -; remove one of them-device gpu"),
         (["--jobs", "2", "--turntable", "--out", "t.gif"],
-         "--turntable is drawn by one process; leave out --jobs"),
-        (["--photo-samples", "0"], "--photo-samples must be 1 to 4,096, not 0"),
+         "--turntable cannot be combined with --jobs; remove --jobs"),
+        (["--photo-samples", "0"], "--photo-samples must be 1 to 4,096, got 0"),
     ],
 )  # fmt: skip
 def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
@@ -232,12 +234,12 @@ def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
 @pytest.mark.parametrize(
     ("size", "text"),
     [
-        ("big", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, not 'big'"),
-        ("-3x4", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, not '-3x4'"),
-        ("0x4", "no such camera: width_px must be 1 to 20000, not 0"),
-        ("99999x4", "no such camera: width_px must be 1 to 20000, not 99999"),
-        ("9000x9000", "9000x9000 with --samples 2 is too large; a picture may have 64,000,000 "
-                      "samples in all and 20,000 on a side"),
+        ("big", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got 'big'"),
+        ("-3x4", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got '-3x4'"),
+        ("0x4", "invalid camera: width_px must be 1 to 20000, got 0"),
+        ("99999x4", "invalid camera: width_px must be 1 to 20000, got 99999"),
+        ("9000x9000", "9000x9000 with --samples 2 is too large; the limits are 64,000,000 "
+                      "samples in total and 20,000 pixels per side"),
     ],
 )  # fmt: skip
 def test_a_wrong_size_is_told(schem, size, text, capsys):
@@ -247,7 +249,7 @@ def test_a_wrong_size_is_told(schem, size, text, capsys):
 
 def test_threads_are_counted(schem, capsys):
     assert cli.run(["render", str(schem), "--threads", "0"]) == 2
-    assert capsys.readouterr().err == "error: --threads must be 1 to 512, not 0\n"
+    assert capsys.readouterr().err == "error: --threads must be 1 to 512, got 0\n"
 
 
 def test_bad_input_is_told(tmp_path, schem, capsys):
@@ -255,13 +257,13 @@ def test_bad_input_is_told(tmp_path, schem, capsys):
     assert capsys.readouterr().err == "error: nowhere: not found\n"
     (tmp_path / "poses.jsonl").write_text("{}\n")
     assert render(schem, "--poses", "poses.jsonl") == 3
-    assert capsys.readouterr().err == "error: poses.jsonl: line 1 has no x\n"
+    assert capsys.readouterr().err == "error: poses.jsonl: line 1 does not contain x\n"
     (tmp_path / "file").write_text("")
     assert render(schem, "--poses", "poses.jsonl", "--out", "file") == 3
-    assert "is a file; choose a folder, or a name such as" in capsys.readouterr().err
+    assert "this is a file; choose a folder, or a name such as" in capsys.readouterr().err
     (tmp_path / "a.png").mkdir()
     assert render(schem, "--out", "a.png") == 3
-    assert "error: a.png: is a folder; choose another name" in capsys.readouterr().err
+    assert "error: a.png: this is a folder; choose another name" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -284,7 +286,7 @@ def test_a_block_of_a_mod_is_drawn_and_told(tmp_path, capsys):
     write_blocks(replace(volume, palette=palette), tmp_path / "mod.schem")
     assert render("mod.schem") == 0
     assert (
-        "note: 1 of 3 block states (33.3%) have no model and are drawn as plain boxes: "
+        "note: 1 of 3 block states (33.3%) have no model and are rendered as plain boxes: "
         "mymod:chair\n" in capsys.readouterr().out
     )
 
@@ -368,7 +370,9 @@ def test_without_a_gpu_tier_auto_draws_and_gpu_is_told(build, monkeypatch, capsy
     monkeypatch.setattr(shot_frames, "GPU", "world2minecraft.rendering.none")
     assert render(build, "--device", "auto") == 0
     assert render(build, "--device", "gpu") == 2
-    assert "error: device 'gpu' is not in this version; cpu is\n" in capsys.readouterr().err
+    assert (
+        "error: device 'gpu' is not available in this version; use cpu\n" in capsys.readouterr().err
+    )
 
 
 def test_json_is_the_poses_alone(build, tmp_path, capsys):

@@ -48,16 +48,17 @@ def test_every_file_of_the_library_is_read_under_its_own_name():
 @pytest.mark.parametrize(
     ("raw", "message"),
     [
-        ([1], "a design must be an object of keys, not [1]"),
-        (_changed("title", drop=True), "a design lacks 'title'"),
+        ([1], "a design must be a JSON object, got [1]"),
+        (_changed("title", drop=True), "a design does not contain the key 'title'"),
         (
             _changed("colour", value=1),
-            "a design has no 'colour'; it has: name, title, class, family, size_m, front, "
-            "clearance_m, materials, mount, turns, parameters, options, match, suits, stands_for",
+            "a design contains the unknown key 'colour'; keys: name, title, class, family, size_m, "
+            "front, clearance_m, materials, mount, turns, parameters, options, match, suits, "
+            "stands_for",
         ),
         (
             _changed("class", value="wall"),
-            "class must be one of chair, bed, sofa, table, tvs, furn, objs, not 'wall'",
+            "class must be one of chair, bed, sofa, table, tvs, furn, objs, got 'wall'",
         ),
         (
             _changed("family", value="chiar"),
@@ -65,41 +66,44 @@ def test_every_file_of_the_library_is_read_under_its_own_name():
         ),
         (
             _changed("size_m", "depth", value=[0.4, 0.3, 0.5]),
-            "depth must rise from smallest to largest, not [0.4, 0.3, 0.5]",
+            "depth must increase from minimum to maximum, got [0.4, 0.3, 0.5]",
         ),
         (
             _changed("size_m", "depth", value=[0.4, 0.5]),
-            "depth must be [smallest, usual, largest], not [0.4, 0.5]",
+            "depth must be [minimum, typical, maximum], got [0.4, 0.5]",
         ),
         (
             _changed("size_m", "depth", value=[0.0, 0.3, 0.5]),
-            "depth must lie between 0.01 and 20, not 0.0",
+            "depth must be between 0.01 and 20, got 0.0",
         ),
-        (_changed("turns", value=True), "turns must be one of 1, 2, 4, not True"),
+        (_changed("turns", value=True), "turns must be one of 1, 2, 4, got True"),
         (
             _changed("options", value={"arms": "gold"}),
-            'arms must be one of "none", "wood", not \'gold\'',
+            'arms must be one of "none", "wood", got \'gold\'',
         ),
         (
             _changed("parameters", value={"legs": [1, 2, 3]}),
-            "parameters has no 'legs'; it has: seat_height",
+            "parameters contains the unknown key 'legs'; keys: seat_height",
         ),
         (_changed("materials", "leg", drop=True), "materials lacks 'leg'"),
         (
             _changed("materials", "leg", "of", value="redwood"),
-            "no wood is named 'redwood'; known: oak, spruce, birch, jungle, acacia, dark_oak, "
+            "unknown wood 'redwood'; known: oak, spruce, birch, jungle, acacia, dark_oak, "
             "mangrove, cherry, crimson, warped",
         ),
         (
             _changed("materials", "leg", "kind", value="air"),
-            "no kind of material is named 'air'; known: wood, cloth, paint, glass, stone, metal, "
+            "unknown kind of material 'air'; kinds: wood, cloth, paint, glass, stone, metal, "
             "plain, fixed",
         ),
         (
             _changed("materials", "leg", value={"kind": "fixed", "of": "gold_chair"}),
-            "no block is named 'gold_chair'",
+            "unknown block 'gold_chair'",
         ),
-        (_changed("suits", value=["red"]), "a colour of suits must be like #8a3b2c, not 'red'"),
+        (
+            _changed("suits", value=["red"]),
+            "a colour of suits must have the form #8a3b2c, got 'red'",
+        ),
         (_changed("name", value="../chair"), None),
     ],
 )
@@ -115,7 +119,7 @@ def test_a_file_is_named_as_its_design(tmp_path):
     path.write_text(json.dumps(CHAIR))
     with pytest.raises(InputError) as caught:
         read_design(path)
-    assert str(caught.value) == f"{path}: its name must be that of its file, not 'chair'"
+    assert str(caught.value) == f"{path}: the template name must match the file name, got 'chair'"
 
 
 @given(st.binary(max_size=200))

@@ -49,15 +49,18 @@ def test_parameters_are_completed_with_the_usual_ones():
 
 def test_what_a_template_refuses():
     chair = template("chair")
-    stale = "; placements.json of another version is made anew by --from furnish"
+    stale = "; recreate an outdated placements.json with --from furnish"
     with pytest.raises(ValueError) as unknown:
         chair.parts((0.5, 0.5, 0.9), {"legs": 3.0})
-    assert str(unknown.value) == "chair has no parameter 'legs'; it has: seat_height" + stale
+    assert (
+        str(unknown.value)
+        == "template chair has no parameter 'legs'; parameters: seat_height" + stale
+    )
     assert isinstance(unknown.value, World2MinecraftError)
     with pytest.raises(ValueError) as outside:
         chair.parts((0.5, 0.5, 0.9), {"seat_height": 2.0})
     assert str(outside.value) == (
-        "seat_height of chair must lie between 0.36 and 0.56, not 2" + stale
+        "seat_height of template chair must be between 0.36 and 0.56, got 2" + stale
     )
     assert isinstance(outside.value, World2MinecraftError)
     with pytest.raises(ValueError, match="size_m must be above 0, not 0"):
@@ -99,19 +102,19 @@ def _outside(size: BlockSize, p):
 @pytest.mark.parametrize(
     ("made", "problem"),
     [
-        (_template(_lifted), "thing at 0.50 x 0.50 x 0.50: the shade floats"),
+        (_template(_lifted), "the shade is not connected to the other parts"),
         (
             _template(_wide),
-            "thing at 0.50 x 0.50 x 0.50: the top leaves the box: "
+            "thing at 0.50 x 0.50 x 0.50: the top extends beyond the bounding box: "
             "-0.50 x -0.25 x 0.00 x 0.50 x 0.25 x 0.50",
         ),
         (
             _template(_lopsided, turns=2),
-            "thing: turns is 2, but half a turn changes its shape",
+            "thing: turns is 2, but the shape is not symmetric under a half turn",
         ),
         (
             _template(_solid, _outside, turns=1),
-            "thing: its design at 1 blocks per metre leaves its box",
+            "thing: the design at 1 blocks per metre extends beyond its bounding box",
         ),
     ],
 )

@@ -72,8 +72,12 @@ def test_a_look_says_what_a_role_is_made_of():
 @pytest.mark.parametrize(
     ("role", "shape", "message"),
     [
-        ("wheel", "full", "thing says not what its wheel is made of"),
-        ("seat", "stairs", "the seat of thing is of red, of which there is no stairs"),
+        ("wheel", "full", "template thing does not define the material of its wheel"),
+        (
+            "seat",
+            "stairs",
+            "template thing needs a stairs for its seat, but its material red has none",
+        ),
     ],
 )
 def test_a_look_refuses_what_there_is_not(role, shape, message):

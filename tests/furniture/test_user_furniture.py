@@ -151,7 +151,7 @@ def test_fences_are_joined_as_the_game_joins_them():
 def test_what_would_not_stay_and_what_is_a_mods_is_told():
     torch = volume_of({(1, 2, 1): "minecraft:torch", (1, 1, 1): "somemod:chair"})
     notes = import_blocks(torch, WISH._replace(front="east")).notes
-    assert "not in the plain game, taken as full blocks: chair" in notes
+    assert "unknown in vanilla Minecraft, treated as full blocks: chair" in notes
     hanging = volume_of({(1, 2, 1): "minecraft:torch", (2, 1, 1): "minecraft:stone"})
     assert any(
         "would not stay" in n for n in import_blocks(hanging, WISH._replace(front="east")).notes
@@ -161,14 +161,14 @@ def test_what_would_not_stay_and_what_is_a_mods_is_told():
 @pytest.mark.parametrize(
     ("wish", "message"),
     [
-        ({"name": "My Chair"}, "a name of furniture begins with a letter and has up to 40 of a-z"),
+        ({"name": "My Chair"}, "a furniture name must start with a letter and have up to 40"),
         ({"name": "../etc"}, "add --name my_chair"),
-        ({"kind": "chairs"}, "no class of furniture is named 'chairs'; did you mean 'chair'?"),
+        ({"kind": "chairs"}, "no furniture class is named 'chairs'; did you mean 'chair'?"),
         ({"front": "up"}, "no side is named 'up'"),
         ({"mount": "roof"}, "no mount is named 'roof'"),
-        ({"blocks_per_metre": 0.0}, "--blocks-per-metre must lie between 0.1 and 64, not 0"),
-        ({"blocks_per_metre": float("nan")}, "--blocks-per-metre must lie between 0.1 and 64"),
-        ({"size_m": (1.0, 1.0, 100.0)}, "a piece is 0.02 to 20 m each way, not 1.00 x 1.00 x 100"),
+        ({"blocks_per_metre": 0.0}, "--blocks-per-metre must be 0.1 to 64, got 0"),
+        ({"blocks_per_metre": float("nan")}, "--blocks-per-metre must be 0.1 to 64"),
+        ({"size_m": (1.0, 1.0, 100.0)}, "of the piece must be 0.02 to 20 m, got 1.00 x 1.00 x 100"),
     ],
 )
 def test_a_wish_that_cannot_be_is_refused(wish, message):
@@ -178,12 +178,14 @@ def test_a_wish_that_cannot_be_is_refused(wish, message):
 
 
 def test_blocks_that_cannot_be_are_refused():
-    with pytest.raises(UsageError, match="there is no block in it"):
+    with pytest.raises(UsageError, match="the selection contains no blocks"):
         import_blocks(volume_of({}), WISH)
-    with pytest.raises(UsageError, match="no block shows which side is the front; add --front"):
+    with pytest.raises(
+        UsageError, match="cannot determine the front side from the blocks; add --front"
+    ):
         import_blocks(volume_of({(1, 1, 1): "minecraft:stone"}), WISH)
     far = volume_of({(0, 0, 0): "minecraft:stone", (39, 0, 0): "minecraft:stone"}, side=40)
-    with pytest.raises(UsageError, match="a piece is 32 blocks at most each way"):
+    with pytest.raises(UsageError, match="a piece may have at most 32 blocks per side"):
         import_blocks(far, WISH._replace(front="east"))
 
 
@@ -196,26 +198,32 @@ def _changed(**changes):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"class": "wall"}, "class must be an object class, not 'wall'"),
-        ({"name": "a/b"}, "a name of furniture begins with a letter"),
-        ({"turns": 3}, "turns must be one of 1, 2, 4, not 3"),
-        ({"match": "yes"}, "match must be one of True, False, not 'yes'"),
-        ({"size_m": 3}, "size_m must be an object of keys, not 3"),
-        ({"size_m": {"depth": [1, 1]}}, "depth must be a list of 3 to 3, not [1, 1]"),
+        ({"class": "wall"}, "class must be an object class, got 'wall'"),
+        ({"name": "a/b"}, "a furniture name must start with a letter"),
+        ({"turns": 3}, "turns must be one of 1, 2, 4, got 3"),
+        ({"match": "yes"}, "match must be one of True, False, got 'yes'"),
+        ({"size_m": 3}, "size_m must be a JSON object, got 3"),
+        ({"size_m": {"depth": [1, 1]}}, "depth must be a list of 3 to 3 items, got [1, 1]"),
         ({"blocks_per_metre": 1e9}, "blocks_per_metre must be a number from 0.1 to 64"),
-        ({"blocks": {"size": [10**9, 1, 1]}}, "size must be a whole number from 1 to 32"),
-        ({"blocks": {"size": [32, 32, 32]}}, "size must hold 8,192 blocks at most, not 32,768"),
+        ({"blocks": {"size": [10**9, 1, 1]}}, "size must be an integer from 1 to 32"),
+        ({"blocks": {"size": [32, 32, 32]}}, "size must have at most 8,192 blocks"),
         (
             {"blocks": {"palette": ["a b"]}},
             "block name 'a b' is invalid; expected a name such as minecraft:oak_log",
         ),
         ({"blocks": {"palette": ["stone; op me"]}}, "is invalid; expected a name such as"),
-        ({"blocks": {"runs": [[1, 10**9]]}}, "the length of a run must be a whole number"),
-        ({"blocks": {"runs": [[0, 4]]}}, "runs must hold 4 blocks, not all of them air"),
-        ({"blocks": {"runs": [[9, 4]]}}, "the number of a run must be a whole number from 0 to 3"),
+        ({"blocks": {"runs": [[1, 10**9]]}}, "run length must be an integer"),
+        (
+            {"blocks": {"runs": [[0, 4]]}},
+            "runs must contain 4 blocks, at least one of them not air",
+        ),
+        ({"blocks": {"runs": [[9, 4]]}}, "run state index must be an integer from 0 to 3"),
         ({"parts": []}, "parts must be a list of 1 to 512"),
-        ({"parts": [["gold", 0, 0, 0, 1, 1, 1]]}, "a part must be of one of its blocks"),
-        ({"parts": [["oak_stairs", 1, 0, 0, 1, 1, 1]]}, "a part must have a volume"),
+        (
+            {"parts": [["gold", 0, 0, 0, 1, 1, 1]]},
+            "the block of a part must be a block of the piece",
+        ),
+        ({"parts": [["oak_stairs", 1, 0, 0, 1, 1, 1]]}, "a part must have a positive volume"),
     ],
 )
 def test_a_file_that_says_what_none_may_is_refused(changes, message, tmp_path):
@@ -224,13 +232,13 @@ def test_a_file_that_says_what_none_may_is_refused(changes, message, tmp_path):
     with pytest.raises(DamagedFileError) as caught:
         read_user_design(path)
     assert message in str(caught.value)
-    assert str(caught.value).endswith("add it anew with w2m furniture add, or take the file away")
+    assert str(caught.value).endswith("add it again with w2m furniture add, or remove the file")
 
 
 def test_a_file_of_another_name_or_too_large_is_refused(tmp_path):
     path = tmp_path / "other.json"
     write_json(path, import_blocks(chair(), WISH).content)
-    with pytest.raises(DamagedFileError, match="its name must be that of its file, not 'my_chair'"):
+    with pytest.raises(DamagedFileError, match="the template name must match the file name, got"):
         read_user_design(path)
     path.write_text(" " * (5 << 20))
     with pytest.raises(LimitError):

@@ -153,7 +153,7 @@ def test_feet_or_eye_must_be_said(tmp_path):
     with pytest.raises(UsageError) as raised:
         read_screenshots(tmp_path, at="head")  # type: ignore[arg-type]
     assert one_line(raised) == (
-        "at must be feet (what F3 and most mods tell) or eye (1.62 above it), not 'head'"
+        "at must be feet (what F3 and most mods tell) or eye (1.62 above it), got 'head'"
     )
 
 
@@ -185,7 +185,7 @@ def test_folders_without_pictures_or_poses(tmp_path):
         ({"image": "a.png", "x": float("nan")}, "line 1 is no pose"),
         ({"image": "a.png", "y": 1e12}, "line 1 is no pose"),
         ({"image": "a.png", "pitch": 100}, "pitch is -90 (up) to 90 (down)"),
-        ({"image": "a.png", "at": "knee"}, "a pose is at feet or eye, not 'knee'"),
+        ({"image": "a.png", "at": "knee"}, "at must be 'feet' or 'eye', got 'knee'"),
         ({"image": "a.png", "vertical_fov_deg": "wide"}, "line 1 is no pose"),
     ],
 )

@@ -148,22 +148,22 @@ def test_an_edit_is_seen_by_the_next_batch(volume, poses):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ({"outputs": ("colour", "smell")}, "outputs may be depth, range, block, face, cube, "
-         "colour, semantic, instance, opaque, normal, free, not 'smell'"),
-        ({"samples": 9}, "samples may be 1 to 8, not 9"),
-        ({"cameras": [SMALL] * 2}, "9 poses need one camera or 9, not 2"),
-        ({"cameras": [SMALL] * 8 + [CAMERA]}, "the pictures of a batch have one size: camera 8 is "
-         "64x48, the first 32x24; RenderPool takes any"),
+        ({"outputs": ("colour", "smell")}, "unknown output 'smell'; outputs: depth, range, "
+         "block, face, cube, colour, semantic, instance, opaque, normal, free"),
+        ({"samples": 9}, "samples must be 1 to 8, got 9"),
+        ({"cameras": [SMALL] * 2}, "9 poses need one camera or 9 cameras, got 2"),
+        ({"cameras": [SMALL] * 8 + [CAMERA]}, "all images of a batch must have the same size: "
+         "camera 8 has 64x48, camera 0 has 32x24; use RenderPool for different sizes"),
         ({"cameras": Camera(9000, 9000, 1.0, 1.0, 1.0, 1.0)},
-         "a picture may have 64,000,000 samples, not 9000x9000"),
-        ({"poses": np.eye(4)}, "poses must be [N, 4, 4], not [4, 4]"),
-        ({"poses": np.full((9, 4, 4), np.nan)}, "pose 0 has numbers that are not finite"),
+         "an image may have at most 64,000,000 samples, got 9000x9000"),
+        ({"poses": np.eye(4)}, "poses must have shape [N, 4, 4], got [4, 4]"),
+        ({"poses": np.full((9, 4, 4), np.nan)}, "pose 0 contains NaN or infinity"),
         ({"out": batch_arrays(8, (24, 32), ("colour",)), "outputs": ("colour",)},
-         "out.colour must be uint8 [9, 24, 32, 3], not uint8 [8, 24, 32, 3]"),
+         "out.colour must be uint8 [9, 24, 32, 3], got uint8 [8, 24, 32, 3]"),
         ({"out": batch_arrays(9, (24, 32), ()), "outputs": ("face",)},
-         "out.face must be uint8 [9, 24, 32], not nothing"),
+         "out.face must be uint8 [9, 24, 32], got nothing"),
         ({"out": batch_arrays(9, (24, 32), ("face", "depth")), "outputs": ("face",)},
-         "out.depth_m is given, but no output fills it"),
+         "out.depth_m is given but not requested in outputs"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_told(scene, poses, words, text):
@@ -177,8 +177,8 @@ def test_a_batch_too_large_is_refused_before_any_memory_is_taken():
     with pytest.raises(UsageError) as caught:
         batch_arrays(1_000_000, (224, 224), ("colour", "depth"))
     assert str(caught.value) == (
-        "1,000,000 pictures of 224x224 take 327 GiB at once; take fewer poses a batch, or "
-        "render_stream, which keeps a few pictures alone"
+        "1,000,000 images of 224x224 need 327 GiB; use fewer poses per batch, or "
+        "render_stream, which only keeps a few images in memory"
     )
 
 
@@ -187,4 +187,4 @@ def test_arrays_that_are_read_only_are_refused(scene, poses):
     out.face.flags.writeable = False
     with pytest.raises(UsageError) as caught:
         render_batch(scene, SMALL, poses, outputs=("face",), out=out)
-    assert str(caught.value) == "out.face must be in C order, whole and open to writing"
+    assert str(caught.value) == "out.face must be C-contiguous and writable"

@@ -125,7 +125,7 @@ def test_a_stream_that_is_closed_early_leaves_the_pool_usable(pool, poses):
     with pytest.raises(UsageError) as caught:
         next(pool.render(WIDE, poses))
     assert str(caught.value) == (
-        "this RenderPool is still taking pictures; use up or close what render() gave"
+        "this RenderPool is still rendering; exhaust or close the iterator that render() returned"
     )
     slots = names_of(pool)[1]
     stream.close()
@@ -136,9 +136,9 @@ def test_a_stream_that_is_closed_early_leaves_the_pool_usable(pool, poses):
 def test_an_error_in_a_worker_comes_out_and_the_pool_goes_on(pool, poses):
     with pytest.raises(ValueError, match="^no third picture$"):
         list(pool.render(WIDE, poses, make=fail_at_two))
-    with pytest.raises(WorkerError, match=r"^what was made of picture \d cannot be sent back: "):
+    with pytest.raises(WorkerError, match=r"^the result for image \d cannot be pickled: "):
         list(pool.render(WIDE, poses, make=make_a_function))
-    with pytest.raises(UsageError, match="^make must be a function at the top of a module"):
+    with pytest.raises(UsageError, match="^make must be picklable: use a module-level function"):
         list(pool.render(WIDE, poses, make=lambda number, picture: number))
     assert len(list(pool.render(SMALL, poses))) == COUNT
 
@@ -156,10 +156,10 @@ def test_edits_are_seen_after_an_update(pool, volume, poses):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ({"outputs": ("smell",)}, "outputs may be depth, range, block, face, cube, colour, "
-         "semantic, instance, opaque, normal, free, not 'smell'"),
-        ({"samples": 0}, "samples may be 1 to 8, not 0"),
-        ({"cameras": [SMALL]}, "7 poses need one camera or as many, not 1"),
+        ({"outputs": ("smell",)}, "unknown output 'smell'; outputs: depth, range, block, face, "
+         "cube, colour, semantic, instance, opaque, normal, free"),
+        ({"samples": 0}, "samples must be 1 to 8, got 0"),
+        ({"cameras": [SMALL]}, "7 poses need one camera or 7 cameras, got 1"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_told_at_once(pool, poses, words, text):
@@ -176,16 +176,16 @@ def test_a_killed_worker_is_told_and_nothing_is_left(volume, poses):
     processes[1].kill()
     with pytest.raises(WorkerError) as caught:
         list(stream)
-    assert str(caught.value).startswith("worker 2 of 2 ended with code ")
+    assert str(caught.value).startswith("worker 2 of 2 exited with code ")
     if hasattr(signal, "SIGKILL"):
         assert " with code -9" in str(caught.value)
         assert str(caught.value).endswith(
-            "; it was killed, perhaps because memory ran out: take fewer workers"
+            "; it was killed, probably because memory ran out; use fewer workers"
         )
     assert len(names) == 2
     assert all(is_gone(name) for name in names)
     assert not any(process.is_alive() for process in processes)
-    with pytest.raises(UsageError, match="^this RenderPool is closed; make a new one$"):
+    with pytest.raises(UsageError, match="^this RenderPool is closed; create a new one$"):
         pool.render(SMALL, poses)
 
 
@@ -201,5 +201,5 @@ def test_an_interrupt_takes_everything_away(volume, poses):
 
 
 def test_numbers_of_workers_are_checked(volume):
-    with pytest.raises(UsageError, match="^a pool has 1 to 256 workers, not 0$"):
+    with pytest.raises(UsageError, match="^workers must be 1 to 256, got 0$"):
         RenderPool(prepare_scene(volume), 0)

@@ -73,15 +73,15 @@ def test_an_error_of_the_writer_ends_the_stream(scene, shots):
 
 
 def test_an_error_of_the_renderer_ends_the_stream(scene, shots):
-    with pytest.raises(ValueError, match="outputs may be"):
+    with pytest.raises(ValueError, match="unknown output"):
         list(render_stream(scene, shots, outputs=("smell",)))
 
 
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ({"jobs": 0}, "jobs may be 1 to 256, not 0"),
-        ({"encode_threads": 0}, "encode_threads may be 1 to 256, not 0"),
+        ({"jobs": 0}, "jobs must be 1 to 256, got 0"),
+        ({"encode_threads": 0}, "encode_threads must be 1 to 256, got 0"),
     ],
 )
 def test_numbers_out_of_range_are_told_at_once(scene, shots, words, text):

@@ -84,7 +84,7 @@ def test_gpu_says_which_adapters_there_are(machine, monkeypatch):
     monkeypatch.setenv("W2M_GPU_ADAPTER", "other")
     with pytest.raises(GpuError) as caught:
         choose_device("gpu")
-    assert str(caught.value) == "no GPU adapter is named 'other'; there are: Some Card 4000"
+    assert str(caught.value) == "GPU adapter 'other' not found; adapters: Some Card 4000"
 
 
 def test_without_wgpu_gpu_fails_and_auto_uses_the_cpu(machine, monkeypatch, scene):
@@ -130,8 +130,8 @@ def test_a_world_that_is_too_large_is_named_with_its_sizes(scene, monkeypatch):
     with pytest.raises(GpuError) as caught:
         small.check_fits(scene)
     assert str(caught.value) == (
-        "a world of 9 x 7 x 8 blocks is too large for Small Card: its light needs 1,500 MB in one "
-        "piece, and 134 MB is the most; use --device cpu, or a smaller --box"
+        "a world of 9 x 7 x 8 blocks is too large for Small Card: buffer light needs "
+        "1,500 MB, the limit is 134 MB; use --device cpu or a smaller --box"
     )
 
 

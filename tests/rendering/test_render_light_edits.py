@@ -79,7 +79,7 @@ def test_an_edit_may_bring_new_states():
     edit_light(field, (1, 1, 1), states[1:2, 1:2, 1:2], longer)
     assert field.block_light[1, 1, 1] == 15
     assert_fresh(field, states, longer)
-    with pytest.raises(ValueError, match="^the palette may have 11 to 65,535 states now$"):
+    with pytest.raises(ValueError, match="^the new palette must have 11 to 65,535 states$"):
         edit_light(field, (0, 0, 0), states[:1, :1, :1], PALETTE)
 
 

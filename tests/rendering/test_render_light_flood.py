@@ -131,7 +131,9 @@ def test_what_states_are_to_light():
 
 
 def test_a_reach_out_of_range_is_refused():
-    with pytest.raises(ValueError, match=r"^reach may be 1 to 16 blocks a light level, not 0.5$"):
+    with pytest.raises(
+        ValueError, match=r"^reach must be 1 to 16 blocks per light level, got 0.5$"
+    ):
         rounded_reach(0.5)
     assert light_units(15, rounded_reach(16)) == 240
 

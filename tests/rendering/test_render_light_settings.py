@@ -207,10 +207,10 @@ def test_the_sky_is_lightest_at_the_horizon_and_shows_the_sun():
 @pytest.mark.parametrize(
     ("wrong", "reason"),
     [
-        ({"preset": "nice"}, "preset may be shader, game, neutral, not 'nice'"),
-        ({"hour": 25}, "hour may be 0 to 24, not 25"),
-        ({"exposure": 0}, "exposure may be 0.01 to 100, not 0"),
-        ({"brightness": 2}, "brightness may be 0 to 1, not 2"),
+        ({"preset": "nice"}, "preset must be one of shader, game, neutral, got 'nice'"),
+        ({"hour": 25}, "hour must be 0 to 24, got 25"),
+        ({"exposure": 0}, "exposure must be 0.01 to 100, got 0"),
+        ({"brightness": 2}, "brightness must be 0 to 1, got 2"),
     ],
 )
 def test_a_look_out_of_range_is_refused(wrong, reason):

@@ -85,7 +85,8 @@ def test_without_ffmpeg_the_extra_is_named(tmp_path, monkeypatch):
     with pytest.raises(MissingExtraError) as told:
         write(tmp_path / "a.mp4")
     assert str(told.value) == (
-        "an MP4 or WebM (a GIF needs none) needs an extra: pip install 'world2minecraft[video]'"
+        "writing MP4 or WebM (GIF works without it) needs an extra: pip install "
+        "'world2minecraft[video]'"
     )
     assert not list(tmp_path.iterdir())
 
@@ -101,7 +102,7 @@ def test_an_ffmpeg_on_the_path_serves_too(monkeypatch):
     ("script", "reason"),
     [
         ("cat >/dev/null; echo no such codec >&2; exit 1", "no such codec"),
-        ("cat >/dev/null; exit 3", "it said nothing"),
+        ("cat >/dev/null; exit 3", "no error message"),
     ],
 )
 def test_what_ffmpeg_says_is_told(tmp_path, monkeypatch, script, reason):
@@ -112,18 +113,18 @@ def test_what_ffmpeg_says_is_told(tmp_path, monkeypatch, script, reason):
     path = tmp_path / "out" / "a.mp4"
     with pytest.raises(OutputError) as told:
         write(path)
-    assert str(told.value) == f"{path}: ffmpeg could not write it: {reason}"
+    assert str(told.value) == f"{path}: ffmpeg cannot write the file: {reason}"
     assert not list(path.parent.iterdir())
 
 
 def test_no_frame_and_other_suffixes_are_told(tmp_path):
-    with pytest.raises(UsageError, match="a moving picture needs at least one frame"):
+    with pytest.raises(UsageError, match="an animation needs at least one frame"):
         write(tmp_path / "a.gif", tones=())
-    with pytest.raises(UsageError, match="a moving picture ends in .gif, .apng, .webp, .mp4"):
+    with pytest.raises(UsageError, match="an animation must end in .gif, .apng, .webp, .mp4"):
         write(tmp_path / "a.avi")
 
 
 def test_too_many_frames_are_told_before_memory_ends(tmp_path, monkeypatch):
     monkeypatch.setattr(moving, "MAX_BUFFERED_BYTES", 2 * 36 * 48 * 3)
-    with pytest.raises(LimitError, match="over 2 frames of this size; take fewer, smaller, or"):
+    with pytest.raises(LimitError, match="too many frames for memory .more than 2.; use fewer"):
         write(tmp_path / "a.gif")

@@ -142,9 +142,9 @@ def test_colour_is_exact_in_png_and_in_webp_at_full_quality():
     ("make", "text"),
     [
         (lambda: colour_bytes(np.zeros((1, 1, 3), np.uint8), ".bmp"),
-         "a colour picture ends in .png, .jpg, .jpeg, .webp, not '.bmp'"),
+         "a colour image must end in .png, .jpg, .jpeg, .webp, got '.bmp'"),
         (lambda: depth_bytes(np.zeros((1, 1), np.float32), ".jpg"),
-         "depth ends in .png, .exr, .npy, not '.jpg'"),
+         "a depth image must end in .png, .exr, .npy, got '.jpg'"),
     ],
 )  # fmt: skip
 def test_another_suffix_is_told(make, text):

@@ -28,8 +28,8 @@ from world2minecraft.rendering.resource_packs import pack_files as resources
 
 RED = plain(200, 0, 0)
 TEACHES = (
-    "a pack is a folder, zip or jar with assets/minecraft/textures (or models, or blockstates) in "
-    "it, such as resourcepacks/MyPack.zip or versions/1.21.4/1.21.4.jar of the game's folder"
+    "a pack is a folder, zip or jar that contains assets/minecraft/textures, models or "
+    "blockstates, such as resourcepacks/MyPack.zip or versions/1.21.4/1.21.4.jar"
 )
 
 
@@ -44,13 +44,13 @@ def problem(tmp_path, files, state="minecraft:thing") -> str:
     looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     assert looks.model(state) is None
     assert looks.problem_count == len(looks.problems) == 1
-    told = "1 thing of the packs could not be read, the first: " + looks.problems[0]
+    told = "1 thing in the resource packs, first: " + looks.problems[0]
     assert looks.summary == told
     return looks.problems[0]
 
 
 def test_nothing_there(tmp_path):
-    assert refusal(tmp_path / "no.zip", InputError) == f"is not there; {TEACHES}"
+    assert refusal(tmp_path / "no.zip", InputError) == f"not found; {TEACHES}"
 
 
 def test_no_pack(tmp_path):
@@ -62,25 +62,26 @@ def test_no_pack(tmp_path):
 
 def test_no_zip(tmp_path):
     (tmp_path / "a.zip").write_bytes(b"hello" * 50)
-    assert refusal(tmp_path / "a.zip") == "is no zip that can be read (it has no end of a zip)"
+    said = "not a readable zip file (end-of-archive record not found)"
+    assert refusal(tmp_path / "a.zip") == said
 
 
 def test_a_folder_of_packs_names_one(tmp_path):
     zip_pack(tmp_path / "Nice.zip", cube_files("stone", RED))
     said = refusal(tmp_path)
     assert said.startswith(
-        f"is no resource pack, but holds 1: name one, such as {tmp_path / 'Nice.zip'}; a pack is"
+        f"not a resource pack, but contains 1: use one, such as {tmp_path / 'Nice.zip'}; a pack is"
     )
     folder_pack(tmp_path / "b" / "inner", cube_files("stone", RED))
     said = refusal(tmp_path / "b")
     assert said.startswith(
-        f"is no resource pack, but holds one: name {tmp_path / 'b' / 'inner'}; a pack"
+        f"not a resource pack, but contains one: use {tmp_path / 'b' / 'inner'}; a pack"
     )
 
 
 def test_packs_of_other_kinds_are_told_apart(tmp_path):
     folder_pack(tmp_path / "data_pack", {"data/minecraft/tags/a.json": {}})
-    assert refusal(tmp_path / "data_pack").startswith("is no resource pack, but a data pack; ")
+    assert refusal(tmp_path / "data_pack").startswith("not a resource pack, but a data pack; ")
     folder_pack(tmp_path / "bedrock", {"manifest.json": {}, "textures/blocks/stone.png": RED})
     assert refusal(tmp_path / "bedrock").startswith("is no resource pack, but one for Bedrock")
 
@@ -96,7 +97,7 @@ def test_a_zip_that_lists_too_much_is_refused_unread(tmp_path):
     at = data.rfind(b"PK\x05\x06")
     data[at + 12 : at + 16] = (archive.MAX_DIRECTORY_BYTES + 1).to_bytes(4, "little")
     path.write_bytes(data)
-    assert refusal(path, LimitError) == "lists more than 400,000 files"
+    assert refusal(path, LimitError) == "contains more than 400,000 files, which is the limit"
 
 
 def test_a_large_zip_that_lists_too_much_is_refused_unread(tmp_path):
@@ -108,15 +109,16 @@ def test_a_large_zip_that_lists_too_much_is_refused_unread(tmp_path):
     record = b"PK\x06\x06" + bytes(36) + most + bytes(8)
     locator = b"PK\x06\x07" + bytes(4) + at.to_bytes(8, "little") + bytes(4)
     path.write_bytes(data[:at] + record + locator + data[at:])
-    assert refusal(path, LimitError) == "lists more than 400,000 files"
+    assert refusal(path, LimitError) == "contains more than 400,000 files, which is the limit"
 
 
 def test_too_many_files_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(archive, "MAX_FILES", 2)
     path = zip_pack(tmp_path / "a.zip", cube_files("stone", RED))
-    assert refusal(path, LimitError) == "lists 3 files; at most 2 are read"
+    assert refusal(path, LimitError) == "contains 3 files, the limit is 2"
     folder = folder_pack(tmp_path / "b", cube_files("stone", RED))
-    assert refusal(folder, LimitError) == "holds more than 2 files; name one pack in it"
+    said = "contains more than 2 files; give the path of a single pack in it"
+    assert refusal(folder, LimitError) == said
 
 
 def test_a_bomb_is_not_unpacked(tmp_path):
@@ -130,7 +132,7 @@ def test_a_bomb_is_not_unpacked(tmp_path):
     files[MODEL.format("thing")] = b" " * (5 << 20)
     looks = ResourcePackModels([zip_pack(tmp_path / "b.zip", files)])
     assert looks.model("thing") is None
-    assert looks.problems[0].endswith("has 5,242,880 bytes; at most 4,194,304 are read")
+    assert looks.problems[0].endswith("file has 5,242,880 bytes, the limit is 4,194,304")
 
 
 def test_a_damaged_member_falls_through(tmp_path):
@@ -151,7 +153,8 @@ def test_names_never_lead_out_of_a_pack(tmp_path):
         model = {**CUBE, "textures": {"all": name}}
         said = problem(tmp_path, block_files("thing", one_model("thing"), model))
         assert said == (
-            f"minecraft:thing: texture {name!r} is no name such as minecraft:block/stone"
+            "minecraft:thing: texture must be a resource name such as minecraft:block/stone, "
+            f"got {name!r}"
         )
 
 
@@ -189,7 +192,7 @@ def test_a_missing_texture_leaves_the_block_to_the_next_source(tmp_path):
     files = cube_files("thing", RED)
     del files[PICTURE.format("thing")]
     assert problem(tmp_path, files) == (
-        "minecraft:thing: texture minecraft:block/thing is in none of the packs, or cannot be read"
+        "minecraft:thing: texture minecraft:block/thing not found in the packs or not readable"
     )
 
 
@@ -205,29 +208,29 @@ def element(**changes) -> dict:
     ("model", "text"),
     [
         ({"parent": "block/thing"}, "model block/thing is its own parent"),
-        ({"parent": "block/no"}, "model block/thing: its parent minecraft:block/no is in none of"),
-        ({"parent": 7}, "parent must be a text, not 7"),
-        ({"loader": "forge:obj"}, "model block/thing is in a mod's own format, which is not read"),
-        ({"textures": []}, "textures must be an object, not a list"),
-        ({"elements": {"a": 1}}, "elements must be a list, not an object"),
-        ({"elements": [1]}, "an element must be an object, not 1"),
-        (element(**{"from": None}), "from must be a list, not None"),
-        (element(to=[1, 2]), "to must have 3 numbers, not 2"),
-        (element(to=[1, 2, 99]), "to must be -16 to 32, not 99"),
-        (element(to=[1, 2, True]), "to must be a number, not True"),
+        ({"parent": "block/no"}, "model minecraft:block/no (parent of block/thing) not found"),
+        ({"parent": 7}, "parent must be a text, got 7"),
+        ({"loader": "forge:obj"}, "model block/thing uses a mod's own format, which is not"),
+        ({"textures": []}, "textures must be an object, got a list"),
+        ({"elements": {"a": 1}}, "elements must be a list, got an object"),
+        ({"elements": [1]}, "an element must be an object, got 1"),
+        (element(**{"from": None}), "from must be a list, got None"),
+        (element(to=[1, 2]), "to must have 3 numbers, got 2"),
+        (element(to=[1, 2, 99]), "to must be -16 to 32, got 99"),
+        (element(to=[1, 2, True]), "to must be a number, got True"),
         (element(to=[1, 2, 10**400]), "to must be a finite number"),
-        (element(faces=[]), "faces must be an object, not a list"),
-        (element(faces={"up": 1}), "face up must be an object, not 1"),
-        (element(faces={"up": {}}), "texture of a face must be a text, not None"),
+        (element(faces=[]), "faces must be an object, got a list"),
+        (element(faces={"up": 1}), "face up must be an object, got 1"),
+        (element(faces={"up": {}}), "texture of a face must be a text, got None"),
         (element(faces={"up": {"texture": "#no"}}), "texture #no is not set"),
-        (element(faces={"up": {"texture": "#all", "uv": [0]}}), "uv must have 4 numbers, not 1"),
+        (element(faces={"up": {"texture": "#all", "uv": [0]}}), "uv must have 4 numbers, got 1"),
         (
             element(faces={"up": {"texture": "#all", "rotation": 45}}),
-            "rotation of a face must be a multiple of 90, not 45",
+            "rotation of a face must be a multiple of 90, got 45",
         ),
-        (element(rotation=3), "rotation must be an object, not 3"),
-        (element(rotation={"axis": "w"}), "axis of a rotation must be x, y or z, not 'w'"),
-        (element(light_emission=99), "light_emission must be 0 to 15, not 99"),
+        (element(rotation=3), "rotation must be an object, got 3"),
+        (element(rotation={"axis": "w"}), "axis of a rotation must be x, y or z, got 'w'"),
+        (element(light_emission=99), "light_emission must be 0 to 15, got 99"),
     ],
 )
 def test_a_broken_model_is_said(tmp_path, model, text):
@@ -238,7 +241,7 @@ def test_a_broken_model_is_said(tmp_path, model, text):
 def test_texture_keys_in_a_circle(tmp_path):
     model = {**CUBE, "textures": {"all": "#a", "a": "#b", "b": "#a"}}
     said = problem(tmp_path, block_files("thing", one_model("thing"), model))
-    assert said == "minecraft:thing: texture #a leads back to itself"
+    assert said == "minecraft:thing: texture #a refers to itself"
 
 
 def test_parents_without_end(tmp_path):
@@ -256,7 +259,7 @@ def test_deep_json(tmp_path):
 def test_too_many_elements(tmp_path):
     model = {**CUBE, "elements": CUBE["elements"] * 2049, "textures": {"all": "block/thing"}}
     said = problem(tmp_path, block_files("thing", one_model("thing"), model, thing=RED))
-    assert said == "minecraft:thing: elements has 2,049 items; at most 2,048 are read"
+    assert said == "minecraft:thing: elements has 2,049 items, the limit is 2,048"
 
 
 def test_parts_and_blocks_without_end(tmp_path, monkeypatch):
@@ -264,13 +267,13 @@ def test_parts_and_blocks_without_end(tmp_path, monkeypatch):
     parts = {"multipart": [{"apply": {"model": "block/thing"}}] * 3}
     files = block_files("thing", parts, model, thing=RED)
     assert problem(tmp_path / "a", files) == (
-        "minecraft:thing: its models have more than 2,048 elements together"
+        "minecraft:thing: the models have more than 2,048 elements in total"
     )
     monkeypatch.setattr(
         "world2minecraft.rendering.resource_packs.pack_models.MAX_TOTAL_ELEMENTS", 0
     )
     assert problem(tmp_path / "b", cube_files("thing", RED)) == (
-        "minecraft:thing: comes after 0 elements of other blocks"
+        "minecraft:thing: the packs exceed the limit of 0 elements in total"
     )
     monkeypatch.setattr(resources, "MAX_TOTAL_JSON_BYTES", 9)
     assert "more than 9 bytes of JSON" in problem(tmp_path / "c", cube_files("thing", RED))
@@ -284,7 +287,7 @@ def test_problems_are_counted_and_only_some_are_kept(tmp_path):
     assert looks.problem_count == 70
     assert len(looks.problems) == resources.MAX_PROBLEMS
     assert looks.summary.startswith(
-        "70 things of the packs could not be read, the first: assets/minecraft/blockstates/thing_0"
+        "70 things in the resource packs, first: assets/minecraft/blockstates/thing_0"
     )
 
 

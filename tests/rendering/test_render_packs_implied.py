@@ -124,6 +124,6 @@ def test_a_model_without_its_parent_keeps_its_texture(tmp_path):
     looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     assert looks.model("stone") is not None
     assert looks.problems == [
-        "minecraft:stone: model block/stone: its parent minecraft:block/cube_all is in none of the "
-        "packs, or cannot be read; give the client jar of the game before the pack"
+        "minecraft:stone: model minecraft:block/cube_all (parent of block/stone) not found in the "
+        "packs or not readable; pass the game's client jar before the pack"
     ]

@@ -234,7 +234,7 @@ def test_tints_can_be_set_by_name_or_by_a_packs_colour_map(tmp_path):
 def test_a_wrong_tint_is_refused(tmp_path):
     with pytest.raises(UnknownNameError, match="no tint is named 'gras'; did you mean 'grass'?"):
         looks_of(tmp_path, cube_files("stone", RED), tints={"gras": (0, 0, 0)})
-    with pytest.raises(UsageError, match="tint grass must be red, green, blue of 0 to 255"):
+    with pytest.raises(UsageError, match="tint grass must be red, green, blue from 0 to 255"):
         looks_of(tmp_path, cube_files("stone", RED), tints={"grass": (0, 0, 300)})
 
 

@@ -271,5 +271,5 @@ def test_gloss_seen_edge_on_brings_numbers(rough):
 
 
 def test_photos_need_an_hour():
-    with pytest.raises(ValueError, match="photos are lit by the hour: preset 'shader', not"):
+    with pytest.raises(ValueError, match="photos need the light preset 'shader', got"):
         sky_light(LightSettings(preset="neutral"))

@@ -79,8 +79,8 @@ def test_a_photo_from_outside_of_nothing_is_sky(world):
 @pytest.mark.parametrize(
     ("asked", "text"),
     [
-        ({"samples": 0}, "samples may be 1 to 4096, not 0"),
-        ({"depth": 65}, "depth may be 1 to 64, not 65"),
+        ({"samples": 0}, "samples must be 1 to 4096, got 0"),
+        ({"depth": 65}, "depth must be 1 to 64, got 65"),
     ],
 )
 def test_wrong_numbers_are_told(world, asked, text):
@@ -90,5 +90,7 @@ def test_wrong_numbers_are_told(world, asked, text):
 
 def test_a_picture_too_large_is_told(world):
     huge = Camera(9000, 1000, 1.0, 1.0, 0.0, 0.0)
-    with pytest.raises(ValueError, match="a photo may have 8,000,000 pixels, not 9000x1000"):
+    with pytest.raises(
+        ValueError, match="a photo may have at most 8,000,000 pixels, got 9000x1000"
+    ):
         render_photo(world[0], huge, world[1])

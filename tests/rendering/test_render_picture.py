@@ -107,14 +107,14 @@ def test_only_what_is_asked_for_is_made():
 def test_an_unknown_output_is_refused():
     with pytest.raises(
         ValueError,
-        match="^outputs may be colour, depth, semantic, instance, opaque, normal, free, not",
+        match="^unknown output 'normals'; outputs: colour, depth, semantic, instance, opaque",
     ):
         render_volume(closed_room(), CAMERA, np.eye(4), outputs=("normals",))
 
 
 def test_an_enormous_picture_is_refused_before_memory_is_taken():
     camera = Camera(20_000, 20_000, 100.0, 100.0, 1.0, 1.0)
-    with pytest.raises(ValueError, match="a picture may have 64,000,000 samples"):
+    with pytest.raises(ValueError, match="an image may have at most 64,000,000 samples"):
         render_volume(closed_room(), camera, np.eye(4))
 
 

@@ -114,7 +114,7 @@ def test_a_preview_of_no_sensible_size_is_refused(size):
 
 
 def test_a_plan_of_no_pixels_is_refused():
-    with pytest.raises(ValueError, match="^px_per_block must be 1 or more, not 0"):
+    with pytest.raises(ValueError, match="^px_per_block must be at least 1, got 0"):
         plan_view(furnished(), 0)
 
 

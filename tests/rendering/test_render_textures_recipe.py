@@ -44,11 +44,11 @@ def test_accents_and_options_have_defaults():
     [
         (
             "planks#a2824e",
-            "no recipe of a texture: 'planks#a2824e'; write one such as own:planks#a2824e?boards=4",
+            "invalid texture recipe 'planks#a2824e'; use the form own:planks#a2824e?boards=4",
         ),
         (
             "own:planks",
-            "own:planks: '' is no colour; write #rrggbb, as in own:planks#a2824e?boards=4",
+            "own:planks: invalid colour ''; use #rrggbb as in own:planks#a2824e?boards=4",
         ),
         (
             "own:planks#12345",
@@ -57,19 +57,20 @@ def test_accents_and_options_have_defaults():
         ),
         (
             "own:wool#112233,#445566",
-            "own:wool#112233,#445566: texture 'wool' takes at most 1 colours, not 2",
+            "own:wool#112233,#445566: texture 'wool' accepts at most 1 colours, got 2",
         ),
         (
             "own:planks#a2824e?boards=3",
-            "own:planks#a2824e?boards=3: boards must be one of 4, 1, 2, 8, not '3'",
+            "own:planks#a2824e?boards=3: boards must be one of 4, 1, 2, 8, got '3'",
         ),
         (
             "own:plain#a2824e?grain=nan",
-            "own:plain#a2824e?grain=nan: grain must be a number from 0 to 3, not 'nan'",
+            "own:plain#a2824e?grain=nan: grain must be a number from 0 to 3, got 'nan'",
         ),
         (
             "own:planks#a2824e?boards",
-            "own:planks#a2824e?boards: 'boards' is no option; write key=value once a key",
+            "own:planks#a2824e?boards: invalid option 'boards'; use key=value and each key only "
+            "once",
         ),
         (
             "own:planks#a2824e?boards=4&boards=4",
@@ -130,7 +131,7 @@ def test_a_long_recipe_is_refused():
 def test_other_sizes_are_refused(size_px):
     with pytest.raises(UsageError) as caught:
         texture_of("own:plain#808080", size_px)
-    assert str(caught.value) == f"textures are made at 16, 32, 64, 128 px, not {size_px}"
+    assert str(caught.value) == f"the texture size must be 16, 32, 64, 128 pixels, got {size_px}"
 
 
 def test_colours_are_levels():
@@ -154,5 +155,5 @@ def test_the_sheet_is_written_as_a_picture(tmp_path):
     main([str(tmp_path / "sheet.png"), "16", "2"])
     with Image.open(tmp_path / "sheet.png") as picture:
         assert picture.width > 1000
-    with pytest.raises(UsageError, match="write: python -m world2minecraft.rendering.textures"):
+    with pytest.raises(UsageError, match="usage: python -m world2minecraft.rendering.textures"):
         main([])

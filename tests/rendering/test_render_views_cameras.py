@@ -41,21 +41,21 @@ def test_intrinsics_come_as_four_numbers_or_as_a_matrix():
 @pytest.mark.parametrize(
     ("given_", "text"),
     [
-        ({}, "a camera needs one of vertical_fov_deg, horizontal_fov_deg and intrinsics, "
-             "and 0 are given"),
+        ({}, "give exactly one of vertical_fov_deg, horizontal_fov_deg and intrinsics, "
+             "got 0"),
         ({"vertical_fov_deg": 70, "horizontal_fov_deg": 90},
-         "a camera needs one of vertical_fov_deg, horizontal_fov_deg and intrinsics, "
-         "and 2 are given"),
+         "give exactly one of vertical_fov_deg, horizontal_fov_deg and intrinsics, "
+         "got 2"),
         ({"vertical_fov_deg": 0},
-         "a field of view must be above 0 and up to 170 degrees, not 0"),
+         "the field of view must be above 0 and at most 170 degrees, got 0"),
         ({"horizontal_fov_deg": 171},
-         "a field of view must be above 0 and up to 170 degrees, not 171"),
+         "the field of view must be above 0 and at most 170 degrees, got 171"),
         ({"vertical_fov_deg": float("nan")},
-         "a field of view must be above 0 and up to 170 degrees, not nan"),
+         "the field of view must be above 0 and at most 170 degrees, got nan"),
         ({"intrinsics": [[40, 1, 32], [0, 40, 24], [0, 0, 1]]},
-         "no such camera: K must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]"),
+         "invalid camera: K must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]"),
         ({"intrinsics": [1, 2]},
-         "no such camera: intrinsics must be fx, fy, cx, cy or 3x3, not [2]"),
+         "invalid camera: intrinsics must be fx, fy, cx, cy or a 3x3 matrix, got shape [2]"),
     ],
 )  # fmt: skip
 def test_what_is_no_camera_is_told(given_, text):
@@ -93,12 +93,14 @@ def test_who_looks_to_the_south_sees_the_west_on_the_right():
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ((0, 0, 0, 0, 91), "pitch is -90 (up) to 90 (down) degrees, not 91"),
-        ((0, 0, 0, 0, 0, "head"), "a pose is at feet or eye, not 'head'"),
+        ((0, 0, 0, 0, 91), "pitch must be -90 (up) to 90 (down) degrees, got 91"),
+        ((0, 0, 0, 0, 0, "head"), "at must be 'feet' or 'eye', got 'head'"),
         ((4e7, 0, 0, 0, 0),
-         "a pose must be five numbers of the game's world, not (40000000.0, 0, 0, 0, 0)"),
+         "a pose must be five finite numbers x, y, z, yaw, pitch within the world, "
+         "got (40000000.0, 0, 0, 0, 0)"),
         ((0, float("nan"), 0, 0, 0),
-         "a pose must be five numbers of the game's world, not (0, nan, 0, 0, 0)"),
+         "a pose must be five finite numbers x, y, z, yaw, pitch within the world, "
+         "got (0, nan, 0, 0, 0)"),
     ],
 )  # fmt: skip
 def test_what_is_no_pose_is_told(words, text):

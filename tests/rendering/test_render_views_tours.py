@@ -166,7 +166,7 @@ def test_where_nobody_can_stand_there_is_no_tour():
     with pytest.raises(UsageError) as told:
         plan_tour(volume, CAMERA, 4)
     assert str(told.value) == (
-        "nobody can stand anywhere in this build, so there is no tour; try --orbit"
+        "cannot plan a tour: the build has no place for a player to stand; try --orbit"
     )
 
 
@@ -231,17 +231,18 @@ def test_what_is_no_csv_is_told(tmp_path):
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("", "holds no pose; each line needs x, y, z, yaw, pitch"),
+        ("", "contains no poses; each line needs x, y, z, yaw and pitch"),
         ("{", "line 1 is no JSON"),
         ("\n[1]", "line 2 is no JSON object"),
-        ('{"x": 1, "y": 2, "z": 3, "pitch": 4}', "line 1 has no yaw"),
+        ('{"x": 1, "y": 2, "z": 3, "pitch": 4}', "line 1 does not contain yaw"),
         ('{"x": 1, "y": 2, "z": 3, "yaw": "north", "pitch": 4}',
-         "line 1 is no pose (could not convert string to float: 'north')"),
+         "line 1 is not a valid pose (could not convert string to float: 'north')"),
         ('{"x": 1, "y": 2, "z": 3, "yaw": 0, "pitch": 100}',
-         "line 1 is no pose (pitch is -90 (up) to 90 (down) degrees, not 100)"),
+         "line 1 is not a valid pose (pitch must be -90 (up) to 90 (down) degrees, got 100)"),
         (json.dumps({"x": 1, "y": 2, "z": 3, "yaw": 0, "pitch": 0, "width": 1e9, "height": 4,
                      "vertical_fov_deg": 70}),
-         "line 1 is no pose (no such camera: width_px must be 1 to 20000, not 1000000000)"),
+         "line 1 is not a valid pose (invalid camera: width_px must be 1 to 20000, got "
+         "1000000000)"),
     ],
 )  # fmt: skip
 def test_what_is_no_tour_is_told(tmp_path, text, reason):

@@ -119,8 +119,8 @@ def test_a_build_that_was_made_is_not_made_again(server, script, monkeypatch):
     ("asked", "said"),
     [
         ("blocks_per_metre=lots", "blocks_per_metre must be a number such as 4, got 'lots'"),
-        ("blocks_per_metre=nan", "must be 0.25 to 100, not nan; try 1, 2, 4 or 12.5"),
-        ("blocks_per_metre=0", "blocks_per_metre must be 0.25 to 100, not 0.0"),
+        ("blocks_per_metre=nan", "must be 0.25 to 100, got nan; try 1, 2, 4 or 12.5"),
+        ("blocks_per_metre=0", "blocks_per_metre must be 0.25 to 100, got 0.0"),
         ("style=block", "no style is named 'block'; did you mean 'blocks'?"),
     ],
 )

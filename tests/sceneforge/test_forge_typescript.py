@@ -65,7 +65,7 @@ def test_each_kind_of_field_has_its_type():
 
 
 def test_a_schema_that_is_not_known_is_refused():
-    with pytest.raises(World2MinecraftError, match="no TypeScript is known"):
+    with pytest.raises(World2MinecraftError, match="cannot express this JSON schema in TypeScript"):
         typescript._type({"type": "unheard"})
 
 

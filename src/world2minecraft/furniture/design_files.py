@@ -33,16 +33,16 @@ def read_design(path: Path) -> Template:
     """
     try:
         if path.stat().st_size > MAX_BYTES:
-            raise InputError(path, f"a design has {MAX_BYTES} bytes at most")
+            raise InputError(path, f"a design file may have at most {MAX_BYTES} bytes")
         raw = json.loads(path.read_text("utf-8"))
     except (OSError, ValueError, RecursionError) as error:
-        raise InputError(path, f"this is no design: {error}") from error
+        raise InputError(path, f"not a valid design file: {error}") from error
     try:
         found = design_from_json(raw)
     except (ValueError, UnknownNameError) as error:
         raise InputError(path, str(error)) from error
     if found.name != path.stem:
-        raise InputError(path, f"its name must be that of its file, not {found.name!r}")
+        raise InputError(path, f"the design name must match the file name, got {found.name!r}")
     return found
 
 
@@ -57,7 +57,7 @@ def design_from_json(raw: Any) -> Template:
     kind = _text("class", known["class"])
     if kind not in [CLASS_NAMES[number] for number in OBJECT_CLASSES]:
         listed = ", ".join(CLASS_NAMES[number] for number in OBJECT_CLASSES)
-        raise ValueError(f"class must be one of {listed}, not {kind!r}")
+        raise ValueError(f"class must be one of {listed}, got {kind!r}")
     _text("front", known["front"])
     sizes = _keys("size_m", known["size_m"], SIZES)
     free = _keys("clearance_m", known["clearance_m"], CLEARANCES)
@@ -91,50 +91,52 @@ def _keys(
     what: str, raw: Any, needed: Iterable[str], optional: Iterable[str] = ()
 ) -> dict[str, Any]:
     if not isinstance(raw, dict):
-        raise ValueError(f"{what} must be an object of keys, not {_short(raw)}")
+        raise ValueError(f"{what} must be a JSON object, got {_short(raw)}")
     missing = [key for key in needed if key not in raw]
     if missing:
-        raise ValueError(f"{what} lacks {missing[0]!r}")
+        raise ValueError(f"{what} does not contain the key {missing[0]!r}")
     known = (*needed, *optional)
     strange = [key for key in raw if key not in known]
     if strange:
-        raise ValueError(f"{what} has no {_short(strange[0])}; it has: {', '.join(known)}")
+        raise ValueError(
+            f"{what} contains the unknown key {_short(strange[0])}; keys: {', '.join(known)}"
+        )
     return raw
 
 
 def _text(key: str, value: Any) -> str:
     if not isinstance(value, str) or not 0 < len(value) <= 200:
-        raise ValueError(f"{key} must be a text of 1 to 200 letters, not {_short(value)}")
+        raise ValueError(f"{key} must be a string of 1 to 200 characters, got {_short(value)}")
     return value
 
 
 def _list(key: str, value: Any) -> list:
     if not isinstance(value, list) or len(value) > 16:
-        raise ValueError(f"{key} must be a list of 16 at most, not {_short(value)}")
+        raise ValueError(f"{key} must be a list of at most 16 items, got {_short(value)}")
     return value
 
 
 def _one_of(key: str, value: Any, choices: tuple) -> Any:
     if not any(value == one and type(value) is type(one) for one in choices):
         listed = ", ".join(json.dumps(one) for one in choices)
-        raise ValueError(f"{key} must be one of {listed}, not {_short(value)}")
+        raise ValueError(f"{key} must be one of {listed}, got {_short(value)}")
     return value
 
 
 def _number(key: str, value: Any, least: float = -math.inf, most: float = MAX_SIDE_M) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{key} must be a number, not {_short(value)}")
+        raise ValueError(f"{key} must be a number, got {_short(value)}")
     if not (math.isfinite(value) and least <= value <= most):
-        raise ValueError(f"{key} must lie between {max(least, -most):g} and {most:g}, not {value}")
+        raise ValueError(f"{key} must be between {max(least, -most):g} and {most:g}, got {value}")
     return float(value)
 
 
 def _span(key: str, value: Any, least: float = -math.inf) -> Span:
     if not isinstance(value, list) or len(value) != 3:
-        raise ValueError(f"{key} must be [smallest, usual, largest], not {_short(value)}")
+        raise ValueError(f"{key} must be [minimum, typical, maximum], got {_short(value)}")
     span = Span(*(_number(key, one, least) for one in value))
     if not span.minimum <= span.typical <= span.maximum:
-        raise ValueError(f"{key} must rise from smallest to largest, not {_short(value)}")
+        raise ValueError(f"{key} must increase from minimum to maximum, got {_short(value)}")
     return span
 
 
@@ -176,7 +178,7 @@ def _colour(value: Any) -> tuple[int, int, int]:
     text = _text("a colour of suits", value)
     digits = text.removeprefix("#")
     if len(digits) != 6 or text == digits or not all(c in "0123456789abcdef" for c in digits):
-        raise ValueError(f"a colour of suits must be like #8a3b2c, not {_short(value)}")
+        raise ValueError(f"a colour of suits must have the form #8a3b2c, got {_short(value)}")
     red, green, blue = (int(digits[at : at + 2], 16) for at in (0, 2, 4))
     return red, green, blue
 

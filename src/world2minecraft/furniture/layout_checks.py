@@ -119,7 +119,7 @@ def out_of_bounds(
     """
     polygon = np.asarray(floor_polygon_m, np.float64)
     if polygon.ndim != 2 or polygon.shape[1] != 2 or len(polygon) < 3:
-        raise ValueError(f"floor_polygon_m must be [N, 2] with N >= 3, not {polygon.shape}")
+        raise ValueError(f"floor_polygon_m must have shape [N, 2] with N >= 3, got {polygon.shape}")
     outside = []
     for index, item in enumerate(objects):
         bottom = item.center_m[2] - item.size_m[2] / 2 - floor_z_m

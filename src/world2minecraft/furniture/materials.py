@@ -53,13 +53,13 @@ class Material:
         if self.kind in (PLAIN, FIXED):
             for name in (self.value, *(block for _, block in self.shapes)):
                 if f"minecraft:{name}" not in known_blocks():
-                    raise ValueError(f"no block is named {name!r}")
+                    raise ValueError(f"unknown block {name!r}")
         elif self.kind not in kinds():
             known = ", ".join((*kinds(), PLAIN, FIXED))
-            raise ValueError(f"no kind of material is named {self.kind!r}; known: {known}")
+            raise ValueError(f"unknown kind of material {self.kind!r}; kinds: {known}")
         elif self.value not in kinds()[self.kind].blocks:
             known = ", ".join(kinds()[self.kind].blocks)
-            raise ValueError(f"no {self.kind} is named {self.value!r}; known: {known}")
+            raise ValueError(f"unknown {self.kind} {self.value!r}; known: {known}")
 
     def block(self, shape: str) -> str | None:
         """Return the name of its block of a shape, such as ``minecraft:oak_slab``, or None."""

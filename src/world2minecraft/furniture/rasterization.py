@@ -59,7 +59,9 @@ def rasterize(
     that a thin leg or table top is never lost. Read-only, for it is cached.
     """
     if np.prod(counts, dtype=np.float64) > MAX_CELLS:
-        raise ValueError(f"{template.name} of {counts} cells is too large; {MAX_CELLS} at most")
+        raise ValueError(
+            f"template {template.name} has {counts} cells, the limit is {MAX_CELLS} per axis"
+        )
     size = np.array(counts, np.float64) * voxel_m
     parts = template.parts(size, dict(values))
     boxes = np.array([part.box_m for part in parts]) + np.tile((size[0] / 2, size[1] / 2, 0.0), 2)

@@ -18,7 +18,7 @@ from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.template_parameters import Look
 
 Mount = Literal["floor", "wall", "ceiling", "any"]
-STALE = "; placements.json of another version is made anew by --from furnish"
+STALE = "; recreate an outdated placements.json with --from furnish"
 
 
 class ParameterError(UsageError, ValueError):
@@ -114,10 +114,10 @@ class Template:
         put(self, "materials", MappingProxyType(dict(self.materials)))
         put(self, "options", MappingProxyType(dict(self.options)))
         if self.class_id not in OBJECT_CLASSES:
-            raise ValueError(f"class_id must be an object class, 5 to 11, not {self.class_id}")
+            raise ValueError(f"class_id must be an object class from 5 to 11, got {self.class_id}")
         for span in (*self.size_m, *self.parameters.values()):
             if not span.minimum <= span.typical <= span.maximum:
-                raise ValueError(f"a span must rise from minimum to maximum, not {tuple(span)}")
+                raise ValueError(f"a span must increase from minimum to maximum, got {tuple(span)}")
         sorted_parameters = dict(sorted(self.parameters.items()))
         put(self, "parameters", MappingProxyType(sorted_parameters))
 
@@ -139,13 +139,13 @@ class Template:
             if name not in self.parameters:
                 known = ", ".join(self.parameters) or "none"
                 raise ParameterError(
-                    f"{self.name} has no parameter {name!r}; it has: {known}{STALE}"
+                    f"template {self.name} has no parameter {name!r}; parameters: {known}{STALE}"
                 )
             span = self.parameters[name]
             if not span.minimum - 1e-6 <= value <= span.maximum + 1e-6:
                 raise ParameterError(
-                    f"{name} of {self.name} must lie between {span.minimum:g} and "
-                    f"{span.maximum:g}, not {value:g}{STALE}"
+                    f"{name} of template {self.name} must be between {span.minimum:g} and "
+                    f"{span.maximum:g}, got {value:g}{STALE}"
                 )
         return {
             name: float(given.get(name, self.parameters[name].typical)) for name in self.parameters

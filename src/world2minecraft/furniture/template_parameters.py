@@ -49,11 +49,12 @@ class Look(Mapping[str, float]):
         """
         material = self._materials.get(role)
         if material is None:
-            raise ValueError(f"{self.name} says not what its {role} is made of")
+            raise ValueError(f"template {self.name} does not define the material of its {role}")
         block = material.block(shape)
         if block is None:
             raise ValueError(
-                f"the {role} of {self.name} is of {material.value}, of which there is no {shape}"
+                f"template {self.name} needs a {shape} for its {role}, but its material "
+                f"{material.value} has none"
             )
         listed = ",".join(f"{key}={value}" for key, value in properties.items())
         return f"{block}[{listed}]" if listed else block

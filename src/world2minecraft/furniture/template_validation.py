@@ -50,12 +50,12 @@ def _check_parts(template: Template, size: np.ndarray, parts: tuple[Part, ...]) 
         if (part.box_m[3:] - part.box_m[:3] <= GAP_M).any():
             yield f"the {part.role} is flat: {_sizes(part.box_m)}"
         if (part.box_m[:3] < low - GAP_M).any() or (part.box_m[3:] > high + GAP_M).any():
-            yield f"the {part.role} leaves the box: {_sizes(part.box_m)}"
+            yield f"the {part.role} extends beyond the bounding box: {_sizes(part.box_m)}"
     reached = np.concatenate([boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)])
     if np.abs(reached - np.concatenate([low, high])).max() > FINE_VOXEL_M:
-        yield f"the parts reach {_sizes(reached)}, not the whole box"
+        yield f"the parts only span {_sizes(reached)} of the bounding box"
     for index in _floating(boxes, low, template.mount == "wall"):
-        yield f"the {parts[index].role} floats"
+        yield f"the {parts[index].role} is not connected to the other parts"
 
 
 def _floating(boxes: np.ndarray, low: np.ndarray, hangs: bool) -> list[int]:
@@ -78,9 +78,9 @@ def _check_turns(template: Template) -> Iterator[str]:
     solid = rasterize(template, (side, across, height), values, FINE_VOXEL_M)
     half = np.array_equal(solid, turn_grid(solid, 2))
     if template.turns in (1, 2) and not half:
-        yield f"turns is {template.turns}, but half a turn changes its shape"
+        yield f"turns is {template.turns}, but the shape is not symmetric under a half turn"
     if template.turns == 1 and not np.array_equal(solid, turn_grid(solid, 1)):
-        yield "turns is 1, but a quarter turn of a square one changes its shape"
+        yield "turns is 1, but a square piece is not symmetric under a quarter turn"
 
 
 def _check_design(template: Template) -> Iterator[str]:
@@ -91,11 +91,11 @@ def _check_design(template: Template) -> Iterator[str]:
         blocks = template.blocks(size)
         cells = [block.cell for block in blocks]
         if not cells:
-            yield f"its design at {scale:g} blocks per metre has no block"
+            yield f"the design at {scale:g} blocks per metre contains no blocks"
         elif len(set(cells)) < len(cells):
-            yield f"its design at {scale:g} blocks per metre fills a cell twice"
+            yield f"the design at {scale:g} blocks per metre fills a cell twice"
         elif min(map(min, cells)) < 0:
-            yield f"its design at {scale:g} blocks per metre leaves its box"
+            yield f"the design at {scale:g} blocks per metre extends beyond its bounding box"
 
 
 def _sizes(values: np.ndarray) -> str:

@@ -71,7 +71,7 @@ def import_blocks(volume: BlockVolume, wish: ImportRequest) -> ImportedFurniture
     front = wish.front or front_of(trimmed, wish.kind)
     if front is None:
         raise UsageError(
-            "no block shows which side is the front; add --front north|east|south|west"
+            "cannot determine the front side from the blocks; add --front north|east|south|west"
         )
     turned = _join_connections(turn_volume(trimmed, -SIDES.index(front)))
     cells = block_axes_to_grid(turned.states)
@@ -100,23 +100,21 @@ def _check(wish: ImportRequest) -> None:
     check_name(wish.name)
     offered = [CLASS_NAMES[number] for number in OBJECT_CLASSES]
     if wish.kind not in offered:
-        raise UnknownNameError("class of furniture", wish.kind, offered)
+        raise UnknownNameError("furniture class", wish.kind, offered)
     if wish.front is not None and wish.front not in SIDES:
         raise UnknownNameError("side", wish.front, SIDES)
     if wish.mount not in ("floor", "wall", "ceiling", "any"):
         raise UnknownNameError("mount", wish.mount, ("floor", "wall", "ceiling", "any"))
     if not 0.1 <= wish.blocks_per_metre <= 64:
-        raise UsageError(
-            f"--blocks-per-metre must lie between 0.1 and 64, not {wish.blocks_per_metre:g}"
-        )
+        raise UsageError(f"--blocks-per-metre must be 0.1 to 64, got {wish.blocks_per_metre:g}")
 
 
 def _check_size(size: np.ndarray) -> None:
     if not (np.isfinite(size).all() and (size >= MIN_SIDE_M).all() and (size <= MAX_SIDE_M).all()):
         given = " x ".join(f"{side:.2f}" for side in size)
         raise UsageError(
-            f"a piece is {MIN_SIDE_M:g} to {MAX_SIDE_M:g} m each way, not {given}; "
-            "say its scale with --blocks-per-metre"
+            f"each side of the piece must be {MIN_SIDE_M:g} to {MAX_SIDE_M:g} m, got {given}; "
+            "set the scale with --blocks-per-metre"
         )
 
 
@@ -125,16 +123,15 @@ def _trim(volume: BlockVolume) -> BlockVolume:
     seen = np.array([role_of(state) not in INVISIBLE for state in volume.palette])
     filled = seen[volume.states]
     if not filled.any():
-        raise UsageError("there is no block in it, so there is nothing to add")
+        raise UsageError("the selection contains no blocks; select the blocks of the piece")
     held = np.argwhere(filled)
     low, high = held.min(axis=0), held.max(axis=0) + 1
     size = high - low
     if (size > MAX_SIDE).any() or int(np.prod(size)) > MAX_BLOCKS:
         given = " x ".join(str(side) for side in size.tolist())
         raise UsageError(
-            f"a piece is {MAX_SIDE} blocks at most each way and {MAX_BLOCKS:,} in all, "
-            f"not {given}; "
-            "cut out the piece alone"
+            f"a piece may have at most {MAX_SIDE} blocks per side and {MAX_BLOCKS:,} in total, "
+            f"got {given}; select only the piece"
         )
     window = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
     states = np.where(filled[window], volume.states[window], 0)
@@ -142,8 +139,8 @@ def _trim(volume: BlockVolume) -> BlockVolume:
     used_states = [state for state in used.tolist() if state]
     if len(used_states) > MAX_KINDS:
         raise UsageError(
-            f"a piece has {MAX_KINDS} kinds of blocks at most, not {len(used_states)}; "
-            "cut out it alone"
+            f"a piece may have at most {MAX_KINDS} different block states, got "
+            f"{len(used_states)}; select only the piece"
         )
     numbers = numbers.reshape(states.shape) + (0 if used[0] == 0 else 1)
     return BlockVolume(
@@ -204,7 +201,7 @@ def _parts(volume: BlockVolume) -> list[tuple]:
         if len(boxes) <= MAX_PARTS:
             break
     else:
-        raise UsageError(f"its shape takes over {MAX_PARTS} boxes; add a plainer one")
+        raise UsageError(f"the shape needs more than {MAX_PARTS} boxes; add a simpler piece")
     return [(roles[label - 1], *(np.array(corners) * coarse)) for label, *corners in boxes.tolist()]
 
 
@@ -227,7 +224,7 @@ def _fine_grid(volume: BlockVolume, roles: list[str]) -> np.ndarray:
         place = tuple(slice(count * at, count * (at + 1)) for at in (x, y, z))
         fine[place] = np.where(shapes[number], 1 + roles.index(role_of(volume.palette[number])), 0)
     if not fine.any():
-        raise UsageError("none of its blocks is seen, so there is nothing to add")
+        raise UsageError("all blocks of the piece are invisible, so there is nothing to add")
     return fine
 
 
@@ -276,8 +273,10 @@ def _notes(volume: BlockVolume) -> list[str]:
     loose = [reason for _, _, reason in find_unstable_cells(floored.astype(np.uint16), palette)]
     notes = []
     if loose:
-        notes.append(f"{len(loose)} blocks would not stay by themselves: {loose[0]}")
+        notes.append(f"{len(loose)} blocks need support and would break on their own: {loose[0]}")
     strange = sorted({role_of(s) for s in volume.palette} - {role_of(s) for s in known_blocks()})
     if strange:
-        notes.append(f"not in the plain game, taken as full blocks: {', '.join(strange[:5])}")
+        notes.append(
+            f"unknown in vanilla Minecraft, treated as full blocks: {', '.join(strange[:5])}"
+        )
     return notes

@@ -63,8 +63,8 @@ def check_name(name: str) -> str:
     """
     if not NAME.fullmatch(name):
         raise UsageError(
-            f"a name of furniture begins with a letter and has up to 40 of a-z, 0-9 and _, not "
-            f"{name[:60]!r}; add --name my_chair"
+            "a furniture name must start with a letter and have up to 40 characters of a-z, 0-9 "
+            f"and _, got {name[:60]!r}; add --name my_chair"
         )
     return name
 
@@ -84,9 +84,9 @@ def read_user_design(path: Path) -> Template:
             else design_from_json(raw)
         )
         if found.name != path.stem:
-            raise ValueError(f"its name must be that of its file, not {found.name!r}")
+            raise ValueError(f"the template name must match the file name, got {found.name!r}")
     except (ValueError, UsageError) as error:
-        hint = "add it anew with w2m furniture add, or take the file away"
+        hint = "add it again with w2m furniture add, or remove the file"
         raise DamagedFileError(path, f"{error}; {hint}") from error
     return found
 
@@ -99,7 +99,7 @@ def template_from_json(raw: Mapping[str, Any]) -> Template:
     """
     kind = _text(raw, "class")
     if kind not in CLASS_NAMES or CLASS_NAMES.index(kind) not in OBJECT_CLASSES:
-        raise ValueError(f"class must be an object class, not {kind!r}")
+        raise ValueError(f"class must be an object class, got {kind!r}")
     sizes = _mapping(raw, "size_m")
     scale = _number("blocks_per_metre", raw.get("blocks_per_metre"), 0.1, 64.0)
     blocks = _blocks(_mapping(raw, "blocks"))
@@ -166,15 +166,17 @@ def _blocks(raw: Mapping[str, Any]) -> tuple[LocalBlock, ...]:
     size = tuple(_whole("size", one, 1, MAX_SIDE) for one in _list("size", raw.get("size"), 3, 3))
     count = math.prod(size)
     if count > MAX_BLOCKS:
-        raise ValueError(f"size must hold {MAX_BLOCKS:,} blocks at most, not {count:,}")
+        raise ValueError(f"size must have at most {MAX_BLOCKS:,} blocks in total, got {count:,}")
     palette = [_state(one) for one in _list("palette", raw.get("palette"), 1, MAX_KINDS)]
     numbers: list[int] = []
     for run in _list("runs", raw.get("runs"), 1, count):
         number, length = _list("a run", run, 2, 2)
-        length = _whole("the length of a run", length, 1, count - len(numbers))
-        numbers += [_whole("the number of a run", number, 0, len(palette))] * length
+        length = _whole("run length", length, 1, count - len(numbers))
+        numbers += [_whole("run state index", number, 0, len(palette))] * length
     if len(numbers) != count or not any(numbers):
-        raise ValueError(f"runs must hold {count} blocks, not all of them air; have {len(numbers)}")
+        raise ValueError(
+            f"runs must contain {count} blocks, at least one of them not air, got {len(numbers)}"
+        )
     cells = np.array(numbers).reshape(size)
     found = [
         (tuple(map(int, cell)), palette[cells[tuple(cell)] - 1]) for cell in np.argwhere(cells)
@@ -194,10 +196,10 @@ def _parts(raw: Any, blocks: tuple[LocalBlock, ...]) -> tuple[tuple[np.ndarray, 
     for one in _list("parts", raw, 1, MAX_PARTS):
         role, *corners = _list("a part", one, 7, 7)
         if role not in roles:
-            raise ValueError(f"a part must be of one of its blocks, not {role!r}")
+            raise ValueError(f"the block of a part must be a block of the piece, got {role!r}")
         box = np.array([_whole("a corner", value, 0, MAX_SIDE * 16) for value in corners], float)
         if (box[3:] <= box[:3]).any():
-            raise ValueError(f"a part must have a volume, not {corners}")
+            raise ValueError(f"a part must have a positive volume, got {corners}")
         found.append((box, role))
     boxes = np.array([box for box, _ in found])
     low, high = boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)
@@ -209,39 +211,39 @@ def _state(value: Any) -> str:
     from world2minecraft.minecraft.block_states import parse_state  # noqa: PLC0415
 
     if not isinstance(value, str):
-        raise ValueError(f"a block state must be a text, not {value!r:.60}")
+        raise ValueError(f"a block state must be a string, got {value!r:.60}")
     return str(parse_state(value))
 
 
 def _text(raw: Mapping[str, Any], key: str) -> str:
     value = raw.get(key)
     if not isinstance(value, str) or not 0 < len(value) <= 200:
-        raise ValueError(f"{key} must be a text of 1 to 200 letters, not {value!r:.60}")
+        raise ValueError(f"{key} must be a string of 1 to 200 characters, got {value!r:.60}")
     return value
 
 
 def _mapping(raw: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     value = raw.get(key)
     if not isinstance(value, dict):
-        raise ValueError(f"{key} must be an object of keys, not {value!r:.60}")
+        raise ValueError(f"{key} must be a JSON object, got {value!r:.60}")
     return value
 
 
 def _list(key: str, value: Any, least: int, most: int) -> list:
     if not isinstance(value, list) or not least <= len(value) <= most:
-        raise ValueError(f"{key} must be a list of {least} to {most}, not {value!r:.60}")
+        raise ValueError(f"{key} must be a list of {least} to {most} items, got {value!r:.60}")
     return value
 
 
 def _whole(key: str, value: Any, least: int, most: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise ValueError(f"{key} must be a whole number from {least} to {most}, not {value!r:.60}")
+        raise ValueError(f"{key} must be an integer from {least} to {most}, got {value!r:.60}")
     return value
 
 
 def _number(key: str, value: Any, least: float, most: float) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not least <= value <= most:
-        raise ValueError(f"{key} must be a number from {least:g} to {most:g}, not {value!r:.60}")
+        raise ValueError(f"{key} must be a number from {least:g} to {most:g}, got {value!r:.60}")
     return float(value)
 
 
@@ -252,5 +254,5 @@ def _span(sizes: Mapping[str, Any], key: str) -> Span:
 def _one_of(raw: Mapping[str, Any], key: str, choices: tuple) -> Any:
     value = raw.get(key)
     if not any(value == one and type(value) is type(one) for one in choices):
-        raise ValueError(f"{key} must be one of {', '.join(map(str, choices))}, not {value!r:.60}")
+        raise ValueError(f"{key} must be one of {', '.join(map(str, choices))}, got {value!r:.60}")
     return value

@@ -57,7 +57,9 @@ def build_atlas(textures: Sequence[Texture], side_px: int) -> Atlas:
         ValueError: there is no texture, or the size is none of these.
     """
     if side_px not in SIZES_PX or not textures:
-        raise ValueError(f"an atlas needs textures and a size of {SIZES_PX}, not {side_px}")
+        raise ValueError(
+            f"an atlas needs at least one texture and a size from {SIZES_PX}, got {side_px}"
+        )
     texels = np.empty((len(textures), texel_count(side_px), 4), np.uint8)
     material = np.empty((len(textures), texel_count(side_px), 5), np.uint8)
     for row, texture in enumerate(textures):

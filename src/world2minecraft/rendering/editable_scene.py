@@ -82,11 +82,11 @@ class EditableScene:
         """
         cells = np.asarray(cells, np.int64).reshape(-1, 3)
         if len(cells) != len(states):
-            raise UsageError(f"{len(cells)} cells need as many states, not {len(states)}")
+            raise UsageError(f"{len(cells)} cells need {len(cells)} states, got {len(states)}")
         shape = np.array(self._states.shape)
         for cell in cells[((cells < 0) | (cells >= shape)).any(axis=1)]:
             raise UsageError(
-                f"cell {tuple(cell.tolist())} is not in the volume of {self._states.shape}"
+                f"cell {tuple(cell.tolist())} is outside the volume of {self._states.shape} cells"
             )
         rows = [self._row_of_state(state) for state in states]
         if not rows:

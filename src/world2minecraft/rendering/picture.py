@@ -48,7 +48,7 @@ class Picture:
     def glass_index(self) -> np.ndarray:
         """The first glass that a ray meets before what is opaque, int32 [H, W], else -1."""
         if self.opaque_index is None or self.opaque_depth_m is None:
-            raise ValueError("glass is told apart only where the outputs name 'opaque'")
+            raise ValueError("glass_index requires the output 'opaque'")
         return np.where(self.opaque_depth_m == self.depth_m, -1, self.block_index)
 
 
@@ -132,11 +132,13 @@ def check_request(outputs: Collection[str], size: tuple[int, int], samples: int)
     """Raise ``ValueError`` where the request is invalid; see ``render_volume``."""
     unknown = sorted(set(outputs) - set(OUTPUTS))
     if unknown:
-        raise ValueError(f"outputs may be {', '.join(OUTPUTS)}, not {unknown[0]!r}")
+        raise ValueError(f"unknown output {unknown[0]!r}; outputs: {', '.join(OUTPUTS)}")
     if not 1 <= samples <= MAX_SAMPLES:
-        raise ValueError(f"samples may be 1 to {MAX_SAMPLES}, not {samples}")
+        raise ValueError(f"samples must be 1 to {MAX_SAMPLES}, got {samples}")
     if size[0] * size[1] * samples**2 > MAX_PIXELS:
-        raise ValueError(f"a picture may have {MAX_PIXELS:,} samples, not {size[1]}x{size[0]}")
+        raise ValueError(
+            f"an image may have at most {MAX_PIXELS:,} samples, got {size[1]}x{size[0]}"
+        )
 
 
 def picture_of(arrays: PixelArrays, outputs: Collection[str]) -> Picture:

@@ -129,7 +129,7 @@ def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
         ValueError: ``px_per_block`` is not 1 or more, or the plan would be too large.
     """
     if px_per_block < 1:
-        raise ValueError(f"px_per_block must be 1 or more, not {px_per_block}")
+        raise ValueError(f"px_per_block must be at least 1, got {px_per_block}")
     opened = arrange_side_by_side([without_ceiling(one) for one in split_storeys(volume)])
     x_blocks, _, z_blocks = opened.states.shape
     size = (z_blocks * px_per_block, x_blocks * px_per_block)
@@ -154,10 +154,10 @@ def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
 def _check_size(width_px: int, height_px: int) -> None:
     samples = width_px * height_px * SUPERSAMPLE**2
     if width_px < 1 or height_px < 1 or samples > MAX_PIXELS:
-        raise ValueError(f"the picture's size is out of range: {width_px}x{height_px} pixels")
+        raise ValueError(f"the image size {width_px}x{height_px} pixels is out of range")
 
 
 def _colour_of(picture: Picture) -> np.ndarray:
     if picture.colour is None:
-        raise ValueError("the picture has no colour")
+        raise ValueError("the image has no colour; request the output 'rgb'")
     return picture.colour

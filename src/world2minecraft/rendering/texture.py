@@ -29,16 +29,18 @@ class Texture:
     def __post_init__(self):
         shape = self.colour.shape
         if self.colour.dtype != np.uint8 or len(shape) != 3 or shape[2] != 4:
-            raise ValueError(f"colour must be uint8 [N, N, 4], not {self.colour.dtype} {shape}")
+            raise ValueError(f"colour must be uint8 [N, N, 4], got {self.colour.dtype} {shape}")
         if shape[0] != shape[1] or not 1 <= shape[0] <= MAX_SIDE_PX:
-            raise ValueError(f"a texture must be square, 1 to {MAX_SIDE_PX} px, not {shape[:2]}")
+            raise ValueError(
+                f"a texture must be square with 1 to {MAX_SIDE_PX} pixels, got {shape[:2]}"
+            )
         for name, depth in (("normal", (3,)), ("roughness", ()), ("metal", ()), ("emission", ())):
             value = getattr(self, name)
             if value is None:
                 continue
             if value.dtype != np.uint8 or value.shape != (*shape[:2], *depth):
                 raise ValueError(
-                    f"{name} must be uint8 {[*shape[:2], *depth]}, not {value.dtype} {value.shape}"
+                    f"{name} must be uint8 {[*shape[:2], *depth]}, got {value.dtype} {value.shape}"
                 )
 
     @cached_property

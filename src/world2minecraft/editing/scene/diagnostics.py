@@ -182,7 +182,7 @@ def _count_text(count: int, class_id: int) -> str:
 
 def template_words(template: str) -> str:
     """Return a template's name as words."""
-    return template.replace("_", " ")
+    return " ".join("TV" if word == "tv" else word for word in template.split("_"))
 
 
 def center_of_cells_m(draft: SceneDraft, cells: np.ndarray) -> np.ndarray:

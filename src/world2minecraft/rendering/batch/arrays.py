@@ -169,7 +169,7 @@ def array_specs(
     """
     unknown = sorted(set(outputs) - set(BATCH_OUTPUTS))
     if unknown:
-        raise UsageError(f"outputs may be {', '.join(BATCH_OUTPUTS)}, not {unknown[0]!r}")
+        raise UsageError(f"unknown output {unknown[0]!r}; outputs: {', '.join(BATCH_OUTPUTS)}")
     rooms: dict[str, ArraySpec] = {
         name: ((count, *size, *rest), np.dtype(kind))
         for name, (output, _, kind, rest) in _PLAN.items()
@@ -180,8 +180,8 @@ def array_specs(
     total = total_bytes(rooms)
     if total > MAX_BYTES:
         raise UsageError(
-            f"{count:,} pictures of {size[1]}x{size[0]} take {total / 2**30:,.0f} GiB at once; "
-            "take fewer poses a batch, or render_stream, which keeps a few pictures alone"
+            f"{count:,} images of {size[1]}x{size[0]} need {total / 2**30:,.0f} GiB; use fewer "
+            "poses per batch, or render_stream, which only keeps a few images in memory"
         )
     return rooms
 
@@ -202,11 +202,13 @@ def batch_arrays(
 def check_batch(count: int, size: Size, samples: int) -> None:
     """Refuse batches that cannot be drawn. Raises UsageError."""
     if count > MAX_PICTURES:
-        raise UsageError(f"a batch may have {MAX_PICTURES:,} poses, not {count:,}")
+        raise UsageError(f"a batch may have at most {MAX_PICTURES:,} poses, got {count:,}")
     if not 1 <= samples <= MAX_SAMPLES:
-        raise UsageError(f"samples may be 1 to {MAX_SAMPLES}, not {samples}")
+        raise UsageError(f"samples must be 1 to {MAX_SAMPLES}, got {samples}")
     if size[0] * size[1] * samples**2 > MAX_PIXELS:
-        raise UsageError(f"a picture may have {MAX_PIXELS:,} samples, not {size[1]}x{size[0]}")
+        raise UsageError(
+            f"an image may have at most {MAX_PIXELS:,} samples, got {size[1]}x{size[0]}"
+        )
 
 
 def check_arrays(given: BatchArrays, rooms: dict[str, ArraySpec]) -> None:
@@ -216,11 +218,11 @@ def check_arrays(given: BatchArrays, rooms: dict[str, ArraySpec]) -> None:
         array = arrays.pop(name, None)
         given_text = "nothing" if array is None else f"{array.dtype} {list(array.shape)}"
         if array is None or array.shape != shape or array.dtype != kind:
-            raise UsageError(f"out.{name} must be {kind} {list(shape)}, not {given_text}")
+            raise UsageError(f"out.{name} must be {kind} {list(shape)}, got {given_text}")
         if not (array.flags.c_contiguous and array.flags.writeable):
-            raise UsageError(f"out.{name} must be in C order, whole and open to writing")
+            raise UsageError(f"out.{name} must be C-contiguous and writable")
     if arrays:
-        raise UsageError(f"out.{min(arrays)} is given, but no output fills it")
+        raise UsageError(f"out.{min(arrays)} is given but not requested in outputs")
 
 
 def kernel_arrays(

@@ -117,10 +117,10 @@ def checked_poses(poses: np.ndarray | Sequence[np.ndarray]) -> np.ndarray:
     if matrices.size == 0:
         return np.empty((0, 4, 4))
     if matrices.ndim != 3 or matrices.shape[1:] != (4, 4):
-        raise UsageError(f"poses must be [N, 4, 4], not {list(matrices.shape)}")
+        raise UsageError(f"poses must have shape [N, 4, 4], got {list(matrices.shape)}")
     wrong = np.flatnonzero(~np.isfinite(matrices).all(axis=(1, 2)))
     if len(wrong):
-        raise UsageError(f"pose {wrong[0]} has numbers that are not finite")
+        raise UsageError(f"pose {wrong[0]} contains NaN or infinity")
     return matrices
 
 
@@ -128,13 +128,13 @@ def checked_cameras(cameras: Camera | Sequence[Camera], count: int) -> Sequence[
     """Return a camera for each of the poses, all of one size. Raises UsageError."""
     each = [cameras] * count if isinstance(cameras, Camera) else list(cameras)
     if len(each) != count:
-        raise UsageError(f"{count} poses need one camera or {count}, not {len(each)}")
+        raise UsageError(f"{count} poses need one camera or {count} cameras, got {len(each)}")
     for number, camera in enumerate(each):
         if (camera.width_px, camera.height_px) != (each[0].width_px, each[0].height_px):
             raise UsageError(
-                f"the pictures of a batch have one size: camera {number} is "
-                f"{camera.width_px}x{camera.height_px}, the first "
-                f"{each[0].width_px}x{each[0].height_px}; RenderPool takes any"
+                f"all images of a batch must have the same size: camera {number} has "
+                f"{camera.width_px}x{camera.height_px}, camera 0 has "
+                f"{each[0].width_px}x{each[0].height_px}; use RenderPool for different sizes"
             )
     return each
 

@@ -146,7 +146,7 @@ class RenderPool:
         """
         count = usable_cores() if workers is None else workers
         if not 1 <= count <= MAX_WORKERS:
-            raise UsageError(f"a pool has 1 to {MAX_WORKERS} workers, not {count}")
+            raise UsageError(f"workers must be 1 to {MAX_WORKERS}, got {count}")
         self.workers, self._scene, self._busy = count, scene, False
         self._blocks: list[SharedArrays] = [_share_tables(scene)]
         self._hands: list[Worker] = []
@@ -223,7 +223,9 @@ class RenderPool:
         matrices = checked_poses(poses)
         each = [cameras] * len(matrices) if isinstance(cameras, Camera) else list(cameras)
         if len(each) != len(matrices):
-            raise UsageError(f"{len(matrices)} poses need one camera or as many, not {len(each)}")
+            raise UsageError(
+                f"{len(matrices)} poses need one camera or {len(matrices)} cameras, got {len(each)}"
+            )
         for size in {(one.height_px, one.width_px) for one in each}:
             check_batch(len(each), size, samples)
         wanted = tuple(outputs)
@@ -306,8 +308,8 @@ class RenderPool:
             data = pickle.dumps(message)
         except (pickle.PicklingError, AttributeError, TypeError) as error:
             raise UsageError(
-                "make must be a function at the top of a module, or a partial of one, so that "
-                f"it can be sent to the workers ({error})"
+                "make must be picklable: use a module-level function or a functools.partial "
+                f"of one ({error})"
             ) from error
         for hand in self._hands:
             try:
@@ -331,24 +333,25 @@ class RenderPool:
         hand.process.join(EXIT_TIMEOUT_S)
         code, number, doing = hand.process.exitcode, hand.number + 1, list(hand.tasks)
         hand.tasks.clear()
-        at = f" while it drew picture {doing[0]}" if doing else ""
+        at = f" while rendering image {doing[0]}" if doing else ""
         if code is not None and code < 0:
-            why = "it was killed, perhaps because memory ran out: take fewer workers"
+            why = "it was killed, probably because memory ran out; use fewer workers"
         else:
             why = (
-                "its own words are above; a script that makes a RenderPool needs "
-                "'if __name__ == \"__main__\":' around what it runs"
+                "see its output above; a script that creates a RenderPool must guard its main code "
+                "with 'if __name__ == \"__main__\":'"
             )
         total = self.workers
         self.close()
-        return WorkerError(f"worker {number} of {total} ended with code {code}{at}; {why}")
+        return WorkerError(f"worker {number} of {total} exited with code {code}{at}: {why}")
 
     def _check_idle(self) -> None:
         if not self._end.alive:
-            raise UsageError("this RenderPool is closed; make a new one")
+            raise UsageError("this RenderPool is closed; create a new one")
         if self._busy:
             raise UsageError(
-                "this RenderPool is still taking pictures; use up or close what render() gave"
+                "this RenderPool is still rendering; exhaust or close the iterator that "
+                "render() returned"
             )
 
 

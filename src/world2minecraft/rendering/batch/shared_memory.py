@@ -64,8 +64,8 @@ class SharedArrays:
             memory = SharedMemory(create=True, size=max(size, 1))
         except OSError as error:
             raise UsageError(
-                f"{size / 2**20:,.0f} MiB of shared memory are not to be had ({error}); take "
-                "smaller pictures, fewer workers, or more of it (in a container --shm-size=2g)"
+                f"cannot allocate {size / 2**20:,.0f} MiB of shared memory ({error}); use smaller "
+                "images, fewer workers, or more shared memory (container: --shm-size=2g)"
             ) from error
         return cls(memory, SharedLayout(memory.name, places), owned=True)
 

@@ -156,7 +156,7 @@ def render_stream(
         ("jobs", jobs, MAX_WORKERS),
     ):
         if not 1 <= value <= most:
-            raise UsageError(f"{name} may be 1 to {most}, not {value}")
+            raise UsageError(f"{name} must be 1 to {most}, got {value}")
     eyes = [apply(scene.room_to_grid, shot.camera_to_room[:3, 3]) for shot in shots]
     if shots:
         scene = replace(scene, exposure=exposure_of(light, scene, np.array(eyes)))

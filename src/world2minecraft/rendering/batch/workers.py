@@ -85,7 +85,7 @@ def _send(pipe: Connection, reply: Reply) -> None:
     try:
         pipe.send(reply)
     except (pickle.PicklingError, TypeError, AttributeError) as error:
-        text = f"what was made of picture {reply.first} cannot be sent back: {error}"
+        text = f"the result for image {reply.first} cannot be pickled: {error}"
         pipe.send(Reply(reply.first, error=WorkerError(text)))
 
 
@@ -122,7 +122,7 @@ class WorkerState:
     def _made(self, task: Task) -> list[Any] | None:
         job, scene = self._job, self._scene
         if job is None or scene is None:
-            raise WorkerError("a worker was given a task before its scene")
+            raise WorkerError("a worker received a task before its scene")
         if self._stage is None:
             tables = self._joined("scene", scene.plan).arrays()
             self._stage = KernelScene(SceneTables(**tables), scene.side_px)

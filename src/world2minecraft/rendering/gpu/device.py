@@ -97,10 +97,10 @@ def find_adapter(name: str | None = None) -> Any:
             return adapter
     names = ", ".join(info_of(adapter).name for adapter in found) or "none"
     if wanted:
-        raise GpuError(f"no GPU adapter is named {wanted!r}; there are: {names}")
+        raise GpuError(f"GPU adapter {wanted!r} not found; adapters: {names}")
     raise GpuError(
-        f"no graphics card was found (adapters: {names}); install its Vulkan driver, "
-        f"or use --device cpu; {ADAPTER_VARIABLE}={SOFTWARE} takes a software adapter, for tests"
+        f"no GPU found (adapters: {names}); install its Vulkan driver or use --device cpu "
+        f"({ADAPTER_VARIABLE}={SOFTWARE} selects a software adapter for tests)"
     )
 
 
@@ -183,9 +183,9 @@ class Engine:
             if size > most:
                 shape = " x ".join(map(str, scene.tables.space.shape))
                 raise GpuError(
-                    f"a world of {shape} blocks is too large for {self.name}: its {name} needs "
-                    f"{size / 1e6:,.0f} MB in one piece, and {most / 1e6:,.0f} MB is the most; "
-                    "use --device cpu, or a smaller --box"
+                    f"a world of {shape} blocks is too large for {self.name}: buffer {name} needs "
+                    f"{size / 1e6:,.0f} MB, the limit is {most / 1e6:,.0f} MB; "
+                    "use --device cpu or a smaller --box"
                 )
 
     def upload(self, arrays: Mapping[str, np.ndarray]) -> dict[str, Any]:
@@ -204,7 +204,7 @@ class Engine:
             }
         except device_errors() as error:
             raise GpuError(
-                f"{self.name} could not take the world: {error}; use --device cpu"
+                f"cannot upload the world to {self.name}: {error}; use --device cpu"
             ) from error
 
 

@@ -140,7 +140,7 @@ def tone_words(shading: ShadingParameters) -> np.ndarray:
 def check_pose(pose: np.ndarray) -> None:
     """Raise ``ValueError`` where a pose holds a number that is none."""
     if not np.isfinite(pose).all():
-        raise ValueError("camera_to_room must hold finite numbers")
+        raise ValueError("camera_to_room must contain only finite numbers")
 
 
 def view_of(pose: np.ndarray, first_row: int, ahead: float = 0.0) -> np.ndarray:

@@ -141,7 +141,7 @@ def light_field(
         ValueError: the reach is out of range, or the palette has over 65,535 states.
     """
     if len(palette) > MAX_STATES:
-        raise ValueError(f"a palette may have {MAX_STATES:,} states, not {len(palette):,}")
+        raise ValueError(f"a palette may have at most {MAX_STATES:,} states, got {len(palette):,}")
     reach = rounded_reach(reach)
     words, gives = light_tables(palette, hidden_lamps)
     kinds = pad_margin(states.astype(np.uint16) + np.uint16(1), 0)

@@ -53,11 +53,11 @@ class LightSettings:
 
     def __post_init__(self):
         if self.preset not in PRESETS:
-            raise ValueError(f"preset may be {', '.join(PRESETS)}, not {self.preset!r}")
+            raise ValueError(f"preset must be one of {', '.join(PRESETS)}, got {self.preset!r}")
         if self.exposure is not None and not 0.01 <= self.exposure <= 100:
-            raise ValueError(f"exposure may be 0.01 to 100, not {self.exposure}")
+            raise ValueError(f"exposure must be 0.01 to 100, got {self.exposure}")
         if not 0 <= self.brightness <= 1:
-            raise ValueError(f"brightness may be 0 to 1, not {self.brightness}")
+            raise ValueError(f"brightness must be 0 to 1, got {self.brightness}")
         sky_at(self.hour)
 
     @property

@@ -139,7 +139,7 @@ def rounded_reach(reach: float) -> float:
         ValueError: the reach is out of range.
     """
     if not 1 <= reach <= MAX_REACH:
-        raise ValueError(f"reach may be 1 to {MAX_REACH:g} blocks a light level, not {reach}")
+        raise ValueError(f"reach must be 1 to {MAX_REACH:g} blocks per light level, got {reach}")
     return round(BRIGHTEST * reach) / BRIGHTEST
 
 

@@ -44,7 +44,9 @@ def edit_light(
     low = np.array(corner, np.int64) + 1
     high = low + states.shape
     if (low < 1).any() or (high > np.array(field.kinds.shape) - 1).any():
-        raise ValueError(f"the box at {tuple(corner)} of {states.shape} is not in the volume")
+        raise ValueError(
+            f"the box at {tuple(corner)} with size {states.shape} is not within the volume"
+        )
     if palette is not None:
         _add_states(field, palette)
     if not states.size:
@@ -88,7 +90,7 @@ def _add_states(field: LightField, palette: tuple[str, ...]) -> None:
     """Add the rows of states that are new."""
     known = len(field.words) - 1
     if not known <= len(palette) <= MAX_STATES:
-        raise ValueError(f"the palette may have {known} to {MAX_STATES:,} states now")
+        raise ValueError(f"the new palette must have {known} to {MAX_STATES:,} states")
     words, gives = light_tables(palette[known:], field.hidden_lamps)
     field.words = np.concatenate([field.words, words[1:]])
     field.gives = np.concatenate([field.gives, gives[1:]])

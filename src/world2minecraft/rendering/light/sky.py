@@ -100,7 +100,7 @@ def sky_at(hour: float) -> Sky:
         ValueError: the hour is out of range.
     """
     if not 0 <= hour <= 24:
-        raise ValueError(f"hour may be 0 to 24, not {hour}")
+        raise ValueError(f"hour must be 0 to 24, got {hour}")
     hours = [moment for moment, _ in _MOMENTS]
     table = np.array([colours for _, colours in _MOMENTS])
     rows = []

@@ -55,12 +55,12 @@ def animation_writer(path: str | Path, rate_hz: float) -> Iterator[FrameWriter]:
         held: list[np.ndarray] = []
         yield _frame_collector(held, target)
         if not held:
-            raise UsageError(f"{target}: a moving picture needs at least one frame")
+            raise UsageError(f"{target}: an animation needs at least one frame")
         with _atomic_file(target) as draft:
             _save(held, draft, PILLOW_KINDS[suffix], rate_hz)
     else:
         known = ", ".join(ANIMATION_SUFFIXES)
-        raise UsageError(f"{target}: a moving picture ends in {known}, not {suffix!r}")
+        raise UsageError(f"{target}: an animation must end in {known}, got {suffix!r}")
 
 
 def ffmpeg_program() -> str:
@@ -78,7 +78,7 @@ def ffmpeg_program() -> str:
     except (ImportError, RuntimeError):
         found = shutil.which("ffmpeg")
         if found is None:
-            raise MissingExtraError("an MP4 or WebM (a GIF needs none)", "video") from None
+            raise MissingExtraError("writing MP4 or WebM (GIF works without it)", "video") from None
         return found
 
 
@@ -86,7 +86,9 @@ def _frame_collector(held: list[np.ndarray], target: Path) -> FrameWriter:
     def take(colour: np.ndarray) -> None:
         if sum(one.nbytes for one in held[:1]) * (len(held) + 1) > MAX_BUFFERED_BYTES:
             raise LimitError(
-                target, f"over {len(held)} frames of this size; take fewer, smaller, or an .mp4"
+                target,
+                f"too many frames for memory (more than {len(held)}); use fewer or smaller frames, "
+                "or .mp4",
             )
         held.append(colour)
 
@@ -143,12 +145,12 @@ def _ffmpeg(draft: Path, suffix: str, rate_hz: float, target: Path) -> Iterator[
         try:
             yield _frame_sender(running, program, draft, suffix, rate_hz, messages)
             if not running:
-                raise UsageError(f"{target}: a moving picture needs at least one frame")
+                raise UsageError(f"{target}: an animation needs at least one frame")
             running[0].communicate()
             if running[0].returncode:
-                raise OutputError(target, f"ffmpeg could not write it: {_last_line(messages)}")
+                raise OutputError(target, f"ffmpeg cannot write the file: {_last_line(messages)}")
         except BrokenPipeError as error:
-            raise OutputError(target, f"ffmpeg stopped: {_last_line(messages)}") from error
+            raise OutputError(target, f"ffmpeg has failed: {_last_line(messages)}") from error
         finally:
             for process in running:
                 process.kill()
@@ -181,4 +183,4 @@ def _frame_sender(
 def _last_line(messages: IO[bytes]) -> str:
     messages.seek(0)
     lines = messages.read().decode(errors="replace").strip().splitlines()
-    return lines[-1] if lines else "it said nothing"
+    return lines[-1] if lines else "no error message"

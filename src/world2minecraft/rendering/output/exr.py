@@ -27,7 +27,7 @@ def exr_bytes(
     arrays = {name: np.ascontiguousarray(one, np.float32) for name, one in channels.items()}
     sizes = {one.shape for one in arrays.values()}
     if len(sizes) != 1 or len(sizes.pop()) != 2:
-        raise ValueError("an EXR needs float32 [H, W] channels of one size")
+        raise ValueError("EXR channels must be float32 arrays [H, W] of the same size")
     header = {
         **(notes or {}),
         "type": OpenEXR.scanlineimage,

@@ -41,7 +41,7 @@ def colour_bytes(colour: np.ndarray, suffix: str, quality: int = QUALITY) -> byt
     if suffix == ".webp":
         lossless = quality >= _LOSSLESS
         return _saved(Image.fromarray(colour), "WEBP", quality=quality, lossless=lossless)
-    raise UsageError(f"a colour picture ends in {', '.join(COLOUR_SUFFIXES)}, not {suffix!r}")
+    raise UsageError(f"a colour image must end in {', '.join(COLOUR_SUFFIXES)}, got {suffix!r}")
 
 
 def depth_bytes(depth_m: np.ndarray, suffix: str, per_metre: int = PER_METRE) -> bytes:
@@ -58,12 +58,12 @@ def depth_bytes(depth_m: np.ndarray, suffix: str, per_metre: int = PER_METRE) ->
     if suffix == ".png":
         return number_bytes(depth_numbers(depth_m, per_metre))
     if suffix == ".exr":
-        return exr_bytes({"Z": depth_m}, notes={"comments": "metres; 0 where there is nothing"})
+        return exr_bytes({"Z": depth_m}, notes={"comments": "metres; 0 where there is no surface"})
     if suffix == ".npy":
         stream = io.BytesIO()
         np.lib.format.write_array(stream, depth_m.astype(np.float32), allow_pickle=False)
         return stream.getvalue()
-    raise UsageError(f"depth ends in {', '.join(DEPTH_SUFFIXES)}, not {suffix!r}")
+    raise UsageError(f"a depth image must end in {', '.join(DEPTH_SUFFIXES)}, got {suffix!r}")
 
 
 def depth_numbers(depth_m: np.ndarray, per_metre: int = PER_METRE) -> np.ndarray:

@@ -64,7 +64,7 @@ LAYERS: dict[str, Layer] = {
         lambda choice: choice.colour_suffix,
     ),
     "depth": Layer(
-        "distance along the camera's z",
+        "distance along the camera's z axis",
         "depth",
         lambda picture, _, choice: depth_bytes(
             picture.depth_m, choice.depth_suffix, choice.per_metre
@@ -80,12 +80,12 @@ LAYERS: dict[str, Layer] = {
         lambda choice: choice.depth_suffix,
     ),
     "block": Layer(
-        "which block of the volume, RGBA",
+        "index of the block in the volume, RGBA",
         None,
         lambda picture, *_: index_bytes(picture.block_index),
         _png,
     ),
-    "state": Layer("which block state, 16 bits", None, _state, _png),
+    "state": Layer("index of the block state, 16 bits", None, _state, _png),
     "class": Layer(
         "semantic class, 8 bits",
         "semantic",
@@ -93,31 +93,31 @@ LAYERS: dict[str, Layer] = {
         _png,
     ),
     "instance": Layer(
-        "which object, 16 bits",
+        "object id, 16 bits",
         "instance",
         lambda picture, *_: number_bytes(_there(picture.instance)),
         _png,
     ),
     "face": Layer(
-        "which side of the block: -x +x -y +y -z +z, 255 for none",
+        "side of the block (0 to 5 for -x +x -y +y -z +z, 255 for none)",
         None,
         lambda picture, *_: number_bytes(picture.face),
         _png,
     ),
     "normal": Layer(
-        "the surface's normal in block axes, red x, green y, blue z, 128 for 0",
+        "surface normal in block axes (red x, green y, blue z; 128 is zero)",
         "normal",
         lambda picture, *_: normal_bytes(_there(picture.normal)),
         _png,
     ),
     "opaque": Layer(
-        "which block lies behind all glass, RGBA",
+        "index of the first block behind glass, RGBA",
         "opaque",
         lambda picture, *_: index_bytes(_there(picture.opaque_index)),
         _png,
     ),
     "opaque_depth": Layer(
-        "depth behind all glass",
+        "depth of the first surface behind glass",
         "opaque",
         lambda picture, _, choice: depth_bytes(
             _there(picture.opaque_depth_m), choice.depth_suffix, choice.per_metre
@@ -164,8 +164,8 @@ def id_names(volume: BlockVolume) -> dict[str, Any]:
         "block": {
             "corner": list(volume.corner),
             "size": list(volume.states.shape),
-            "packing": "red + 256 green + 65536 blue + 16777216 alpha - 1; -1 is nothing",
-            "order": "number = (x * size_y + y) * size_z + z, counted from the corner",
+            "packing": "red + 256 green + 65536 blue + 16777216 alpha - 1; -1 for none",
+            "order": "number = (x * size_y + y) * size_z + z, relative to the corner",
         },
         "block_to_room": volume.block_to_room.tolist(),
     }
@@ -173,5 +173,7 @@ def id_names(volume: BlockVolume) -> dict[str, Any]:
 
 def _there(values: np.ndarray | None) -> np.ndarray:
     if values is None:
-        raise ValueError("the renderer was not asked for a layer that is to be written")
+        raise ValueError(
+            "the image does not contain a requested layer; render it with required_outputs(layers)"
+        )
     return values

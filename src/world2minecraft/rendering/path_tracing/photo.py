@@ -106,13 +106,13 @@ def render_photo(
 
 def _check(camera: Camera, samples: int, depth: int) -> None:
     if not 1 <= samples <= MAX_SAMPLES:
-        raise ValueError(f"samples may be 1 to {MAX_SAMPLES}, not {samples}")
+        raise ValueError(f"samples must be 1 to {MAX_SAMPLES}, got {samples}")
     if not 1 <= depth <= MAX_DEPTH:
-        raise ValueError(f"depth may be 1 to {MAX_DEPTH}, not {depth}")
+        raise ValueError(f"depth must be 1 to {MAX_DEPTH}, got {depth}")
     if camera.width_px * camera.height_px > MAX_PIXELS // 8:
         most = f"{MAX_PIXELS // 8:,}"
         raise ValueError(
-            f"a photo may have {most} pixels, not {camera.width_px}x{camera.height_px}"
+            f"a photo may have at most {most} pixels, got {camera.width_px}x{camera.height_px}"
         )
 
 

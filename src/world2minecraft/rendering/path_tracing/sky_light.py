@@ -42,7 +42,7 @@ def sky_light(light: LightSettings) -> SkyLight:
         ValueError: the light's preset knows no sky.
     """
     if light.preset != "shader":
-        raise ValueError(f"photos are lit by the hour: preset 'shader', not {light.preset!r}")
+        raise ValueError(f"photos need the light preset 'shader', got {light.preset!r}")
     sky = light.sky
     ground = 0.5 * np.array(sky.horizon)
     colours = np.array([sky.zenith, sky.horizon, ground, sky.sun])

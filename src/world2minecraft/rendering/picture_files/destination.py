@@ -66,7 +66,7 @@ def choose_target(
     if moving:
         if layers != ("rgb",):
             others = ", ".join(name for name in layers if name != "rgb")
-            raise UsageError(f"{out}: an animation holds rgb alone; give a folder for {others}")
+            raise UsageError(f"{out}: an animation can only contain rgb; use a folder for {others}")
         return Target(_file(out), "moving", layers, choice)
     if suffix in COLOUR_SUFFIXES:
         return Target(_file(out), "picture", layers, replace(choice, colour_suffix=suffix))
@@ -75,15 +75,15 @@ def choose_target(
         return Target(_file(out), "picture", wanted, replace(choice, depth_suffix=suffix))
     if suffix and not out.is_dir():
         known = ", ".join(dict.fromkeys((*COLOUR_SUFFIXES, *DEPTH_SUFFIXES, *ANIMATION_SUFFIXES)))
-        raise UsageError(f"{out}: --out must end in {known}, or have no suffix for a folder")
+        raise UsageError(f"{out}: --out must end in {known}, or have no suffix to write a folder")
     if out.exists() and not out.is_dir():
-        raise OutputError(out, "is a file; choose a folder, or a name such as house.png")
+        raise OutputError(out, "this is a file; choose a folder, or a name such as house.png")
     return Target(out, "folder", layers, choice)
 
 
 def _file(out: Path) -> Path:
     if out.is_dir():
-        raise OutputError(out, "is a folder; choose another name")
+        raise OutputError(out, "this is a folder; choose another name")
     return out
 
 
@@ -123,7 +123,7 @@ class Writer:
     def colour(self, shot: Shot, colour: np.ndarray | None) -> None:
         """Write a picture that has colour alone."""
         if colour is None:
-            raise ValueError("the picture has no colour")
+            raise ValueError("the image has no colour; request the output 'rgb'")
         if self._moving is not None:
             self._moving(colour)
             self._line(shot, {"rgb": self.target.path.name})
@@ -165,7 +165,7 @@ def check_many(target: Target, count: int) -> None:
     """Raise UsageError where several pictures would go to one picture file."""
     if target.medium == "picture" and count != 1:
         raise UsageError(
-            f"{target.path.name} holds one picture, not {count}; choose a folder for --out, or a "
+            f"cannot write {count} images to {target.path.name}; choose a folder for --out, or a "
             "name that ends in .gif, .webp or .mp4"
         )
 
@@ -176,8 +176,8 @@ def check_pixels(cameras: Iterable[Camera], samples: int) -> None:
         rays = width * height * samples**2
         if rays > MAX_PIXELS or max(width, height) * samples > MAX_SIDE_PX:
             raise UsageError(
-                f"{width}x{height} with --samples {samples} is too large; a picture may have "
-                f"{MAX_PIXELS:,} samples in all and {MAX_SIDE_PX:,} on a side"
+                f"{width}x{height} with --samples {samples} is too large; the limits are "
+                f"{MAX_PIXELS:,} samples in total and {MAX_SIDE_PX:,} pixels per side"
             )
 
 
@@ -185,4 +185,4 @@ def check_same_size(shots: Iterable[Shot], target: Target) -> None:
     """Raise UsageError where the frames of an animation would differ in size."""
     sizes = {(shot.camera.width_px, shot.camera.height_px) for shot in shots}
     if target.medium == "moving" and len(sizes) > 1:
-        raise UsageError("the poses have several sizes; choose a folder for --out")
+        raise UsageError("the poses have different image sizes; choose a folder for --out")

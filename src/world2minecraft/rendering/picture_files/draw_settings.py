@@ -44,11 +44,11 @@ class Looks:
             more = " ..." if len(marked) > 3 else ""
             notes.append(
                 f"{len(marked)} of {len(palette)} block states ({share:.1%}) have no model "
-                f"and are drawn as plain boxes: {names}{more}"
+                f"and are rendered as plain boxes: {names}{more}"
             )
         if self.packs is not None and self.packs.problem_count:
             notes.append(
-                f"{self.packs.problem_count} files of the packs cannot be read, such as "
+                f"{self.packs.problem_count} problems in the resource packs, first: "
                 f"{self.packs.problems[0]}"
             )
         return notes
@@ -78,20 +78,20 @@ class DrawSettings:
 
     def __post_init__(self):
         if self.samples is not None and not 1 <= self.samples <= MAX_SAMPLES:
-            raise UsageError(f"--samples must be 1 to {MAX_SAMPLES}, not {self.samples}")
+            raise UsageError(f"--samples must be 1 to {MAX_SAMPLES}, got {self.samples}")
         if self.texture_px is not None and self.texture_px not in TEXTURES_PX:
-            raise UsageError(f"--textures must be 16, 32, 64 or 128, not {self.texture_px}")
+            raise UsageError(f"--textures must be 16, 32, 64 or 128, got {self.texture_px}")
         if not 1 <= self.photo_samples <= MAX_PHOTO_SAMPLES:
             raise UsageError(
-                f"--photo-samples must be 1 to {MAX_PHOTO_SAMPLES:,}, not {self.photo_samples}"
+                f"--photo-samples must be 1 to {MAX_PHOTO_SAMPLES:,}, got {self.photo_samples}"
             )
         if self.device not in DEVICES:
-            raise UsageError(f"--device must be auto, cpu or gpu, not {self.device!r}")
+            raise UsageError(f"--device must be auto, cpu or gpu, got {self.device!r}")
         if not 1 <= self.jobs <= MAX_JOBS:
-            raise UsageError(f"--jobs must be 1 to {MAX_JOBS}, not {self.jobs}")
+            raise UsageError(f"--jobs must be 1 to {MAX_JOBS}, got {self.jobs}")
         if self.jobs > 1 and (self.photo or self.device == "gpu"):
             other = "--photo" if self.photo else "--device gpu"
-            raise UsageError(f"--jobs draws on the CPU without tracing; leave out {other}")
+            raise UsageError(f"--jobs cannot be combined with {other}; remove one of them")
 
     def light_of(self, kind: Kind) -> LightSettings:
         """Return the light of a kind of view: neutral for a turntable unless a setting is given.

@@ -41,7 +41,7 @@ class CameraChoice:
 
     def __post_init__(self):
         if self.vertical_fov_deg is not None and self.horizontal_fov_deg is not None:
-            raise UsageError("--vfov and --hfov exclude each other; give one of them")
+            raise UsageError("--vfov and --hfov cannot be combined; give only one of them")
         self.camera(70.0)  # Raises where a value is out of range.
 
     @property
@@ -77,12 +77,13 @@ class View:
 
     def __post_init__(self):
         if self.frames is not None and not 1 <= self.frames <= MAX_FRAMES:
-            raise UsageError(f"--frames must be 1 to {MAX_FRAMES:,}, not {self.frames}")
+            raise UsageError(f"--frames must be 1 to {MAX_FRAMES:,}, got {self.frames}")
         if not 1 <= self.rate_hz <= 240:
-            raise UsageError(f"--fps must be 1 to 240, not {self.rate_hz:g}")
+            raise UsageError(f"--fps must be 1 to 240, got {self.rate_hz:g}")
         if self.frames is not None and self.kind in ("pose", "poses"):
             raise UsageError(
-                f"--frames is for an orbit, a tour or a turntable, not for --{self.kind}"
+                f"--frames requires --orbit, --tour or --turntable and cannot be used with "
+                f"--{self.kind}"
             )
 
 
@@ -109,7 +110,7 @@ def plan_shots(view: View, source: Source, choice: CameraChoice, medium: Medium)
         return Plan([], lambda shot: source.volume)
     if view.kind == "poses" and view.poses_file is not None:
         return _file(view.poses_file, source, choice)
-    note = ["seen from where the player starts; --tour and --orbit show more"]
+    note = ["rendered from the player's start position; --tour and --orbit show more"]
     poses = view.poses if view.kind == "pose" else tuple(filter(None, [source.spawn]))
     camera = choice.camera(GAME_FOV_DEG)
     return Plan(
@@ -124,7 +125,7 @@ def resolve_view(view: View, source: Source) -> View:
     if view.kind != "spawn" or source.spawn is not None:
         return view
     source.notes.append(
-        "this build has no player start and is seen from outside; --tour walks through it"
+        "the build has no player start, so it is rendered from outside; --tour walks through it"
     )
     return replace(view, kind="orbit")
 
@@ -161,7 +162,7 @@ def _orbit(view: View, source: Source, choice: CameraChoice, medium: Medium) -> 
         build.whole, camera, count, elevation_deg=OPEN_ELEVATION_DEG, start_deg=start_deg,
         rate_hz=view.rate_hz,
     )  # fmt: skip
-    note = "ceilings and near walls are left out; --closed draws them too"
+    note = "ceilings and near walls are removed; use --closed to show them"
     return Plan(shots, lambda shot: build.seen_by(shot.camera_to_room), [note])
 
 
@@ -172,7 +173,7 @@ def _tour(view: View, source: Source, choice: CameraChoice, medium: Medium) -> P
     start = (spawn.x, spawn.y, spawn.z) if spawn is not None and medium == "moving" else None
     tour = plan_tour(source.volume, camera, frames, rate_hz=view.rate_hz, start=start)
     volume, doors = with_open_doors(source.volume, tour.way)
-    notes = [f"a walk of {tour.length_m:.0f} m past the rooms"]
+    notes = [f"a walk of {tour.length_m:.0f} m through the rooms"]
     if doors:
-        notes.append(f"{doors} {'door' if doors == 1 else 'doors'} on the way stand open")
+        notes.append(f"{doors} {'door' if doors == 1 else 'doors'} along the way are shown open")
     return Plan(tour.shots, lambda shot: volume, notes)

@@ -124,7 +124,7 @@ def _gpu_module(device: str) -> ModuleType | None:
     except ImportError:
         if device == "auto":
             return None
-        raise UsageError(f"device {device!r} is not in this version; cpu is") from None
+        raise UsageError(f"device {device!r} is not available in this version; use cpu") from None
 
 
 def draw_shots(

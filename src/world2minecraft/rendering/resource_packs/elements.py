@@ -255,7 +255,7 @@ def _rotation(raw: Any) -> np.ndarray | None:
     axis = rotation.get("axis")
     if axis is not None:
         if axis not in ("x", "y", "z"):
-            raise ValueError(f"axis of a rotation must be x, y or z, not {describe_value(axis)}")
+            raise ValueError(f"axis of a rotation must be x, y or z, got {describe_value(axis)}")
         angle = as_number(rotation.get("angle", 0), "angle", -3600, 3600)
         angles = tuple(angle if name == axis else 0.0 for name in "xyz")
     else:

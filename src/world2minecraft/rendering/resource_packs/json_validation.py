@@ -15,27 +15,27 @@ MAX_NAME_LENGTH = 200  # Letters of a resource's name; the game's longest has ab
 def as_object(value: Any, what: str) -> dict[str, Any]:
     """Return ``value`` if it is a JSON object, else raise ValueError."""
     if not isinstance(value, dict):
-        raise ValueError(f"{what} must be an object, not {describe_value(value)}")
+        raise ValueError(f"{what} must be an object, got {describe_value(value)}")
     return value
 
 
 def as_list(value: Any, what: str, most: int) -> list[Any]:
     """Return ``value`` if it is a JSON list of at most ``most`` items, else raise ValueError."""
     if not isinstance(value, list):
-        raise ValueError(f"{what} must be a list, not {describe_value(value)}")
+        raise ValueError(f"{what} must be a list, got {describe_value(value)}")
     if len(value) > most:
-        raise ValueError(f"{what} has {len(value):,} items; at most {most:,} are read")
+        raise ValueError(f"{what} has {len(value):,} items, the limit is {most:,}")
     return value
 
 
 def as_number(value: Any, what: str, low: float = -1e6, high: float = 1e6) -> float:
     """Return ``value`` as a float if it is a number from ``low`` to ``high``."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise ValueError(f"{what} must be a number, not {describe_value(value)}")
+        raise ValueError(f"{what} must be a number, got {describe_value(value)}")
     if not (math.isfinite(value) if isinstance(value, float) else abs(value) < 1e9):
         raise ValueError(f"{what} must be a finite number")
     if not low <= value <= high:
-        raise ValueError(f"{what} must be {low:g} to {high:g}, not {value:g}")
+        raise ValueError(f"{what} must be {low:g} to {high:g}, got {value:g}")
     return float(value)
 
 
@@ -45,7 +45,7 @@ def as_numbers(
     """Return a list of ``count`` numbers from ``low`` to ``high``."""
     items = as_list(value, what, most=count)
     if len(items) != count:
-        raise ValueError(f"{what} must have {count} numbers, not {len(items)}")
+        raise ValueError(f"{what} must have {count} numbers, got {len(items)}")
     return [as_number(item, what, low, high) for item in items]
 
 
@@ -53,14 +53,14 @@ def as_quarter_turn(value: Any, what: str) -> int:
     """Return ``value`` if it is a multiple of 90, as 0, 90, 180 or 270."""
     angle = as_number(value, what)
     if angle % 90:
-        raise ValueError(f"{what} must be a multiple of 90, not {angle:g}")
+        raise ValueError(f"{what} must be a multiple of 90, got {angle:g}")
     return int(angle) % 360
 
 
 def as_text(value: Any, what: str) -> str:
     """Return ``value`` if it is a text."""
     if not isinstance(value, str):
-        raise ValueError(f"{what} must be a text, not {describe_value(value)}")
+        raise ValueError(f"{what} must be a string, got {describe_value(value)}")
     return value
 
 
@@ -78,7 +78,10 @@ def parse_resource_name(name: str, what: str) -> tuple[str, str]:
     space = space if colon and space else "minecraft"
     right = len(name) <= MAX_NAME_LENGTH and _NAMESPACE.fullmatch(space) and _PATH.fullmatch(path)
     if not right or any(part in ("", ".", "..") for part in (space, *path.split("/"))):
-        raise ValueError(f"{what} {describe_value(name)} is no name such as minecraft:block/stone")
+        raise ValueError(
+            f"{what} must be a resource name such as minecraft:block/stone, "
+            f"got {describe_value(name)}"
+        )
     return space, path
 
 

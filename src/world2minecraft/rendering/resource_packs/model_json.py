@@ -23,7 +23,7 @@ MAX_CASES = 4096  # Of a multipart; a game's redstone wire has about 20.
 MAX_CONDITION_DEPTH = 16  # Of conditions within conditions.
 MAX_PARENTS = 32  # The game's deepest chain has 5.
 MAX_ELEMENTS = 2048  # Of one model; large furniture of mods has some hundred.
-_CURE = "give the client jar of the game before the pack"
+_CURE = "pass the game's client jar before the pack"
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def select_parts(root: Mapping[str, Any], properties: Mapping[str, str]) -> tupl
         if "when" not in case or _holds(case["when"], properties, 0):
             parts.append(_heaviest(case.get("apply")))
     if "variants" not in root and "multipart" not in root:
-        raise ValueError("has neither variants nor multipart")
+        raise ValueError("contains neither variants nor multipart")
     return tuple(parts)
 
 
@@ -76,7 +76,7 @@ def _agrees(pair: str, properties: Mapping[str, str]) -> bool:
 def _holds(when: Any, properties: Mapping[str, str], depth: int) -> bool:
     """Return whether a condition holds: properties, ``OR`` and ``AND`` lists, one in another."""
     if depth > MAX_CONDITION_DEPTH:
-        raise ValueError("its conditions are nested too deep")
+        raise ValueError("conditions are nested too deeply")
     for key, wanted in as_object(when, "when").items():
         if key in ("OR", "AND"):
             several = [
@@ -95,7 +95,7 @@ def _is_one_of(wanted: Any, value: str | None) -> bool:
         wanted = "true" if wanted else "false"
     if isinstance(wanted, int):
         wanted = str(wanted)
-    words = as_text(wanted, "a value of when")
+    words = as_text(wanted, "a value in when")
     if words.startswith("!"):
         return value not in words[1:].split("|")
     return value in words.split("|")
@@ -105,8 +105,8 @@ def _heaviest(entry: Any) -> ModelPart:
     """Return the heaviest entry of a list, the first of equals; or the only one."""
     if isinstance(entry, list):
         if not entry:
-            raise ValueError("has an empty list of models")
-        entries = [as_object(one, "a model of a list") for one in as_list(entry, "models", 10_000)]
+            raise ValueError("contains an empty list of models")
+        entries = [as_object(one, "a model in a list") for one in as_list(entry, "models", 10_000)]
         weights = [as_number(one.get("weight", 1), "weight") for one in entries]
         entry = entries[weights.index(max(weights))]
     entry = as_object(entry, "a variant")
@@ -148,7 +148,7 @@ def flatten_model(name: str, resources: PackStack) -> FlatModel:
         elements = model.get("elements") if elements is None else elements
         occlusion = model.get("ambientocclusion") if occlusion is None else occlusion
         if "loader" in model:
-            raise ValueError(f"model {name} is in a mod's own format, which is not read")
+            raise ValueError(f"model {name} uses a mod's own format, which is not supported")
     if not elements:
         return FlatModel((), textures, True, in_code=True)
     boxes = [as_object(one, "an element") for one in as_list(elements, "elements", MAX_ELEMENTS)]
@@ -171,8 +171,8 @@ def _chain(name: str, resources: PackStack) -> list[dict[str, Any]]:
         seen.add((space, path))
         model = resources.object(f"assets/{space}/models/{path}.json")
         if model is None:
-            which = f"{name}: its parent {space}:{path}" if chain else f"{space}:{path}"
-            raise ValueError(f"model {which} is in none of the packs, or cannot be read; {_CURE}")
+            which = f"{space}:{path} (parent of {name})" if chain else f"{space}:{path}"
+            raise ValueError(f"model {which} not found in the packs or not readable; {_CURE}")
         chain.append(model)
         at = None if model.get("parent") is None else as_text(model["parent"], "parent")
     return chain
@@ -200,4 +200,4 @@ def texture_of(face: str, textures: Mapping[str, Any]) -> str:
         if not value.startswith("#"):
             return ":".join(parse_resource_name(value, "texture"))
         key = value[1:]
-    raise ValueError(f"texture #{key[:40]} leads back to itself")
+    raise ValueError(f"texture #{key[:40]} refers to itself")

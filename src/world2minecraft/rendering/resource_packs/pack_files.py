@@ -27,8 +27,8 @@ _END, _END_64, _LOCATOR_64 = b"PK\x05\x06", b"PK\x06\x06", b"PK\x06\x07"
 _LOOKS = re.compile(r"assets/[^/]+/(blockstates|models|textures)/.")
 _KEPT = re.compile(r"(?:.*/)?(?:assets/[^/]+/(?:blockstates|models|textures)/.*|pack\.mcmeta)")
 WHAT_A_PACK_IS = (
-    "a pack is a folder, zip or jar with assets/minecraft/textures (or models, or blockstates) in "
-    "it, such as resourcepacks/MyPack.zip or versions/1.21.4/1.21.4.jar of the game's folder"
+    "a pack is a folder, zip or jar that contains assets/minecraft/textures, models or "
+    "blockstates, such as resourcepacks/MyPack.zip or versions/1.21.4/1.21.4.jar"
 )
 MAX_JSON_BYTES = 4 << 20  # The largest models of mods have some hundred kilobytes.
 MAX_TOTAL_JSON_BYTES = 256 << 20  # The game's models and blockstates have 10 MB together.
@@ -59,7 +59,7 @@ def open_pack(path: str | Path) -> PackFiles:
     elif source.is_file():
         files = _zip(source)
     else:
-        raise InputError(source, f"is not there; {WHAT_A_PACK_IS}")
+        raise InputError(source, f"not found; {WHAT_A_PACK_IS}")
     return _at_its_root(files, source)
 
 
@@ -71,7 +71,10 @@ def _folder(folder: Path) -> PackFiles:
         folders.sort()
         seen += len(files) + len(folders)
         if seen > MAX_FILES:
-            raise LimitError(folder, f"holds more than {MAX_FILES:,} files; name one pack in it")
+            raise LimitError(
+                folder,
+                f"contains more than {MAX_FILES:,} files; give the path of a single pack in it",
+            )
         inner = Path(parent).relative_to(folder).as_posix()
         for file in files:
             name = file if inner == "." else f"{inner}/{file}"
@@ -94,13 +97,13 @@ def _zip(path: Path) -> PackFiles:
     """List a zip's files, its own directory's size checked before it is read."""
     try:
         if _directory_bytes(path) > MAX_DIRECTORY_BYTES:
-            raise LimitError(path, f"lists more than {MAX_FILES:,} files")
+            raise LimitError(path, f"contains more than {MAX_FILES:,} files, which is the limit")
         archive = zipfile.ZipFile(path)
     except UNREADABLE as error:
-        raise DamagedFileError(path, f"is no zip that can be read ({error})") from error
+        raise DamagedFileError(path, f"not a readable zip file ({error})") from error
     entries = {one.filename: one for one in archive.infolist() if not one.is_dir()}
     if len(entries) > MAX_FILES:
-        raise LimitError(path, f"lists {len(entries):,} files; at most {MAX_FILES:,} are read")
+        raise LimitError(path, f"contains {len(entries):,} files, the limit is {MAX_FILES:,}")
 
     def read(name: str, most_bytes: int) -> bytes:
         return _unpacked(archive, entries[name], most_bytes)
@@ -117,7 +120,7 @@ def _directory_bytes(path: Path) -> int:
         tail = stream.read()
         at = tail.rfind(_END)
         if at < 0 or at + 22 > len(tail):
-            raise zipfile.BadZipFile("it has no end of a zip")
+            raise zipfile.BadZipFile("end-of-archive record not found")
         sizes = [int.from_bytes(tail[at + 12 : at + 16], "little")]
         locator = tail[max(0, at - 20) : at]
         if locator.startswith(_LOCATOR_64):
@@ -134,11 +137,11 @@ def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most_bytes: int)
     """Return the bytes of a zip's file, or raise ValueError over one that is a trap or damaged."""
     size, packed = entry.file_size, max(entry.compress_size, 1)
     if size > most_bytes:
-        raise ValueError(f"has {size:,} bytes; at most {most_bytes:,} are read")
+        raise ValueError(f"file has {size:,} bytes, the limit is {most_bytes:,}")
     if size > 1 << 20 and size / packed > MAX_RATIO:
-        raise ValueError(f"unpacks to {size // packed:,} times its size; that is no real file")
+        raise ValueError(f"compression ratio {size // packed:,} is implausibly high")
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise ValueError("is packed in a way that no pack is")
+        raise ValueError("unsupported compression method")
     try:
         with archive.open(entry) as stream:
             return stream.read(most_bytes)
@@ -158,20 +161,20 @@ def _at_its_root(files: PackFiles, source: Path) -> PackFiles:
         skip = len(inner[0]) + 1
         names = frozenset(name[skip:] for name in files.names if name.startswith(inner[0] + "/"))
         return PackFiles(files.label, names, lambda n, most: files.read(f"{inner[0]}/{n}", most))
-    raise DamagedFileError(source, f"is no resource pack{_hint(source, inner)}; {WHAT_A_PACK_IS}")
+    raise DamagedFileError(source, f"not a resource pack{_hint(source, inner)}; {WHAT_A_PACK_IS}")
 
 
 def _hint(source: Path, inner: list[str]) -> str:
     """Return what the thing seems to be instead, for the message."""
     if inner:
-        return f", but holds one: name {source / inner[0]}"
+        return f", but contains one: use {source / inner[0]}"
     if not source.is_dir():
         return ""
     packs = sorted(one.name for one in source.iterdir() if one.suffix in (".zip", ".jar"))
     if packs:
-        return f", but holds {len(packs)}: name one, such as {source / packs[0]}"
+        return f", but contains {len(packs)}: use one, such as {source / packs[0]}"
     if (source / "manifest.json").is_file():
-        return ", but one for Bedrock, which is made differently"
+        return ", but a pack for Bedrock Edition, which is not supported"
     return ", but a data pack" if (source / "data").is_dir() else ""
 
 
@@ -237,16 +240,19 @@ class PackStack:
     def _parsed(self, where: str, data: bytes) -> dict[str, Any] | None:
         self._json_bytes += len(data)
         if self._json_bytes > MAX_TOTAL_JSON_BYTES:
-            self.note(f"more than {MAX_TOTAL_JSON_BYTES:,} bytes of JSON; the rest is left out")
+            self.note(
+                f"more than {MAX_TOTAL_JSON_BYTES:,} bytes of JSON in total; "
+                "the remaining files are ignored"
+            )
             return None
         try:
             value = json.loads(data.decode("utf-8-sig"))
         except (ValueError, RecursionError) as error:
-            reason = str(error) if isinstance(error, ValueError) else "it is nested too deep"
-            self.note(f"{where}: is not JSON ({reason})")
+            reason = str(error) if isinstance(error, ValueError) else "nested too deeply"
+            self.note(f"{where}: invalid JSON ({reason})")
             return None
         if not isinstance(value, dict):
-            self.note(f"{where}: must be an object")
+            self.note(f"{where}: must contain a JSON object")
             return None
         return value
 
@@ -259,7 +265,7 @@ class PackStack:
             entries = root.get("overlays", {}).get("entries", [])
             chosen = [_entry_folder(entry) for entry in entries if _is_for_now(entry)]
         except (ValueError, AttributeError, TypeError, InputError) as error:
-            self.note(f"pack.mcmeta of {pack.label}: its overlays cannot be read ({error})")
+            self.note(f"pack.mcmeta of {pack.label}: cannot read overlays ({error})")
             return []
         return chosen[::-1]
 

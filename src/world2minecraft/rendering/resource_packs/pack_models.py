@@ -69,7 +69,7 @@ class ResourcePackModels:
         most_px: int = MAX_PX,
     ):
         if most_px < 1 or most_px & (most_px - 1):
-            raise UsageError(f"most_px must be a power of two such as 64, not {most_px}")
+            raise UsageError(f"most_px must be a power of two such as 64, got {most_px}")
         self._resources = PackStack(paths)
         self._textures = PackTextures(self._resources, most_px)
         self._tints = checked_tints(tints, self._textures.map_colour)
@@ -92,8 +92,8 @@ class ResourcePackModels:
         if not self.problem_count:
             return ""
         first, count = self._resources.problems[0], self.problem_count
-        things = "1 thing" if count == 1 else f"{count} things"
-        return f"{things} of the packs could not be read, the first: {first}"
+        things = "1 problem" if count == 1 else f"{count} problems"
+        return f"{things} in the resource packs, first: {first}"
 
     @property
     def texture_px(self) -> int:
@@ -153,10 +153,12 @@ class ResourcePackModels:
                 )
             occlusion = occlusion and flat.ambient_occlusion
             if len(elements) > MAX_ELEMENTS:
-                raise ValueError(f"its models have more than {MAX_ELEMENTS:,} elements together")
+                raise ValueError(f"the models have more than {MAX_ELEMENTS:,} elements in total")
         self._element_count += len(elements)
         if self._element_count > MAX_TOTAL_ELEMENTS:
-            raise ValueError(f"comes after {MAX_TOTAL_ELEMENTS:,} elements of other blocks")
+            raise ValueError(
+                f"the packs exceed the limit of {MAX_TOTAL_ELEMENTS:,} elements in total"
+            )
         self._check_textures(elements)
         return BlockModel(merge_coincident(elements), occlusion) if elements else None
 
@@ -165,7 +167,7 @@ class ResourcePackModels:
         for name in {face.texture for one in elements for face in one.faces if face is not None}:
             if self.texture(name) is None:
                 plain = name.removesuffix(CLEAR)
-                raise ValueError(f"texture {plain} is in none of the packs, or cannot be read")
+                raise ValueError(f"texture {plain} not found in the packs or not readable")
 
 
 def _shining(model: BlockModel) -> BlockModel:

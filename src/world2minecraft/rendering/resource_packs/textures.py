@@ -55,7 +55,7 @@ def overlay_textures(layers: Sequence[tuple[Texture, tuple[int, ...]]]) -> Textu
         above = _tint(_upscale(texture, side), np.array(tint))
         done = above if done is None else _blend_over(done, above)
     if done is None:
-        raise ValueError("there is no layer")
+        raise ValueError("at least one texture layer is required")
     return done
 
 
@@ -144,7 +144,7 @@ def material_maps(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarra
 def png_size(data: bytes) -> tuple[int, int]:
     """Return the width and height that a PNG says it has; ValueError where it is none."""
     if not data.startswith(_HEAD) or len(data) < 24:
-        raise ValueError("is no PNG")
+        raise ValueError("not a PNG file")
     width, height = struct.unpack(">II", data[16:24])
     return width, height
 
@@ -157,7 +157,7 @@ def decode_png(data: bytes) -> np.ndarray:
     """
     width, height = png_size(data)
     if not 0 < width * height <= MAX_PIXELS:
-        raise ValueError(f"has {width} x {height} pixels; at most {MAX_PIXELS:,} are read")
+        raise ValueError(f"image has {width} x {height} pixels, the limit is {MAX_PIXELS:,} pixels")
     try:
         with Image.open(io.BytesIO(data), formats=("PNG",)) as image:
             if image.mode.startswith("I"):  # 16 bits of grey.
@@ -165,7 +165,7 @@ def decode_png(data: bytes) -> np.ndarray:
                 return np.array(grey.convert("RGBA"))
             return np.array(image.convert("RGBA"))
     except Exception as error:  # Pillow raises dozens of kinds over damaged files.
-        raise ValueError(f"is a damaged PNG ({error})") from error
+        raise ValueError(f"damaged PNG file ({error})") from error
 
 
 def first_frame(pixels: np.ndarray, animation: Mapping[str, Any] | None) -> np.ndarray:
@@ -189,7 +189,9 @@ def first_frame(pixels: np.ndarray, animation: Mapping[str, Any] | None) -> np.n
     index = _first_index(animation.get("frames"))
     columns, rows = width // wide, height // tall
     if index >= columns * rows:
-        raise ValueError(f"its first frame is {index}, but it has {columns * rows}")
+        raise ValueError(
+            f"the first frame must be below {columns * rows}, the number of frames, got {index}"
+        )
     row, column = divmod(index, columns)
     return pixels[row * tall : (row + 1) * tall, column * wide : (column + 1) * wide]
 
@@ -261,7 +263,9 @@ class PackTextures:
         """Return the texture of a name that a model of these packs uses, or None."""
         if name not in self._read:
             if len(self._read) >= MAX_TEXTURES:
-                self._resources.note(f"more than {MAX_TEXTURES:,} textures; the rest is left out")
+                self._resources.note(
+                    f"more than {MAX_TEXTURES:,} textures; the remaining textures are ignored"
+                )
                 return None
             parts = name.split(OVER)
             self._read[name] = self._one(name) if len(parts) == 1 else self._joined(parts)

@@ -62,7 +62,7 @@ def checked_tints(
         if name not in PLAINS:
             raise UnknownNameError("tint", name, PLAINS)
         if len(colour) != 3 or not all(0 <= value <= 255 for value in colour):
-            raise UsageError(f"tint {name} must be red, green, blue of 0 to 255, not {colour}")
+            raise UsageError(f"tint {name} must be red, green, blue from 0 to 255, got {colour}")
         tints[name] = (int(colour[0]), int(colour[1]), int(colour[2]))
     return tints
 

@@ -6,7 +6,7 @@ from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.rendering.textures.texture_sheet import page_png, texture_sheet
 
-USAGE = "write: python -m world2minecraft.rendering.textures OUT.png [SIZE_PX [REPEAT]]"
+USAGE = "usage: python -m world2minecraft.rendering.textures OUT.png [SIZE_PX [REPEAT]]"
 
 
 def main(words: list[str]) -> None:
@@ -21,7 +21,7 @@ def main(words: list[str]) -> None:
     numbers = [int(word) for word in words[1:]]
     size_px, repeat = (numbers + [16, 1][len(numbers) :])[:2]
     if not 1 <= repeat <= 8:
-        raise UsageError(f"{USAGE}; REPEAT is 1 to 8, not {repeat}")
+        raise UsageError(f"{USAGE}; REPEAT must be 1 to 8, got {repeat}")
     page = texture_sheet(size_px, repeat, right_px=64 if len(words) == 1 else None)
     write_bytes(words[0], page_png(page))
 

@@ -37,7 +37,7 @@ def letters(art: str, size_px: int) -> np.ndarray:
     """Return the letter of each texel, str [N, N], of 16 lines of 16 letters."""
     drawn = np.array([list(line) for line in art.split()])
     if drawn.shape != (16, 16):
-        raise ValueError(f"a stencil has 16 lines of 16 letters, not {drawn.shape}")
+        raise ValueError(f"a stencil must have 16 lines of 16 letters, got {drawn.shape}")
     while len(drawn) < size_px:
         drawn = doubled(drawn)
     return drawn

@@ -102,18 +102,20 @@ def split_recipe(text: str) -> tuple[str, tuple[str, ...], dict[str, str]]:
         UsageError: the text is no recipe.
     """
     if len(text) > MAX_LENGTH or not text.startswith(PREFIX):
-        raise UsageError(f"no recipe of a texture: {text[:60]!r}; write one such as {EXAMPLE}")
+        raise UsageError(f"invalid texture recipe {text[:60]!r}; use the form {EXAMPLE}")
     head, mark, tail = text[len(PREFIX) :].partition("?")
     generator, hash_mark, colours = head.partition("#")
     inks = tuple((hash_mark + colours).lower().split(","))
     bad = next((ink for ink in inks if not COLOUR.fullmatch(ink)), None)
     if bad is not None:
-        raise UsageError(f"{text}: {bad!r} is no colour; write #rrggbb, as in {EXAMPLE}")
+        raise UsageError(f"{text}: invalid colour {bad!r}; use #rrggbb as in {EXAMPLE}")
     options: dict[str, str] = {}
     for part in tail.split("&") if mark else ():
         key, equals, value = part.partition("=")
         if not (key and equals and value) or key in options:
-            raise UsageError(f"{text}: {part!r} is no option; write key=value once a key")
+            raise UsageError(
+                f"{text}: invalid option {part!r}; use key=value and each key only once"
+            )
         options[key] = value
     return generator, inks, options
 
@@ -140,7 +142,7 @@ def read_options(
         try:
             values[key] = known[key].read(value)
         except ValueError as fault:
-            raise UsageError(f"{text}: {key} must be {fault}, not {value!r}") from None
+            raise UsageError(f"{text}: {key} must be {fault}, got {value!r}") from None
     return values
 
 

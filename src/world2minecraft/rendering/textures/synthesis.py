@@ -32,7 +32,7 @@ def recipe_of(generator: str, *colours: tuple[int, int, int], **options: float |
     """
     for colour in colours:
         if len(colour) != 3 or not all(0 <= level <= 255 for level in colour):
-            raise UsageError(f"a colour is three levels of 0 to 255, not {colour}")
+            raise UsageError(f"a colour must be three integers from 0 to 255, got {colour}")
     inks = tuple("#{:02x}{:02x}{:02x}".format(*colour) for colour in colours)
     given = {key: str(value) for key, value in options.items()}
     return parse_recipe(join_recipe(generator, inks, given)).text
@@ -55,7 +55,9 @@ def parse_recipe(text: str) -> Recipe:
     generator = GENERATORS[name]
     most = len(generator.accents) + 1
     if len(inks) > most:
-        raise UsageError(f"{text}: texture {name!r} takes at most {most} colours, not {len(inks)}")
+        raise UsageError(
+            f"{text}: texture {name!r} accepts at most {most} colours, got {len(inks)}"
+        )
     options = read_options(text, name, given, generator.all_options)
     colours = [rgb_of(ink) for ink in inks]
     colours += [accent.colour(colours[0]) for accent in generator.accents[len(inks) - 1 :]]
@@ -81,7 +83,7 @@ def texture_of(recipe: str, size_px: int = 16) -> Texture:
     """
     if size_px not in SIZES_PX:
         sizes = ", ".join(map(str, SIZES_PX))
-        raise UsageError(f"textures are made at {sizes} px, not {size_px}")
+        raise UsageError(f"the texture size must be {sizes} pixels, got {size_px}")
     return _made(parse_recipe(recipe).text, size_px)
 
 

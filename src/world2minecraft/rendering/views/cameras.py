@@ -50,8 +50,8 @@ def camera_of(
     given = [vertical_fov_deg, horizontal_fov_deg, intrinsics]
     if sum(one is not None for one in given) != 1:
         raise UsageError(
-            "a camera needs one of vertical_fov_deg, horizontal_fov_deg and intrinsics, "
-            f"and {sum(one is not None for one in given)} are given"
+            "give exactly one of vertical_fov_deg, horizontal_fov_deg and intrinsics, "
+            f"got {sum(one is not None for one in given)}"
         )
     try:
         if intrinsics is not None:
@@ -62,7 +62,7 @@ def camera_of(
         focal_px = _focal_px(width_px if across else height_px, float(fov_deg or 0.0))
         return Camera(width_px, height_px, focal_px, focal_px, width_px / 2, height_px / 2)
     except ValueError as error:
-        raise UsageError(f"no such camera: {error}") from error
+        raise UsageError(f"invalid camera: {error}") from error
 
 
 def vertical_fov_deg_of(camera: Camera) -> float:
@@ -73,7 +73,8 @@ def vertical_fov_deg_of(camera: Camera) -> float:
 def _focal_px(side_px: int, fov_deg: float) -> float:
     if not 0 < fov_deg <= MAX_FOV_DEG:
         raise UsageError(
-            f"a field of view must be above 0 and up to {MAX_FOV_DEG:g} degrees, not {fov_deg:g}"
+            f"the field of view must be above 0 and at most {MAX_FOV_DEG:g} degrees, "
+            f"got {fov_deg:g}"
         )
     return float(focal_px_of_fov(side_px, fov_deg))
 
@@ -84,10 +85,12 @@ def _intrinsics_values(intrinsics: np.ndarray | Sequence[float]) -> list[float]:
     if values.shape == (4,):
         return values.tolist()
     if values.shape != (3, 3):
-        raise ValueError(f"intrinsics must be fx, fy, cx, cy or 3x3, not {list(values.shape)}")
+        raise ValueError(
+            f"intrinsics must be fx, fy, cx, cy or a 3x3 matrix, got shape {list(values.shape)}"
+        )
     flat = (values[0, 1], values[1, 0], values[2, 0], values[2, 1], values[2, 2] - 1)
     if np.abs(flat).max() > 1e-9:
-        raise ValueError("K must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]")
+        raise ValueError("the intrinsics matrix must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]")
     return [values[0, 0], values[1, 1], values[0, 2], values[1, 2]]
 
 
@@ -109,11 +112,14 @@ class GamePose:
     def __post_init__(self):
         values = (self.x, self.y, self.z, self.yaw_deg, self.pitch_deg)
         if not np.isfinite(values).all() or max(map(abs, values[:3])) > MAX_COORDINATE:
-            raise UsageError(f"a pose must be five numbers of the game's world, not {values}")
+            raise UsageError(
+                f"a pose must be five finite numbers x, y, z, yaw, pitch within the world, "
+                f"got {values}"
+            )
         if abs(self.pitch_deg) > 90:
-            raise UsageError(f"pitch is -90 (up) to 90 (down) degrees, not {self.pitch_deg:g}")
+            raise UsageError(f"pitch must be -90 (up) to 90 (down) degrees, got {self.pitch_deg:g}")
         if self.at not in ("feet", "eye"):
-            raise UsageError(f"a pose is at feet or eye, not {self.at!r}")
+            raise UsageError(f"at must be 'feet' or 'eye', got {self.at!r}")
 
     def camera_to_block(self, eye_blocks: float = PLAYER_EYE_BLOCKS) -> np.ndarray:
         """Return the camera's 4x4 pose in world block coordinates.

@@ -60,7 +60,7 @@ def read_tour(path: str | Path, at: Literal["feet", "eye"] = "eye") -> list[Tour
     try:
         text = read_bytes(source, MAX_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise DamagedFileError(source, "is no text in UTF-8") from error
+        raise DamagedFileError(source, "not a UTF-8 text file") from error
     rows = (
         _csv_rows(text, source)
         if source.suffix.lower() == ".csv"
@@ -68,7 +68,7 @@ def read_tour(path: str | Path, at: Literal["feet", "eye"] = "eye") -> list[Tour
     )
     poses = [_pose({"at": at, **row}, number, source) for number, row in rows]
     if not poses:
-        raise DamagedFileError(source, "holds no pose; each line needs x, y, z, yaw, pitch")
+        raise DamagedFileError(source, "contains no poses; each line needs x, y, z, yaw and pitch")
     return poses
 
 
@@ -107,14 +107,14 @@ def _csv_rows(text: str, source: Path) -> list[tuple[int, Mapping[str, Any]]]:
         reader = csv.DictReader(lines, skipinitialspace=True)
         rows = [{key: value for key, value in row.items() if key and value} for row in reader]
     except csv.Error as error:
-        raise DamagedFileError(source, f"is no CSV ({error})") from error
+        raise DamagedFileError(source, f"not a valid CSV file ({error})") from error
     return [(number, row) for number, row in enumerate(rows, 2) if row]
 
 
 def _pose(row: Mapping[str, Any], number: int, source: Path) -> TourPose:
     missing = [key for key in REQUIRED if key not in row]
     if missing:
-        raise DamagedFileError(source, f"line {number} has no {missing[0]}")
+        raise DamagedFileError(source, f"line {number} does not contain {missing[0]}")
     try:
         x, y, z, yaw, pitch = (float(row[key]) for key in REQUIRED)
         pose = GamePose(x, y, z, yaw, pitch, row["at"])
@@ -126,7 +126,7 @@ def _pose(row: Mapping[str, Any], number: int, source: Path) -> TourPose:
         t_s = float(row.get("t", 0.0))
         return TourPose(pose, t_s, _camera(row), frame, tour, scene, image, fov_deg)
     except (TypeError, ValueError, OverflowError, UsageError) as error:
-        raise DamagedFileError(source, f"line {number} is no pose ({error})") from error
+        raise DamagedFileError(source, f"line {number} is not a valid pose ({error})") from error
 
 
 def _camera(row: Mapping[str, Any]) -> Camera | None:

@@ -139,7 +139,7 @@ def plan_tour(
     ways = WalkRoutes(volume, hiding)
     if not len(ways.feet):
         raise UsageError(
-            "nobody can stand anywhere in this build, so there is no tour; try --orbit"
+            "cannot plan a tour: the build has no place for a player to stand; try --orbit"
         )
     eye_blocks = eye_height_blocks(hiding.blocks_per_metre)
     feet = ways.feet[ways.way(None if start is None else np.array(start))]

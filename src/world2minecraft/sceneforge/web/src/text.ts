@@ -182,7 +182,7 @@ export const TEXT = {
   position: (at: readonly number[]): string => `${at.map((side) => side.toFixed(2)).join(", ")} m`,
   cells: (count: number): string => `${count.toLocaleString("en")} ${count === 1 ? "cell" : "cells"}`,
   templateName: (name: string): string =>
-    name === "cells" ? "voxels (no template)" : name.replaceAll("_", " "),
+    name === "cells" ? "voxels (no template)" : name.replaceAll("_", " ").replace(/\btv\b/g, "TV"),
   legend: {
     title: "Classes",
     choose: (word: string, key: string): string => `Set the current class: ${word} (${key})`,
