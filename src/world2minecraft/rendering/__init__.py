@@ -1,8 +1,8 @@
-"""Render block volumes: colour, depth and ids by casting rays, without display or mesh.
+"""Rendering of block volumes by ray casting: colour, depth and ids without a display or a mesh.
 
-``render_volume`` takes a picture through a camera of the room, ``preview`` and ``plan_view`` show
-a whole room, ``cast_voxels`` scans a fine grid. Whoever takes many pictures of one volume makes
-its scene once, with ``prepare_scene`` or ``prepare_voxels``.
+``render_volume`` renders an image from a camera in the room, ``preview`` and ``plan_view`` show a
+whole room, and ``cast_voxels`` scans a fine grid. To render many images of one volume, create its
+scene once with ``prepare_scene`` or ``prepare_voxels``.
 """
 
 from world2minecraft.rendering.light import LightSettings

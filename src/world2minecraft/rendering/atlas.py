@@ -1,8 +1,8 @@
-"""A texture atlas: all textures of a scene at one size, with mip levels, in one array.
+"""Texture atlases: all textures of a scene at one size with their mip levels, in one array.
 
-Level 0 is the finest. The levels of a texture lie one after another: n*n texels, then a quarter as
-many, down to one. Colours are averaged in linear light and weighted by alpha, so that leaves do not
-darken towards the rim of their holes.
+Level 0 is the finest. The levels of a texture are stored one after another: n*n texels, then a
+quarter as many, down to one. Colours are averaged in linear light with alpha weights, so that
+leaves do not get dark edges around their holes.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,11 @@ _FLAT = np.array([128, 128, 200, 0, 0], np.uint8)  # Facing outward, rather roug
 
 @dataclass(frozen=True, eq=False)
 class Atlas:
-    """``texels`` uint8 [L, M, 4] sRGB and alpha; ``material`` uint8 [L, M, 5], see ``MATERIAL``."""
+    """A texture atlas.
+
+    ``texels`` uint8 [L, M, 4] contains sRGB and alpha. ``material`` uint8 [L, M, 5] is described at
+    ``MATERIAL``.
+    """
 
     side_px: int
     texels: np.ndarray
@@ -32,29 +36,29 @@ class Atlas:
 
 
 def texel_count(side_px: int) -> int:
-    """Return how many texels a texture of a power of two has with all its levels."""
+    """Return the number of texels of a texture with all its mip levels."""
     return (4 * side_px * side_px - 1) // 3
 
 
 def to_linear(srgb: np.ndarray) -> np.ndarray:
-    """Return linear light, float64 0 to 1, of sRGB values 0 to 255."""
+    """Convert sRGB values 0 to 255 to linear light, float64 0 to 1."""
     return srgb_to_linear(np.asarray(srgb, np.float64) / 255)
 
 
 def to_srgb(linear: np.ndarray) -> np.ndarray:
-    """Return sRGB values, uint8, of linear light."""
+    """Convert linear light to sRGB values, uint8."""
     return (linear_to_srgb(linear) * 255 + 0.5).astype(np.uint8)
 
 
 def build_atlas(textures: Sequence[Texture], side_px: int) -> Atlas:
-    """Bring textures to one size and add their mip levels.
+    """Resample textures to one size and compute their mip levels.
 
     Args:
-        textures: of any sizes; at least one.
-        side_px: 16, 32, 64 or 128.
+        textures: At least one texture, of any size.
+        side_px: Texture size in pixels: 16, 32, 64 or 128.
 
     Raises:
-        ValueError: there is no texture, or the size is none of these.
+        ValueError: If there are no textures, or if the size is not supported.
     """
     if side_px not in SIZES_PX or not textures:
         raise ValueError(

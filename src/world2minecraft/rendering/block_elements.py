@@ -1,12 +1,12 @@
-"""Block models: elements, boxes with a texture on each face, the same for every source.
+"""Block models as lists of elements: boxes with a texture on each face.
 
-Built-in models, those of a resource pack and display entities all become ``Element`` values; the
-kernels read nothing else. Coordinates are those of the block: x east, y up, z south, the block
-spans [0, 1]; an element may reach beyond it.
+Built-in models, resource pack models and display entities are all converted to ``Element`` objects,
+the only form that the kernels read. Coordinates are relative to the block: x east, y up, z south,
+with the block spanning [0, 1]. An element may extend beyond its block.
 
-A texture has its (u, v) = (0, 0) at its upper left, u to the right and v down, one texture is
-[0, 1] wide. ``uv`` carries a point (x, y, z, 1) of the element's own frame to (u, v), so that any
-rotation, lock or mirror of a model file is one matrix.
+Texture coordinates (u, v) are (0, 0) at the upper left, with u to the right and v down. One texture
+spans [0, 1]. ``uv`` maps a point (x, y, z, 1) in the element's own frame to (u, v), so that any
+rotation, lock or mirror of a model file is a single matrix.
 """
 
 from dataclasses import dataclass, field
@@ -31,9 +31,9 @@ FACE_AXES = (
 
 @dataclass(frozen=True, eq=False)
 class ElementFace:
-    """One face: a texture's name, where it lies, and the colour that multiplies it.
+    """A face of an element: texture name, texture coordinates and a colour multiplier.
 
-    ``uv`` float64 [2, 4] is explained above; ``tint`` is sRGB, 0 to 255.
+    ``uv`` float64 [2, 4] is explained in the module docstring. ``tint`` is sRGB, 0 to 255.
     """
 
     texture: str
@@ -43,11 +43,11 @@ class ElementFace:
 
 @dataclass(frozen=True, eq=False)
 class Element:
-    """A box from ``low`` to ``high`` (blocks) with six faces; a face that is None is not there.
+    """A box from ``low`` to ``high`` (in blocks) with six faces, of which missing faces are None.
 
-    ``turn`` float64 [4, 4] carries the element's own frame to the block's, None for none. A box
-    may be flat along one axis: then its two faces there are drawn, one from each side.
-    ``emission`` is 0 to 15, the light that it is seen by at least.
+    ``turn`` float64 [4, 4] transforms the element's own frame to that of the block; None is the
+    identity. A box may be flat along one axis; its two faces there are then each visible from one
+    side. ``emission`` is the minimum light level at which the element is rendered, 0 to 15.
     """
 
     low: tuple[float, float, float]
@@ -60,7 +60,7 @@ class Element:
 
 @dataclass(frozen=True, eq=False)
 class BlockModel:
-    """All elements of a block state. ``stand_in`` says that its true look is not known."""
+    """All elements of a block state. ``stand_in`` is True if the real appearance is unknown."""
 
     elements: tuple[Element, ...] = ()
     ambient_occlusion: bool = True
@@ -68,14 +68,14 @@ class BlockModel:
 
 
 class ModelSource(Protocol):
-    """A source of block models and textures: built-in ones, a resource pack, or a stack."""
+    """A source of block models and textures, such as the built-in set or a resource pack."""
 
     def model(self, state: str) -> BlockModel | None:
-        """Return the model of a block state's text, or None where this source has none."""
+        """Return the model of a block state given as text, or None if the source has no model."""
         ...
 
     def texture(self, name: str) -> Texture | None:
-        """Return the texture of a name that one of this source's models uses, or None."""
+        """Return a texture used by one of this source's models, or None."""
         ...
 
 
@@ -86,15 +86,15 @@ def face_uv(
     rect: tuple[float, float, float, float] | None = None,
     rotation_deg: int = 0,
 ) -> np.ndarray:
-    """Return the uv matrix, float64 [2, 4], of a face of a box.
+    """Return the uv matrix of a box face, float64 [2, 4].
 
     Args:
-        side: 0 to 5, the order of ``FACE_NAMES``.
-        low: the box, blocks.
-        high: its other corner.
-        rect: u0 v0 u1 v1 in sixteenths, as model files say; None for where the face lies in the
-            block, so that textures of neighbours join.
-        rotation_deg: 0, 90, 180 or 270, clockwise, as model files say.
+        side: Side of the box, 0 to 5, in the order of ``FACE_NAMES``.
+        low: Minimum corner of the box, in blocks.
+        high: Maximum corner of the box, in blocks.
+        rect: u0, v0, u1, v1 in sixteenths, as in model files. None uses the position in the block,
+            so that textures of neighbouring blocks join.
+        rotation_deg: 0, 90, 180 or 270, clockwise, as in model files.
 
     Example:
         >>> face_uv(3, (0, 0, 0), (1, 1, 1)).round(3).tolist()
@@ -126,18 +126,18 @@ def _rect_in_block(side: int, low, high) -> tuple[float, float, float, float]:
 
 @dataclass(frozen=True, eq=False)
 class ModelSourceStack:
-    """Several sources of models; the first that has one counts."""
+    """A stack of model sources, of which the first with a result is used."""
 
     sources: tuple[ModelSource, ...] = field(default=())
 
     def model(self, state: str) -> BlockModel | None:
-        """Return the first source's model that is there."""
+        """Return the model from the first source that has it."""
         return next(
             (model for one in self.sources if (model := one.model(state)) is not None), None
         )
 
     def texture(self, name: str) -> Texture | None:
-        """Return the first source's texture that is there."""
+        """Return the texture from the first source that has it."""
         return next(
             (texture for one in self.sources if (texture := one.texture(name)) is not None), None
         )

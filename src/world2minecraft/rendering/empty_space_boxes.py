@@ -1,9 +1,9 @@
-"""Cover the air of a grid by large empty boxes, each of which a ray crosses in one step.
+"""Coverage of a grid's air by large empty boxes, each of which a ray crosses in one step.
 
-Every cell of air belongs to a box of air that holds it, as large as could be found; boxes may
-overlap. A ray crosses a furnished room in two or three steps, however fine the blocks are, and a
-packet of rays that leaves a box by one of its faces has hit nothing inside it. After an edit only
-the boxes that it touches are replaced.
+Every air cell belongs to an air box that contains it and is as large as possible. Boxes may
+overlap. A ray crosses a furnished room in two or three steps, however small the blocks are, and a
+packet of rays that leaves a box by one face has hit nothing inside. After an edit only the affected
+boxes are replaced.
 """
 
 import numpy as np
@@ -21,11 +21,11 @@ def find_empty_boxes(kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Cover the air of a grid by boxes.
 
     Args:
-        kinds: int8 [X, Y, Z], ``FULL``, ``BOXES`` or 0 for air.
+        kinds: Kind of each cell, int8 [X, Y, Z]: ``FULL``, ``BOXES``, or 0 for air.
 
     Returns:
-        ``space`` int32 [X, Y, Z] and ``bounds`` int16 [V, 6], as ``SceneTables`` says; there is
-        always one box at least, which may be of no cell's.
+        ``space`` int32 [X, Y, Z] and ``bounds`` int16 [V, 6], as described in ``SceneTables``.
+        There is always at least one box, even if no cell uses it.
     """
     kinds = np.ascontiguousarray(kinds)
     reach = (kinds == _AIR).astype(np.uint8)
@@ -129,16 +129,16 @@ def _claim_cells(space, volumes, box, row):
 def update_empty_boxes(
     space: np.ndarray, bounds: np.ndarray, cells: np.ndarray, kinds: np.ndarray
 ) -> np.ndarray:
-    """Set what some cells are; ``space`` changes in place.
+    """Update the boxes after cells have changed. ``space`` is modified in place.
 
     Args:
-        space: int32 [X, Y, Z], see ``SceneTables``.
-        bounds: int16 [V, 6].
-        cells: int64 [N, 3].
-        kinds: int8 [N], ``FULL``, ``BOXES`` or 0 for air.
+        space: Box of each cell, int32 [X, Y, Z]; see ``SceneTables``.
+        bounds: Bounds of the boxes, int16 [V, 6].
+        cells: The changed cells, int64 [N, 3].
+        kinds: New kind of each changed cell, int8 [N]: ``FULL``, ``BOXES``, or 0 for air.
 
     Returns:
-        ``bounds``, with new rows at its end.
+        ``bounds`` with new rows appended.
     """
     before = len(bounds)
     for cell, kind in zip(cells, kinds, strict=True):

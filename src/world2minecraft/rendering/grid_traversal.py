@@ -1,8 +1,8 @@
-"""Traverse a fine grid of full cubes by one ray: the core of every virtual scan.
+"""Traversal of a fine grid of full cubes by one ray, used by all virtual scans.
 
-``cells`` says what a ray meets, one byte a cell, because such grids are large: 0 a full cube, and
-n >= 1 air whose nearest cube is n cells away (in the Chebyshev metric), so that a ray crosses
-empty space in a few jumps. Coordinates, ``t`` and faces are those of ``rendering.ray_caster.ray``.
+``cells`` uses one byte for each cell, because such grids are large: 0 is a full cube, and n >= 1 is
+air whose nearest cube is n cells away (Chebyshev distance), so that a ray crosses empty space in a
+few steps. Coordinates, ``t`` and faces are defined as in ``rendering.ray_caster.ray``.
 """
 
 from world2minecraft.core.jit import inlined, lean, njit
@@ -21,7 +21,7 @@ TILE = 8  # Pixels a side of the bundles that share an empty way.
 
 @njit
 def fill_distances(cells):
-    """Replace each 1 of ``cells`` by the Chebyshev distance to the nearest cube, up to 255."""
+    """Replace each 1 in ``cells`` by the Chebyshev distance to the nearest cube, up to 255."""
     nx, ny, nz = cells.shape
     for i in range(nx):
         for j in range(ny):
@@ -53,10 +53,10 @@ def _nearest_passed(cells, i, j, k, side):
 
 @lean
 def safe_start(cells, ox, oy, oz, dx, dy, dz, wide, widening):
-    """Return a ``t`` before which no ray of a bundle meets anything.
+    """Return a ``t`` before which no ray of a bundle hits anything.
 
-    The bundle is all rays that are at ``t`` within ``wide + t * widening`` cells of the middle
-    ray, along each axis. Neighbouring pixels share the empty way that this finds.
+    At distance ``t`` all rays of the bundle are within ``wide + t * widening`` cells of the central
+    ray, along each axis. Neighbouring pixels share this empty distance.
     """
     nx, ny, nz = cells.shape
     pace = max(abs(dx), abs(dy), abs(dz)) + widening
@@ -85,10 +85,10 @@ def bundle_start(cells, pose, rays, spread, u, v):
 
 @inlined
 def trace_ray(cells, ox, oy, oz, dx, dy, dz, t):
-    """Return ``(t, i, j, k, face)`` of the first cube ahead; face is ``NO_FACE`` for none.
+    """Return ``(t, i, j, k, face)`` of the first cube on a ray, with ``NO_FACE`` for none.
 
-    A cube that holds the origin is ignored: there is no near plane. The given ``t`` is 0 or comes
-    from ``safe_start``.
+    A cube that contains the origin is ignored: there is no near plane. The given ``t`` is 0 or the
+    result of ``safe_start``.
     """
     nx, ny, nz = cells.shape
     ray = make_ray(ox, oy, oz, dx, dy, dz)

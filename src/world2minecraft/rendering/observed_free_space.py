@@ -1,4 +1,4 @@
-"""Observed free space: the cells of air that the rays of a picture cross."""
+"""Observed free space: the air cells that the rays of an image cross."""
 
 import numpy as np
 
@@ -13,12 +13,12 @@ from world2minecraft.rendering.scene_tables import SceneTables
 
 
 def observed_free_space(tables: SceneTables, camera: GridCamera, depth: np.ndarray) -> np.ndarray:
-    """Return the cells of air, bool [X, Y, Z], that rays crossed before their first surface.
+    """Return the air cells that rays crossed before their first surface, as bool [X, Y, Z].
 
     Args:
-        tables: the scene.
-        camera: where the rays come from.
-        depth: float32 [H, W], z-depth in metres, 0 where there is nothing.
+        tables: The scene.
+        camera: Camera of the rays, in grid coordinates.
+        depth: z-depth in metres, float32 [H, W], 0 without a surface.
     """
     free = np.zeros(tables.space.shape, np.uint8)
     _mark_crossed_cells(tables.space, camera, depth, free)

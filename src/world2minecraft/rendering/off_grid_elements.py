@@ -1,8 +1,8 @@
-"""Boxes outside the block grid: display entities, and parts of blocks that leave their cell.
+"""Elements outside the block grid: display entities, and parts of blocks that leave their cell.
 
-Such an element is in the grid's coordinates and is listed in every cell that it reaches. A cell
-that one reaches has a row of its own: the elements of its block, then the freestanding ones. The
-grid grows by what reaches out of it.
+These elements use grid coordinates and are listed in every cell that they reach. Each such cell has
+its own row of elements: the elements of its block, then the freestanding ones. The grid is enlarged
+to contain all elements.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ CellElements = dict[tuple[int, ...], list[int]]  # cell of the grid to numbers o
 
 @dataclass(frozen=True, eq=False)
 class EntityLabels:
-    """What N display entities are: their class, and the object that each belongs to."""
+    """The classes and the object ids of N display entities."""
 
     semantic: np.ndarray  # uint8 [N]
     instance: np.ndarray  # uint16 [N]
@@ -38,7 +38,7 @@ class EntityLabels:
 
 @dataclass(frozen=True, eq=False)
 class PlacedElement:
-    """An element in the grid's coordinates, and whose it is (``SceneTables.traits``)."""
+    """An element in grid coordinates with its owner (see ``SceneTables.traits``)."""
 
     element: Element
     owner: int
@@ -46,11 +46,11 @@ class PlacedElement:
 
     @property
     def matrix(self) -> np.ndarray:
-        """Element to grid, float64 [4, 4]."""
+        """Transform from the element's frame to the grid, float64 [4, 4]."""
         return np.eye(4) if self.element.turn is None else self.element.turn
 
     def moved(self, shift: np.ndarray) -> "PlacedElement":
-        """Return the guest moved by a shift, float64 [3]."""
+        """Return the element translated by a vector, float64 [3]."""
         matrix = self.matrix.copy()
         matrix[:3, 3] += shift
         return replace(self, element=replace(self.element, turn=matrix))
@@ -59,7 +59,7 @@ class PlacedElement:
 def display_entity_elements(
     volume: BlockVolume, looks: ModelSource
 ) -> tuple[EntityLabels, list[PlacedElement]]:
-    """Return the display entities of a volume, and their boxes in the grid of its cells."""
+    """Return the display entities of a volume, and their elements in grid coordinates."""
     to_grid = np.eye(4)
     to_grid[:3, 3] = -np.asarray(volume.corner, np.float64)
     guests, semantic, instance = [], [], []
@@ -80,11 +80,11 @@ def display_entity_elements(
 def split_overhanging(
     models: Sequence[BlockModel], states: np.ndarray
 ) -> tuple[list[BlockModel], list[PlacedElement]]:
-    """Take the elements that reach beyond their block out of the models and place them.
+    """Remove elements that extend beyond their block from the models, and place them in the grid.
 
     Args:
-        models: of each palette entry.
-        states: uint16 [X, Y, Z], indices of ``models``.
+        models: Model of each palette entry.
+        states: Indices of ``models``, uint16 [X, Y, Z].
     """
     inner, guests = [], []
     for row, model in enumerate(models):
@@ -104,7 +104,7 @@ def _has_volume(guest: PlacedElement) -> bool:
 
 
 def grid_margin(guests: Sequence[PlacedElement], shape: tuple[int, ...]) -> np.ndarray:
-    """Return the cells that the grid must grow by before its first and past its last, [2, 3]."""
+    """Return the number of cells to add before and after the grid along each axis, int [2, 3]."""
     margin = np.zeros((2, 3), np.int64)
     for guest in guests:
         corners = element_corners(guest.element)
@@ -114,7 +114,7 @@ def grid_margin(guests: Sequence[PlacedElement], shape: tuple[int, ...]) -> np.n
 
 
 def cells_reached(element: Element, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the cells, int64 [N, 3], that a box in grid coordinates may reach."""
+    """Return the cells that a box in grid coordinates may reach, int64 [N, 3]."""
     corners = element_corners(element)
     low = np.floor(corners.min(axis=0) + _TOUCH)
     high = np.maximum(np.floor(corners.max(axis=0) - _TOUCH), low) + 1  # A plate may have no depth.
@@ -136,7 +136,7 @@ def cells_reached(element: Element, shape: tuple[int, ...]) -> np.ndarray:
 def elements_by_cell(
     guests: Sequence[PlacedElement], shape: tuple[int, ...], baker: Baker
 ) -> CellElements:
-    """Bake guests and return the numbers of their elements in each cell that they reach."""
+    """Bake placed elements, and return their numbers for each cell that they reach."""
     lists: CellElements = {}
     for guest in guests:
         cells = cells_reached(guest.element, shape)
@@ -149,13 +149,13 @@ def elements_by_cell(
 def add_cell_rows(
     lists: CellElements, looks: np.ndarray, start: np.ndarray, refs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Give cells with guests looks of their own.
+    """Give cells that placed elements reach their own rows.
 
     Args:
-        lists: the guests of each cell.
-        looks: int32 [X, Y, Z], changed in place.
-        start: int32 [R + 1], see ``SceneTables``.
-        refs: int32 [N].
+        lists: Placed elements of each cell.
+        looks: Row of each cell, int32 [X, Y, Z], modified in place.
+        start: Start of each row, int32 [R + 1]; see ``SceneTables``.
+        refs: Elements of all rows, int32 [N].
 
     Returns:
         ``start`` and ``refs`` with the new rows.

@@ -1,4 +1,4 @@
-"""A picture of a block volume through a camera of the room."""
+"""Rendering of an image of a block volume from a camera in the room."""
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
@@ -21,13 +21,13 @@ MAX_SAMPLES = 8
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """The outputs of one picture; arrays that were not requested are None.
+    """The outputs of one rendered image. Outputs that were not requested are None.
 
-    The first surface counts, be it glass; a hole in a texture is none. Where a ray meets nothing,
-    depth and range are 0, ``block_index`` is -1, ``face`` is 255, ``semantic`` and ``instance``
-    are 0. Where it meets a display entity ``block_index`` is -1 too, ``cube_index`` is 0 or more,
-    and ``face`` the one of a block that looks most like it. The ``opaque_*`` arrays say the same
-    of what lies behind all glass.
+    The outputs describe the first surface, including glass but not texture holes. Without a
+    surface, depth and range are 0, ``block_index`` is -1, ``face`` is 255, ``semantic`` and
+    ``instance`` are 0. On a display entity ``block_index`` is -1, ``cube_index`` is at least 0, and
+    ``face`` is the most similar block face. The ``opaque_*`` arrays describe the first surface
+    behind all glass.
     """
 
     depth_m: np.ndarray  # float32 [H, W], z-depth
@@ -46,7 +46,7 @@ class Picture:
 
     @property
     def glass_index(self) -> np.ndarray:
-        """The first glass that a ray meets before what is opaque, int32 [H, W], else -1."""
+        """The first glass block in front of an opaque surface, int32 [H, W], or -1."""
         if self.opaque_index is None or self.opaque_depth_m is None:
             raise ValueError("glass_index requires the output 'opaque'")
         return np.where(self.opaque_depth_m == self.depth_m, -1, self.block_index)
@@ -63,20 +63,22 @@ def render_volume(
     threads: int = 1,
     background: Backdrop | None = None,
 ) -> Picture:
-    """Take a picture of a volume.
+    """Render an image of a volume.
 
     Args:
-        volume: the blocks, or their scene where many pictures are taken.
-        camera: intrinsics; its distortion is ignored.
-        camera_to_room: 4x4, OpenCV axes, metres.
-        outputs: which of ``OUTPUTS`` to make; depth, range, block and face always come.
-        light: the hour, the exposure and the like.
-        samples: a pixel's colour is the mean of so many by so many; all else is of its middle.
-        threads: how many bands of rows are drawn at a time; the result is the same for any.
-        background: sRGB colours of the first and last row behind all; None for the sky.
+        volume: The blocks, or their scene if several images are rendered.
+        camera: Camera intrinsics. Distortion is ignored.
+        camera_to_room: Camera pose, 4x4, OpenCV axes, metres.
+        outputs: Additional outputs from ``OUTPUTS``. Depth, range, block and face are always
+            included.
+        light: Light settings, such as the time of day and the exposure.
+        samples: Each pixel's colour is the mean of ``samples`` x ``samples`` rays. All other
+            outputs are sampled at the pixel's centre.
+        threads: Number of bands of rows rendered in parallel. It does not affect the result.
+        background: sRGB colours of the first and last row of the background. None uses the sky.
 
     Raises:
-        ValueError: an output is not known, or the image has over 64 million pixels.
+        ValueError: If an output is unknown, or if the image has more than 64 million pixels.
     """
     rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
     size = (camera.height_px, camera.width_px)
@@ -97,9 +99,10 @@ def render_parallel(
     threads: int = 1,
     background: Backdrop | None = None,
 ) -> Picture:
-    """Take a picture by parallel rays along the camera's z, its middle at the camera's place.
+    """Render an orthographic image with rays along the camera's z axis.
 
-    Args: as ``render_volume``, with ``size`` (height, width) in pixels.
+    The centre of the image is at the camera's position. ``size`` is the height and width in pixels;
+    the other arguments are those of ``render_volume``.
     """
     rays = np.array([px_per_metre, px_per_metre, size[1] / 2, size[0] / 2])
     return _draw(
@@ -129,7 +132,11 @@ def _draw(
 
 
 def check_request(outputs: Collection[str], size: tuple[int, int], samples: int) -> None:
-    """Raise ``ValueError`` where the request is invalid; see ``render_volume``."""
+    """Check the arguments of ``render_volume``.
+
+    Raises:
+        ValueError: If an argument is invalid.
+    """
     unknown = sorted(set(outputs) - set(OUTPUTS))
     if unknown:
         raise ValueError(f"unknown output {unknown[0]!r}; outputs: {', '.join(OUTPUTS)}")
@@ -142,7 +149,7 @@ def check_request(outputs: Collection[str], size: tuple[int, int], samples: int)
 
 
 def picture_of(arrays: PixelArrays, outputs: Collection[str]) -> Picture:
-    """Return what drawn arrays show; the picture shares their memory."""
+    """Return rendered arrays as an image that shares their memory."""
     opaque = "opaque" in outputs
     return Picture(
         depth_m=arrays.depth,

@@ -1,4 +1,4 @@
-"""The arrays that a picture is drawn into: made once, and filled as often as one likes."""
+"""The arrays that images are rendered into, allocated once and reused for any number of images."""
 
 from collections.abc import Callable, Collection
 from typing import NamedTuple
@@ -30,7 +30,7 @@ OUTPUT_BITS = {
 
 
 class PixelArrays(NamedTuple):
-    """What ``draw_rows`` fills, H x W pixels; what is not wanted has one pixel."""
+    """The output arrays of ``draw_rows`` for H x W pixels; outputs not requested have one pixel."""
 
     depth: np.ndarray  # float32 [H, W]
     distance: np.ndarray  # float32 [H, W]
@@ -48,11 +48,11 @@ class PixelArrays(NamedTuple):
 
 
 def pixel_arrays(size: tuple[int, int], outputs: Collection[str]) -> PixelArrays:
-    """Return arrays for pictures of one size.
+    """Return arrays for images of one size.
 
     Args:
-        size: height and width.
-        outputs: names of pictures' outputs.
+        size: Height and width in pixels.
+        outputs: Names of the requested outputs.
     """
     wanted = sum(bit for name, bit in OUTPUT_BITS.items() if name in outputs)
 
@@ -83,14 +83,14 @@ def draw_into(
     shading: ShadingParameters,
     threads: int = 1,
 ) -> None:
-    """Draw a picture.
+    """Render an image into existing arrays.
 
     Args:
-        arrays: filled in place.
-        scene: what is drawn.
-        camera: from where.
-        shading: the light.
-        threads: bands of rows drawn at a time; the result is the same for any.
+        arrays: Output arrays, filled in place.
+        scene: The scene to render.
+        camera: The camera in grid coordinates.
+        shading: The light and tone mapping.
+        threads: Number of bands of rows rendered in parallel. It does not affect the result.
     """
 
     def band(rows: tuple[int, int]) -> None:

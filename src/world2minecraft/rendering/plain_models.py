@@ -1,6 +1,7 @@
-"""The plainest source of looks: every state as its visible boxes in its one colour.
+"""The simplest source of models: the visible boxes of every state in a single colour.
 
-Texture names are ``plain:#rrggbb``. It knows every state, so that it may stand last in a stack.
+Texture names have the form ``plain:#rrggbb``. Every state has a model, so this source can be the
+last of a stack.
 """
 
 from functools import lru_cache
@@ -21,17 +22,17 @@ _UV = np.zeros((2, 4))
 
 @lru_cache(maxsize=4096)
 def visible_boxes(state: str) -> np.ndarray:
-    """Return the boxes that are drawn for a state, float32 [N, 6] within the unit cell."""
+    """Return the visible boxes of a state within the unit cell, float32 [N, 6]."""
     if state.partition("[")[0] in INVISIBLE:
         return np.empty((0, 6), np.float32)
     return visual_boxes(state)
 
 
 class PlainModels:
-    """Boxes and flat colours."""
+    """A model source with plain boxes in flat colours."""
 
     def model(self, state: str) -> BlockModel:
-        """Return the boxes of a state, all faces in its colour."""
+        """Return the boxes of a state with all faces in its colour."""
         red, green, blue = (int(value) for value in colour_of(state))
         face = ElementFace(f"plain:#{red:02x}{green:02x}{blue:02x}", _UV)
         emission = 15 if is_luminous(state) else 0
@@ -43,7 +44,7 @@ class PlainModels:
         )
 
     def texture(self, name: str) -> Texture | None:
-        """Return the texture of one colour, or None for a name of another source."""
+        """Return a texture of one colour, or None for a name from another source."""
         kind, _, colour = name.partition(":#")
         if kind != "plain" or len(colour) != 6:
             return None

@@ -1,4 +1,4 @@
-"""Two views that show a whole room at once: a dollhouse seen at an angle, and a plan."""
+"""Views that show a whole room at once: an oblique dollhouse view and a floor plan."""
 
 import numpy as np
 
@@ -25,18 +25,18 @@ SUPERSAMPLE = 2
 
 
 def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> np.ndarray:
-    """Return a cutaway picture of a room from above at an angle, uint8 [height, width, 3].
+    """Return an oblique cutaway image of a room from above, uint8 [height, width, 3].
 
-    The ceiling and the two near walls are left out. Of the four corners it looks from the one
-    that shows most of the furniture. The storeys of a house stand side by side.
+    The ceiling and the two near walls are removed. The camera is at the corner from which most of
+    the furniture is visible. The storeys of a house are shown side by side.
 
     Args:
-        volume: a built room.
-        width_px: the width of the picture.
-        height_px: its height.
+        volume: A built room.
+        width_px: Image width in pixels.
+        height_px: Image height in pixels.
 
     Raises:
-        ValueError: the picture would be too large.
+        ValueError: If the image would be too large.
     """
     _check_size(width_px, height_px)
     opened = [without_partitions(without_ceiling(one)) for one in split_storeys(volume)]
@@ -65,7 +65,7 @@ def _furniture_seen(opened: BlockVolume, near_x: int, near_z: int) -> float:
 def dollhouse_camera(
     volume: BlockVolume, near_x: int, near_z: int, width_px: int, height_px: int
 ) -> tuple[Camera, np.ndarray]:
-    """Return a camera and its ``camera_to_room`` that see all blocks from one upper corner."""
+    """Return a camera and its ``camera_to_room`` that see all blocks from an upper corner."""
     points_m = _corner_points_m(volume)
     low, high = points_m.min(axis=0), points_m.max(axis=0)
     along, across = np.cos(np.radians(TURN_DEG)), np.sin(np.radians(TURN_DEG))
@@ -117,16 +117,16 @@ def _corner_points_m(volume: BlockVolume) -> np.ndarray:
 
 
 def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
-    """Return a plan of the room from under its ceiling, uint8 [H, W, 3].
+    """Return a plan of the room, seen from below its ceiling, as uint8 [H, W, 3].
 
-    Room +x points right and room +y up. The storeys of a house stand side by side.
+    Room +x points right and room +y points up. The storeys of a house are shown side by side.
 
     Args:
-        volume: a built room.
-        px_per_block: pixels a block.
+        volume: A built room.
+        px_per_block: Pixels per block.
 
     Raises:
-        ValueError: ``px_per_block`` is not 1 or more, or the plan would be too large.
+        ValueError: If ``px_per_block`` is less than 1, or if the plan would be too large.
     """
     if px_per_block < 1:
         raise ValueError(f"px_per_block must be at least 1, got {px_per_block}")

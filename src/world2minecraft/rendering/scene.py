@@ -1,7 +1,7 @@
-"""Prepare a block volume for rays: the arrays of ``SceneTables``, and what its cells are.
+"""Preparation of a block volume for ray casting: the arrays of ``SceneTables`` and cell metadata.
 
-Making it costs one sweep over the volume; whoever takes many pictures of one volume makes the
-scene once and passes it in the volume's place.
+The preparation scans the whole volume. To render many images of a volume, create the scene once and
+pass it instead of the volume.
 """
 
 from collections.abc import Sequence
@@ -43,7 +43,7 @@ MIN_LIT_LEVEL, MIN_LIT_SHARE = 4, 0.6
 
 @dataclass(frozen=True, eq=False)
 class BlockScene:
-    """What pictures of a volume are taken of."""
+    """A block volume prepared for rendering."""
 
     tables: SceneTables
     material: np.ndarray  # uint8 [L, M, 5], see rendering.atlas
@@ -71,16 +71,16 @@ def prepare_scene(
     """Return the scene of a volume.
 
     Args:
-        volume: the blocks, with display entities.
-        looks: where models and textures come from; our own set where None.
-        texture_px: the side of a texture, 16, 32, 64 or 128.
-        reach: how many blocks light goes for each level that it loses; the game's 1 where None,
-            but farther where blocks are smaller than half a metre, so that rooms are lit.
-        hidden_lamps: whether the game's invisible light blocks shine; where None, only in builds
-            that would be dark without them.
+        volume: The blocks and display entities.
+        looks: Source of models and textures. None uses the built-in set.
+        texture_px: Texture size in pixels: 16, 32, 64 or 128.
+        reach: Number of blocks over which light loses one level. None uses the game's value of 1,
+            or more if blocks are smaller than half a metre, so that rooms are lit.
+        hidden_lamps: Whether the game's invisible light blocks emit light. None uses them only in
+            builds that would otherwise be dark.
 
     Raises:
-        ValueError: the size of the textures or the reach is out of range.
+        ValueError: If the texture size or the reach is out of range.
     """
     baker = Baker(looks or BuiltinModels(texture_px), texture_px)
     return bake_scene(volume, baker, reach, hidden_lamps)[0]
@@ -92,9 +92,9 @@ def bake_scene(
     reach: float | None = None,
     hidden_lamps: bool | None = None,
 ) -> tuple[BlockScene, CellElements]:
-    """Return the scene of a volume, and the standing elements in each cell that has any.
+    """Return the scene of a volume, and the freestanding elements in each cell that has any.
 
-    Args: as ``prepare_scene``; the baker, which knows the looks, is empty before.
+    The arguments are those of ``prepare_scene``, with an empty baker that contains the models.
     """
     looks = baker.looks
     models, guests = split_overhanging(models_of(volume.palette, looks), volume.states)
@@ -172,12 +172,12 @@ def _bake_palette(
 
 
 def with_elements(scene: BlockScene, baker: Baker, looks: Sequence[tuple[int, ...]]) -> BlockScene:
-    """Return the scene with all elements of a baker, and with these rows of elements.
+    """Return the scene with all elements of a baker and new rows of elements.
 
     Args:
-        scene: its cells stay as they are.
-        baker: that the scene was baked with, and that may have more elements by now.
-        looks: the elements of each row, the scene's own rows first.
+        scene: The scene, whose cells are kept.
+        baker: The baker of the scene, which may have received more elements.
+        looks: Elements of each row, starting with the rows of the scene.
     """
     tables = scene.tables
     if len(looks) > len(tables.look_start) - 1:

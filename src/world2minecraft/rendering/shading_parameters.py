@@ -1,4 +1,4 @@
-"""What the kernels read of a light, made from what a user chose and what a scene is like."""
+"""The light parameters of the kernels, computed from the user's settings and the scene."""
 
 from functools import lru_cache
 
@@ -28,20 +28,20 @@ def shading_parameters(
     background: Backdrop | None = None,
     eyes: np.ndarray | None = None,
 ) -> ShadingParameters:
-    """Return a light as the kernels read it.
+    """Return the light parameters for the kernels.
 
     Args:
-        light: what the user chose.
-        scene: its exposure counts where the light names none.
-        background: sRGB colours of the first and last row; None for the sky of the hour, or for
-            paper where the light knows no hour.
-        eyes: float64 [N, 3], where the cameras stand, in cells of the scene; None for anywhere.
+        light: The user's light settings.
+        scene: The scene, whose exposure is used if ``light`` has none.
+        background: sRGB colours of the first and last row of the background. None uses the sky of
+            the hour, or a plain background if the light has no hour.
+        eyes: Camera positions in cells of the scene, float64 [N, 3]. None stands for anywhere.
     """
     return _cached_parameters(light, exposure_of(light, scene, eyes), background)
 
 
 def exposure_of(light: LightSettings, scene: BlockScene, eyes: np.ndarray | None = None) -> float:
-    """Return the exposure of pictures from some eyes; those in a lump of cells share one."""
+    """Return the exposure for images from given eyes. Nearby eyes share one exposure."""
     for stated in (light.exposure, scene.exposure):
         if stated is not None:
             return stated

@@ -1,4 +1,4 @@
-"""A texture: colours, and the material maps that a path tracer reads."""
+"""Textures: colours, and the material maps that the path tracer reads."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,13 +10,13 @@ MAX_SIDE_PX = 1024  # A side; larger ones are a mistake or a trap.
 
 @dataclass(frozen=True, eq=False)
 class Texture:
-    """A square picture of one face.
+    """The square texture of a face.
 
-    ``colour`` uint8 [N, N, 4] is sRGB and alpha (0 a hole, 255 solid). The rest may be None:
-    ``normal`` uint8 [N, N, 3] in tangent space, x along u, y along v (down), z outward, 128 for 0;
-    ``roughness``, ``metal`` and ``emission`` uint8 [N, N], 0 to 255 for 0 to 1 (perceptual
-    roughness). ``translucent`` says that alpha mixes with what lies behind, as in stained glass;
-    else alpha under 128 is a hole.
+    ``colour`` uint8 [N, N, 4] is sRGB and alpha (0 for a hole, 255 for opaque). The other maps may
+    be None: ``normal`` uint8 [N, N, 3] in tangent space, x along u, y along v (down), z outward,
+    128 for 0; ``roughness``, ``metal`` and ``emission`` uint8 [N, N], 0 to 255 for 0 to 1
+    (perceptual roughness). If ``translucent`` is True, alpha blends with the background, as in
+    stained glass; otherwise alpha below 128 is a hole.
     """
 
     colour: np.ndarray
@@ -45,5 +45,5 @@ class Texture:
 
     @cached_property
     def has_holes(self) -> bool:
-        """Whether rays may pass: it has holes, or is translucent."""
+        """Whether rays may pass through the texture, by holes or translucency."""
         return self.translucent or bool((self.colour[..., 3] < 128).any())

@@ -1,8 +1,7 @@
-"""Run kernels in parallel on one pool of threads, made when first needed.
+"""A shared thread pool that runs kernels in parallel, created when first needed.
 
-Compiled kernels release Python's lock and keep nothing between calls, so they may run on any
-number of threads, and any number of threads may call them at once. What they must not share is
-their scratch memory and the rows that they write; each work has its own.
+Compiled kernels release the GIL and have no state, so they may run on any number of threads.
+Concurrent calls must not share scratch memory or write the same rows; each work item has its own.
 """
 
 import os
@@ -20,10 +19,10 @@ _running: list[ThreadPoolExecutor] = []  # None or one.
 
 
 def run_parallel(work: Callable[[Item], object], items: Sequence[Item]) -> None:
-    """Call ``work`` once for each item, all at the same time; return when all are done.
+    """Call ``work`` for all items in parallel, and return when all calls are done.
 
-    The first item is worked on by the caller's own thread. An error of any is raised, that of the
-    first where there are several, after all have ended.
+    The calling thread processes the first item. If calls raise exceptions, the exception of the
+    first such item is raised after all calls have ended.
     """
     if not items:
         return
@@ -37,12 +36,12 @@ def run_parallel(work: Callable[[Item], object], items: Sequence[Item]) -> None:
 
 
 def bands(rows: int, parts: int, step: int) -> list[tuple[int, int]]:
-    """Return up to ``parts`` bands (first row, past the last) of near equal height.
+    """Divide rows into up to ``parts`` bands (first row, end row) of nearly equal height.
 
     Args:
-        rows: in all.
-        parts: 1 or more.
-        step: each band begins with a whole number of these.
+        rows: Total number of rows.
+        parts: Maximum number of bands, at least 1.
+        step: Bands start at multiples of this number of rows.
     """
     steps = -(-rows // step)
     edges = [min(rows, step * (steps * n // parts)) for n in range(parts)] + [rows]

@@ -1,4 +1,4 @@
-"""A block volume as a mesh: the quads that pages and game engines draw, as rays see them."""
+"""Conversion of block volumes to quad meshes for web pages and game engines."""
 
 from world2minecraft.rendering.mesh.baking import BlockMesh, mesh_of
 

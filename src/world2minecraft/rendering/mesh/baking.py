@@ -1,9 +1,8 @@
-"""Bake a block volume to quads: visible faces with texture, tint and light.
+"""Baking of a block volume to quads: the visible faces with texture, tint and light.
 
-Full cubes hide what lies against them, and their faces are merged where they look alike;
-everything else is one quad per face. What can be hidden as a whole (a class, or what one of the
-ways to cut the volume open removes) keeps the faces behind it. Light is that of the light lattice
-at the corners.
+Faces against full cubes are removed, and equal faces of full cubes are merged; every other face is
+one quad. Faces behind blocks that a viewer can hide as a group (a class, or the blocks that a
+cutaway removes) are kept. Light is sampled from the light lattice at the corners.
 """
 
 from dataclasses import dataclass
@@ -47,19 +46,19 @@ NO_STATE = NO_COVER = 65_535
 
 
 class Rectangles(NamedTuple):
-    """R rectangles of unit faces: the lowest cell of each, and how far it goes on."""
+    """R rectangles of unit faces, each given by its lowest cell and its extent."""
 
     first: np.ndarray  # int64 [R], the row of the face in its lowest cell
     length: np.ndarray  # int64 [R, 3], cells along x, y and z
 
 
 def merge_faces(cells: np.ndarray, side: np.ndarray, look: np.ndarray) -> Rectangles:
-    """Join unit faces along one of their axes, and what that gives along the other.
+    """Merge unit faces of equal appearance into rectangles.
 
     Args:
-        cells: int [N, 3].
-        side: int [N], 0 to 5.
-        look: int [N]; only faces of one look are joined, and none whose look is below 0.
+        cells: Cells of the faces, int [N, 3].
+        side: Side of the cell, int [N], 0 to 5.
+        look: Appearance id, int [N]. Faces are merged only if their ids are equal and not negative.
     """
     one, two = (
         cells[np.arange(len(side)), ALONG[side, 0]],
@@ -92,13 +91,13 @@ def _join_runs(keys: list[np.ndarray], may: np.ndarray) -> tuple[np.ndarray, np.
 
 
 def cut_bits(volume: BlockVolume) -> tuple[np.ndarray, np.ndarray]:
-    """Return the cuts that take each block away, and each display entity.
+    """Return bit masks of the cutaways that remove each block and each display entity.
 
-    Bits 0 to 3 are the near walls of ``CORNERS``, bit 4 the ceiling and all above it, bit 5 the
-    upper parts of walls between rooms.
+    Bits 0 to 3 are the near walls of ``CORNERS``, bit 4 is the ceiling with everything above it,
+    and bit 5 is the upper parts of walls between rooms.
 
     Returns:
-        uint8 [X, Y, Z], and uint8 for each of ``display_cubes`` of the volume.
+        Masks of the blocks, uint8 [X, Y, Z], and of the volume's ``display_cubes``, uint8.
     """
     has_floor = bool((volume.semantic == SemanticClass.FLOOR).any())  # Else all would be outside.
     ways = [without_near_walls(volume, *corner) if has_floor else volume for corner in CORNERS]
@@ -116,16 +115,16 @@ def cut_bits(volume: BlockVolume) -> tuple[np.ndarray, np.ndarray]:
 def sample_lattice(
     lattice: np.ndarray, cells: np.ndarray, facing: np.ndarray, points: np.ndarray
 ) -> np.ndarray:
-    """Return sky light, block light (quarters of a level, 0 to 60) and occluders (0 to 240 for 3).
+    """Return sky light, block light and occlusion at points on block faces, as uint8 [N, 3].
+
+    Light is in quarters of a level, 0 to 60. Occlusion is 0 to 240, for 0 to 3 occluders.
 
     Args:
-        lattice: uint16 [3, X + 2, Y + 2, Z + 2], see ``rendering.light.light_field``.
-        cells: int [N, 3], the cell of each point.
-        facing: int [N], the side that the face looks to.
-        points: float64 [N, 3], in coordinates of the cell, 0 to 1.
-
-    Returns:
-        uint8 [N, 3].
+        lattice: Light lattice, uint16 [3, X + 2, Y + 2, Z + 2]; see
+            ``rendering.light.light_field``.
+        cells: Cell of each point, int [N, 3].
+        facing: Side that the face is on, int [N].
+        points: Coordinates within the cell, 0 to 1, float64 [N, 3].
     """
     axis, sign = facing // 2, np.where(facing % 2, 1, -1)
     rows = np.arange(len(points))
@@ -157,11 +156,11 @@ def _parts(words: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class BlockMesh:
-    """Q quads in coordinates of the volume's cells; those that are drawn over others come last.
+    """Q quads in cell coordinates of the volume, with overlays last.
 
-    ``light`` is sky light and block light, 0 to 60, and what darkens a corner, 0 to 240.
-    ``state`` indexes the palette, 65535 for display entities. ``cuts`` are bits of ``cut_bits``. A
-    quad with a ``cover`` is seen only where that is hidden.
+    ``light`` contains sky light and block light, 0 to 60, and corner occlusion, 0 to 240. ``state``
+    indexes the palette and is 65535 for display entities. ``cuts`` are bits of ``cut_bits``. A quad
+    with a ``cover`` is visible only if its cover is hidden.
     """
 
     position: np.ndarray  # float32 [Q, 4, 3]
@@ -199,12 +198,12 @@ class _Placed:
 def mesh_of(
     volume: BlockVolume, looks: ModelSource | None = None, *, texture_px: int = 16
 ) -> BlockMesh:
-    """Return the mesh of a volume, display entities too.
+    """Return the mesh of a volume, including display entities.
 
     Args:
-        volume: the blocks.
-        looks: where models and textures come from; our own set where None.
-        texture_px: the side of a texture, 16, 32, 64 or 128.
+        volume: The blocks.
+        looks: Source of models and textures. None uses the built-in set.
+        texture_px: Texture size in pixels: 16, 32, 64 or 128.
     """
     baker = Baker(looks or BuiltinModels(texture_px), texture_px)
     models = models_of(volume.palette, baker.looks)

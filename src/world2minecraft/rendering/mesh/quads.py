@@ -1,7 +1,7 @@
-"""The faces of elements as quads, and which of them neighbours hide.
+"""Conversion of element faces to quads, and detection of faces that neighbours hide.
 
-Corners run counter-clockwise seen from outside. A quad is flat, so that texture and light are
-given at its four corners.
+Corners are counter-clockwise seen from outside. Quads are planar, so texture coordinates and light
+are stored at the four corners.
 """
 
 from typing import NamedTuple
@@ -29,7 +29,7 @@ INSIDE = -1  # The side of a quad that lies on none.
 
 
 class Quads(NamedTuple):
-    """Q quads, in coordinates of their block, or of the grid for what stands free."""
+    """Q quads, in coordinates of their block, or of the grid for freestanding elements."""
 
     corners: np.ndarray  # float64 [Q, 4, 3]
     uv: np.ndarray  # float32 [Q, 4, 2]
@@ -42,12 +42,12 @@ class Quads(NamedTuple):
     clear: np.ndarray  # bool [Q], drawn over what is behind it
 
     def select(self, rows: np.ndarray) -> "Quads":
-        """Return some of the quads, bool [Q] or int [N]."""
+        """Return a subset of the quads, given by a mask bool [Q] or indices int [N]."""
         return Quads(*(values[rows] for values in self))
 
 
 def quads_of(number: int, element: Element, table: ElementTable) -> Quads:
-    """Return the quads of one element: of each face that is there, one."""
+    """Return the quads of one element, one for each existing face."""
     sides = np.flatnonzero(table.layers[number] >= 0)
     ends = np.array([element.low, element.high], np.float64)
     own = ends[CORNERS[sides], np.arange(3)]
@@ -78,7 +78,7 @@ def quads_of(number: int, element: Element, table: ElementTable) -> Quads:
 
 
 def concatenate_quads(parts: list[Quads]) -> Quads:
-    """Return all quads of some lists, in their order."""
+    """Return the concatenation of several quad lists."""
     if not parts:
         return Quads(
             np.zeros((0, 4, 3)), np.zeros((0, 4, 2), np.float32), np.zeros(0, np.int32),
@@ -91,16 +91,17 @@ def concatenate_quads(parts: list[Quads]) -> Quads:
 def hidden_sides(
     states: np.ndarray, kinds: np.ndarray, joins: np.ndarray, groups: np.ndarray
 ) -> np.ndarray:
-    """Return which sides of each block show nothing, bool [6, X, Y, Z].
+    """Return the invisible sides of each block as bool [6, X, Y, Z].
 
-    A full opaque block beside it hides a face, and so does one of the same state where such blocks
-    join, as glass does; both only within a group, because a group can be hidden as a whole.
+    A side is hidden by an adjacent full opaque block, or by an adjacent block of the same state if
+    such blocks join, as glass does. Only blocks of the same group hide each other, because a group
+    can be hidden as a whole.
 
     Args:
-        states: uint16 [X, Y, Z].
-        kinds: int8 [P], what ``scene_baking.kind_of`` returns of each state.
-        joins: bool [P], which states join their like.
-        groups: int [X, Y, Z].
+        states: Palette indices, uint16 [X, Y, Z].
+        kinds: The result of ``scene_baking.kind_of`` for each state, int8 [P].
+        joins: Whether each state joins with blocks of the same state, bool [P].
+        groups: Group of each block, int [X, Y, Z].
     """
     full = (kinds == FULL)[states]
     joining = joins[states]

@@ -1,4 +1,4 @@
-"""Pictures as files: colour, depth, ids, and moving pictures."""
+"""Image files: colour, depth, ids and animations."""
 
 from world2minecraft.rendering.output.animation import ANIMATION_SUFFIXES, animation_writer
 from world2minecraft.rendering.output.exr import exr_bytes

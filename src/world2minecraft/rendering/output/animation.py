@@ -1,6 +1,7 @@
-"""Write animations frame by frame: GIF, APNG and WebP by pillow, MP4 and WebM by ffmpeg.
+"""Writing of animations frame by frame: GIF, APNG and WebP by Pillow, MP4 and WebM by ffmpeg.
 
-Files are written to a temporary folder and moved into place at the end: whole or not at all.
+Files are written to a temporary folder and then moved into place, so that they are complete or
+absent.
 """
 
 import os
@@ -36,15 +37,17 @@ FrameWriter = Callable[[np.ndarray], None]  # Takes a frame, uint8 [H, W, 3], al
 
 @contextmanager
 def animation_writer(path: str | Path, rate_hz: float) -> Iterator[FrameWriter]:
-    """Write a moving picture: the block is given what takes its frames.
+    """Write an animation; the ``with`` block receives a function that adds a frame.
 
     Args:
-        path: ends in one of ``ANIMATION_SUFFIXES``.
-        rate_hz: frames a second; a GIF rounds each frame to hundredths of a second.
+        path: Output file, with a suffix from ``ANIMATION_SUFFIXES``.
+        rate_hz: Frames per second. GIF rounds frame durations to hundredths of a second.
 
     Raises:
-        UsageError: another suffix, or no frame came. MissingExtraError: there is no ffmpeg.
-        LimitError: it takes too much memory. OutputError: it cannot be written.
+        UsageError: If the suffix is not supported, or if no frame was written.
+        MissingExtraError: If ffmpeg is not installed.
+        LimitError: If the frames need too much memory.
+        OutputError: If the file cannot be written.
     """
     target = Path(path)
     suffix = target.suffix.lower()
@@ -64,12 +67,12 @@ def animation_writer(path: str | Path, rate_hz: float) -> Iterator[FrameWriter]:
 
 
 def ffmpeg_program() -> str:
-    """Return the ffmpeg of the extra ``video``, or the one on the path.
+    """Return the path of ffmpeg, from the extra ``video`` or from ``PATH``.
 
-    It runs as a program of its own: nothing of it is linked in.
+    ffmpeg runs as a separate program and is not linked.
 
     Raises:
-        MissingExtraError: there is none.
+        MissingExtraError: If ffmpeg is not found.
     """
     try:
         from imageio_ffmpeg import get_ffmpeg_exe  # noqa: PLC0415  # An extra.

@@ -1,4 +1,4 @@
-"""OpenEXR files of 32-bit floats: single-part scanlines, zip or no compression."""
+"""Writing of OpenEXR files with 32-bit floats: single-part scan lines, ZIP or no compression."""
 
 import io
 from collections.abc import Mapping
@@ -12,15 +12,15 @@ def exr_bytes(
     compress: bool = True,
     notes: Mapping[str, str] | None = None,
 ) -> bytes:
-    """Return an EXR file of float32 channels.
+    """Encode float32 channels as an EXR file.
 
     Args:
-        channels: name to float32 [H, W], all of one size; depth is called ``Z``.
-        compress: deflate, or raw lines.
-        notes: text attributes for the header.
+        channels: Channels by name, float32 [H, W], all of the same size. Depth is named ``Z``.
+        compress: Whether to compress the scan lines with deflate.
+        notes: Text attributes for the header.
 
     Raises:
-        ValueError: there is no channel, or their sizes differ.
+        ValueError: If there are no channels, or if their sizes differ.
     """
     import OpenEXR  # noqa: PLC0415  # Only a few pictures are EXR.
 

@@ -1,9 +1,9 @@
-"""Single pictures as files' bytes: colour, depth and numbers.
+"""Encoding of single images: colour, depth and ids.
 
 - Colour: PNG, JPEG or WebP.
-- Depth: 16-bit PNG in whole parts of a metre (0 nothing, the largest number all that is farther),
-  EXR (float32 channel ``Z``, metres, 0 nothing) or NPY (the same).
-- Numbers: grey PNG of 8 or 16 bits, or RGBA whose four bytes, red lowest, are number + 1.
+- Depth: 16-bit PNG in integer fractions of a metre (0 without a surface, the maximum for anything
+  farther), EXR (float32 channel ``Z``, metres, 0 without a surface) or NPY (the same values).
+- Ids: grey PNG with 8 or 16 bits, or RGBA whose four bytes, red lowest, are the number + 1.
 """
 
 import io
@@ -24,15 +24,15 @@ _LOSSLESS = 100  # The WebP quality from which it keeps every pixel.
 
 
 def colour_bytes(colour: np.ndarray, suffix: str, quality: int = QUALITY) -> bytes:
-    """Return a colour picture, uint8 [H, W, 3], as a file.
+    """Encode a colour image, uint8 [H, W, 3].
 
     Args:
-        colour: sRGB.
+        colour: sRGB colours.
         suffix: ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
-        quality: 1 to 100, of JPEG and WebP; at 100 WebP is lossless.
+        quality: Quality of JPEG and WebP, 1 to 100. WebP is lossless at 100.
 
     Raises:
-        UsageError: another suffix.
+        UsageError: If the suffix is not supported.
     """
     if suffix == ".png":
         return _saved(Image.fromarray(colour), "PNG", compress_level=_PNG_LEVEL)
@@ -45,15 +45,15 @@ def colour_bytes(colour: np.ndarray, suffix: str, quality: int = QUALITY) -> byt
 
 
 def depth_bytes(depth_m: np.ndarray, suffix: str, per_metre: int = PER_METRE) -> bytes:
-    """Return depth, float32 [H, W] in metres and 0 where there is nothing, as a file.
+    """Encode a depth image, float32 [H, W] in metres with 0 for no surface.
 
     Args:
         depth_m: z-depth or range.
         suffix: ``.png``, ``.exr`` or ``.npy``.
-        per_metre: of PNG, the number that stands for a metre.
+        per_metre: Number that represents a metre in PNG.
 
     Raises:
-        UsageError: another suffix.
+        UsageError: If the suffix is not supported.
     """
     if suffix == ".png":
         return number_bytes(depth_numbers(depth_m, per_metre))
@@ -67,21 +67,21 @@ def depth_bytes(depth_m: np.ndarray, suffix: str, per_metre: int = PER_METRE) ->
 
 
 def depth_numbers(depth_m: np.ndarray, per_metre: int = PER_METRE) -> np.ndarray:
-    """Return depth as whole parts of a metre, uint16 [H, W]: 0 for nothing, else 1 to 65535."""
+    """Convert depth to integer fractions of a metre, uint16 [H, W]; 0 stands for no surface."""
     whole = np.minimum(np.rint(depth_m.astype(np.float64) * per_metre), FARTHEST)
     near = (depth_m > 0) & (whole < 1)  # 0 means that there is nothing.
     return np.where(near, 1, whole).astype(np.uint16)
 
 
 def number_bytes(numbers: np.ndarray) -> bytes:
-    """Return numbers, uint8 or uint16 [H, W], as a grey PNG."""
+    """Encode ids, uint8 or uint16 [H, W], as a grey PNG."""
     return _saved(Image.fromarray(numbers), "PNG", compress_level=_PNG_LEVEL)
 
 
 def index_bytes(index: np.ndarray) -> bytes:
-    """Return an index, int32 [H, W] with -1 for nothing, as an RGBA PNG.
+    """Encode indices, int32 [H, W] with -1 for none, as an RGBA PNG.
 
-    Read it back with ``numpy.asarray(image).view("<u4")[..., 0].astype(int) - 1``.
+    Read the file with ``numpy.asarray(image).view("<u4")[..., 0].astype(int) - 1``.
     """
     packed = (index.astype(np.int64) + 1).astype("<u4")
     rgba = packed.view(np.uint8).reshape(*index.shape, 4)
@@ -89,7 +89,7 @@ def index_bytes(index: np.ndarray) -> bytes:
 
 
 def normal_bytes(normal: np.ndarray) -> bytes:
-    """Return unit normals, float32 [H, W, 3], as a PNG: 128 + 127 n, and black for nothing."""
+    """Encode unit normals, float32 [H, W, 3], as a PNG: 128 + 127 n, black without a surface."""
     packed = np.rint(128 + 127 * normal).astype(np.uint8)
     packed[~normal.any(axis=2)] = 0
     return _saved(Image.fromarray(packed), "PNG", compress_level=_PNG_LEVEL)

@@ -1,6 +1,6 @@
-"""The layers of a picture, by the names that commands and files use.
+"""The output layers of an image, by the names used in commands and files.
 
-A layer says what the renderer must make for it, and how its array becomes a file.
+A layer defines the renderer output that it requires and the file that it is written to.
 """
 
 from collections.abc import Callable, Iterable
@@ -26,7 +26,7 @@ from world2minecraft.rendering.picture import Picture
 
 @dataclass(frozen=True)
 class FileFormats:
-    """How layers become files: suffixes, quality, and what a metre of 16-bit depth is."""
+    """The file formats of layers: suffixes, quality and the scale of 16-bit depth."""
 
     colour_suffix: str = ".png"
     depth_suffix: str = ".png"
@@ -36,7 +36,7 @@ class FileFormats:
 
 @dataclass(frozen=True)
 class Layer:
-    """One layer: what it needs of the renderer, its file, and what it holds."""
+    """An output layer: its renderer output, its file and its contents."""
 
     title: str
     needs: str | None
@@ -129,10 +129,10 @@ GROUPS = {"id": ("state", "class", "instance"), "all": tuple(LAYERS)}
 
 
 def parse_layers(text: str) -> tuple[str, ...]:
-    """Return the layers that a list such as ``rgb,depth,id`` names, each once, in its order.
+    """Return the layers named in a list such as ``rgb,depth,id``, in order and without repeats.
 
     Raises:
-        UnknownNameError: there is no such layer.
+        UnknownNameError: If a layer is unknown.
     """
     names: list[str] = []
     for word in [part.strip().lower() for part in text.split(",") if part.strip()]:
@@ -145,18 +145,18 @@ def parse_layers(text: str) -> tuple[str, ...]:
 
 
 def required_outputs(names: Iterable[str]) -> tuple[str, ...]:
-    """Return what the renderer must make for layers."""
+    """Return the renderer outputs that layers require."""
     return tuple(sorted({need for name in names if (need := LAYERS[name].needs)}))
 
 
 def file_name(stem: str, name: str, choice: FileFormats) -> str:
-    """Return the file of a layer: ``STEM.png`` for colour, ``STEM.depth.png`` for the rest."""
+    """Return the file name of a layer: ``STEM.png`` for colour, ``STEM.depth.png`` for depth."""
     suffix = LAYERS[name].suffix(choice)
     return f"{stem}{suffix}" if name == "rgb" else f"{stem}.{name}{suffix}"
 
 
 def id_names(volume: BlockVolume) -> dict[str, Any]:
-    """Return what the numbers of id layers mean, as it goes into ``names.json``."""
+    """Return the meaning of the numbers in id layers, as written to ``names.json``."""
     return {
         "state": {str(n): state for n, state in enumerate(volume.palette)},
         "class": {str(n): name for n, name in enumerate(CLASS_NAMES)},

@@ -1,6 +1,6 @@
-"""Photos: path tracing of block scenes with sun, sky and lamps, and a filter for its grain.
+"""Path tracing of block scenes with sun, sky and lamps, and denoising.
 
-``render_photo`` takes one; ``emitters_of`` lists a scene's lamps once for many.
+``render_photo`` renders an image. ``emitters_of`` lists the lamps of a scene once for many images.
 """
 
 from world2minecraft.rendering.path_tracing.emitters import Emitters, emitters_of

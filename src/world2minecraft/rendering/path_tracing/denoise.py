@@ -1,9 +1,9 @@
-"""Denoise light by an edge-preserving a-trous filter, with textures divided out.
+"""Denoising by an edge-preserving a-trous filter on light divided by surface reflectance.
 
-What is filtered is light over the share that the surface sends on, so that no texture is smeared.
-Five sweeps, each twice as wide, take the mean over neighbours of one surface: the same plane, the
-same relief, and a light that differs by no more than the grain explains. The grain is known from
-the samples of each pixel and sinks from sweep to sweep, so that edges of shadows stay.
+Dividing by the reflectance keeps textures sharp. Five passes of doubling width average over
+neighbours on the same surface: same plane, same relief, and a difference in light that noise can
+explain. The noise is estimated from the samples of each pixel and decreases with each pass, so that
+shadow edges are preserved.
 """
 
 from collections.abc import Callable
@@ -35,15 +35,16 @@ def denoise_light(
     sweeps: int,
     run: Bands,
 ) -> np.ndarray:
-    """Return light without grain, float32 [H, W, 3].
+    """Return denoised light, float32 [H, W, 3].
 
     Args:
-        light: float32 [H, W, 3], means over samples.
-        squares: float32 [H, W], means of squares of the samples' luminances.
-        count: float32 [H, W], samples; pixels without any are neither read nor changed.
+        light: Means over samples, float32 [H, W, 3].
+        squares: Means of the squared luminances of the samples, float32 [H, W].
+        count: Number of samples, float32 [H, W]. Pixels without samples are ignored and not
+            changed.
         guides: ``place``, ``normal``, ``out`` and ``far`` of a ``Film``.
-        sweeps: how many.
-        run: calls a function for bands of rows that cover so many.
+        sweeps: Number of filter passes.
+        run: Function that calls another function for bands that cover a number of rows.
     """
     grain = np.zeros(light.shape[:2], np.float32)
     now, then = light.copy(), light.copy()
@@ -65,7 +66,7 @@ def denoise_light(
 
 @inlined
 def same_surface(guides, v, u, y, x):
-    """Tell whether two pixels look at one surface, or both at none."""
+    """Return whether two pixels show the same surface, or both show none."""
     place, _, out, far = guides
     cosine = out[v, u, 0] * out[y, x, 0] + out[v, u, 1] * out[y, x, 1] + out[v, u, 2] * out[y, x, 2]
     if cosine <= SAME_NORMAL:
@@ -80,7 +81,7 @@ def same_surface(guides, v, u, y, x):
 
 @lean
 def estimate_variance(light, squares, count, guides, rows, cut, grain):
-    """Cut single pixels that outshine all around them; find the variance of the others' means."""
+    """Clip isolated bright pixels, and estimate the variance of the other pixels' means."""
     height, width = grain.shape
     for v in range(rows[0], rows[1]):
         for u in range(width):
@@ -110,7 +111,7 @@ def estimate_variance(light, squares, count, guides, rows, cut, grain):
 
 @lean
 def filter_pass(light, grain, count, guides, step, rows, out_light, out_grain):
-    """Do one sweep over a band of rows: 5 x 5 pixels, ``step`` apart."""
+    """Apply one filter pass to a band of rows, with 5 x 5 taps that are ``step`` pixels apart."""
     normal = guides[1]
     height, width = grain.shape
     for v in range(rows[0], rows[1]):
@@ -152,6 +153,6 @@ def filter_pass(light, grain, count, guides, step, rows, out_light, out_grain):
 
 @inlined
 def spline_weight(n):
-    """Return the weight of a tap of the cubic spline: 3/8, 1/4, 1/16."""
+    """Return the weight of a tap of the cubic spline: 3/8, 1/4 or 1/16."""
     n = abs(n)
     return 0.375 if n == 0 else (0.25 if n == 1 else 0.0625)

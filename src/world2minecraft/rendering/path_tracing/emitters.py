@@ -1,9 +1,9 @@
-"""The emitters of a scene: every shining box with its place, faces and light, and those near it.
+"""The emitters of a scene: luminous boxes with their position, faces and radiance.
 
-A box is a corner and three edges, so that turned ones are as good as upright ones. How strongly it
-shines comes from its level and its size: a torch lights a room as a glowstone block does, though
-it is a fiftieth as large, as in the game. Lists of the lamps that matter are kept for bricks of 8
-cells a side; what is not in a list is still found by rays that happen to meet it.
+A box is a corner and three edges, which may be rotated. Its radiance depends on its light level and
+its size: as in the game, a torch lights a room like a glowstone block, although it is a fiftieth of
+the size. For bricks of 8 cells per side, lists of the relevant lamps are precomputed; other lamps
+still contribute if a ray hits them by chance.
 """
 
 from typing import NamedTuple
@@ -33,7 +33,7 @@ _NEAREST = 3.0  # Cells: a brick's own lamps are taken to be so far.
 
 
 class Emitters(NamedTuple):
-    """L shining boxes; ``b`` counts the three pairs of faces: -x +x, -y +y, -z +z of the box."""
+    """L luminous boxes. ``b`` indexes the three pairs of faces: -x +x, -y +y, -z +z."""
 
     row_of_cell: np.ndarray  # int32 [X, Y, Z]: the first of a cell's rows, -1 for none
     row_of_element: np.ndarray  # int32 [E]: of standing things, -1 for none
@@ -55,7 +55,7 @@ class Emitters(NamedTuple):
 
 
 def emitters_of(scene: BlockScene) -> Emitters:
-    """Return the lamps of a scene; make them once where many photos are taken of it."""
+    """Return the lamps of a scene. Reuse the result for several images of the scene."""
     tables = scene.tables
     cells, elements, level = _find_emitters(scene, element_levels(tables, scene.material))
     corner, edges = _boxes(tables, cells, elements)
@@ -83,7 +83,7 @@ def emitters_of(scene: BlockScene) -> Emitters:
 
 
 def element_levels(tables: SceneTables, material: np.ndarray) -> np.ndarray:
-    """Return how much each element shines, float64 [E] of 0 to 1: its own or its textures'."""
+    """Return the emission of each element, float64 [E], 0 to 1, from itself or its textures."""
     means = material[:, -1, 4].astype(np.float64) / 255
     faces = np.where(tables.layers >= 0, means[np.maximum(tables.layers, 0)], 0)
     return np.maximum(tables.emission, faces.max(axis=1, initial=0))

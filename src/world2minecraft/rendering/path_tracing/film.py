@@ -1,8 +1,8 @@
-"""The film of a photo: sums over paths, and the surface at the centre of each pixel.
+"""The film of a path-traced image: sums over paths, and the surface at each pixel's centre.
 
-Light that comes by a matt surface is kept separate by whether the sample met the surface that the
-pixel's middle looks at: the filter works surface by surface, and puts both parts of a pixel at an
-edge together again at the end.
+Light from diffuse surfaces is stored in two parts, depending on whether the sample hit the surface
+at the pixel's centre. The denoiser filters each surface separately and recombines both parts of
+edge pixels at the end.
 """
 
 from typing import NamedTuple
@@ -43,13 +43,13 @@ def new_film(height: int, width: int) -> Film:
 
 @inlined
 def luminance(r, g, b):
-    """Return how bright a linear colour is."""
+    """Return the luminance of a linear colour."""
     return 0.2126 * r + 0.7152 * g + 0.0722 * b
 
 
 @inlined
 def store_center_surface(film, v, u, s):
-    """Write what a pixel's middle looks at."""
+    """Store the surface at a pixel's centre."""
     far = 0.0
     for n in range(3):
         film.place[v, u, n] = s.at[n]
@@ -61,7 +61,7 @@ def store_center_surface(film, v, u, s):
 
 @inlined
 def is_center_surface(film, v, u, s):
-    """Tell whether a sample's first surface is the one in the pixel's middle."""
+    """Return whether a sample's first surface is the surface at the pixel's centre."""
     cosine, off = 0.0, 0.0
     for n in range(3):
         cosine += film.out[v, u, n] * s.first_out[n]
@@ -71,7 +71,7 @@ def is_center_surface(film, v, u, s):
 
 @inlined
 def add_sample(film, v, u, s):
-    """Add what a path has come to."""
+    """Add the result of a path to a pixel."""
     film.samples[v, u, 1] += 1
     for n in range(3):
         film.seen[v, u, n] += s.seen[n]

@@ -1,4 +1,4 @@
-"""Develop a film to a picture: denoise and recombine light, expose it, and tone map to sRGB."""
+"""Development of a film to an image: denoising, recombination, exposure and tone mapping."""
 
 import numpy as np
 
@@ -21,12 +21,12 @@ SEEN_POWER = 0.5  # Sky and lamps themselves are opened up half as far as what t
 
 
 def surface_light(film: Film, denoise: bool, run: Bands) -> np.ndarray:
-    """Return the light of surfaces, float32 [H, W, 3], without what is seen of sky and lamps.
+    """Return the light of surfaces, float32 [H, W, 3], without directly visible sky and lamps.
 
     Args:
-        film: sums over samples.
-        denoise: whether to filter.
-        run: calls a function for bands of rows that cover so many.
+        film: Sums over samples.
+        denoise: Whether to denoise the light.
+        run: Function that calls another function for bands that cover a number of rows.
     """
     count = np.maximum(film.samples[..., 1:], 1)
     if not denoise:
@@ -63,7 +63,7 @@ def _add_other(light, own, film: Film, guides, result) -> None:
 
 @lean
 def add_other(light, own, other_light, other_share, count, guides, result):
-    """Light the other surfaces of each pixel as those of its neighbours are lit."""
+    """Light the secondary surfaces of each pixel like those of its neighbours."""
     height, width = own.shape
     for v in range(height):
         for u in range(width):
@@ -86,12 +86,12 @@ def add_other(light, own, other_light, other_share, count, guides, result):
 
 
 def picture_exposure(light: np.ndarray, film: Film, daylight: float) -> float:
-    """Return how far a picture is opened up, from its own light.
+    """Return the exposure of an image, computed from its light.
 
     Args:
-        light: of surfaces, float32 [H, W, 3].
-        film: tells where surfaces are.
-        daylight: 0 to 1: a night stays a little darker.
+        light: Light of surfaces, float32 [H, W, 3].
+        film: The film, which marks the pixels with surfaces.
+        daylight: Amount of daylight, 0 to 1. Images at night are exposed slightly darker.
     """
     shows = film.far > 0
     if not shows.any():
@@ -104,7 +104,7 @@ def picture_exposure(light: np.ndarray, film: Film, daylight: float) -> float:
 
 @lean
 def to_screen(radiance, exposure, tone, colour):
-    """Fill uint8 [H, W, 3] from linear light."""
+    """Fill uint8 [H, W, 3] with the sRGB colours of linear light."""
     for v in range(radiance.shape[0]):
         for u in range(radiance.shape[1]):
             colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = tone_map_pixel(
@@ -116,7 +116,7 @@ def to_screen(radiance, exposure, tone, colour):
 
 
 def screen_colours(radiance: np.ndarray, exposure: float, tone: Tone) -> np.ndarray:
-    """Return sRGB, uint8 [H, W, 3], of linear light."""
+    """Return the sRGB colours of linear light, uint8 [H, W, 3]."""
     colour = np.empty(radiance.shape, np.uint8)
     to_screen(radiance, exposure, tone, colour)
     return colour

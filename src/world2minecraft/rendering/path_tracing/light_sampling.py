@@ -1,8 +1,8 @@
-"""Sample emitters: which one, where on it, and with what probability density.
+"""Sampling of emitters: the choice of a lamp, a point on it, and the probability density.
 
-The choice depends only on the lit point and its outward normal, so that for a ray that hits an
-emitter by chance the density of sampling it is known: both ways are weighted by multiple importance
-sampling, and no light is counted twice.
+The choice depends only on the lit point and its outward normal. The sampling density is therefore
+also known for an emitter that a ray hits by chance, so that multiple importance sampling can weight
+both ways without counting light twice.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ UNSEEN_SOFT = 2.5  # Cells: nearer to a lamp that is not seen, its light hardly 
 
 @inlined
 def brick_of(emitters, at):
-    """Return the brick of a point, the nearest one where it lies outside."""
+    """Return the brick that contains a point, or the nearest brick for a point outside."""
     i = min(max(int(at[0]) // BRICK, 0), emitters.bricks[0] - 1)
     j = min(max(int(at[1]) // BRICK, 0), emitters.bricks[1] - 1)
     k = min(max(int(at[2]) // BRICK, 0), emitters.bricks[2] - 1)
@@ -24,7 +24,7 @@ def brick_of(emitters, at):
 
 @inlined
 def emitter_weight(emitters, row, at, out):
-    """Return how much a lamp may give to a point, roughly; 0 where it lies all behind it."""
+    """Return the approximate contribution of a lamp to a point, 0 for a lamp behind the surface."""
     x = emitters.centre[row, 0] - at[0]
     y = emitters.centre[row, 1] - at[1]
     z = emitters.centre[row, 2] - at[2]
@@ -38,10 +38,10 @@ def emitter_weight(emitters, row, at, out):
 
 @inlined
 def choose_emitter(emitters, at, out, number):
-    """Return ``(row, odds, number, total)``: a lamp near a point, -1 for none.
+    """Return ``(row, odds, number, total)`` of a lamp chosen near a point; row is -1 for none.
 
-    ``number`` of [0, 1) decides; the rest of it is returned, uniform again. ``total`` is the sum of
-    the weights, from which ``odds`` of any lamp follow.
+    ``number`` in [0, 1) determines the choice and is returned rescaled to a uniform number.
+    ``total`` is the sum of the weights, from which the ``odds`` of any lamp follow.
     """
     brick = brick_of(emitters, at)
     total, row, weight = 0.0, -1, 0.0
@@ -61,7 +61,7 @@ def choose_emitter(emitters, at, out, number):
 
 @inlined
 def is_near(emitters, row, at):
-    """Tell whether a lamp is in the list of a point's brick."""
+    """Return whether a lamp is in the list of a point's brick."""
     brick = brick_of(emitters, at)
     for place in range(emitters.near_start[brick], emitters.near_start[brick + 1]):
         if emitters.near[place] == row:
@@ -71,7 +71,7 @@ def is_near(emitters, row, at):
 
 @inlined
 def face_before(emitters, row, pair, at):
-    """Return ``(distance, side)``: how far a point lies before a face of a pair; 0 for none."""
+    """Return ``(distance, side)`` of a point in front of a face of a pair; distance 0 for none."""
     height = (
         (at[0] - emitters.corner[row, 0]) * emitters.out[row, pair, 0]
         + (at[1] - emitters.corner[row, 1]) * emitters.out[row, pair, 1]
@@ -87,7 +87,7 @@ def face_before(emitters, row, pair, at):
 
 @inlined
 def choose_face(emitters, row, at, number):
-    """Return ``(pair, side, odds, distance)``: a face of a lamp before a point; odds 0 for none."""
+    """Return ``(pair, side, odds, distance)`` of a lamp face towards a point; odds 0 for none."""
     total, pair, side, weight, before = 0.0, 0, 0, 0.0, 0.0
     for other in range(3):
         distance, which = face_before(emitters, row, other, at)
@@ -105,7 +105,7 @@ def choose_face(emitters, row, at, number):
 
 @inlined
 def face_odds(emitters, row, pair, at):
-    """Return ``(odds, distance)`` with which ``choose_face`` takes a pair's face."""
+    """Return ``(odds, distance)`` with which ``choose_face`` chooses the face of a pair."""
     total, weight, before = 0.0, 0.0, 0.0
     for other in range(3):
         distance, _ = face_before(emitters, row, other, at)
@@ -118,7 +118,7 @@ def face_odds(emitters, row, pair, at):
 
 @inlined
 def sample_emitter(emitters, s, pick, first, second):
-    """Set direction, distance, light and density of a lamp; tell whether there is one."""
+    """Sample a direction, distance, radiance and density of a lamp; return False for none."""
     row, odds, pick, s.weights = choose_emitter(emitters, s.at, s.out, pick)
     if row < 0:
         return False
@@ -146,7 +146,7 @@ def sample_emitter(emitters, s, pick, first, second):
 
 @inlined
 def emitter_row(emitters, shape, s, element):
-    """Return the row of the lamp that a path has met, -1 for none."""
+    """Return the row of the lamp that a path has hit, or -1."""
     row = emitters.row_of_element[element]
     if row >= 0 or len(emitters.cell) == 0:
         return row
@@ -164,7 +164,7 @@ def emitter_row(emitters, shape, s, element):
 
 @inlined
 def sampling_density(emitters, row, s):
-    """Return the density with which aiming, at the last bounce, takes the direction of a lamp."""
+    """Return the density with which light sampling at the last bounce chooses a lamp."""
     if s.weights <= 0 or not is_near(emitters, row, s.from_at):
         return 0.0
     weight = emitter_weight(emitters, row, s.from_at, s.from_out)

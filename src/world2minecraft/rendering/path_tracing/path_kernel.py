@@ -1,8 +1,9 @@
-"""The path tracing kernel: paths from the eye through a scene, surface by surface, to its light.
+"""The path tracing kernel, which follows paths from the eye through a scene to light sources.
 
-At each surface the sun and one emitter are sampled; then the path continues by one of the
-surface's lobes. The sky is found by paths alone; emitters are found both ways, combined by multiple
-importance sampling. Glass is passed, tinting what lies behind, or reflects where it is seen first.
+At each surface the sun and one emitter are sampled. The path then continues with one of the
+surface's lobes. The sky is only found by such paths; emitters are found in both ways, combined by
+multiple importance sampling. Glass transmits and tints light, or reflects it if it is the first
+surface.
 """
 
 import numpy as np
@@ -53,18 +54,18 @@ _MIRROR_ODDS = 0.2  # How often at least the mirror of the first pane is followe
 
 @lean
 def trace_rows(scene, emitters, sky, camera, rows, samples, seed, depth, state, film):
-    """Add samples to the rows of a film; the first call also finds the centre surfaces.
+    """Add samples to the rows of a film. The first call also finds the centre surfaces.
 
     Args:
         scene: ``PathScene``.
         emitters: ``Emitters``.
         sky: ``SkyLight``.
-        camera: ``GridCamera`` with a pinhole.
-        rows: the first row and past the last.
-        samples: the first sample and past the last.
-        seed: of the random numbers, a uint32.
-        depth: surfaces by which light comes to the eye, at most.
-        state: ``new_path()``, this band's own.
+        camera: A pinhole ``GridCamera``.
+        rows: First row and end row.
+        samples: First sample and end sample.
+        seed: Random seed, uint32.
+        depth: Maximum number of surfaces on a path.
+        state: Scratch memory of this band, from ``new_path()``.
         film: ``Film``.
     """
     s = state[0]
@@ -84,7 +85,7 @@ def trace_rows(scene, emitters, sky, camera, rows, samples, seed, depth, state, 
 
 @inlined
 def begin_path(camera, u, v, sample, s):
-    """Start a path at a place of a pixel; sample -1 is its middle."""
+    """Start a path at a position within a pixel. Sample -1 is the pixel's centre."""
     pose, rays = camera.pose, camera.rays
     s.sample, s.use = sample, 1
     across, down = 0.5, 0.5
@@ -151,7 +152,7 @@ def follow_path(scene, emitters, sky, depth, s):
 
 @inlined
 def add_radiance(s, r, g, b, rare):
-    """Add light to what the path brings, where its first surface says; cut what is rare."""
+    """Add radiance to a path, in the part given by its first surface, and clamp outliers."""
     if s.lobe == UNDECIDED:
         s.seen[0] += r
         s.seen[1] += g
@@ -177,7 +178,7 @@ def add_radiance(s, r, g, b, rare):
 
 @inlined
 def add_sky_radiance(sky, s):
-    """Bring the light of the sky: the seen one by the eye or a mirror, else the one that lights."""
+    """Add the radiance of the visible sky (eye and mirror rays) or of the lighting sky."""
     if s.sharp:
         r, g, b = background_light(s.d[0], s.d[1], s.d[2], sky.background)
     else:
@@ -187,7 +188,7 @@ def add_sky_radiance(sky, s):
 
 @inlined
 def add_emitter_radiance(tables, emitters, s):
-    """Bring the light of a lamp that the path has met."""
+    """Add the radiance of a lamp that the path has hit."""
     if s.sharp:
         glow = SEEN_GLOW * s.level
         if glow > 0:
@@ -203,7 +204,7 @@ def add_emitter_radiance(tables, emitters, s):
 
 @inlined
 def reflects_on_glass(s, depth):
-    """Pass a pane, or have its mirror followed (True); the share and the ray are set."""
+    """Pass through a pane, or return True to follow its reflection; sets the share and the ray."""
     mirror = pane_reflectance(s)
     odds = 0.0
     if s.lobe == UNDECIDED and depth > 0:
@@ -228,7 +229,7 @@ def reflects_on_glass(s, depth):
 
 @inlined
 def add_direct_light(scene, emitters, sky, s):
-    """Aim at the sun and at one lamp, and bring what reaches the surface."""
+    """Sample the sun and one lamp, and add the light that reaches the surface."""
     s.weights, s.aim_odds, only = 0.0, 1.0, -1
     has_sun, has_lamps = sky.sun_r + sky.sun_g + sky.sun_b > 0, len(emitters.cell) > 0
     pick, other = sample_pair(s.key, s.sample, s.use + 1)
@@ -277,7 +278,7 @@ def add_direct_light(scene, emitters, sky, s):
 
 @inlined
 def is_unoccluded(scene, s):
-    """Tell whether nothing but glass lies on the way to what is aimed at; ``way`` is its tint."""
+    """Return whether only glass is between a point and a light; ``way`` receives the glass tint."""
     tables, side_px, decode = scene.tables, scene.side_px, scene.decode
     ray = make_ray(
         s.at[0] + _OFF * s.out[0], s.at[1] + _OFF * s.out[1], s.at[2] + _OFF * s.out[2],
@@ -311,7 +312,7 @@ def is_unoccluded(scene, s):
 
 @inlined
 def sample_bounce(s):
-    """Choose a lobe and a direction; tell whether the path goes on."""
+    """Choose a lobe and a direction, and return whether the path continues."""
     pick, stay = sample_pair(s.key, s.sample, s.use)
     first, second = sample_pair(s.key, s.sample, s.use + 1)
     s.use += 2

@@ -1,4 +1,4 @@
-"""A photo of a block scene: path-traced, filtered, exposed."""
+"""Photorealistic images of a block scene: path-traced, denoised and exposed."""
 
 import time
 from collections.abc import Callable
@@ -37,9 +37,9 @@ PASS_SAMPLES = 4  # Samples a pixel between two looks at the clock.
 
 @dataclass(frozen=True, eq=False)
 class Photo(Picture):
-    """A picture whose colour is path-traced; depth, ids and normals are those of ``Picture``.
+    """A path-traced image. Depth, ids and normals are those of ``Picture``.
 
-    ``albedo`` is what the matt surface behind all glass sends on, tinted by the glass.
+    ``albedo`` is the diffuse reflectance of the first surface behind glass, tinted by the glass.
     """
 
     radiance: np.ndarray | None = None  # float32 [H, W, 3], linear; times exposure it is shown
@@ -63,24 +63,25 @@ def render_photo(
     progress: Progress = no_progress,
     emitters: Emitters | None = None,
 ) -> Photo:
-    """Take a photo of a scene.
+    """Render a path-traced image of a scene.
 
     Args:
-        scene: from ``prepare_scene``.
-        camera: intrinsics; its distortion is ignored.
-        camera_to_room: 4x4, OpenCV axes, metres.
-        light: the hour, and the exposure unless the photo's own light shall decide.
-        samples: paths a pixel, 1 to 4096.
-        seed: the same one gives the same picture, whatever the threads.
-        depth: surfaces by which light comes to the eye at most, 1 to 64; 1 is direct light.
-        threads: how many bands of rows are traced at a time.
-        denoise: whether to filter the light.
-        budget_s: wall time after which no further pass over the picture begins; one is made.
-        progress: called with the stage ``photo`` after each pass: samples done and time left.
-        emitters: of ``emitters_of(scene)``, where many photos are taken of one scene.
+        scene: The result of ``prepare_scene``.
+        camera: Camera intrinsics. Distortion is ignored.
+        camera_to_room: Camera pose, 4x4, OpenCV axes, metres.
+        light: Time of day, and the exposure unless it is determined automatically.
+        samples: Paths per pixel, 1 to 4096.
+        seed: Random seed. The same seed gives the same image for any number of threads.
+        depth: Maximum number of surfaces on a light path, 1 to 64. 1 is direct light only.
+        threads: Number of bands of rows traced in parallel.
+        denoise: Whether to denoise the light.
+        budget_s: Wall-clock seconds after which no further pass starts. At least one pass is made.
+        progress: Callback for the stage ``photo`` after each pass, with the samples done and the
+            remaining time.
+        emitters: The result of ``emitters_of(scene)``, to reuse for several images of a scene.
 
     Raises:
-        ValueError: a number is out of range, or the light knows no hour.
+        ValueError: If a number is out of range, or if the light preset has no time of day.
     """
     _check(camera, samples, depth)
     sky = sky_light(light)

@@ -1,8 +1,8 @@
-"""Random numbers by hashing: the same for a pixel, a sample and a use in any order of calls.
+"""Random numbers by hashing, which depend only on the pixel, the sample and their use.
 
-The first uses of a path come from Sobol's sequence in two dimensions, its order and its values
-scrambled by hashes of the pixel (Owen scrambling), so that 16 samples lie evenly; later uses,
-where evenness is lost anyway, are plain hashes.
+The first uses of a path come from a two-dimensional Sobol sequence, whose order and values are
+scrambled by hashes of the pixel (Owen scrambling), so that 16 samples are evenly distributed. Later
+uses, which would not benefit, are plain hashes.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ def reverse_bits(x):
 
 @inlined
 def owen_scramble(x, seed):
-    """Return a uint32, given with its bits reversed, scrambled as Owen does, in right order."""
+    """Return the Owen-scrambled value of a uint32 whose bits are given in reverse order."""
     x = _U(x ^ _U(x * _U(0x3D20ADEA)))
     x = _U(x + seed)
     x = _U(x * _U(_U(seed >> _U(16)) | _U(1)))
@@ -48,9 +48,9 @@ def owen_scramble(x, seed):
 
 @inlined
 def sobol_second_dimension(x):
-    """Return the second coordinate, its bits reversed, of a place in Sobol's sequence.
+    """Return the second Sobol coordinate of an index, with its bits in reverse order.
 
-    Pascal's triangle modulo 2 as a matrix of bits, applied by halves.
+    It is computed as a bit matrix, Pascal's triangle modulo 2, applied by halves.
     """
     x = _U(x ^ _U(x >> _U(16)))
     x = _U(x ^ _U(_U(x & _U(0xFF00FF00)) >> _U(8)))
@@ -61,12 +61,12 @@ def sobol_second_dimension(x):
 
 @inlined
 def sample_pair(pixel_key, sample, use):
-    """Return two numbers of [0, 1) for a use of a sample; uses count from 0.
+    """Return two random numbers in [0, 1) for a given use of a sample.
 
     Args:
-        pixel_key: uint32, a hash of the pixel and the seed.
-        sample: which sample of the pixel.
-        use: what the numbers are for; each use has numbers of its own.
+        pixel_key: Hash of the pixel and the seed, uint32.
+        sample: Index of the sample in the pixel.
+        use: Index of the purpose of the numbers, from 0. Different uses get independent numbers.
     """
     key = hash_uint32(_U(pixel_key) ^ hash_uint32(_U(use) + _U(0x9E3779B9)))
     if use >= EVEN_USES:

@@ -1,10 +1,10 @@
-"""The surface that a path hits, and how it scatters light: a matt and a glossy lobe.
+"""The surface that a path hits, and its scattering of light by a diffuse and a glossy lobe.
 
-``PATH`` is the record of one path that the kernels of a band of rows share; lengths are cells of
-the grid, directions unit vectors, colours linear. The matt lobe follows the cosine. The glossy lobe
-is the microfacet model of Trowbridge and Reitz (GGX) with Smith's shadowing; visible normals are
-sampled. Rough surfaces that are not metal have no gloss at all: it would cost rays and show
-nothing.
+``PATH`` is the record of one path, which the kernels of a band of rows share. Lengths are in grid
+cells, directions are unit vectors, and colours are linear. The diffuse lobe is Lambertian. The
+glossy lobe is the microfacet model of Trowbridge and Reitz (GGX) with Smith shadowing and sampling
+of visible normals. Rough non-metallic surfaces have no glossy lobe, because it would cost rays
+without a visible effect.
 """
 
 from typing import NamedTuple
@@ -58,7 +58,7 @@ _MIRROR = 0.04  # What glass and lacquer mirror straight ahead.
 
 
 class PathScene(NamedTuple):
-    """What the kernels read of a scene."""
+    """The data of a scene that the path tracing kernels read."""
 
     tables: SceneTables
     material: np.ndarray  # uint8 [L, M, 5], see ``rendering.atlas``
@@ -67,25 +67,25 @@ class PathScene(NamedTuple):
 
 
 def new_path() -> np.ndarray:
-    """Return the record of a path, an array of one."""
+    """Return an array with one path record."""
     return np.zeros(1, PATH)
 
 
 @inlined
 def copy_vector(to, vector):
-    """Copy three numbers; numba's own way would want to allocate."""
+    """Copy three numbers without the memory allocation of numba's array copy."""
     to[0], to[1], to[2] = vector[0], vector[1], vector[2]
 
 
 @inlined
 def is_glass(tables, n, face):
-    """Tell whether one may see through a face of an element."""
+    """Return whether a face of an element is transparent."""
     return tables.translucent[tables.layers[n, face]] or tables.traits[n, FLAGS] & PANE != 0
 
 
 @inlined
 def glass_texel(tables, side_px, n, face, i, j, k, x, y, z):
-    """Return the place, in its texture, of the finest texel at a place of a cell's element."""
+    """Return the index of the finest texel at a point of a cell's element."""
     flags, turn = tables.traits[n, FLAGS], tables.traits[n, TURN]
     if not flags & ABSOLUTE:
         x, y, z = x - i, y - j, z - k
@@ -97,7 +97,7 @@ def glass_texel(tables, side_px, n, face, i, j, k, x, y, z):
 
 @inlined
 def load_surface(scene, s):
-    """Fill the path's surface from what ``first_hit`` gave: t, cell, face and element."""
+    """Fill the path's surface from the result of ``first_hit``: t, cell, face and element."""
     tables, material, side_px, decode = scene
     i, j, k = s.cell[0], s.cell[1], s.cell[2]
     n = s.element
@@ -140,7 +140,7 @@ def load_surface(scene, s):
 
 @inlined
 def apply_normal_map(tables, turn, m, p, q, s):
-    """Turn the path's normal by a normal map: p along u, q along v (down)."""
+    """Rotate the path's normal by a normal map, with p along u and q along v (down)."""
     for axis in range(3):
         nx, ny, nz = normal_of(tables, turn, 2 * axis + 1)
         along = p * m[0, axis] + q * m[1, axis]  # Textures may be mirrored or stretched.
@@ -158,7 +158,7 @@ def apply_normal_map(tables, turn, m, p, q, s):
 
 @inlined
 def fresnel(base, cosine):
-    """Return the share that is mirrored at an angle, of the share straight ahead (Schlick)."""
+    """Return the reflectance at an angle from the reflectance at normal incidence (Schlick)."""
     dark = 1.0 - min(max(cosine, 0.0), 1.0)
     square = dark * dark
     return base + (1.0 - base) * square * square * dark
@@ -166,13 +166,13 @@ def fresnel(base, cosine):
 
 @inlined
 def lobe_width(s):
-    """Return the width of the glossy lobe, GGX's alpha."""
+    """Return the width of the glossy lobe, the alpha of GGX."""
     return max(s.rough * s.rough, MIN_WIDTH)
 
 
 @inlined
 def pane_reflectance(s):
-    """Return what a pane of glass mirrors, both of its faces counted."""
+    """Return the reflectance of a glass pane, including both of its faces."""
     cosine = -(s.out[0] * s.d[0] + s.out[1] * s.d[1] + s.out[2] * s.d[2])
     once = fresnel(_MIRROR, cosine)
     return 2.0 * once / (1.0 + once)
@@ -180,7 +180,7 @@ def pane_reflectance(s):
 
 @inlined
 def set_lobes(s):
-    """Fill the shares of both lobes, and how often the glossy one is followed."""
+    """Compute the weights of both lobes, and the probability of sampling the glossy lobe."""
     cosine = -(s.normal[0] * s.d[0] + s.normal[1] * s.d[1] + s.normal[2] * s.d[2])
     width = lobe_width(s)
     glossy = min(max((_DULL - width) / _FADE, 0.0), 1.0)
@@ -200,7 +200,7 @@ def set_lobes(s):
 
 @inlined
 def smith_shadowing(cosine, width):
-    """Return Smith's share of small mirrors that are seen at an angle."""
+    """Return Smith's fraction of microfacets that are visible at an angle."""
     if cosine <= 0:
         return 0.0
     square = cosine * cosine
@@ -209,9 +209,9 @@ def smith_shadowing(cosine, width):
 
 @inlined
 def evaluate_gloss(s, x, y, z):
-    """Return ``(value, density)`` of the glossy lobe towards a direction, cosine counted.
+    """Return ``(value, density)`` of the glossy lobe in a direction, including the cosine.
 
-    The value is without the lobe's share, ``shine``.
+    The value does not include the weight of the lobe, ``shine``.
     """
     width = lobe_width(s)
     seen = -(s.normal[0] * s.d[0] + s.normal[1] * s.d[1] + s.normal[2] * s.d[2])
@@ -230,7 +230,7 @@ def evaluate_gloss(s, x, y, z):
 
 @inlined
 def sample_matt(s, first, second):
-    """Point the ray anywhere above the surface, by the cosine; return the density of that."""
+    """Sample a cosine-distributed direction above the surface, and return its density."""
     ax, ay, az, bx, by, bz = tangent_frame(s.normal[0], s.normal[1], s.normal[2])
     radius, turn = np.sqrt(first), 2 * np.pi * second
     p, q, up = radius * np.cos(turn), radius * np.sin(turn), np.sqrt(max(1.0 - first, 1e-9))
@@ -242,9 +242,9 @@ def sample_matt(s, first, second):
 
 @inlined
 def sample_gloss(s, first, second):
-    """Point the ray as a small mirror sends it; return ``(share, density)``, share without shine.
+    """Sample a direction of the glossy lobe, and return ``(share, density)`` without ``shine``.
 
-    The mirror is drawn among those that the eye sees (Heitz 2018).
+    The microfacet normal is sampled from the visible normals (Heitz 2018).
     """
     width = lobe_width(s)
     ax, ay, az, bx, by, bz = tangent_frame(s.normal[0], s.normal[1], s.normal[2])

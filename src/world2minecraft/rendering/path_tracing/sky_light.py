@@ -1,7 +1,7 @@
-"""The sun and the sky as sources of light, from the hour that a ``LightSettings`` names.
+"""The sun and the sky as light sources at the hour given by a ``LightSettings``.
 
-The sky that is seen is the one of ``rendering.light.sky``; the sky that lights is the same,
-each channel scaled so that open ground in the shade gets what the hour says.
+The visible sky is that of ``rendering.light.sky``. The sky used for lighting has each channel
+scaled, so that open ground in the shade gets the light intended for that hour.
 """
 
 from typing import NamedTuple
@@ -23,7 +23,7 @@ SUN_COSINE = 0.99985  # Of its disc's radius, 1 degree: twice the true one, for 
 
 
 class SkyLight(NamedTuple):
-    """What the kernel reads of sky and sun."""
+    """The sky and sun parameters that the kernel reads."""
 
     background: Background  # at exposure 1
     scale_r: float  # what lights, beside what is seen
@@ -36,10 +36,10 @@ class SkyLight(NamedTuple):
 
 
 def sky_light(light: LightSettings) -> SkyLight:
-    """Return the sky and the sun of a light's hour.
+    """Return the sky and the sun at the hour of the light settings.
 
     Raises:
-        ValueError: the light's preset knows no sky.
+        ValueError: If the light preset has no sky.
     """
     if light.preset != "shader":
         raise ValueError(f"photos need the light preset 'shader', got {light.preset!r}")
@@ -54,7 +54,7 @@ def sky_light(light: LightSettings) -> SkyLight:
 
 
 def uniform_sky(red: float, green: float, blue: float) -> SkyLight:
-    """Return a sky that is the same everywhere, with no sun: a white furnace."""
+    """Return a uniform sky without a sun, for white furnace tests."""
     colour = (red, green, blue)
     background = Background._make([*colour, *colour, *colour, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
     return SkyLight(background, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, SUN_COSINE)
@@ -70,7 +70,7 @@ def _open_light(zenith: tuple[float, ...], horizon: tuple[float, ...]) -> np.nda
 
 @inlined
 def sky_radiance(dx, dy, dz, sky):
-    """Return the linear light that comes from a direction of the sky, without the sun's disc."""
+    """Return the linear radiance of the sky in a direction, without the sun's disc."""
     r, g, b = background_light(dx, dy, dz, sky.background)
     bg = sky.background
     if dx * bg.sun_x + dy * bg.sun_y + dz * bg.sun_z > DISC_COSINE and dy > -0.05:
@@ -82,7 +82,7 @@ def sky_radiance(dx, dy, dz, sky):
 
 @inlined
 def tangent_frame(x, y, z):
-    """Return two unit vectors square to a unit vector and to each other."""
+    """Return two unit vectors orthogonal to a unit vector and to each other."""
     sign = 1.0 if z >= 0 else -1.0
     a = -1.0 / (sign + z)
     b = x * y * a
@@ -91,7 +91,7 @@ def tangent_frame(x, y, z):
 
 @inlined
 def sample_sun(sky, first, second):
-    """Return a unit direction into the sun's disc from two numbers of [0, 1)."""
+    """Return a unit direction into the sun's disc from two random numbers in [0, 1)."""
     bg = sky.background
     ax, ay, az, bx, by, bz = tangent_frame(bg.sun_x, bg.sun_y, bg.sun_z)
     cosine = 1.0 - first * (1.0 - sky.disc_cosine)

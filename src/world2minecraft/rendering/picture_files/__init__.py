@@ -1,4 +1,4 @@
-"""Pictures of a build as files: which shots are taken, how they are drawn, and where they go.
+"""Rendering of a build to image files: selection of shots, rendering and output.
 
-``draw_files`` does all of it; ``w2m render`` and ``world2minecraft.render_files`` call it.
+``draw_files`` is the entry point, which ``w2m render`` and ``world2minecraft.render_files`` call.
 """

@@ -1,4 +1,4 @@
-"""Where pictures go: one file, a folder or an animation, with the poses beside them."""
+"""Destinations of images: one file, a folder or an animation, with the poses beside it."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -33,7 +33,7 @@ _NUMBERS = ("block", "opaque", "state", "class", "instance", "face")
 
 @dataclass(frozen=True)
 class Target:
-    """Where pictures go, and which layers of them."""
+    """The destination of images, and the layers to write."""
 
     path: Path
     medium: Medium
@@ -41,7 +41,7 @@ class Target:
     choice: FileFormats
 
     def beside(self, name: str) -> Path:
-        """Return the place of a file about the pictures: in their folder, or beside them."""
+        """Return the path of a side file, in the image folder or beside the image."""
         if self.medium == "folder":
             return self.path / name
         return self.path.with_name(f"{self.path.stem}.{name}")
@@ -51,11 +51,11 @@ def choose_target(
     out: Path | None, name: str, kind: Kind, layers: tuple[str, ...], choice: FileFormats,
     frames: int | None,
 ) -> Target:  # fmt: skip
-    """Return where pictures go, by the suffix of ``out``.
+    """Return the destination of images, chosen by the suffix of ``out``.
 
     Raises:
-        UsageError: the suffix is not known, or its format cannot hold the layers.
-        OutputError: ``out`` is a file where a folder is needed, or the other way round.
+        UsageError: If the suffix is unknown, or if its format cannot contain the layers.
+        OutputError: If ``out`` is a file but must be a folder, or the other way round.
     """
     if out is None:
         end = {"tour": ".gif", "turntable": ".gif", "poses": "_views"}.get(kind, ".png")
@@ -88,7 +88,7 @@ def _file(out: Path) -> Path:
 
 
 class Writer:
-    """Writes pictures as they come, and their poses at the end."""
+    """A writer of images as they are rendered, and of their poses at the end."""
 
     def __init__(self, target: Target, block_to_room: np.ndarray, scene_id: str, tour_id: str):
         """Begin with nothing written."""
@@ -98,7 +98,7 @@ class Writer:
 
     @contextmanager
     def open(self, rate_hz: float) -> Iterator[None]:
-        """Open an animation while the block runs; other files need nothing."""
+        """Open an animation for the duration of a ``with`` block. Other formats need no setup."""
         if self.target.medium != "moving":
             yield
             return
@@ -106,7 +106,7 @@ class Writer:
             yield
 
     def later(self, shot: Shot, picture: Picture, volume: BlockVolume) -> Callable[[], None]:
-        """Name the files of a picture; return a function that writes them, on any thread."""
+        """Reserve the file names of an image, and return a thread-safe function that writes it."""
         moving, choice = self._moving, self.target.choice
         if moving is not None:
             self._line(shot, {"rgb": self.target.path.name})
@@ -121,7 +121,7 @@ class Writer:
         return write
 
     def colour(self, shot: Shot, colour: np.ndarray | None) -> None:
-        """Write a picture that has colour alone."""
+        """Write an image that only has colour."""
         if colour is None:
             raise ValueError("the image has no colour; request the output 'rgb'")
         if self._moving is not None:
@@ -133,7 +133,7 @@ class Writer:
         self._line(shot, {"rgb": path.name})
 
     def finish(self, volume: BlockVolume) -> None:
-        """Write the poses, and the names of the ids where a layer holds ids."""
+        """Write the poses, and the meaning of ids if a layer contains ids."""
         write_lines(self.target.beside(LINES_FILE), self.lines)
         if any(name in _NUMBERS for name in self.target.layers):
             write_json(self.target.beside(NAMES_FILE), id_names(volume))
@@ -162,7 +162,11 @@ class Writer:
 
 
 def check_many(target: Target, count: int) -> None:
-    """Raise UsageError where several pictures would go to one picture file."""
+    """Check that several images are not written to a single image file.
+
+    Raises:
+        UsageError: If there are several images but only one file.
+    """
     if target.medium == "picture" and count != 1:
         raise UsageError(
             f"cannot write {count} images to {target.path.name}; choose a folder for --out, or a "
@@ -171,7 +175,11 @@ def check_many(target: Target, count: int) -> None:
 
 
 def check_pixels(cameras: Iterable[Camera], samples: int) -> None:
-    """Raise UsageError where a picture would be too large."""
+    """Check the size of an image.
+
+    Raises:
+        UsageError: If the image would be too large.
+    """
     for width, height in {(camera.width_px, camera.height_px) for camera in cameras}:
         rays = width * height * samples**2
         if rays > MAX_PIXELS or max(width, height) * samples > MAX_SIDE_PX:
@@ -182,7 +190,11 @@ def check_pixels(cameras: Iterable[Camera], samples: int) -> None:
 
 
 def check_same_size(shots: Iterable[Shot], target: Target) -> None:
-    """Raise UsageError where the frames of an animation would differ in size."""
+    """Check that all frames of an animation have the same size.
+
+    Raises:
+        UsageError: If the sizes differ.
+    """
     sizes = {(shot.camera.width_px, shot.camera.height_px) for shot in shots}
     if target.medium == "moving" and len(sizes) > 1:
         raise UsageError("the poses have different image sizes; choose a folder for --out")

@@ -1,4 +1,4 @@
-"""How pictures are drawn: the light, the textures, the tracer and the device."""
+"""Rendering settings: light, textures, path tracing and device."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +26,7 @@ OWN_PX = 16  # As in the game.
 
 @dataclass(frozen=True, eq=False)
 class Looks:
-    """Where models and textures come from, and the side of a texture."""
+    """A source of models and textures, with the texture size in pixels."""
 
     source: ModelSource
     side_px: int
@@ -56,10 +56,10 @@ class Looks:
 
 @dataclass(frozen=True)
 class DrawSettings:
-    """The settings of a drawing; None leaves the choice to the view.
+    """The rendering settings. None leaves a choice to the view.
 
     Raises:
-        UsageError: a value is out of range, or two of them exclude each other.
+        UsageError: If a value is out of range, or if two settings cannot be combined.
     """
 
     light: str | None = None
@@ -94,10 +94,10 @@ class DrawSettings:
             raise UsageError(f"--jobs cannot be combined with {other}; remove one of them")
 
     def light_of(self, kind: Kind) -> LightSettings:
-        """Return the light of a kind of view: neutral for a turntable unless a setting is given.
+        """Return the light for a kind of view, which is neutral by default for a turntable.
 
         Raises:
-            UsageError: a number is out of range, or the light is not known.
+            UsageError: If a number is out of range, or if the light preset is unknown.
         """
         asked = self.hour is not None or self.sun_shadow or self.exposure is not None
         usual = "neutral" if kind == "turntable" and not asked else DAY.preset
@@ -113,7 +113,7 @@ class DrawSettings:
             raise UsageError(f"light: {error}") from error
 
     def options_of(self, kind: Kind, medium: Medium, outputs: tuple[str, ...]) -> DrawOptions:
-        """Return how pictures are drawn; single pictures get more rays than those of a data set."""
+        """Return the rendering options. Single images use more rays than data sets."""
         usual = 1 if medium == "folder" and kind != "turntable" else STILL_SAMPLES
         # From above no sky is seen: the backdrop is plain, except where an hour is given.
         paper = BACKDROP if kind in ("orbit", "turntable") and self.hour is None else None
@@ -121,10 +121,10 @@ class DrawSettings:
         return DrawOptions(outputs, light, samples, self.threads, paper, self.device, self.jobs)
 
     def looks(self) -> Looks:
-        """Return the resource packs, the last one first, then the built-in models.
+        """Return the resource packs, last one first, followed by the built-in models.
 
         Raises:
-            InputError: a pack cannot be read.
+            InputError: If a resource pack cannot be read.
         """
         if not self.packs:
             side_px = self.texture_px or OWN_PX
@@ -142,17 +142,19 @@ def take_pictures(
     options: DrawOptions,
     step: Callable[[int], None],
 ) -> Iterator[Picture]:
-    """Draw the pictures of shots, by casting rays or by tracing the paths of light.
+    """Render the images of shots by ray casting or path tracing.
 
     Args:
-        scene: what they show.
-        shots: from where.
-        settings: say whether light is traced.
-        options: how they are drawn.
-        step: called with 1 for each picture, or for each path a pixel of a photo.
+        scene: The scene to render.
+        shots: The shots.
+        settings: The settings, which choose between ray casting and path tracing.
+        options: Rendering options.
+        step: Callback that receives 1 for each image, or for each sample per pixel of a path-traced
+            image.
 
     Raises:
-        UsageError: there is no such device, or the tracer does not support what is asked for.
+        UsageError: If the device is not available, or if the path tracer does not support an
+            option.
     """
     if settings.photo:
         yield from _photos(scene, shots, settings, options, step)
@@ -189,5 +191,5 @@ def _photos(
 
 
 def clamp_exposure(exposure: float) -> float:
-    """Return an exposure within what a light may have."""
+    """Return an exposure clipped to the valid range."""
     return min(max(exposure, 0.01), 100.0)

@@ -1,4 +1,4 @@
-"""Draw the shots of a view and write each picture while the next one is drawn."""
+"""Rendering of the shots of a view, with each image written while the next is rendered."""
 
 from collections.abc import Callable, Generator
 from contextlib import closing
@@ -42,16 +42,16 @@ MAX_WRITERS = 16  # Each holds a picture.
 
 @dataclass(frozen=True)
 class DrawnFiles:
-    """The pictures that were written, and from where each was taken.
+    """The image files that were written, with the pose of each image.
 
     Attributes:
-        path: the picture, the animation or the folder of pictures.
-        poses_file: the JSON lines with one pose for each picture.
-        poses: the same lines, each with ``x``, ``y``, ``z``, ``yaw``, ``pitch``, ``files`` ...
-        size_blocks: the blocks of the build along x, y and z.
-        corner: the world coordinates of its first block.
-        notes: what was chosen automatically, and blocks or files that could not be drawn.
-        seconds: the time for one picture.
+        path: The image, the animation, or the folder of images.
+        poses_file: JSON Lines file with one pose for each image.
+        poses: The same lines as dicts with ``x``, ``y``, ``z``, ``yaw``, ``pitch``, ``files`` ...
+        size_blocks: Size of the build in blocks along x, y and z.
+        corner: World coordinates of the first block.
+        notes: Automatic choices, and blocks or files that could not be rendered.
+        seconds: Rendering time of one image.
     """
 
     path: Path
@@ -74,20 +74,20 @@ def draw_files(
     settings: DrawSettings,
     progress: Progress = no_progress,
 ) -> DrawnFiles:
-    """Draw a view of a build to files.
+    """Render a view of a build to files.
 
     Args:
-        source: the build.
-        view: from where it is seen.
-        choice: the size and the field of view.
-        target: where the pictures go.
-        settings: the light, the textures and the device.
-        progress: called after each picture, or each pass of a traced one.
+        source: The build.
+        view: The viewpoints.
+        choice: Image size and field of view.
+        target: Destination of the images.
+        settings: Light, textures and device.
+        progress: Callback after each image, or after each pass of a path-traced image.
 
     Raises:
-        UsageError: the arguments contradict each other, or one is out of range.
-        InputError: the poses or a resource pack cannot be read. OutputError: a file cannot be
-        written.
+        UsageError: If arguments contradict each other or are out of range.
+        InputError: If the poses or a resource pack cannot be read.
+        OutputError: If a file cannot be written.
     """
     view = resolve_view(view, source)
     plan = plan_shots(view, source, choice, target.medium)

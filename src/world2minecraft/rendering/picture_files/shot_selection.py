@@ -32,7 +32,7 @@ MAX_FRAMES = 1_000_000
 
 @dataclass(frozen=True)
 class CameraChoice:
-    """The size of the pictures, and the field of view where one was given."""
+    """The image size, and the field of view if given."""
 
     width_px: int
     height_px: int
@@ -50,7 +50,7 @@ class CameraChoice:
         return self.vertical_fov_deg is not None or self.horizontal_fov_deg is not None
 
     def camera(self, usual_fov_deg: float) -> Camera:
-        """Return the camera, with a vertical field of view where none was given."""
+        """Return the camera, with the default vertical field of view if none was given."""
         vertical = self.vertical_fov_deg if self.fov_given else usual_fov_deg
         return camera_of(
             self.width_px,
@@ -62,10 +62,11 @@ class CameraChoice:
 
 @dataclass(frozen=True)
 class View:
-    """From where a build is seen.
+    """The viewpoints from which a build is rendered.
 
     Raises:
-        UsageError: ``frames`` or ``rate_hz`` is out of range, or the kind takes no ``frames``.
+        UsageError: If ``frames`` or ``rate_hz`` is out of range, or if the kind of view does not
+            support ``frames``.
     """
 
     kind: Kind
@@ -89,7 +90,7 @@ class View:
 
 @dataclass(eq=False)
 class Plan:
-    """The shots, and the volume that each one sees."""
+    """The shots, and the volume that is visible in each of them."""
 
     shots: list[Shot]
     volume_of: Callable[[Shot], BlockVolume]
@@ -100,7 +101,8 @@ def plan_shots(view: View, source: Source, choice: CameraChoice, medium: Medium)
     """Return the shots of a view.
 
     Raises:
-        UsageError: a tour finds no place to stand. InputError: the poses cannot be read.
+        UsageError: If a tour has no place to stand.
+        InputError: If the pose file cannot be read.
     """
     if view.kind == "tour":
         return _tour(view, source, choice, medium)
@@ -121,7 +123,7 @@ def plan_shots(view: View, source: Source, choice: CameraChoice, medium: Medium)
 
 
 def resolve_view(view: View, source: Source) -> View:
-    """Return the view, or one from outside for a build without a player start."""
+    """Return the view, or an outside view for a build without a player start."""
     if view.kind != "spawn" or source.spawn is not None:
         return view
     source.notes.append(
@@ -131,7 +133,7 @@ def resolve_view(view: View, source: Source) -> View:
 
 
 def turntable_count(view: View, medium: Medium) -> int:
-    """Return the number of pictures of a turn."""
+    """Return the number of images per turn of a turntable."""
     usual = {"picture": 1, "folder": FOLDER_TURN, "moving": round(TURN_S * view.rate_hz)}
     return view.frames or usual[medium]
 

@@ -1,4 +1,4 @@
-"""The build to draw: its blocks, its scale and where its player starts."""
+"""The build to render: its blocks, its scale and the start position of its player."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +12,7 @@ from world2minecraft.rendering.views import GamePose
 
 @dataclass(eq=False)
 class Source:
-    """A build to draw; ``notes`` state what was chosen automatically."""
+    """A build to render. ``notes`` describe automatic choices."""
 
     volume: BlockVolume
     name: str
@@ -22,15 +22,15 @@ class Source:
 
 
 def read_source(path: Path, box: Box | None) -> Source:
-    """Read a file, a world, a run's folder or its build.
+    """Read a build from a file, a world, a run folder or its build folder.
 
     Args:
-        path: the file or folder.
-        box: the blocks to draw, x0, y0, z0, x1, y1, z1, the last ones excluded; by default
-            those of the scene, or those around the spawn of a world without one.
+        path: The file or folder.
+        box: Blocks to render as x0, y0, z0, x1, y1, z1, with an exclusive end. The default is the
+            whole scene, or the blocks around the spawn point of a world without a scene.
 
     Raises:
-        InputError: it cannot be read, or holds nothing but air.
+        InputError: If the build cannot be read or contains only air.
     """
     found = read_build(path, box)
     return Source(found.volume, found.name, path, _pose(found.start), found.notes)

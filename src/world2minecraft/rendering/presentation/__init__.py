@@ -1,1 +1,1 @@
-"""Pictures of many shots: opened rooms, turntables and streams of frames."""
+"""Rendering of several shots: opened rooms, turntables and streams of frames."""

@@ -1,4 +1,4 @@
-"""A room as one looks into it from outside: without its ceiling and the walls that are near."""
+"""Rooms without their ceiling and the walls near the camera, for views from outside."""
 
 from dataclasses import dataclass, field
 
@@ -24,13 +24,13 @@ SCOUT_PX, SCOUT_FOV_DEG = (96, 72), 24.0
 
 
 def has_ceiling(volume: BlockVolume) -> bool:
-    """Whether blocks are labelled as a ceiling, which hides the rooms from above."""
+    """Return whether any block is labelled as ceiling, which hides the rooms from above."""
     return bool((volume.semantic == SemanticClass.CEILING).any())
 
 
 @dataclass(eq=False)
 class OpenedBuild:
-    """A volume opened for views from above; the storeys of a house stand side by side."""
+    """A volume opened for views from above, with the storeys of a house side by side."""
 
     volume: BlockVolume
     _parts: list[BlockVolume] = field(init=False)
@@ -42,11 +42,11 @@ class OpenedBuild:
 
     @property
     def whole(self) -> BlockVolume:
-        """All that is seen of it from any side."""
+        """All blocks that are visible from any side."""
         return arrange_side_by_side(self._parts)
 
     def best_start_deg(self, elevation_deg: float) -> float:
-        """Return where a circle should begin: at the corner that shows most of the furniture."""
+        """Return the start angle of an orbit: the corner from which most furniture is visible."""
         camera = camera_of(*SCOUT_PX, vertical_fov_deg=SCOUT_FOV_DEG)
         starts = [TURN_DEG + 90.0 * n for n in range(4)]
         return max(starts, key=lambda start: self._shown(camera, start, elevation_deg))
@@ -65,9 +65,9 @@ class OpenedBuild:
         return float(np.sqrt(np.bincount(picture.instance[is_object].astype(np.int64))).sum())
 
     def seen_by(self, camera_to_room: np.ndarray) -> BlockVolume:
-        """Return what a camera outside sees of it: the walls on its side are cut to a rim.
+        """Return the volume for a camera outside, with the walls on its side cut down to a rim.
 
-        The same value comes back for all cameras on the same two sides.
+        All cameras on the same two sides get the same object.
         """
         forward = carry_camera(camera_to_room, invert(self.volume.block_to_room))[:3, 2]
         near = (1 if forward[0] < 0 else -1, 1 if forward[2] < 0 else -1)

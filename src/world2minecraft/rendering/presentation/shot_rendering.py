@@ -1,7 +1,6 @@
-"""Pictures of many shots, one after another: what every command and data set reads from.
+"""Rendering of several shots one after another, as used by all commands and data sets.
 
-This is the one door to the renderer: whoever overlaps work with writing, or spreads it over
-processes, does so behind it.
+Code that writes files in parallel or distributes the work over processes is built on this module.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
@@ -30,10 +29,10 @@ MIN_PICTURES_PER_JOB = 16  # Pictures: a process takes some seconds to begin.
 
 @dataclass(frozen=True)
 class DrawOptions:
-    """How pictures are drawn; each means what it means in ``render_volume``.
+    """Rendering options, each with the meaning of the ``render_volume`` argument of that name.
 
-    ``device`` is ``cpu``, ``gpu``, or ``auto``: a graphics card where there is one. ``jobs`` says
-    how many processes draw at once (``rendering.batch``), each on one thread of the CPU.
+    ``device`` is ``cpu``, ``gpu`` or ``auto``, which uses a GPU if there is one. ``jobs`` is the
+    number of processes that render in parallel (``rendering.batch``), each on one CPU thread.
     """
 
     outputs: tuple[str, ...] = ("colour",)
@@ -51,19 +50,20 @@ def draw_frames(
     poses: Iterable[np.ndarray],
     options: DrawOptions | None = None,
 ) -> Iterator[Picture]:
-    """Take the pictures of poses, in their order, one at a time.
+    """Yield the images for a sequence of camera poses, in order.
 
-    Several jobs are begun only where each has a few pictures to draw, and their pictures share one
+    Several processes are started only if each has a few images to render. Their images share one
     exposure.
 
     Args:
-        scene: ``prepare_scene`` of a volume.
-        cameras: one for all poses, or one for each.
-        poses: ``camera_to_room``, float64 [4, 4] each.
-        options: what to make, and how it looks.
+        scene: The result of ``prepare_scene`` for a volume.
+        cameras: One camera for all poses, or one camera for each pose.
+        poses: ``camera_to_room`` matrices, float64 [4, 4] each.
+        options: Rendering options.
 
     Raises:
-        ValueError: what ``render_volume`` raises. UsageError: there is no such device here.
+        ValueError: If ``render_volume`` rejects an option.
+        UsageError: If the device is not available.
     """
     how = options or DrawOptions()
     each = repeat(cameras) if isinstance(cameras, Camera) else cameras
@@ -130,7 +130,7 @@ def _gpu_module(device: str) -> ModuleType | None:
 def draw_shots(
     scene: BlockScene, shots: Collection[Shot], options: DrawOptions | None = None
 ) -> Iterator[Picture]:
-    """Take the pictures of shots; see ``draw_frames``."""
+    """Yield the images for a sequence of shots. See ``draw_frames``."""
     cameras, poses = [shot.camera for shot in shots], [shot.camera_to_room for shot in shots]
     return draw_frames(scene, cameras, poses, options)
 
@@ -138,14 +138,14 @@ def draw_shots(
 def with_common_exposure(
     scene: BlockScene, light: LightSettings, shots: Sequence[Shot]
 ) -> BlockScene:
-    """Return the scene, opened up as far as the light around the cameras wants it.
+    """Return the scene with an exposure suited to the light around all cameras.
 
-    One exposure for all shots: pictures of one tour belong together.
+    One exposure is used for all shots, so that the images of a tour match.
 
     Args:
-        scene: ``prepare_scene`` of a volume.
-        light: how it is lit.
-        shots: from where; cameras outside of the volume do not count.
+        scene: The result of ``prepare_scene`` for a volume.
+        light: Light settings.
+        shots: The shots. Cameras outside the volume are ignored.
     """
     eyes = np.array([apply(scene.room_to_grid, shot.camera_to_room[:3, 3]) for shot in shots])
     return replace(scene, exposure=exposure_of(light, scene, eyes))

@@ -1,4 +1,4 @@
-"""A build on a neutral ground, with a soft shadow, that turns once around."""
+"""Turntable renderings: a build on a neutral ground with a soft shadow, seen from all sides."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -34,7 +34,7 @@ CLOSED_ELEVATION_DEG = 26.0  # A house, its roof and its walls.
 
 @dataclass(frozen=True, eq=False)
 class Studio:
-    """The ground of a build: how dark it is at each place, in blocks around the build."""
+    """The ground below a build, with its ambient shadow at each place, in blocks."""
 
     level: float  # The ground's height, world blocks.
     corner: np.ndarray  # float64 [2], x and z of the map's first sample
@@ -43,12 +43,12 @@ class Studio:
     block_to_room: np.ndarray
 
     def seen_by(self, camera: Camera, camera_to_room: np.ndarray, where: np.ndarray) -> np.ndarray:
-        """Return the ground's colours, float32 [N, 3] sRGB, at the N pixels that a mask names.
+        """Return the colours of the ground at selected pixels, as float32 [N, 3] sRGB.
 
         Args:
-            camera: intrinsics.
-            camera_to_room: 4x4, from above.
-            where: bool [H, W].
+            camera: Camera intrinsics.
+            camera_to_room: Camera pose above the ground, 4x4.
+            where: Mask of the N pixels, bool [H, W].
         """
         rows, columns = np.argwhere(where).T
         across = (columns + 0.5 - camera.cx_px) / camera.fx_px
@@ -77,7 +77,7 @@ class Studio:
 
 
 def studio_of(volume: BlockVolume) -> Studio:
-    """Return the ground on which a volume's blocks stand."""
+    """Return the ground on which the blocks of a volume stand."""
     filled = volume.states != 0
     layers = np.flatnonzero(filled.any(axis=(0, 2)))
     first = int(layers[0]) if len(layers) else 0
@@ -113,17 +113,17 @@ def turntable(
     rate_hz: float = 24.0,
     opened: bool | None = None,
 ) -> Iterator[tuple[Shot, np.ndarray]]:
-    """Draw a build from all around, and yield each shot with its picture, uint8 [H, W, 3].
+    """Render a build from all sides, and yield each shot with its image, uint8 [H, W, 3].
 
     Args:
-        volume: the blocks.
-        camera: through which; ``FOV_DEG`` suits it.
-        count: pictures in one turn.
-        options: how it looks; a calm light and four rays a pixel where None.
-        looks: as in ``prepare_scene``.
-        texture_px: the same.
-        rate_hz: frames a second, for the shots' times.
-        opened: whether ceilings and near walls are left out; where there is a ceiling, if None.
+        volume: The blocks.
+        camera: Camera intrinsics. A field of view of ``FOV_DEG`` is recommended.
+        count: Number of images per turn.
+        options: Rendering options. None uses neutral light and four rays per pixel.
+        looks: Models and textures, as for ``prepare_scene``.
+        texture_px: Texture size, as for ``prepare_scene``.
+        rate_hz: Frames per second, for the time stamps of the shots.
+        opened: Whether to remove ceilings and near walls. None removes them if there is a ceiling.
     """
     inside = OpenedBuild(volume) if (has_ceiling(volume) if opened is None else opened) else None
     shown = volume if inside is None else inside.whole

@@ -1,4 +1,4 @@
-"""Where pictures are taken from: cameras, the game's poses, circles around a build, walks in it."""
+"""Viewpoints for rendering: cameras, poses in the game's convention, orbits and walks."""
 
 from world2minecraft.rendering.views.cameras import (
     GamePose,

@@ -1,4 +1,4 @@
-"""Cameras from a field of view or intrinsics, the game's poses, and the shots taken from them."""
+"""Cameras from a field of view or intrinsics, poses in Minecraft's convention, and shots."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,17 +31,21 @@ def camera_of(
     horizontal_fov_deg: float | None = None,
     intrinsics: np.ndarray | Sequence[float] | None = None,
 ) -> Camera:
-    """Return a camera of square pixels that looks through its middle, or one of given intrinsics.
+    """Return a camera from a field of view or from intrinsics.
+
+    A camera from a field of view has square pixels and a centred principal point.
 
     Args:
-        width_px: the picture's width.
-        height_px: its height.
-        vertical_fov_deg: from the upper to the lower edge, as the game's option says.
-        horizontal_fov_deg: from the left to the right edge.
-        intrinsics: fx, fy, cx, cy in pixels, or the 3x3 matrix K; pixel centres lie at +0.5.
+        width_px: Image width in pixels.
+        height_px: Image height in pixels.
+        vertical_fov_deg: Vertical field of view in degrees, as in the game's options.
+        horizontal_fov_deg: Horizontal field of view in degrees.
+        intrinsics: fx, fy, cx, cy in pixels, or the 3x3 intrinsics matrix. Pixel centres are at
+            +0.5.
 
     Raises:
-        UsageError: not exactly one of the three is given, or a number is out of range.
+        UsageError: If not exactly one of the last three arguments is given, or if a number is out
+            of range.
 
     Example:
         >>> round(camera_of(640, 480, vertical_fov_deg=90).fx_px, 6)
@@ -66,7 +70,7 @@ def camera_of(
 
 
 def vertical_fov_deg_of(camera: Camera) -> float:
-    """Return the angle between a camera's upper and lower edge, were its middle in the middle."""
+    """Return a camera's vertical field of view in degrees, assuming a centred principal point."""
     return fov_deg_of_focal_px(camera.height_px, camera.fy_px)
 
 
@@ -96,10 +100,10 @@ def _intrinsics_values(intrinsics: np.ndarray | Sequence[float]) -> list[float]:
 
 @dataclass(frozen=True)
 class GamePose:
-    """A pose as the game's F3 screen tells it: world block coordinates, degrees.
+    """A pose as shown on Minecraft's F3 screen: world block coordinates and angles in degrees.
 
-    Yaw 0 looks to +z (south) and grows clockwise seen from above; pitch grows downward. ``at``
-    says whether x, y, z is where the feet stand, as the game shows it, or the eye.
+    Yaw 0 faces +z (south) and increases clockwise seen from above. Pitch increases downward. ``at``
+    states whether x, y, z is the position of the feet, as shown in the game, or of the eye.
     """
 
     x: float
@@ -122,11 +126,11 @@ class GamePose:
             raise UsageError(f"at must be 'feet' or 'eye', got {self.at!r}")
 
     def camera_to_block(self, eye_blocks: float = PLAYER_EYE_BLOCKS) -> np.ndarray:
-        """Return the camera's 4x4 pose in world block coordinates.
+        """Return the camera pose in world block coordinates as a 4x4 matrix.
 
         Args:
-            eye_blocks: how high the eye is over the feet; where blocks are smaller than a metre
-                a player is larger, see ``coordinates.eye_height_blocks``.
+            eye_blocks: Height of the eye above the feet, in blocks. If blocks are smaller than a
+                metre, a player is taller in blocks; see ``coordinates.eye_height_blocks``.
         """
         up = eye_blocks if self.at == "feet" else 0.0
         eye = np.array([self.x, self.y + up, self.z])
@@ -135,7 +139,7 @@ class GamePose:
     def camera_to_room(
         self, block_to_room: np.ndarray, eye_blocks: float = PLAYER_EYE_BLOCKS
     ) -> np.ndarray:
-        """Return the camera's 4x4 pose in room metres; see ``camera_to_block``."""
+        """Return the camera pose in room metres as a 4x4 matrix. See ``camera_to_block``."""
         return carry_camera(self.camera_to_block(eye_blocks), block_to_room)
 
 
@@ -149,7 +153,7 @@ def game_pose_of(camera_to_room: np.ndarray, block_to_room: np.ndarray) -> GameP
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """One picture to take: through which camera, from where, and when in its tour."""
+    """An image to render: its camera, its pose and its time in the tour."""
 
     camera: Camera
     camera_to_room: np.ndarray  # float64 [4, 4], OpenCV axes, metres

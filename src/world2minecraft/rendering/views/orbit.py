@@ -1,4 +1,4 @@
-"""A circle of cameras around a build that it fits into, for stills and turning pictures."""
+"""Orbits: circles of cameras that show a whole build, for still images and animations."""
 
 import numpy as np
 
@@ -22,15 +22,15 @@ def orbit_shots(
     start_deg: float = TURN_DEG,
     rate_hz: float = 24.0,
 ) -> list[Shot]:
-    """Return shots from a circle around the middle of a volume's blocks, which all fit in each.
+    """Return shots on a circle around a volume, each of which shows all of its blocks.
 
     Args:
-        volume: the blocks.
-        camera: through which.
-        frames: how many, spread evenly over the circle; the first looks to the north-west.
-        elevation_deg: how high over the level one looks down from.
-        start_deg: where the circle begins, counter-clockwise from the diagonal's axis.
-        rate_hz: frames a second, for their times.
+        volume: The blocks.
+        camera: Camera intrinsics.
+        frames: Number of shots, evenly spaced on the circle. The first shot faces north-west.
+        elevation_deg: Elevation of the camera above the horizontal, in degrees.
+        start_deg: Start angle of the circle, counter-clockwise from its default diagonal.
+        rate_hz: Frames per second, for the time stamps.
     """
     points_m = corner_points_m(volume)
     middle_m = (points_m.min(axis=0) + points_m.max(axis=0)) / 2
@@ -47,7 +47,7 @@ def orbit_shots(
 
 
 def corner_points_m(volume: BlockVolume) -> np.ndarray:
-    """Return the corners, float64 [8, 3] in room metres, of the box around all blocks."""
+    """Return the corners of the bounding box of all blocks, float64 [8, 3] in room metres."""
     filled = volume.states != 0
     if not filled.any():
         filled = np.ones_like(filled)

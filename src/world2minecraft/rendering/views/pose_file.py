@@ -1,9 +1,10 @@
-"""The one file of poses: a JSON object a line, or the same columns as CSV.
+"""Pose files: one JSON object per line, or CSV with the same columns.
 
-Keys: frame, t (seconds), x, y, z (world block coordinates), yaw, pitch (the game's, degrees),
-vertical_fov_deg, width, height (pixels), scene_id, tour_id, image. Only x, y, z, yaw and pitch are
-needed. x, y, z is the eye; ``at`` may say ``feet``. ``intrinsics`` [3][3], where it is there,
-counts before the FOV. ``file`` may stand for ``image``. Other keys are left alone.
+The keys are frame, t (seconds), x, y, z (world block coordinates), yaw, pitch (Minecraft's
+convention, degrees), vertical_fov_deg, width, height (pixels), scene_id, tour_id and image. Only x,
+y, z, yaw and pitch are required. x, y, z is the position of the eye unless ``at`` is ``feet``.
+``intrinsics`` [3][3] takes precedence over the field of view. ``file`` is an alias of ``image``.
+Other keys are ignored.
 """
 
 import csv
@@ -33,7 +34,7 @@ REQUIRED = ("x", "y", "z", "yaw", "pitch")
 
 @dataclass(frozen=True)
 class TourPose:
-    """A line of the file: the pose, its time, its camera and its names, where it says them."""
+    """A line of a pose file: the pose, and its time, camera and names if present."""
 
     pose: GamePose
     t_s: float = 0.0
@@ -46,15 +47,16 @@ class TourPose:
 
 
 def read_tour(path: str | Path, at: Literal["feet", "eye"] = "eye") -> list[TourPose]:
-    """Read a tour from JSONL, or from CSV where the name ends in .csv.
+    """Read a pose file in JSON Lines format, or in CSV format if its name ends in .csv.
 
     Args:
-        path: the file.
-        at: what x, y, z is in lines that do not say it.
+        path: The file.
+        at: Default meaning of x, y, z in lines without ``at``: ``eye`` or ``feet``.
 
     Raises:
-        InputError: it cannot be read. DamagedFileError: a line is no pose, or there is none.
-        LimitError: it is too large.
+        InputError: If the file cannot be read.
+        DamagedFileError: If a line is not a valid pose, or if there are no poses.
+        LimitError: If the file is too large.
     """
     source = Path(path)
     try:
@@ -75,7 +77,7 @@ def read_tour(path: str | Path, at: Literal["feet", "eye"] = "eye") -> list[Tour
 def tour_line(
     shot: Shot, number: int, block_to_room: np.ndarray, more: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return the line of a shot, with ``more`` keys behind the tour's own."""
+    """Return the line of a shot as a dict, followed by the keys in ``more``."""
     pose = game_pose_of(shot.camera_to_room, block_to_room)
     own = {
         "frame": number,
@@ -97,7 +99,11 @@ def _short(value: float) -> float:
 
 
 def write_lines(path: str | Path, lines: Sequence[Mapping[str, Any]]) -> None:
-    """Write lines of JSON, whole or not at all. Raises OutputError."""
+    """Write dicts as lines of JSON, atomically.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     write_text(path, "".join(json.dumps(line, allow_nan=False) + "\n" for line in lines))
 
 

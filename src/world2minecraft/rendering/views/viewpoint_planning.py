@@ -1,4 +1,4 @@
-"""Viewpoints for a tour: where one can stand, which places are indoors, and a short route."""
+"""Viewpoints for a tour: standing positions, indoor areas and a short route between them."""
 
 from itertools import pairwise
 
@@ -26,7 +26,7 @@ MIN_ROOM_M2 = 1.0  # A smaller roofed floor is no room.
 
 
 class WalkRoutes:
-    """The N places of the part of a floor that is worth walking, and the ways between them."""
+    """The N positions in the part of a floor that is worth visiting, and the paths between them."""
 
     def __init__(self, volume: BlockVolume, hiding: ViewBlockers):
         """Find the places where a player walks, and keep the part that is worth it."""
@@ -49,7 +49,7 @@ class WalkRoutes:
         self._graph = csr_array(cost[kept][:, kept])
 
     def stops(self) -> np.ndarray:
-        """Return places from which, together, the rooms are seen from all sides."""
+        """Return positions from which all rooms together are visible from all sides."""
         lit = self.indoors if self.indoors.any() else np.ones(len(self.feet), bool)
         few = np.flatnonzero(lit)
         few = few[:: -(-len(few) // MAX_RATED)]
@@ -60,10 +60,10 @@ class WalkRoutes:
         return few[_choose_stops(seen, worth, eyes / self.hiding.blocks_per_metre)]
 
     def way(self, start: np.ndarray | None = None) -> np.ndarray:
-        """Return a short way past all stops, as places, from the stop nearest to ``start``.
+        """Return a short route past all stops as positions, from the stop nearest to ``start``.
 
         Args:
-            start: float64 [3], world blocks; the best end where it is left out.
+            start: Start position in world blocks, float64 [3]. None chooses the best end.
         """
         stops = self.stops()
         lengths, before = dijkstra(self._graph, indices=stops, return_predecessors=True)

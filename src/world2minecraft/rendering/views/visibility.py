@@ -1,7 +1,7 @@
-"""What is visible around places: which cells block the view, and how far rays go.
+"""Visibility around positions: which cells block the view, and how far rays reach.
 
-Rays march through cells in short strides, all at once; where they cut a corner a little short, no
-view is worse for it. ``minecraft.physics.walk_graph`` says where a person may stand.
+All rays advance through cells in short steps at once. They may cut corners slightly, which does not
+affect the choice of views. ``minecraft.physics.walk_graph`` determines where a player can stand.
 """
 
 from dataclasses import dataclass
@@ -23,9 +23,10 @@ STRIDE_BLOCKS = 0.35
 
 @dataclass(frozen=True, eq=False)
 class ViewBlockers:
-    """Cells that one does not see through, and those with something above.
+    """The cells that block the view, and the cells with something above them.
 
-    Both are [X, Y, Z] in block axes from ``corner``. Doors and gates hide nothing.
+    Both arrays are [X, Y, Z] in block axes, starting at ``corner``. Doors and gates do not block
+    the view.
     """
 
     hides: np.ndarray  # bool [X, Y, Z]
@@ -35,7 +36,7 @@ class ViewBlockers:
 
 
 def view_blockers_of(volume: BlockVolume) -> ViewBlockers:
-    """Return what hides the view in a volume."""
+    """Return the cells of a volume that block the view."""
     measures = np.array([_measures(state) for state in volume.palette], np.float32)
     top, width = measures[volume.states, 0], measures[volume.states, 1]
     roofs = (top > ROOF)[:, ::-1]
@@ -61,7 +62,7 @@ def _measures(state: str) -> tuple[float, float]:
 
 
 class ViewRays(NamedTuple):
-    """What rays meet from N places, at P pitches and Y yaws: arrays [N, P, Y]."""
+    """The results of rays from N positions at P pitches and Y yaws, as arrays [N, P, Y]."""
 
     far_m: np.ndarray  # float64, FAR_M where a ray meets nothing
     cell: np.ndarray  # int64, C-order index of the cell that it ends at, -1 for none
@@ -70,13 +71,13 @@ class ViewRays(NamedTuple):
 def cast_view_rays(
     hiding: ViewBlockers, eyes: np.ndarray, yaws_deg: np.ndarray, pitches_deg: np.ndarray
 ) -> ViewRays:
-    """Cast rays from eyes, float64 [N, 3] in world blocks, to all pairs of pitch and yaw.
+    """Cast rays from eye positions in all combinations of pitch and yaw.
 
     Args:
-        hiding: what hides the view.
-        eyes: where from.
-        yaws_deg: the game's, [Y].
-        pitches_deg: the game's, down is positive, [P].
+        hiding: The cells that block the view.
+        eyes: Eye positions in world blocks, float64 [N, 3].
+        yaws_deg: Yaws in Minecraft's convention, [Y].
+        pitches_deg: Pitches in Minecraft's convention (down is positive), [P].
     """
     yaw, pitch = np.radians(yaws_deg)[None], np.radians(pitches_deg)[:, None]
     down = np.broadcast_to(-np.sin(pitch), (len(pitches_deg), len(yaws_deg)))

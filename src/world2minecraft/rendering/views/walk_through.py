@@ -1,7 +1,7 @@
-"""Plan a walk through the rooms of a volume at eye height, as smooth as a camera on a rail.
+"""Planning of smooth walks through the rooms of a volume at eye height.
 
-One looks ahead and into the rooms, never long at a near wall: all headings of all places are rated
-by rays, and the best sequence of them, in which turning costs too, is found by dynamic programming.
+The camera looks ahead and into the rooms, and avoids near walls. Rays rate all headings at all
+positions, and dynamic programming finds the best sequence of headings, with a cost for turning.
 """
 
 from dataclasses import dataclass, replace
@@ -49,16 +49,17 @@ def best_headings(
     ways: np.ndarray,
     half_fov_deg: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return a smooth sequence of game yaws, in degrees and not wrapped, and how good each view is.
+    """Return a smooth sequence of yaws along a path, and the quality of each view.
 
-    Both are float64 [N]; a view's worth is about 0 for a wall before one's nose, 1 for a good one.
+    The yaws follow Minecraft's convention, in degrees, and are not wrapped. The quality is about 0
+    for a near wall and 1 for a good view. Both arrays are float64 [N].
 
     Args:
-        hiding: what hides the view.
-        semantic: uint8 [X, Y, Z], the classes of blocks.
-        eyes: float64 [N, 3], world blocks, along a way.
-        ways: float64 [N], the game yaw of the way there, degrees.
-        half_fov_deg: half the camera's horizontal field of view.
+        hiding: The cells that block the view.
+        semantic: Class of each block, uint8 [X, Y, Z].
+        eyes: Eye positions along the path in world blocks, float64 [N, 3].
+        ways: Yaw of the path at each position in degrees, float64 [N].
+        half_fov_deg: Half of the camera's horizontal field of view in degrees.
     """
     yaws_deg = np.arange(HEADINGS) * (360.0 / HEADINGS)
     far_m, cell = cast_view_rays(hiding, eyes, yaws_deg, np.array(PITCHES_DEG))
@@ -104,7 +105,7 @@ def _best_sequence(rating: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Tour:
-    """The shots of a walk, the way's length, and the doors that it goes through."""
+    """The shots of a walk, the length of its path and the doors that it passes."""
 
     shots: list[Shot]
     length_m: float
@@ -120,19 +121,20 @@ def plan_tour(
     rate_hz: float = 24.0,
     start: tuple[float, float, float] | None = None,
 ) -> Tour:
-    """Return a walk past spread-out places of the rooms.
+    """Return a walk past positions spread over all rooms.
 
-    A moving picture of it is shot evenly over its time, stills more often where views are good.
+    Frames of an animation are evenly spaced in time, still images are denser at good views.
 
     Args:
-        volume: the blocks. Rooms are what is roofed and walled; without any, the walk is outside.
-        camera: through which; its field of view decides where it is worth looking.
-        frames: how many shots; None for an animation of up to ``MAX_DURATION_S``.
-        rate_hz: shots a second of a moving picture.
-        start: where the walk begins, in world blocks, such as the spawn; anywhere if left out.
+        volume: The blocks. Rooms are areas with a roof and walls. Without rooms, the walk is
+            outdoors.
+        camera: Camera intrinsics. The field of view affects the choice of views.
+        frames: Number of shots. None creates an animation of up to ``MAX_DURATION_S``.
+        rate_hz: Frames per second of the animation.
+        start: Start of the walk in world blocks, such as the spawn point. None starts anywhere.
 
     Raises:
-        UsageError: nowhere in the volume can a person stand.
+        UsageError: If the volume has no place for a player to stand.
     """
     volume = _with_headroom(volume)
     hiding = view_blockers_of(volume)
@@ -164,11 +166,11 @@ def plan_tour(
 
 
 def with_open_doors(volume: BlockVolume, way: np.ndarray) -> tuple[BlockVolume, int]:
-    """Return the volume with the doors open that a way goes through, and how many they are.
+    """Return the volume with all doors along a path open, and the number of these doors.
 
     Args:
-        volume: the blocks.
-        way: float64 [N, 3], feet in world blocks.
+        volume: The blocks.
+        way: Feet positions along the path in world blocks, float64 [N, 3].
     """
     cells = np.floor(way - np.array(volume.corner)).astype(np.int64)
     high = int(np.ceil(2 * volume.blocks_per_metre))
