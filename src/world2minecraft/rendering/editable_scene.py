@@ -1,7 +1,6 @@
-"""A scene whose blocks can be edited in place; the next picture shows them.
+"""A scene whose blocks can be edited in place, for building agents and editors.
 
-Only the cell, the empty boxes and the light around it are updated, never the whole scene. For
-environments in which an agent builds, and for an editor.
+An edit only updates the cell, and the empty boxes and the light around it, not the whole scene.
 """
 
 from collections.abc import Sequence
@@ -29,7 +28,7 @@ _OWNER = 2  # Of what the baker keeps of an element.
 
 
 class EditableScene:
-    """A volume's scene and the way to change it. ``scene`` is always the present one."""
+    """An editable scene of a volume. ``scene`` is always the current scene."""
 
     def __init__(
         self,
@@ -57,7 +56,7 @@ class EditableScene:
 
     @property
     def volume_states(self) -> tuple[np.ndarray, tuple[str, ...]]:
-        """The blocks as they are now: uint16 [X, Y, Z], not to be written to, and the palette."""
+        """The current blocks, read-only uint16 [X, Y, Z], and the palette."""
         return self._states, tuple(self._palette)
 
     def set_blocks(
@@ -71,14 +70,14 @@ class EditableScene:
         """Set blocks.
 
         Args:
-            cells: int [N, 3], cells of the volume.
-            states: N block states; air takes a block away.
-            semantic: the class of all of them.
-            instance: the object that they belong to.
+            cells: Cells of the volume, int [N, 3].
+            states: N block states. Air removes a block.
+            semantic: Class of all these blocks.
+            instance: Object id of all these blocks.
 
         Raises:
-            UsageError: a cell does not lie in the volume, a text is no block state, or the
-                numbers of cells and states differ.
+            UsageError: If a cell is outside the volume, if a text is not a valid block state, or if
+                the numbers of cells and states differ.
         """
         cells = np.asarray(cells, np.int64).reshape(-1, 3)
         if len(cells) != len(states):

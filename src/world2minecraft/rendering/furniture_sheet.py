@@ -1,6 +1,6 @@
-"""A contact sheet: small things, each drawn from its front corner at several scales, in groups.
+"""Contact sheets of small objects, each rendered from its front corner at several scales.
 
-Rays are parallel, and each picture fills its tile: it is the shape that one looks for.
+The projection is orthographic, and each object fills its tile, so that shapes can be compared.
 """
 
 import io
@@ -29,7 +29,7 @@ PAPER, CARD, INK, FAINT, RULE = "#ffffff", (221, 227, 232), "#22262b", "#6d747c"
 
 @dataclass(frozen=True, eq=False)
 class Card:
-    """One thing of a sheet: its name, a line about it, and a volume for each column's label."""
+    """An object on a contact sheet: its name, a subtitle, and a labelled volume for each column."""
 
     title: str
     note: str
@@ -37,14 +37,14 @@ class Card:
 
 
 def contact_sheet(groups: Mapping[str, Sequence[Card]], columns: int = COLUMNS) -> np.ndarray:
-    """Return a page of cards under headings, uint8 [H, W, 3].
+    """Return a page with groups of cards, uint8 [H, W, 3].
 
     Args:
-        groups: heading to its cards; every card has at least one volume, each with a block.
-        columns: cards a row.
+        groups: Cards of each group by heading. Every card has at least one volume with a block.
+        columns: Cards per row.
 
     Raises:
-        ValueError: there is no card.
+        ValueError: If there are no cards.
     """
     if not any(groups.values()):
         raise ValueError("a contact sheet needs at least one card")
@@ -111,7 +111,7 @@ def _corners(volume: BlockVolume) -> np.ndarray:
 
 
 def object_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
-    """Return a square picture of a thing that looks to room +x, uint8 [side_px, side_px, 3]."""
+    """Return a square image of an object that faces room +x, uint8 [side_px, side_px, 3]."""
     toward, axes = _axes()
     flat = _corners(volume) @ axes.T
     most = MAX_PX_PER_BLOCK * side_px / TILE_PX * volume.blocks_per_metre
@@ -135,7 +135,7 @@ def object_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
 
 
 def sheet_png(page: np.ndarray) -> bytes:
-    """Return a page, uint8 [H, W, 3], as a PNG of 256 colours, which is a third as large."""
+    """Encode a page, uint8 [H, W, 3], as a PNG with 256 colours to reduce its size."""
     stream = io.BytesIO()
     method = Image.Quantize.MAXCOVERAGE  # Small things keep their colours, off by 22 at most.
     few = Image.fromarray(page).quantize(256, method, kmeans=3, dither=Image.Dither.NONE)

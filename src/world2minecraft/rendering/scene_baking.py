@@ -1,7 +1,7 @@
-"""Bake block models to arrays: the element tables of ``SceneTables``.
+"""Baking of block models to the element tables of ``SceneTables``.
 
-Elements come from the models of a ``ModelSource``. Those that reach beyond their block, as the
-cloth of a banner does, are left to ``rendering.off_grid_elements``, which lists them in each cell
+Elements are taken from the models of a ``ModelSource``. Elements that extend beyond their block,
+such as banner cloth, are handled by ``rendering.off_grid_elements``, which lists them in each cell
 that they reach.
 """
 
@@ -23,7 +23,7 @@ _INSIDE = 1e-4  # Blocks: a turned element may be off by rounding.
 
 @dataclass
 class Baker:
-    """Collects elements and their textures. ``table`` gives the arrays."""
+    """A collector of elements and their textures. ``table`` returns the arrays."""
 
     looks: ModelSource
     side_px: int = 16
@@ -35,10 +35,11 @@ class Baker:
         """Add an element and return its number.
 
         Args:
-            element: in coordinates of its cell, or of the grid where the flags say ``ABSOLUTE``.
-            flags: ``ABSOLUTE`` and ``JOINS``; the others are found here.
-            owner: whose it is, see ``SceneTables.traits``.
-            even: whether corners do not darken it.
+            element: The element in cell coordinates, or in grid coordinates if the flags contain
+                ``ABSOLUTE``.
+            flags: ``ABSOLUTE`` and ``JOINS``; other flags are computed.
+            owner: Owner of the element, see ``SceneTables.traits``.
+            even: Whether to disable ambient occlusion at its corners.
         """
         for face in element.faces:
             if face is not None:
@@ -58,7 +59,7 @@ class Baker:
         return layer
 
     def table(self) -> "ElementTable":
-        """Return the arrays of all elements so far."""
+        """Return the arrays of all elements added so far."""
         count = len(self.elements)
         table = ElementTable(
             boxes=np.zeros((count, 6), np.float32),
@@ -92,7 +93,7 @@ class Baker:
 
 @dataclass(frozen=True, eq=False)
 class ElementTable:
-    """E elements with T turns; the names and dtypes of ``SceneTables``."""
+    """The tables of E elements and T rotations, with the names and dtypes of ``SceneTables``."""
 
     boxes: np.ndarray
     traits: np.ndarray
@@ -117,7 +118,7 @@ def _linear_tint(tint: tuple[int, int, int]) -> np.ndarray:
 
 
 def kind_of(model: BlockModel, looks: ModelSource) -> int:
-    """Return ``FULL`` for one opaque cube, ``BOXES`` for other elements, ``AIR`` for none."""
+    """Return ``FULL`` for a single opaque cube, ``BOXES`` for other elements, ``AIR`` for none."""
     if len(model.elements) == 0:
         return AIR
     (first, *more) = model.elements
@@ -131,14 +132,14 @@ def kind_of(model: BlockModel, looks: ModelSource) -> int:
 
 
 def is_unit_cube(element: Element) -> bool:
-    """Whether an element fills its block and is not turned."""
+    """Return whether an element fills its block and is not rotated."""
     return element.turn is None and element.low == (0, 0, 0) and element.high == (1, 1, 1)
 
 
 def joins_neighbours(state: str, model: BlockModel) -> bool:
-    """Whether two such blocks side by side show no face between them: glass does, leaves do not.
+    """Return whether adjacent blocks of this state have no visible face between them.
 
-    Water does though it is no full cube: a pool has no walls within.
+    This holds for glass and water, so that a pool has no inner walls, but not for leaves.
     """
     if state.partition("[")[0] == "minecraft:water":
         return True
@@ -150,7 +151,7 @@ def joins_neighbours(state: str, model: BlockModel) -> bool:
 
 
 def reaches_out(element: Element) -> bool:
-    """Whether an element reaches beyond its block."""
+    """Return whether an element extends beyond its block."""
     if element.turn is None:
         ends = (*element.low, *element.high)
         return min(ends) < -_INSIDE or max(ends) > 1 + _INSIDE
@@ -159,7 +160,7 @@ def reaches_out(element: Element) -> bool:
 
 
 def element_corners(element: Element) -> np.ndarray:
-    """Return the eight corners of an element, float64 [8, 3], in block coordinates."""
+    """Return the eight corners of an element in block coordinates, float64 [8, 3]."""
     ends = np.array([element.low, element.high], np.float64)
     corners = np.stack(np.meshgrid(*ends.T, indexing="ij"), axis=-1).reshape(-1, 3)
     if element.turn is None:
@@ -168,10 +169,10 @@ def element_corners(element: Element) -> np.ndarray:
 
 
 def is_pane(state: str) -> bool:
-    """Whether a state is glass, whose surface counts where its texture is clear."""
+    """Return whether a state is glass, whose surface counts even if its texture is transparent."""
     return "glass" in state.partition("[")[0].partition(":")[2]
 
 
 def models_of(palette: Sequence[str], looks: ModelSource) -> list[BlockModel]:
-    """Return the model of each state; nothing for a state that no source knows."""
+    """Return the model of each state, which is empty for states unknown to the source."""
     return [looks.model(state) or BlockModel() for state in palette]

@@ -1,10 +1,11 @@
-"""The arrays of a scene as all kernels read them.
+"""The arrays of a scene, as read by all kernels.
 
-A cell is air, a full opaque cube, or a list of elements; ``rendering.empty_space_boxes`` explains
-the air. ``looks`` is the row of the list: row r has the elements ``refs[look_start[r]:look_start[r
-+ 1]]``. Palette entry p has row p; a cell that a standing box reaches (a display entity, a
-banner's cloth) has a row of its own. Elements are explained in ``rendering.block_elements``,
-textures' mip levels in ``rendering.atlas``, the light in ``rendering.light.light_field``.
+A cell is air, a full opaque cube, or a list of elements. ``rendering.empty_space_boxes`` describes
+the air. ``looks`` is the row of the cell's list: row r has the elements
+``refs[look_start[r]:look_start[r + 1]]``. Palette entry p has row p. A cell that a freestanding
+element reaches (a display entity, banner cloth) has its own row. Elements are described in
+``rendering.block_elements``, mip levels in ``rendering.atlas``, the light in
+``rendering.light.light_field``.
 """
 
 from typing import NamedTuple
@@ -32,7 +33,7 @@ FACE_NORMALS = np.array(
 
 
 class SceneTables(NamedTuple):
-    """X x Y x Z cells, V empty boxes, R looks, E elements, T turns, L textures."""
+    """The arrays of X x Y x Z cells, V empty boxes, R rows, E elements, T rotations, L textures."""
 
     space: np.ndarray  # int32 [X, Y, Z]: FULL, BOXES, or the empty box that a cell of air is in
     bounds: np.ndarray  # int16 [V, 6]: first cell and past the last of each empty box
@@ -58,5 +59,5 @@ class SceneTables(NamedTuple):
 
 
 def owner_of_cell(index: int) -> int:
-    """Return the owner, in ``traits``, of an element that belongs to a cell of the volume."""
+    """Return the owner id, as in ``traits``, of an element that belongs to a cell."""
     return -2 - index

@@ -1,7 +1,7 @@
-"""Pictures by the thousand: batches, processes that share a scene, streams that write.
+"""Rendering of many images: batches, process pools and streams.
 
-``render_batch`` fills arrays with the pictures of many poses in one call. A ``RenderPool`` takes
-pictures with many processes. ``render_stream`` draws while what was drawn is written.
+``render_batch`` renders many poses into arrays in one call. A ``RenderPool`` renders images with
+many processes. ``render_stream`` renders while earlier images are written.
 """
 
 from world2minecraft.rendering.batch.arrays import BATCH_OUTPUTS, BatchArrays, batch_arrays

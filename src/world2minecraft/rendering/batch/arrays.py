@@ -1,7 +1,7 @@
-"""The arrays of a batch, and the kernel that draws the pictures of many poses into them.
+"""The arrays of a batch, and the kernel that renders the images of many poses into them.
 
-``BatchArrays`` is what a user sees, ``BatchPixels`` the same memory as the kernel reads it. Arrays
-are allocated once and filled as often as needed.
+``BatchArrays`` is the user's view, ``BatchPixels`` is the same memory as the kernel reads it.
+Arrays are allocated once and reused.
 """
 
 from collections.abc import Collection, Iterator
@@ -44,9 +44,9 @@ ArraySpec = tuple[tuple[int, ...], np.dtype]
 
 
 class BatchPixels(NamedTuple):
-    """``PixelArrays`` with an axis for N pictures before the others.
+    """``PixelArrays`` with a leading axis for N images.
 
-    Arrays that were not requested, but that the renderer needs, have one picture per slot.
+    Arrays that were not requested but that the renderer needs have one image per slot.
     """
 
     depth: np.ndarray  # float32 [N, H, W]
@@ -65,7 +65,7 @@ class BatchPixels(NamedTuple):
 
 
 class BatchPart(NamedTuple):
-    """Which rows of which pictures one thread draws."""
+    """The rows and images that one thread renders."""
 
     start: int  # the first picture
     stride: int  # from one picture to the next
@@ -76,16 +76,16 @@ class BatchPart(NamedTuple):
 
 @lean
 def draw_poses(tables, side_px, poses, rays, part, shading, memory, out):
-    """Fill a part of the pictures of pinhole cameras.
+    """Render a part of the images of pinhole cameras.
 
     Args:
-        tables: ``SceneTables``, with textures of ``side_px``.
-        side_px: the side of a texture.
-        poses: float64 [N, 3, 4], camera to grid.
-        rays: float64 [N, 4], see ``GridCamera``.
+        tables: ``SceneTables`` with textures of ``side_px``.
+        side_px: Texture size in pixels.
+        poses: Camera to grid transforms, float64 [N, 3, 4].
+        rays: Ray parameters, float64 [N, 4]; see ``GridCamera``.
         part: ``BatchPart``.
         shading: ``ShadingParameters``.
-        memory: ``BandMemory``, the caller's own.
+        memory: ``BandMemory`` of the caller.
         out: ``BatchPixels``.
     """
     count, slot = len(poses), part.slot
@@ -111,15 +111,15 @@ def draw_poses(tables, side_px, poses, rays, part, shading, memory, out):
 
 @inlined
 def picture_row(array, n, slot, count):
-    """Return the picture of an array that picture ``n`` is drawn into."""
+    """Return the index in an array into which image ``n`` is rendered."""
     return n if len(array) == count else min(slot, len(array) - 1)
 
 
 @dataclass(frozen=True, eq=False)
 class BatchArrays:
-    """The outputs of N pictures; arrays that were not requested are None.
+    """The outputs of N images. Outputs that were not requested are None.
 
-    Each is what ``Picture`` says of it, with an axis for the pictures before the others.
+    Each array is described in ``Picture`` and has an additional leading axis for the images.
     """
 
     depth_m: np.ndarray | None = None  # float32 [N, H, W], z-depth
@@ -137,9 +137,9 @@ class BatchArrays:
     free: np.ndarray | None = None  # bool [N, X, Y, Z]
 
     def picture(self, number: int) -> Picture:
-        """Return one picture; it shares the batch's memory.
+        """Return one image, which shares the memory of the batch.
 
-        An array that every ``Picture`` has, and that was not requested, is empty.
+        Arrays that every ``Picture`` has, but that were not requested, are empty.
         """
         parts = {field.name: getattr(self, field.name) for field in fields(self)}
         given = {name: array[number] for name, array in parts.items() if array is not None}
@@ -147,7 +147,7 @@ class BatchArrays:
         return Picture(**{**always, **given})
 
     def named(self) -> Iterator[tuple[str, np.ndarray]]:
-        """Give each array that is there, with its name."""
+        """Yield each existing array with its name."""
         for field in fields(self):
             if (array := getattr(self, field.name)) is not None:
                 yield field.name, array
@@ -156,16 +156,16 @@ class BatchArrays:
 def array_specs(
     count: int, size: Size, outputs: Collection[str], shape: tuple[int, ...]
 ) -> dict[str, ArraySpec]:
-    """Return the shape and dtype of each array of a batch, by its name.
+    """Return the shape and dtype of each array of a batch, by name.
 
     Args:
-        count: N, pictures.
-        size: height and width.
-        outputs: which of ``BATCH_OUTPUTS``.
-        shape: of the volume, X, Y and Z.
+        count: Number of images N.
+        size: Height and width in pixels.
+        outputs: Outputs from ``BATCH_OUTPUTS``.
+        shape: Size of the volume, X, Y and Z.
 
     Raises:
-        UsageError: an output is not known, or the batch takes too much memory.
+        UsageError: If an output is unknown, or if the batch needs too much memory.
     """
     unknown = sorted(set(outputs) - set(BATCH_OUTPUTS))
     if unknown:
@@ -187,20 +187,24 @@ def array_specs(
 
 
 def total_bytes(rooms: dict[str, ArraySpec]) -> int:
-    """Return the bytes of all arrays."""
+    """Return the total size of all arrays in bytes."""
     return sum(int(np.prod(shape, dtype=object)) * kind.itemsize for shape, kind in rooms.values())
 
 
 def batch_arrays(
     count: int, size: Size, outputs: Collection[str], shape: tuple[int, ...] = (0, 0, 0)
 ) -> BatchArrays:
-    """Return arrays for ``render_batch`` to fill, zeros until then; see ``array_specs``."""
+    """Return zero-filled arrays for ``render_batch``. See ``array_specs`` for the arguments."""
     rooms = array_specs(count, size, outputs, shape)
     return BatchArrays(**{name: np.zeros(*room) for name, room in rooms.items()})
 
 
 def check_batch(count: int, size: Size, samples: int) -> None:
-    """Refuse batches that cannot be drawn. Raises UsageError."""
+    """Check the arguments of a batch.
+
+    Raises:
+        UsageError: If the batch cannot be rendered.
+    """
     if count > MAX_PICTURES:
         raise UsageError(f"a batch may have at most {MAX_PICTURES:,} poses, got {count:,}")
     if not 1 <= samples <= MAX_SAMPLES:
@@ -212,7 +216,11 @@ def check_batch(count: int, size: Size, samples: int) -> None:
 
 
 def check_arrays(given: BatchArrays, rooms: dict[str, ArraySpec]) -> None:
-    """Refuse arrays that do not suit a batch. Raises UsageError."""
+    """Check that arrays match a batch.
+
+    Raises:
+        UsageError: If an array is missing, superfluous or of the wrong shape or dtype.
+    """
     arrays = dict(given.named())
     for name, (shape, kind) in rooms.items():
         array = arrays.pop(name, None)
@@ -228,14 +236,14 @@ def check_arrays(given: BatchArrays, rooms: dict[str, ArraySpec]) -> None:
 def kernel_arrays(
     arrays: BatchArrays, size: Size, slots: int, outputs: Collection[str], *, fine: bool
 ) -> BatchPixels:
-    """Return the arrays for the kernel, with scratch for what it writes unasked.
+    """Return the arrays for the kernel, with scratch memory for outputs that were not requested.
 
     Args:
-        arrays: of a batch.
-        size: height and width.
-        slots: how many may draw at once.
-        outputs: what was requested.
-        fine: whether the colour is drawn separately.
+        arrays: Arrays of the batch.
+        size: Height and width in pixels.
+        slots: Maximum number of threads.
+        outputs: Requested outputs.
+        fine: Whether the colour is rendered separately.
     """
     wanted = sum(bit for name, bit in OUTPUT_BITS.items() if name in outputs)
     parts = {}

@@ -1,4 +1,4 @@
-"""Render pictures of many poses in one call."""
+"""Rendering of images for many poses in one call."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ LARGE_PX = 200_000  # From here on threads share each picture and not the poses:
 
 @dataclass(frozen=True, eq=False)
 class KernelScene:
-    """What pictures are drawn of, as the kernels read it."""
+    """The scene in the form that the kernels read."""
 
     tables: SceneTables
     side_px: int
@@ -44,7 +44,7 @@ class KernelScene:
 
 @dataclass(frozen=True, eq=False)
 class Views:
-    """N cameras of one size, as the kernels read them."""
+    """N cameras of one size in the form that the kernels read."""
 
     size: Size
     poses: np.ndarray  # float64 [N, 3, 4], camera to grid
@@ -63,24 +63,25 @@ def render_batch(
     background: Backdrop | None = None,
     out: BatchArrays | None = None,
 ) -> BatchArrays:
-    """Take the pictures of many poses in one call of the kernel.
+    """Render images for many camera poses in one kernel call.
 
-    They share one exposure, that of all the eyes together, unless the light or the scene names
-    one. Whatever the number of threads, each picture has the same bytes.
+    All images share one exposure, computed from all eye positions, unless the light or the scene
+    defines one. The result does not depend on the number of threads.
 
     Args:
-        scene: ``prepare_scene`` of a volume, or ``EditableScene.scene``.
-        cameras: one for all poses, or one for each; all of one size.
-        poses: ``camera_to_room``, float64 [N, 4, 4].
-        outputs: which of ``BATCH_OUTPUTS`` to make; no others are made.
-        light: the hour, the exposure and the like.
-        samples: a pixel's colour is the mean of so many by so many.
-        threads: how many draw at once.
-        background: sRGB colours of the first and last row behind all; None for the sky.
-        out: arrays of an earlier batch, or of ``batch_arrays``, to be filled; new ones where None.
+        scene: The result of ``prepare_scene`` for a volume, or ``EditableScene.scene``.
+        cameras: One camera for all poses, or one camera for each pose, all of the same size.
+        poses: ``camera_to_room`` matrices, float64 [N, 4, 4].
+        outputs: Outputs from ``BATCH_OUTPUTS``. Only these are computed.
+        light: Light settings, such as the time of day and the exposure.
+        samples: Each pixel's colour is the mean of ``samples`` x ``samples`` rays.
+        threads: Number of threads.
+        background: sRGB colours of the first and last row of the background. None uses the sky.
+        out: Arrays of an earlier batch, or from ``batch_arrays``, to be filled. None creates new
+            arrays.
 
     Raises:
-        UsageError: the request is invalid, or ``out`` does not suit it.
+        UsageError: If an argument is invalid, or if ``out`` does not match the other arguments.
     """
     matrices = checked_poses(poses)
     each = checked_cameras(cameras, len(matrices))
@@ -102,7 +103,7 @@ def render_batch(
 
 
 def views_of(scene: BlockScene, cameras: Sequence[Camera], poses: np.ndarray) -> Views:
-    """Return N >= 1 cameras of one size, with their poses, float64 [N, 4, 4], in a scene."""
+    """Return N >= 1 cameras of one size with their poses, float64 [N, 4, 4], in a scene."""
     first = cameras[0]
     return Views(
         (first.height_px, first.width_px),
@@ -112,7 +113,11 @@ def views_of(scene: BlockScene, cameras: Sequence[Camera], poses: np.ndarray) ->
 
 
 def checked_poses(poses: np.ndarray | Sequence[np.ndarray]) -> np.ndarray:
-    """Return poses as float64 [N, 4, 4]. Raises UsageError."""
+    """Return poses as float64 [N, 4, 4].
+
+    Raises:
+        UsageError: If the shape is wrong, or if a number is not finite.
+    """
     matrices = np.asarray(poses, np.float64)
     if matrices.size == 0:
         return np.empty((0, 4, 4))
@@ -125,7 +130,11 @@ def checked_poses(poses: np.ndarray | Sequence[np.ndarray]) -> np.ndarray:
 
 
 def checked_cameras(cameras: Camera | Sequence[Camera], count: int) -> Sequence[Camera]:
-    """Return a camera for each of the poses, all of one size. Raises UsageError."""
+    """Return a camera for each pose, all of the same size.
+
+    Raises:
+        UsageError: If the number of cameras is wrong, or if their sizes differ.
+    """
     each = [cameras] * count if isinstance(cameras, Camera) else list(cameras)
     if len(each) != count:
         raise UsageError(f"{count} poses need one camera or {count} cameras, got {len(each)}")
@@ -148,7 +157,7 @@ def draw_views(
     threads: int,
     arrays: BatchArrays,
 ) -> None:
-    """Draw N views into the arrays of a batch, which suit them."""
+    """Render N views into the matching arrays of a batch."""
     fine = "colour" in outputs and samples > 1
     count, (height, width) = len(views.poses), views.size
     depth = arrays.depth_m

@@ -1,12 +1,12 @@
-"""``RenderPool``: processes that share one scene in memory and take its pictures.
+"""``RenderPool``: worker processes that share one scene in memory and render images of it.
 
-The scene's arrays are written to shared memory once. Each process has a pipe of its own, so that
-one that is killed locks nobody out. Pictures come back through a ring of slots of shared memory, so
-that memory is bounded however many poses there are. All of it is freed at the end, also after an
-error, after Ctrl-C, and when a process dies.
+The arrays of the scene are written to shared memory once. Each process has its own pipe, so that a
+killed process does not block the others. Images are returned through a ring of slots in shared
+memory, so that memory is bounded for any number of poses. All shared memory is freed at the end,
+also after an error, after Ctrl-C, and when a process dies.
 
-``concurrent.futures`` does not fit: ``ProcessPoolExecutor`` sends results through a pipe, pickled,
-and does not bound the results that nobody has taken yet.
+``concurrent.futures`` is not suitable: ``ProcessPoolExecutor`` sends pickled results through a
+pipe, and does not limit the number of results that are waiting.
 """
 
 import pickle
@@ -63,7 +63,7 @@ UNIT_EXPOSURE = LightSettings(exposure=1.0)
 
 
 class SlotRing:
-    """Slots of shared memory, and the tasks that they are for, in the order of their pictures."""
+    """A ring of slots in shared memory with their tasks, in the order of the images."""
 
     def __init__(self, slots: int, slot_bytes: int):
         """Begin with all slots free."""
@@ -74,13 +74,13 @@ class SlotRing:
         self._bytes = slot_bytes
 
     def take(self, first: int, views: Views, rooms: dict[str, ArraySpec]) -> Task:
-        """Take a slot for pictures, and return the task to draw them there."""
+        """Reserve a slot for images and return the task that renders into it."""
         slot = self._slot_of[first] = self.free.popleft()
         self.taken[first] = Task(first, views, lay_out(rooms, slot * self._bytes)[0])
         return self.taken[first]
 
     def next_reply(self, ordered: bool) -> Reply | None:
-        """Return the reply that is next, where it has come."""
+        """Return the next reply in order, if it has arrived."""
         if ordered:
             return self.done.get(next(iter(self.taken), -1))
         return next(iter(self.done.values()), None)
@@ -92,7 +92,7 @@ class SlotRing:
 
 
 def pictures_of(reply: Reply, ring: SlotRing, block: SharedArrays) -> list[tuple[int, Any]]:
-    """Return what a task made, or copies of its pictures, each with its number."""
+    """Yield the results of a task, or copies of its images, each with its number."""
     if reply.made is not None:
         return list(enumerate(reply.made, reply.first))
     task = ring.taken[reply.first]
@@ -107,7 +107,7 @@ def _copied(picture: Picture) -> Picture:
 
 
 def split_into_tasks(cameras: Sequence[Camera]) -> Iterator[tuple[int, int]]:
-    """Cut poses into tasks: neighbours of one size, more of them where pictures are small."""
+    """Divide poses into tasks of consecutive images of one size; small images share a task."""
     first = 0
     while first < len(cameras):
         size = cameras[first].height_px, cameras[first].width_px
@@ -122,7 +122,7 @@ def split_into_tasks(cameras: Sequence[Camera]) -> Iterator[tuple[int, int]]:
 
 
 class RenderPool:
-    """Processes that take pictures of one scene; a context manager.
+    """A pool of processes that render images of one scene, used as a context manager.
 
     Example::
 
@@ -130,8 +130,9 @@ class RenderPool:
             for number, picture in pool.render(camera, poses):
                 ...
 
-    Workers are new interpreters on every system (``spawn``), so a script that makes a pool has
-    ``if __name__ == "__main__":`` around what it runs. One thread at a time may use a pool.
+    Workers are new interpreters on every system (``spawn``), so a script that creates a pool must
+    guard its main code with ``if __name__ == "__main__":``. Only one thread at a time may use a
+    pool.
     """
 
     def __init__(self, scene: BlockScene, workers: int | None = None):
@@ -170,14 +171,14 @@ class RenderPool:
         self.close()
 
     def close(self) -> None:
-        """End the workers and take the shared memory away; may be called twice."""
+        """Stop the workers and free the shared memory. May be called twice."""
         self._end()
 
     def update(self, scene: BlockScene) -> None:
-        """Show the workers a scene that has changed, or another one, from the next job on.
+        """Replace the scene of the workers, starting with the next job.
 
         Raises:
-            UsageError: the pool is closed, or its pictures are still being taken.
+            UsageError: If the pool is closed or is still rendering.
         """
         self._check_idle()
         old, new = self._blocks[0], _share_tables(scene)
@@ -197,27 +198,29 @@ class RenderPool:
         ordered: bool = True,
         make: Make | None = None,
     ) -> Iterator[tuple[int, Any]]:
-        """Take the pictures of poses and give each with its number.
+        """Render images for many poses, and yield each image with its number.
 
-        They share one exposure, that of all the eyes together, unless the light or the scene
-        names one; so they have the bytes that ``render_batch`` gives, for any number of workers.
-        Memory holds a few pictures for each worker, however many there are in all.
+        All images share one exposure, computed from all eye positions, unless the light or the
+        scene defines one. They are identical to those of ``render_batch``, for any number of
+        workers. Memory is limited to a few images per worker.
 
         Args:
-            cameras: one for all poses, or one for each, of any sizes.
-            poses: ``camera_to_room``, float64 [N, 4, 4].
-            outputs: as in ``render_volume``; depth, range, block and face always come.
-            light: the hour, the exposure and the like.
-            samples: a pixel's colour is the mean of so many by so many.
-            background: sRGB colours of the first and last row behind all; None for the sky.
-            ordered: whether pictures come in the order of their poses, or as they are done.
-            make: called in the worker with the number and the picture, whose arrays pass away;
-                what it returns, such as the bytes of a JPEG, comes in the picture's place. A
-                function at the top of a module, or a partial of one.
+            cameras: One camera for all poses, or one camera for each pose, of any size.
+            poses: ``camera_to_room`` matrices, float64 [N, 4, 4].
+            outputs: Additional outputs, as for ``render_volume``. Depth, range, block and face are
+                always included.
+            light: Light settings, such as the time of day and the exposure.
+            samples: Each pixel's colour is the mean of ``samples`` x ``samples`` rays.
+            background: sRGB colours of the first and last row of the background. None uses the sky.
+            ordered: Whether to yield images in the order of their poses rather than as they are
+                completed.
+            make: Function called in the worker with the number and the image, whose arrays are only
+                valid during the call. Its result, such as JPEG bytes, is yielded instead of the
+                image. It must be a module-level function or a ``functools.partial`` of one.
 
         Raises:
-            UsageError: the request is invalid, or the pool is closed or at work.
-            WorkerError: a worker has died; the pool is closed then.
+            UsageError: If an argument is invalid, or if the pool is closed or busy.
+            WorkerError: If a worker has died. The pool is then closed.
         """
         self._check_idle()
         matrices = checked_poses(poses)

@@ -1,8 +1,8 @@
-"""Arrays in shared memory: written once, seen by every process that knows their plan.
+"""Arrays in shared memory: written once, and visible to all processes that know their layout.
 
-One process creates ``SharedArrays`` and frees them again; others join. Each array begins at a whole
-number of cache lines. Whether it may be written to is kept: kernels are compiled for that, and a
-process with another flag would compile its own.
+One process creates ``SharedArrays`` and frees them; others join. Arrays are aligned to cache lines.
+The writeable flag is preserved, because kernels are compiled for it, and another flag would cause a
+recompilation.
 """
 
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ LINE_BYTES = 64
 
 @dataclass(frozen=True)
 class ArrayPlace:
-    """Where an array lies in a block."""
+    """The location of an array in a block of shared memory."""
 
     offset: int
     shape: tuple[int, ...]
@@ -28,7 +28,7 @@ class ArrayPlace:
 
 @dataclass(frozen=True)
 class SharedLayout:
-    """What another process needs to know to join a block."""
+    """The data that another process needs to join a block of shared memory."""
 
     name: str
     places: dict[str, ArrayPlace]
@@ -37,7 +37,7 @@ class SharedLayout:
 def lay_out(
     rooms: Mapping[str, tuple[tuple[int, ...], np.dtype]], start: int = 0
 ) -> tuple[dict[str, ArrayPlace], int]:
-    """Return a place for each array, by its shape and dtype, and where the last one ends."""
+    """Return the location of each array by its shape and dtype, and the total size."""
     places, offset = {}, start
     for name, (shape, kind) in rooms.items():
         places[name] = ArrayPlace(offset, tuple(shape), kind.str)
@@ -47,7 +47,7 @@ def lay_out(
 
 
 class SharedArrays:
-    """Shared memory with arrays in it."""
+    """A block of shared memory with arrays."""
 
     def __init__(self, memory: SharedMemory, plan: SharedLayout, *, owned: bool):
         """Use ``create`` or ``join``."""
@@ -55,10 +55,10 @@ class SharedArrays:
 
     @classmethod
     def create(cls, places: dict[str, ArrayPlace], size: int) -> "SharedArrays":
-        """Make a block.
+        """Create a block of shared memory.
 
         Raises:
-            UsageError: the machine has not so much shared memory.
+            UsageError: If the machine does not have enough shared memory.
         """
         try:
             memory = SharedMemory(create=True, size=max(size, 1))
@@ -71,21 +71,21 @@ class SharedArrays:
 
     @classmethod
     def join(cls, plan: SharedLayout) -> "SharedArrays":
-        """Open a block that another process has made."""
+        """Open a block that another process has created."""
         return cls(SharedMemory(name=plan.name), plan, owned=False)
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """Return the arrays by their names; they are the memory itself."""
+        """Return the arrays by name, without copying."""
         return {name: self.array(place) for name, place in self.plan.places.items()}
 
     def array(self, place: ArrayPlace) -> np.ndarray:
-        """Return the array at a place."""
+        """Return the array at a location."""
         array = np.ndarray(place.shape, place.dtype, self._memory.buf, place.offset)
         array.flags.writeable = place.writeable
         return array
 
     def close(self) -> None:
-        """Let go of the memory; its maker takes it away. Arrays of it must be gone."""
+        """Close the block; its creator also frees it. No arrays of it may exist any more."""
         try:
             self._memory.close()
         except BufferError:  # Somebody still holds an array: it goes with the process.

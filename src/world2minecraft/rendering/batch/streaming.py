@@ -1,7 +1,7 @@
-"""A stream of pictures: the next are drawn while the last are encoded and written.
+"""Streaming of images: the next images are rendered while the last ones are encoded and written.
 
-Kernels, encoders and files release Python's lock, so plain threads are enough. Queues are bounded,
-order is kept, and an error is raised where the next item would be returned.
+Kernels, encoders and file operations release the GIL, so threads are sufficient. Queues are
+bounded, order is preserved, and errors are raised in place of the next item.
 """
 
 from collections import deque
@@ -36,10 +36,9 @@ MAX_WRITERS = 256
 
 
 def prefetch(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, None, None]:
-    """Give the things of an iterator, which a thread takes up to ``most`` ahead.
+    """Yield the items of an iterable, which a thread reads up to ``most`` items ahead.
 
-    Where the user stops early the thread ends, after the thing that it is at, and the iterator is
-    closed.
+    If the consumer stops early, the thread ends after its current item, and the iterator is closed.
     """
     queue: Queue[tuple[str, Any]] = Queue(max(most, 1))
     stop = Event()
@@ -83,15 +82,15 @@ def prefetch(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, Non
 def ordered_map(
     things: Iterator[Thing], work: Callable[[Thing], Made], threads: int, most: int
 ) -> Generator[Made, None, None]:
-    """Give what ``work`` makes of each thing, in order; threads do it while the next are taken.
+    """Yield the results of ``work`` for all items, in order, computed by threads.
 
     Args:
-        things: taken in the caller's thread.
-        work: called on one of the threads.
-        threads: how many at once.
-        most: how many things are kept at once, those at work included.
+        things: Items, which are read in the caller's thread.
+        work: Function, called on one of the threads.
+        threads: Number of threads.
+        most: Maximum number of items in progress or waiting.
 
-    An error of ``work`` is raised before another thing is taken.
+    An exception from ``work`` is raised before another item is read.
     """
     waiting: deque[Future[Made]] = deque()
     with ThreadPoolExecutor(threads, "world2minecraft-write") as executor:
@@ -128,28 +127,31 @@ def render_stream(
     jobs: int = 1,
     progress: Progress = no_progress,
 ) -> Iterator[Any]:
-    """Take the pictures of shots, and write each while the next ones are drawn.
+    """Render the images of shots, and write each image while the next ones are rendered.
 
-    All share one exposure, that of all the eyes together, unless the light or the scene names one.
-    Order is kept; memory holds a few pictures; the first error ends the stream.
+    All images share one exposure, computed from all eye positions, unless the light or the scene
+    defines one. Order is preserved, only a few images are in memory, and the first error ends the
+    stream.
 
     Args:
-        scene: ``prepare_scene`` of a volume.
-        shots: from where, through cameras of any sizes.
-        outputs: as in ``render_volume``; depth, range, block and face always come.
-        light: the hour, the exposure and the like.
-        samples: a pixel's colour is the mean of so many by so many.
-        threads: how many draw one picture; with several jobs each draws alone.
-        background: sRGB colours of the first and last row behind all; None for the sky.
-        write: called with the number, the shot and the picture, on one of ``encode_threads``;
-            what it returns is given in the picture's place. Without it the pictures themselves
-            are given, and drawn ahead of their user.
-        encode_threads: how many pictures are written at once.
-        jobs: how many processes draw; see ``RenderPool``.
-        progress: called with the pictures that are done, as stage ``render``.
+        scene: The result of ``prepare_scene`` for a volume.
+        shots: The shots, with cameras of any size.
+        outputs: Additional outputs, as for ``render_volume``. Depth, range, block and face are
+            always included.
+        light: Light settings, such as the time of day and the exposure.
+        samples: Each pixel's colour is the mean of ``samples`` x ``samples`` rays.
+        threads: Number of threads per image. With several jobs, each job uses one thread.
+        background: sRGB colours of the first and last row of the background. None uses the sky.
+        write: Function called with the number, the shot and the image, on one of
+            ``encode_threads``. Its result is yielded instead of the image. Without it, images are
+            yielded and rendered ahead.
+        encode_threads: Number of images written in parallel.
+        jobs: Number of rendering processes; see ``RenderPool``.
+        progress: Callback with the number of completed images, as stage ``render``.
 
     Raises:
-        UsageError: the request is invalid. WorkerError: a process died.
+        UsageError: If an argument is invalid.
+        WorkerError: If a worker process has died.
     """
     for name, value, most in (
         ("encode_threads", encode_threads, MAX_WRITERS),

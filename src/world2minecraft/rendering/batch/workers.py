@@ -1,7 +1,7 @@
-"""The worker processes of a pool: how they start, what they do, and how they end.
+"""The worker processes of a pool: their start, their tasks and their end.
 
-A worker gets ``SceneMessage``, ``Job`` and ``Task`` through a pipe, draws into the slot that the
-task names, and answers each task with a ``Reply``. It ends with its pipe.
+A worker receives ``SceneMessage``, ``Job`` and ``Task`` through a pipe, renders into the slot of
+the task, and answers each task with a ``Reply``. It exits when its pipe is closed.
 """
 
 import pickle
@@ -31,7 +31,7 @@ EXIT_TIMEOUT_S = 5.0  # For a worker to end by itself.
 
 @dataclass(frozen=True, eq=False)
 class SceneMessage:
-    """Where the tables of the scene lie."""
+    """The location of the scene tables in shared memory."""
 
     plan: SharedLayout
     side_px: int
@@ -39,7 +39,7 @@ class SceneMessage:
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """What tasks have in common."""
+    """The settings shared by several tasks."""
 
     slots: str  # the name of the memory that pictures are drawn into
     shading: ShadingParameters
@@ -50,7 +50,7 @@ class Job:
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Some pictures of one size, and the places of their arrays."""
+    """Some images of one size, and the locations of their arrays."""
 
     first: int  # the number of the first picture
     views: Views
@@ -59,7 +59,7 @@ class Task:
 
 @dataclass(frozen=True, eq=False)
 class Reply:
-    """A task is done, or has failed; ``made`` where the job says what to make of pictures."""
+    """The completion or failure of a task, with the results in ``made`` if the job has ``make``."""
 
     first: int
     made: list[Any] | None = None
@@ -67,7 +67,7 @@ class Reply:
 
 
 def serve(pipe: Connection) -> None:
-    """Do what comes through the pipe until it ends."""
+    """Process the messages from the pipe until it is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent gets it, and closes the pipe.
     desk = WorkerState()
     try:
@@ -90,10 +90,10 @@ def _send(pipe: Connection, reply: Reply) -> None:
 
 
 class WorkerState:
-    """The scene and the job of a worker, and the memory that it has joined.
+    """The scene and the job of a worker, and the shared memory that it has joined.
 
-    It joins memory with the first task that needs it: a job that others were quicker to finish is
-    gone, with its memory, before a slow worker hears of it.
+    A worker joins memory with the first task that needs it, because the memory of a job that other
+    workers have completed may already be freed.
     """
 
     def __init__(self):
@@ -104,7 +104,7 @@ class WorkerState:
         self._blocks: dict[str, SharedArrays] = {}
 
     def take(self, message: SceneMessage | Job | Task) -> Reply | None:
-        """Do what a message says; return the answer to a task."""
+        """Process a message, and return the reply to a task."""
         if isinstance(message, Task):
             return self._draw(message)
         if isinstance(message, SceneMessage):
@@ -145,14 +145,14 @@ class WorkerState:
         return block
 
     def clear(self) -> None:
-        """Let go of all memory."""
+        """Release all shared memory."""
         self._stage = None
         for block in self._blocks.values():
             block.close()
 
 
 def picklable_error(error: Exception) -> Exception:
-    """Return an error as it is where that can be sent, else one that tells it."""
+    """Return an exception if it can be pickled, else a ``WorkerError`` that describes it."""
     try:
         copied = pickle.loads(pickle.dumps(error))
     except Exception:
@@ -165,7 +165,7 @@ def picklable_error(error: Exception) -> Exception:
 
 @dataclass(eq=False)
 class Worker:
-    """A worker as the pool sees it."""
+    """A worker process as seen by the pool."""
 
     number: int
     process: BaseProcess
@@ -175,7 +175,7 @@ class Worker:
 
 @contextmanager
 def ignore_interrupts() -> Iterator[None]:
-    """Start children that Ctrl-C does not reach: the parent ends them."""
+    """Start child processes that ignore Ctrl-C, because the parent stops them."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -187,7 +187,7 @@ def ignore_interrupts() -> Iterator[None]:
 
 
 def start_worker(number: int) -> Worker:
-    """Start a worker: a new interpreter on every system, so that all behave alike."""
+    """Start a worker as a new interpreter on every system, for consistent behaviour."""
     context = get_context("spawn")
     ours, theirs = context.Pipe()
     name = f"world2minecraft-render-{number}"
@@ -198,7 +198,7 @@ def start_worker(number: int) -> Worker:
 
 
 def stop_workers(hands: list[Worker], blocks: list[SharedArrays]) -> None:
-    """End workers, the patient way first, and take shared memory away."""
+    """Stop workers, forcibly if necessary, and free the shared memory."""
     for hand in hands:
         with suppress(OSError):
             hand.pipe.send(None)

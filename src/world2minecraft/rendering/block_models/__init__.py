@@ -1,4 +1,4 @@
-"""Our own looks of every block: models and textures without a file of the game."""
+"""Built-in models and textures for every block, which need no files of the game."""
 
 from world2minecraft.rendering.block_models.builtin import BuiltinModels, stand_in_share, stand_ins
 

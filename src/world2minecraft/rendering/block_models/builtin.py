@@ -1,4 +1,4 @@
-"""Our own looks of every block, a source of models and textures that needs no file of the game."""
+"""The built-in source of models and textures for every block, without files of the game."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -15,25 +15,25 @@ VANILLA_PX = 16  # What the game's own pictures have a block.
 
 @dataclass(frozen=True, eq=False)
 class BuiltinModels:
-    """Looks of all blocks: models by rules, textures by recipes.
+    """The built-in model source, with models from rules and textures from recipes.
 
     Args:
-        size_px: pixels a block, 16 to 128.
+        size_px: Pixels per block, 16 to 128.
     """
 
     size_px: int = VANILLA_PX
     _textures: dict[str, Texture] = field(default_factory=dict, init=False, repr=False)
 
     def model(self, state: str) -> BlockModel:
-        """Return the model of any block state; ``stand_in`` where no rule knows the block.
+        """Return the model of a block state, marked as ``stand_in`` if no rule matches the block.
 
         Raises:
-            UsageError: the text is no block state.
+            UsageError: If the text is not a valid block state.
         """
         return model_of(state)
 
     def texture(self, name: str) -> Texture | None:
-        """Return the texture of a recipe, or None for a name that is not one of ours."""
+        """Return the texture of a recipe, or None for a name from another source."""
         if not name.startswith(PREFIX):
             return None
         if name not in self._textures:
@@ -42,19 +42,19 @@ class BuiltinModels:
 
 
 def stand_ins(states: Iterable[str]) -> list[str]:
-    """Return the states whose true look is not known, sorted, each once.
+    """Return the states without a known appearance, sorted and without duplicates.
 
     Raises:
-        UsageError: a text is no block state.
+        UsageError: If a text is not a valid block state.
     """
     return sorted({state for state in states if model_of(state).stand_in})
 
 
 def stand_in_share(states: Iterable[str]) -> float:
-    """Return which share, 0 to 1, of some states is drawn by stand-ins; 0 of none.
+    """Return the fraction of the given states without a known appearance, 0 to 1.
 
     Raises:
-        UsageError: a text is no block state.
+        UsageError: If a text is not a valid block state.
     """
     every = set(states)
     return len(stand_ins(every)) / len(every) if every else 0.0

@@ -1,8 +1,8 @@
-"""Small pictures on blocks: the face of a furnace, the letters of TNT, a pumpkin's grin.
+"""Small pixel images on block faces, such as a furnace front, the TNT letters or a pumpkin face.
 
-Drawn by hand for this program, letter by letter, in ``data/pictures.json``, over a texture of
-another generator. ``own:picture#rrggbb[,#rrggbb...]?base=planks&name=crafting_side``: the first
-colour is that of the base, the others are the inks 1, 2, 3.
+The images were drawn for this program, in ``data/pictures.json``, and are laid over a texture of
+another generator: ``own:picture#rrggbb[,#rrggbb...]?base=planks&name=crafting_side``. The first
+colour is that of the base, the others are inks 1, 2 and 3.
 """
 
 import json
@@ -26,14 +26,14 @@ HOLE = "_"
 
 
 def picture_of(recipe: str, size_px: int) -> Texture:
-    """Return the texture of a picture.
+    """Return the texture with a pixel image.
 
     Args:
-        recipe: its name, see above.
-        size_px: 16 to 128, a multiple of the picture's letters a row.
+        recipe: Texture name, as explained in the module docstring.
+        size_px: Texture size, 16 to 128, a multiple of the letters per row.
 
     Raises:
-        UnknownNameError: there is no such picture.
+        UnknownNameError: If there is no image of this name.
     """
     _, colours, options = split_recipe(recipe)
     name = options.get("name", "")
@@ -45,7 +45,7 @@ def picture_of(recipe: str, size_px: int) -> Texture:
 
 @lru_cache(maxsize=1 << 14)
 def has_texture(words: str) -> bool:
-    """Tell whether a generator, and a picture where one is named, is there for a skin's words."""
+    """Return whether the generator, and the pixel image if one is named, of a skin exist."""
     generator, *rest = words.split()
     if generator != PICTURE:
         return generator in GENERATORS
@@ -56,7 +56,7 @@ def has_texture(words: str) -> bool:
 
 @cache
 def load_pictures() -> Mapping[str, Mapping[str, Any]]:
-    """Read the shipped pictures, once: rows of letters, inks, and which of them glow."""
+    """Load the pixel images, once: rows of letters, inks, and which inks glow."""
     path = files("world2minecraft.rendering.block_models").joinpath("data/pictures.json")
     raw = json.loads(path.read_text("utf-8"))
     common = {"common": raw["common"]}
@@ -64,7 +64,7 @@ def load_pictures() -> Mapping[str, Mapping[str, Any]]:
 
 
 def letters_of(picture: Mapping[str, Any]) -> np.ndarray:
-    """Return a picture's letters, str [N, N]; a half one is mirrored to the right."""
+    """Return the letters of a pixel image, str [N, N]. Half images are mirrored to the right."""
     rows = [row + row[::-1] if picture.get("mirror") else row for row in picture["rows"]]
     return np.array([list(row) for row in rows])
 

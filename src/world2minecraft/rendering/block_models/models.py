@@ -1,20 +1,20 @@
-"""From a block state to its model: the rule that fits, its parts, and how the state rotates them.
+"""Construction of block models: the matching rule, its parts, and their rotation by the state.
 
-A model is written once, for north or for up, and rotated to the state. Matrices are float64 [4, 4]
-and carry points of the block to points of the block, about its middle. Lengths in the data files
-are sixteenths of a block. Keys of a part:
+A model is written once, facing north or up, and rotated according to the state. Matrices are
+float64 [4, 4] and transform points of the block about its centre. Lengths in the data files are
+sixteenths of a block. Keys of a part:
 
-- ``when``: property values, ``a|b`` for either, a list of such for any of them.
-- ``boxes``: x0 y0 z0 x1 y1 z1, flat where two are equal; or ``cross``: two upright pictures from
-  corner to corner, [half width, bottom, top]; or ``hash``: four upright pictures, [bottom, top].
-- ``skin``, ``skins``: as of a rule.
-- ``uv``: "place" (where the face lies in the block), "fit" (the whole texture), or a table of faces
-  to [u0, v0, u1, v1] or those words.
-- ``spin``: a table of faces to 90, 180 or 270 degrees, clockwise.
-- ``sides``: the boxes are for north, drawn for each side whose property has the value; ``faces``:
-  for up and down too.
-- ``tilt``: [axis, degrees, x, y, z], a rotation about a point, or a list of such.
-- ``glow``: it emits light.
+- ``when``: Property values, ``a|b`` for alternatives, or a list of which any may match.
+- ``boxes``: x0 y0 z0 x1 y1 z1, flat if two are equal. Or ``cross``: two upright faces from corner
+  to corner, [half width, bottom, top]. Or ``hash``: four upright faces, [bottom, top].
+- ``skin``, ``skins``: As in a rule.
+- ``uv``: "place" (position of the face in the block), "fit" (the whole texture), or a table of
+  faces to [u0, v0, u1, v1] or those words.
+- ``spin``: A table of faces to 90, 180 or 270 degrees, clockwise.
+- ``sides``: The boxes are for north and repeated for each side whose property has the value.
+  ``faces``: Also for up and down.
+- ``tilt``: [axis, degrees, x, y, z], a rotation about a point, or a list of such rotations.
+- ``glow``: The part is luminous.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -58,12 +58,12 @@ _GROUPS = {
 def rotation_about(
     angle_deg: float, axis: str = "y", origin: Sequence[float] = MIDDLE
 ) -> np.ndarray:
-    """Return the turn about an axis: about y clockwise as seen from above.
+    """Return a rotation about an axis. Rotations about y are clockwise as seen from above.
 
     Args:
-        angle_deg: multiples of 90 give exact matrices.
+        angle_deg: Angle in degrees. Multiples of 90 give exact matrices.
         axis: "x", "y" or "z".
-        origin: a point on the axis, blocks.
+        origin: A point on the axis, in blocks.
     """
     cosine, sine = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
     if angle_deg % 90 == 0:
@@ -77,7 +77,7 @@ def rotation_about(
 
 
 def about_point(matrix: np.ndarray, origin: Sequence[float]) -> np.ndarray:
-    """Return a matrix so moved that it leaves ``origin`` where it is."""
+    """Return a matrix translated so that it leaves ``origin`` in place."""
     moved = matrix.copy()
     middle = np.asarray(origin, np.float64)
     moved[:3, 3] = middle - matrix[:3, :3] @ middle
@@ -85,12 +85,12 @@ def about_point(matrix: np.ndarray, origin: Sequence[float]) -> np.ndarray:
 
 
 def rotation_from_north(facing: str) -> np.ndarray:
-    """Return the turn that carries north to a side; none for what is no side."""
+    """Return the rotation from north to a side, or the identity if it is not a side."""
     return rotation_about(90.0 * QUARTERS.index(facing)) if facing in QUARTERS else np.eye(4)
 
 
 def rotation_from_up(facing: str) -> np.ndarray:
-    """Return the turn that carries up to one of the six sides."""
+    """Return the rotation from up to one of the six sides."""
     if facing == "down":
         return rotation_about(180.0, "x")
     if facing in QUARTERS:
@@ -99,18 +99,18 @@ def rotation_from_up(facing: str) -> np.ndarray:
 
 
 def rotation_from_y(axis: str) -> np.ndarray:
-    """Return the turn that carries the y axis to another."""
+    """Return the rotation from the y axis to another axis."""
     return {"x": rotation_from_up("east"), "z": rotation_from_up("north")}.get(axis, np.eye(4))
 
 
 def rotation_of_sixteenths(rotation: str, front: str = "south") -> np.ndarray:
-    """Return the turn of a sign, a banner or a head: 0 looks to ``front``, clockwise from there."""
+    """Return the rotation of a sign, banner or head, clockwise in sixteenths from ``front``."""
     step = int(rotation) % 16 if rotation.isdecimal() and len(rotation) < 4 else 0
     return rotation_about(90.0 * QUARTERS.index(front) + 22.5 * step)
 
 
 def rotate_element(element: Element, matrix: np.ndarray) -> Element:
-    """Return an element carried by a turn: an aligned box stays aligned where that can be."""
+    """Return a rotated element. Quarter turns keep aligned boxes aligned."""
     rotation = matrix[:3, :3]
     if element.turn is not None or not np.isin(rotation, (-1.0, 0.0, 1.0)).all():
         before = np.eye(4) if element.turn is None else element.turn
@@ -135,7 +135,7 @@ def rotate_element(element: Element, matrix: np.ndarray) -> Element:
 
 @dataclass(frozen=True, eq=False)
 class PartContext:
-    """What the parts of a state are painted with: its name, its properties and known skins."""
+    """The context for the parts of a state: its name, its properties and the known skins."""
 
     name: str
     values: Mapping[str, str]
@@ -145,7 +145,7 @@ class PartContext:
 
 
 def elements_of(part: Mapping[str, Any], dress: PartContext) -> Iterator[Element]:
-    """Yield the elements of a part where the state draws it."""
+    """Yield the elements of a part if the state shows it."""
     if not matches(part.get("when", {}), dress.values):
         return
     drawn = [_tilt(one, part.get("tilt", ())) for one in _shapes(part, dress)]
@@ -165,7 +165,7 @@ def box_element(
     dress: PartContext,
     shade: bool = True,
 ) -> Element:
-    """Return a box, sixteenths, dressed as its part says."""
+    """Return the element of a box in sixteenths, with the textures of its part."""
     corner = float(low[0]) / 16, float(low[1]) / 16, float(low[2]) / 16
     other = float(high[0]) / 16, float(high[1]) / 16, float(high[2]) / 16
     faces = tuple(_face(side, corner, other, part, dress) for side in range(6))
@@ -174,7 +174,7 @@ def box_element(
 
 
 def matches(when: Any, values: Mapping[str, str]) -> bool:
-    """Tell whether a state has the wanted values."""
+    """Return whether a state has the required property values."""
     cases = when if isinstance(when, list) else [when]
     return any(
         all(values.get(key, "") in wanted.split("|") for key, wanted in case.items())
@@ -275,13 +275,13 @@ def _value_for_face(table: Any, name: str) -> Any:
 
 @lru_cache(maxsize=1 << 16)
 def model_of(state: str) -> BlockModel:
-    """Return the model of a block state; missing properties count as the defaults.
+    """Return the model of a block state. Missing properties have their default values.
 
-    One that no rule knows is drawn by the boxes that are seen of it, in its own colour, and marked
-    as a stand-in.
+    A block without a rule is rendered by its visible boxes in its own colour, and marked as a
+    stand-in.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
     """
     whole = complete(parse_state(state))
     rule = rule_for(whole)

@@ -1,17 +1,17 @@
-"""The looks of blocks as data: which blocks, which textures on which faces, which boxes.
+"""Block appearance as data: which blocks have which textures on which faces, and which boxes.
 
-In: the files of ``data/``. Out: the rule of a block state. The first rule that fits the block's
-name counts, else that of what it is cut from, else one of the last file. Keys of a rule:
+The rules are read from ``data/``. The first rule that matches the block's name is used, then the
+rule of the block's material, then a rule of the last file. Keys of a rule:
 
-- ``blocks``: patterns of names without namespace; ``needs``: properties that must be there.
-- ``skin``: words of a recipe (``texture_recipes.py``) or one of ``skins``, or a table of faces:
-  all, side, end, up, down, north, south, west, east; null leaves the face away.
-- ``turn``, ``point``, ``axis``, ``rotation``, ``head``: the property that turns the model, which is
-  written for north, for up, along y, for a sign's front to north, for a head's. With none of
-  ``parts`` it is a full cube; ``uv`` and ``spin`` are then those of that part.
-- ``parts``: see ``models.py``, or the name of one of ``models``; a rule with neither draws the
-  boxes that are seen (``minecraft.visual_shapes``).
-- ``glow``: it is seen by its own light.
+- ``blocks``: Name patterns without namespace. ``needs``: Properties that must be present.
+- ``skin``: A texture description (``texture_recipes.py``), a key of ``skins``, or a table of faces:
+  all, side, end, up, down, north, south, west, east. null omits the face.
+- ``turn``, ``point``, ``axis``, ``rotation``, ``head``: The property that rotates the model. The
+  model is written facing north, pointing up, along y, as a sign facing north, or as a head. Without
+  ``parts`` it is a full cube, to which ``uv`` and ``spin`` then apply.
+- ``parts``: See ``models.py``, or a key of ``models``. Rules without parts or skin use the visible
+  boxes (``minecraft.visual_shapes``).
+- ``glow``: The block is rendered as luminous.
 """
 
 import json
@@ -55,7 +55,7 @@ PREFIXES = ("waxed_", "infested_", "petrified_")
 
 @dataclass(frozen=True, eq=False)
 class ModelRule:
-    """How some blocks look; the keys are explained above."""
+    """The appearance of some blocks. The fields are explained in the module docstring."""
 
     blocks: tuple[str, ...]
     needs: tuple[str, ...]
@@ -67,12 +67,14 @@ class ModelRule:
 
 
 def rule_for(state: BlockState) -> ModelRule | None:
-    """Return the rule of a complete state, or None where none fits."""
+    """Return the rule of a complete block state, or None if no rule matches."""
     return _rule(state.name, tuple(key for key, _ in state.properties))
 
 
 def material_of(name: str) -> str:
-    """Return the name of the block that another is cut from, or its own.
+    """Return the block that another block is made from, such as the full block of stairs.
+
+    A block without such a material is returned itself.
 
     Example:
         >>> material_of("minecraft:waxed_cut_copper_stairs")
@@ -106,7 +108,7 @@ def _rule(name: str, properties: tuple[str, ...]) -> ModelRule | None:
 
 @cache
 def model_rules() -> tuple[tuple[ModelRule, ...], tuple[ModelRule, ...]]:
-    """Read the shipped files, once: the rules of known blocks, then those by words of names."""
+    """Load the rule files, once: the rules of known blocks, then those by parts of names."""
     folder = files("world2minecraft.rendering.block_models").joinpath("data")
     raw = [json.loads(folder.joinpath(name).read_text("utf-8")) for name in FILES]
     shared: dict[str, Any] = {}

@@ -1,10 +1,11 @@
-"""From the words of the data files to the names of textures.
+"""Conversion of the texture descriptions in the data files to texture recipe names.
 
-In: ``"planks self,self*0.6 boards=4 half={half}"`` and a state. Out: the canonical recipe
-``own:planks#a2834f,#614e2f?boards=4&half=upper``. Words are the generator, the colours and the
-options. A colour is ``self`` (the block's own), ``#rrggbb`` or ``@block`` (that block's), each
-maybe with ``*factor``, or ``a~b~share`` for a with a share of b: the first colour is the mean of a
-texture, so that a stem must be reckoned in with its flower. Braces hold the name of a property.
+A description such as ``"planks self,self*0.6 boards=4 half={half}"`` and a block state give the
+canonical recipe ``own:planks#a2834f,#614e2f?boards=4&half=upper``. A description consists of the
+generator, the colours and the options. A colour is ``self`` (the colour of the block), ``#rrggbb``
+or ``@block`` (the colour of that block), optionally followed by ``*factor``, or ``a~b~share`` for a
+mixture of a with a share of b. The first colour is the mean of the texture, so the colour of a
+flower must include its stem. Braces contain the name of a property.
 """
 
 from collections.abc import Mapping
@@ -18,9 +19,9 @@ def recipe_of(words: str, name: str, values: Mapping[str, str]) -> str:
     """Return the canonical recipe of a texture.
 
     Args:
-        words: see above.
-        name: the block's full name, for ``self``.
-        values: its properties.
+        words: Texture description, as explained in the module docstring.
+        name: Full name of the block, for ``self``.
+        values: Properties of the block state.
 
     Example:
         >>> recipe_of("planks #FF0000*0.5 half={half}", "a:b", {"half": "upper"})
@@ -37,7 +38,7 @@ def recipe_of(words: str, name: str, values: Mapping[str, str]) -> str:
 def split_recipe(
     recipe: str,
 ) -> tuple[str, tuple[tuple[int, int, int], ...], dict[str, str]]:
-    """Return a recipe's generator, colours (sRGB bytes) and options.
+    """Return the generator, the colours (sRGB bytes) and the options of a recipe.
 
     Example:
         >>> split_recipe("own:planks#800000?half=upper")
@@ -51,7 +52,7 @@ def split_recipe(
 
 
 def hex_colour(rgb: tuple[int, int, int]) -> str:
-    """Return a colour as recipes have it."""
+    """Return a colour as ``#rrggbb``."""
     return "#{:02x}{:02x}{:02x}".format(*rgb)
 
 
@@ -81,17 +82,17 @@ def _plain_colour(word: str, name: str) -> list[float]:
 
 
 class Values(dict):
-    """Properties; one that a state lacks is empty."""
+    """Properties of a block state, in which missing properties are empty strings."""
 
     def __missing__(self, key: str) -> str:
         return ""
 
 
 def values_of(name: str, properties: Mapping[str, str]) -> Values:
-    """Return what braces may hold: the properties, and parts of the block's name.
+    """Return the values that braces may name: the properties, and parts of the block's name.
 
-    ``plain`` is the name, ``stem`` the name without its last word, ``last`` that word, ``inside``
-    what a pot holds, and ``wire`` the colour of redstone dust of its power.
+    ``plain`` is the name, ``stem`` is the name without its last word, ``last`` is that word,
+    ``inside`` is the plant in a pot, and ``wire`` is the colour of redstone dust at its power.
     """
     plain = name.partition(":")[2]
     stem, _, last = plain.rpartition("_")

@@ -1,7 +1,7 @@
-"""Render on the GPU: a compute shader over the scene's tables, by wgpu.
+"""Rendering on the GPU by a wgpu compute shader over the tables of the scene.
 
-``renderer_for(device, scene)`` returns a renderer for the CPU or the GPU with the
-same methods. wgpu comes with the extra ``[gpu]``; nothing here imports it before it is needed.
+``renderer_for(device, scene)`` returns a CPU or GPU renderer with the same methods. wgpu is part of
+the extra ``[gpu]`` and is only imported when it is needed.
 """
 
 from world2minecraft.rendering.gpu.backend_choice import (

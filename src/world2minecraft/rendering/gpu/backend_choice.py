@@ -1,7 +1,7 @@
-"""Choose the renderer: the CPU kernel or the GPU shader, behind one interface.
+"""The choice between the CPU kernel and the GPU shader, behind one interface.
 
-``auto`` takes a graphics card where there is one, and never a software adapter, which is slower
-than the kernel. wgpu is imported only where there may be a GPU, or one was requested.
+``auto`` uses a GPU if there is one, but never a software adapter, which is slower than the CPU
+kernel. wgpu is only imported if a GPU may be present or was requested.
 """
 
 import sys
@@ -31,11 +31,11 @@ _CARD_FILES = ("dri/render*", "nvidia[0-9]*", "nvidiactl", "kfd", "mali*", "dxg"
 
 
 class Renderer(Protocol):
-    """Takes pictures of one scene; the arguments are those of ``render_volume``."""
+    """A renderer of one scene, whose methods accept the arguments of ``render_volume``."""
 
     @property
     def name(self) -> str:
-        """What draws."""
+        """The name of the rendering device."""
         ...
 
     def render(
@@ -43,7 +43,7 @@ class Renderer(Protocol):
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
-        """Take a picture."""
+        """Render an image."""
         ...
 
     def render_many(
@@ -51,7 +51,7 @@ class Renderer(Protocol):
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Iterator[Picture]:  # fmt: skip
-        """Take a picture from each pose, in their order."""
+        """Yield an image for each pose, in order."""
         ...
 
     def render_parallel(
@@ -59,20 +59,20 @@ class Renderer(Protocol):
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
-        """Take a picture by parallel rays."""
+        """Render an orthographic image."""
         ...
 
     def update(self, scene: BlockScene) -> None:
-        """Draw another scene from now on, or the same after its blocks were changed."""
+        """Switch to another scene, or reload the scene after its blocks have changed."""
         ...
 
     def close(self) -> None:
-        """Free what it holds."""
+        """Release the memory of the renderer."""
         ...
 
 
 class CpuRenderer:
-    """Draws one scene by the kernel; the methods are those of ``GpuRenderer``."""
+    """A renderer that uses the CPU kernel, with the same methods as ``GpuRenderer``."""
 
     name = "CPU"
 
@@ -85,7 +85,7 @@ class CpuRenderer:
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
-        """Take a picture; see ``render_volume``."""
+        """Render an image. See ``render_volume``."""
         return render_volume(
             self._scene, camera, camera_to_room, outputs=outputs, light=light, samples=samples,
             threads=self._threads, background=background,
@@ -96,7 +96,7 @@ class CpuRenderer:
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Iterator[Picture]:  # fmt: skip
-        """Take a picture from each pose, in their order."""
+        """Yield an image for each pose, in order."""
         for pose in poses:
             yield self.render(
                 camera, pose, outputs=outputs, light=light, samples=samples, background=background
@@ -107,27 +107,27 @@ class CpuRenderer:
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
-        """Take a picture by parallel rays; see the function of that name."""
+        """Render an orthographic image. See ``rendering.picture.render_parallel``."""
         return render_parallel(
             self._scene, px_per_metre, size, camera_to_room, outputs=outputs, light=light,
             samples=samples, threads=self._threads, background=background,
         )  # fmt: skip
 
     def update(self, scene: BlockScene) -> None:
-        """Draw another scene from now on."""
+        """Switch to another scene."""
         self._scene = scene
 
     def close(self) -> None:
-        """Hold nothing."""
+        """Do nothing, because this renderer has no resources to release."""
 
 
 def choose_device(name: str = "auto") -> str:
-    """Return ``cpu`` or ``gpu`` for a name of ``DEVICES``.
+    """Return ``cpu`` or ``gpu`` for a device name from ``DEVICES``.
 
     Raises:
-        UnknownNameError: there is no such name.
-        MissingExtraError: gpu was requested and wgpu is not installed.
-        GpuError: gpu was requested and no graphics card is found.
+        UnknownNameError: If the device name is unknown.
+        MissingExtraError: If gpu is requested but wgpu is not installed.
+        GpuError: If gpu is requested but no GPU is found.
     """
     if name not in DEVICES:
         raise UnknownNameError("device", name, DEVICES)
@@ -140,16 +140,19 @@ def choose_device(name: str = "auto") -> str:
 def renderer_for(
     device: str, scene: BlockScene, *, threads: int = 1, adapter: str | None = None
 ) -> Renderer:
-    """Return what draws a scene.
+    """Return a renderer for a scene.
 
     Args:
-        device: a name of ``DEVICES``; with ``auto`` a world that is too large for the graphics
-            card is drawn on the CPU.
-        scene: ``prepare_scene`` of a volume.
-        threads: of the CPU, for one picture.
-        adapter: which graphics card: a part of its name, or ``software``.
+        device: A device name from ``DEVICES``. With ``auto``, a world that is too large for the GPU
+            is rendered on the CPU.
+        scene: The result of ``prepare_scene`` for a volume.
+        threads: Number of CPU threads per image.
+        adapter: GPU adapter to use: a part of its name, or ``software``.
 
-    Raises: what ``choose_device`` and, with ``gpu``, ``GpuRenderer`` raise.
+    Raises:
+        UnknownNameError: If the device name is unknown.
+        MissingExtraError: If gpu is requested but wgpu is not installed.
+        GpuError: If gpu is requested but cannot be used for this scene.
     """
     if device not in DEVICES:
         raise UnknownNameError("device", device, DEVICES)

@@ -1,8 +1,8 @@
-"""GPU adapters, and the device with the compiled shader: made once for each adapter of a process.
+"""GPU adapters, and the device with the compiled shader, created once per adapter and process.
 
-wgpu is imported only when a GPU is asked for. A software adapter draws on the CPU, slower than our
-own kernel; it is used only by name, for tests: ``W2M_GPU_ADAPTER=software``, or any part of an
-adapter's name.
+wgpu is only imported when a GPU is requested. A software adapter renders on the CPU, slower than
+the CPU kernel. It is used only if selected by name, for tests: ``W2M_GPU_ADAPTER=software``, or any
+part of an adapter's name.
 """
 
 import os
@@ -36,7 +36,7 @@ _LIMITS = ("max-buffer-size", "max-storage-buffer-binding-size")
 
 
 def shader_text() -> str:
-    """Return the whole shader, WGSL."""
+    """Return the complete WGSL source of the shader."""
     folder = files("world2minecraft.rendering.gpu")
     places = LAYOUT | {"AT_ENCODE": AT_ENCODE, "AT_CORNERS": AT_CORNERS}
     constants = "".join(f"const {name}: u32 = {value}u;\n" for name, value in places.items())
@@ -51,7 +51,7 @@ def shader_text() -> str:
 
 @dataclass(frozen=True)
 class AdapterInfo:
-    """An adapter that was found."""
+    """A GPU adapter of this machine."""
 
     name: str
     backend: str
@@ -59,29 +59,29 @@ class AdapterInfo:
 
 
 class GpuError(UsageError):
-    """The GPU cannot do what was asked; the message says what to type instead."""
+    """The GPU cannot perform a request. The message names an alternative."""
 
 
 def wgpu_module() -> Any:
-    """Import wgpu and return it."""
+    """Import wgpu and return the module."""
     return import_module("wgpu")
 
 
 def list_adapters() -> list[AdapterInfo]:
-    """Return the adapters of this machine, the best first; none where wgpu is not installed."""
+    """Return the GPU adapters of this machine, best first; empty if wgpu is not installed."""
     return [info_of(adapter) for adapter in _adapters()] if find_spec("wgpu") else []
 
 
 def find_adapter(name: str | None = None) -> Any:
-    """Return the adapter that draws, a wgpu adapter.
+    """Return the wgpu adapter to render with.
 
     Args:
-        name: a part of its name, or ``software``; None for what ``W2M_GPU_ADAPTER`` says, and
-            where that says nothing for the best one that is hardware.
+        name: A part of the adapter's name, or ``software``. None uses ``W2M_GPU_ADAPTER`` if it is
+            set, and otherwise the best hardware adapter.
 
     Raises:
-        MissingExtraError: wgpu is not installed.
-        GpuError: there is no such adapter.
+        MissingExtraError: If wgpu is not installed.
+        GpuError: If no such adapter is found.
     """
     if find_spec("wgpu") is None:
         raise MissingExtraError("--device gpu", "gpu")
@@ -105,7 +105,7 @@ def find_adapter(name: str | None = None) -> Any:
 
 
 def info_of(adapter: Any) -> AdapterInfo:
-    """Return what an adapter says of itself."""
+    """Return the description of an adapter."""
     info = adapter.info
     name = info.get("device") or info.get("description") or "nameless"
     text = f"{name} {info.get('vendor', '')} {info.get('description', '')}".lower()
@@ -114,10 +114,10 @@ def info_of(adapter: Any) -> AdapterInfo:
 
 
 def open_device(adapter: Any) -> Any:
-    """Return a wgpu device whose buffers may be as large as the adapter can.
+    """Return a wgpu device with the largest buffer limits of its adapter.
 
     Raises:
-        GpuError: the adapter gives no device.
+        GpuError: If the device cannot be opened.
     """
     limits = {name: adapter.limits[name] for name in _LIMITS if name in adapter.limits}
     try:
@@ -163,17 +163,17 @@ def _rank(adapter: Any) -> tuple[bool, int, int]:
 
 @dataclass(frozen=True, eq=False)
 class Engine:
-    """A wgpu device and its pipeline."""
+    """A wgpu device with its compiled pipeline."""
 
     name: str
     device: Any
     pipeline: Any
 
     def check_fits(self, scene: BlockScene) -> None:
-        """Say what does not fit.
+        """Check that the buffers of a scene fit the device.
 
         Raises:
-            GpuError: a buffer of the scene is larger than the device takes.
+            GpuError: If a buffer exceeds the limit of the device.
         """
         most = min(
             self.device.limits["max-storage-buffer-binding-size"],
@@ -189,10 +189,10 @@ class Engine:
                 )
 
     def upload(self, arrays: Mapping[str, np.ndarray]) -> dict[str, Any]:
-        """Copy arrays to the GPU, each into a buffer of its own.
+        """Copy arrays to separate buffers on the GPU.
 
         Raises:
-            GpuError: its memory is full.
+            GpuError: If the GPU memory is full.
         """
         usage = wgpu_module().BufferUsage.STORAGE
         try:
@@ -209,7 +209,7 @@ class Engine:
 
 
 def engine_for(adapter: Any) -> Engine:
-    """Return the engine of a wgpu adapter; the same one as long as its device works."""
+    """Return the engine of a wgpu adapter, which is reused as long as its device works."""
     key = id(adapter)
     if key not in _ENGINES:
         device = open_device(adapter)
@@ -222,13 +222,13 @@ def engine_for(adapter: Any) -> Engine:
 
 
 def discard_engine(engine: Engine) -> None:
-    """Forget an engine whose device is lost, so that the next one is new."""
+    """Remove an engine whose device is lost, so that a new one is created."""
     for key in [key for key, value in _ENGINES.items() if value is engine]:
         del _ENGINES[key]
 
 
 def device_errors() -> tuple[type[Exception], ...]:
-    """Return what wgpu raises where a device is lost or its memory is full."""
+    """Return the exception types that wgpu raises for a lost device or full memory."""
     return RuntimeError, wgpu_module().GPUError
 
 

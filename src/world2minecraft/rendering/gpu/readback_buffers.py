@@ -1,7 +1,7 @@
-"""Buffers that pictures come back through: two sets, so that one is drawn while one is read.
+"""Double buffers for reading images back from the GPU, so that one is rendered while one is read.
 
-A picture is drawn in bands of rows, as many as fit; a job is one band of one pose. Several jobs go
-into one submission and come back in one piece.
+An image is rendered in bands of rows that fit into a buffer. A job is one band of one pose. A
+submission consists of several jobs, which are read back together.
 """
 
 from collections.abc import Mapping
@@ -28,7 +28,7 @@ TILE = 8  # Pixels a side of a workgroup.
 
 @dataclass(frozen=True)
 class SubmissionPlan:
-    """How the jobs of a call are cut: rows of a band, and jobs of a submission."""
+    """The division of a call into jobs: rows per band, and jobs per submission."""
 
     band_rows: int
     jobs: int
@@ -38,9 +38,9 @@ class SubmissionPlan:
 def plan_submissions(
     ask: PictureRequest, pictures: int | None, most_bytes: int = SLOT_BYTES
 ) -> SubmissionPlan:
-    """Cut pictures so that a submission fits into ``most_bytes``, and one row at least.
+    """Divide images so that a submission fits into ``most_bytes``, with at least one row.
 
-    ``load_pictures`` is how many there are, None where that is not known.
+    ``load_pictures`` is the number of images, or None if it is unknown.
     """
     height, width = ask.size
     row_words = width * ask.layout.planes
@@ -56,7 +56,7 @@ def plan_submissions(
 
 
 class BufferSet:
-    """One set of buffers, which one call uses at a time."""
+    """A set of buffers that is used by one call at a time."""
 
     def __init__(self, engine: Any, scene: Mapping[str, Any], out_bytes: int):
         """Make the buffers.
@@ -91,7 +91,7 @@ class BufferSet:
         )
 
     def prepare(self, parameters: bytes, shading: ShadingParameters) -> None:
-        """Take what the next submission is drawn with."""
+        """Set the resources for the next submission."""
         self._write("parameters", parameters)
         if self._shading is not shading:
             self._write("tone", tone_words(shading))
@@ -101,7 +101,7 @@ class BufferSet:
         self._engine.device.queue.write_buffer(self._own[name], 0, data)
 
     def submit(self, views: np.ndarray, ask: PictureRequest, plan: SubmissionPlan) -> None:
-        """Begin to draw some views, ``VIEW`` [N]."""
+        """Start to render some views, ``VIEW`` [N]."""
         self._write("views", views)
         self._bytes = 4 * plan.words * len(views)
         encoder = self._engine.device.create_command_encoder()
@@ -115,18 +115,18 @@ class BufferSet:
         self._promise = self._back.map_async("READ", 0, self._bytes)
 
     def words(self) -> np.ndarray:
-        """Wait for what was submitted; a view, uint32, that is good until ``stop_workers``."""
+        """Wait for the submission and return its data as a uint32 view, valid until ``release``."""
         self._promise.sync_wait()
         return np.frombuffer(self._back.read_mapped(0, self._bytes, copy=False), np.uint32)
 
     def release(self) -> None:
-        """Let go of the words, so that the set may be used again."""
+        """Release the data, so that the buffers can be reused."""
         if self._promise is not None:
             self._promise.sync_wait()
             self._back.unmap()
             self._promise = None
 
     def destroy(self) -> None:
-        """Free the memory on the GPU."""
+        """Free the GPU memory."""
         for buffer in (*self._own.values(), self._back):
             buffer.destroy()

@@ -1,4 +1,4 @@
-"""Pictures by a compute shader: the scene goes to the GPU once; poses in, pictures out."""
+"""Rendering by a compute shader: the scene is uploaded once, then poses are turned into images."""
 
 from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Sized
@@ -48,13 +48,13 @@ LOST = "the GPU {} no longer responds: {}; use --device cpu"
 
 
 def unpack_rows(arrays: PixelArrays, planes: np.ndarray, row: int, layout: PlaneLayout) -> None:
-    """Fill in a band of rows.
+    """Copy a band of rows from the GPU into the output arrays.
 
     Args:
-        arrays: of the whole picture, H x W.
-        planes: uint32 [planes, rows, W]; rows past the picture's last are of no use.
-        row: the first row.
-        layout: what the planes hold.
+        arrays: Output arrays of the whole image, H x W.
+        planes: Data of the band, uint32 [planes, rows, W]. Rows beyond the image are ignored.
+        row: First row of the band.
+        layout: Contents of the planes.
     """
     last = min(row + planes.shape[1], len(arrays.depth))
     rows, planes = slice(row, last), planes[:, : last - row]
@@ -81,9 +81,9 @@ def unpack_rows(arrays: PixelArrays, planes: np.ndarray, row: int, layout: Plane
 
 
 class GpuRenderer:
-    """Draws one scene on a graphics card; the methods are those of ``CpuRenderer``.
+    """A renderer that uses the GPU, with the same methods as ``CpuRenderer``.
 
-    It is used from one thread at a time. A lost device is opened again, once per call.
+    It must be used from one thread at a time. A lost device is reopened once per call.
     """
 
     def __init__(self, scene: BlockScene, *, adapter: str | None = None):
@@ -103,17 +103,17 @@ class GpuRenderer:
 
     @property
     def name(self) -> str:
-        """The adapter's name."""
+        """The name of the GPU adapter."""
         return self._engine.name
 
     def update(self, scene: BlockScene) -> None:
-        """Draw another scene from now on, or the same after its blocks were changed."""
+        """Switch to another scene, or reload the scene after its blocks have changed."""
         self._scene = scene
         self._close_buffers()
         self._open()
 
     def close(self) -> None:
-        """Free the memory on the GPU; the renderer is of no use after that."""
+        """Release the GPU memory. The renderer cannot be used afterwards."""
         self._close_buffers()
 
     def render(
@@ -126,7 +126,7 @@ class GpuRenderer:
         samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:
-        """Take a picture; the arguments are those of ``render_volume``."""
+        """Render an image. The arguments are those of ``render_volume``."""
         (picture,) = self.render_many(
             camera, [camera_to_room], outputs=outputs, light=light, samples=samples,
             background=background,
@@ -143,19 +143,20 @@ class GpuRenderer:
         samples: int = 1,
         background: Backdrop | None = None,
     ) -> Iterator[Picture]:
-        """Take a picture from each pose, in their order; some poses are read ahead.
+        """Yield an image for each pose, in order. Some poses are read ahead.
 
         Args:
-            camera: one for all.
-            poses: ``camera_to_room``, 4x4 each.
-            outputs: see ``render_volume``; the others too.
-            light: the hour, the exposure and the like.
-            samples: a pixel's colour is the mean of so many by so many.
-            background: sRGB colours of the first and last row behind all.
+            camera: Camera for all poses.
+            poses: ``camera_to_room`` matrices, 4x4 each.
+            outputs: Requested outputs, as for ``render_volume``.
+            light: Light settings, such as the time of day and the exposure.
+            samples: Each pixel's colour is the mean of ``samples`` x ``samples`` rays.
+            background: sRGB colours of the first and last row of the background.
 
         Raises:
-            ValueError: as ``render_volume``, or a pose holds a number that is none.
-            GpuError: the graphics card stopped answering.
+            ValueError: If ``render_volume`` would reject an argument, or if a pose contains NaN or
+                infinity.
+            GpuError: If the GPU no longer responds.
         """
         rays = (camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px)
         size = (camera.height_px, camera.width_px)
@@ -172,7 +173,7 @@ class GpuRenderer:
         samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:
-        """Take a picture by parallel rays; see the function of that name."""
+        """Render an orthographic image. See ``rendering.picture.render_parallel``."""
         rays = (px_per_metre, px_per_metre, size[1] / 2, size[0] / 2)
         (picture,) = self._pictures(
             rays, 0.0, size, [camera_to_room], outputs, light, samples, background
@@ -317,7 +318,7 @@ class _Work:
 
 
 def group_jobs(jobs: Iterable[_Job], most: int) -> Iterator[list[_Job]]:
-    """Give lots of up to so many jobs, in their order; the jobs of a lot have one light."""
+    """Yield groups of up to a given number of jobs, in order, with one light per group."""
     lot: list[_Job] = []
     for job in jobs:
         if lot and (len(lot) == most or lot[0].shading is not job.shading):

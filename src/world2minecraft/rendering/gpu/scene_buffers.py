@@ -1,10 +1,10 @@
-"""A scene as the shader reads it: five buffers of 32-bit words.
+"""A scene packed for the shader, in five buffers of 32-bit words.
 
-``cells`` says of each cell what ``space`` and ``looks`` say together: a box of air (0 or more), or
--1 - (2 * look + 1) for boxes and -1 - 2 * look for a full cube. ``tables`` holds all small tables
-one after another. An element is ``ELEMENT_WORDS`` words, so that what a ray needs of it lies
-together. Standing elements count from the cell that holds their middle (their anchor), so that 32
-bits are enough in a large world.
+``cells`` combines ``space`` and ``looks``: the index of an air box (0 or more), -1 - (2 * look + 1)
+for boxes, or -1 - 2 * look for a full cube. ``tables`` contains all small tables one after another.
+An element has ``ELEMENT_WORDS`` consecutive words, so that a ray reads them together. Freestanding
+elements are relative to the cell with their centre (their anchor), so that 32 bits are sufficiently
+precise in a large world.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ LAYOUT = {
 
 @dataclass(frozen=True, eq=False)
 class PackedScene:
-    """Arrays of 32 bits, and where the tables begin in ``tables``."""
+    """The packed arrays of a scene, with the offsets of the tables within ``tables``."""
 
     cells: np.ndarray  # int32 [X * Y * Z]
     light: np.ndarray  # uint32, two entries of the lattice a word
@@ -49,7 +49,7 @@ class PackedScene:
 
 
 def pack_scene(scene: BlockScene) -> PackedScene:
-    """Pack a scene."""
+    """Pack a scene for the shader."""
     tables = scene.tables
     turns, rows, anchors = _turns(tables)
     parts = {
@@ -74,7 +74,7 @@ def pack_scene(scene: BlockScene) -> PackedScene:
 
 
 def buffer_bytes(scene: BlockScene) -> dict[str, int]:
-    """Return how many bytes the buffers of a scene take, before they are made."""
+    """Return the size in bytes of the buffers of a scene, without creating them."""
     tables = scene.tables
     words = (
         3 * len(tables.bounds) + len(tables.look_start) + len(tables.refs)
@@ -91,7 +91,7 @@ def buffer_bytes(scene: BlockScene) -> dict[str, int]:
 
 
 def cell_words(tables: SceneTables) -> np.ndarray:
-    """Return what each cell is, int32 [X * Y * Z]."""
+    """Return the packed word of each cell, int32 [X * Y * Z]."""
     code = 2 * tables.looks + (tables.space == BOXES)
     return np.where(tables.space >= 0, tables.space, -1 - code).astype(np.int32).ravel()
 

@@ -1,8 +1,8 @@
-"""The uniforms of the shader: the light, the picture's size, and each pose.
+"""The uniforms of the shader: the light, the image size and each pose.
 
-``SCALARS`` is the one list of the uniform's members: the shader's struct is written from it, and
-its bytes are. Poses are cut in two, so that 32 bits are enough anywhere: the cell that holds the
-camera, and where in it the camera stands.
+``SCALARS`` lists the members of the uniform, from which both the shader's struct and its bytes are
+generated. Camera positions are split into a cell and an offset within it, so that 32 bits are
+sufficiently precise anywhere.
 """
 
 from collections.abc import Mapping, Sequence
@@ -45,9 +45,9 @@ VIEW = np.dtype(
 
 @dataclass(frozen=True)
 class PlaneLayout:
-    """Which planes of 32 bits a picture has, and which hold what; -1 for none.
+    """The assignment of outputs to 32-bit planes; -1 for outputs without a plane.
 
-    The first four are depth, range, index, and colour with the face in its highest byte.
+    The first four planes are depth, range, index, and colour with the face in its highest byte.
     """
 
     colour: bool
@@ -59,7 +59,7 @@ class PlaneLayout:
 
 
 def plane_layout(outputs: Sequence[str], has_things: bool) -> PlaneLayout:
-    """Return the planes of some outputs."""
+    """Return the plane layout for a set of outputs."""
     planes = 4
     thing = planes if has_things else -1
     planes += has_things
@@ -75,7 +75,7 @@ def plane_layout(outputs: Sequence[str], has_things: bool) -> PlaneLayout:
 
 @dataclass(frozen=True)
 class PictureRequest:
-    """What all pictures of one call share: H x W pixels, intrinsics, light."""
+    """The properties shared by all images of a call: H x W pixels, intrinsics and light."""
 
     size: tuple[int, int]
     rays: tuple[float, float, float, float]  # fx, fy, cx, cy in pixels, or pixels a metre
@@ -97,14 +97,14 @@ def parameter_bytes(
     offsets: Mapping[str, int],
     band_rows: int,
 ) -> bytes:
-    """Return the uniform's bytes, a whole number of 16.
+    """Return the bytes of the uniform, padded to a multiple of 16.
 
     Args:
-        ask: what is drawn.
-        shading: its light.
-        scene: of what.
-        offsets: where the tables begin, from ``packing``.
-        band_rows: rows of one view.
+        ask: Properties of the images.
+        shading: Light parameters.
+        scene: The scene.
+        offsets: Offsets of the tables in the packed scene.
+        band_rows: Number of rows per view.
     """
     tables, tone, layout = scene.tables, shading.tone, ask.layout
     values: dict[str, float] = dict(offsets)
@@ -131,25 +131,30 @@ def parameter_bytes(
 
 
 def tone_words(shading: ShadingParameters) -> np.ndarray:
-    """Return the tables of a light, uint32: floats, four screen values a word, floats again."""
+    """Return the light tables as uint32: floats, four screen values per word, floats."""
     decode = np.ascontiguousarray(shading.tone.decode, np.float32).view(np.uint32)
     encode = np.ascontiguousarray(shading.tone.encode).view(np.uint32)
     return np.concatenate([decode, encode, shading.corners.view(np.uint32).ravel()])
 
 
 def check_pose(pose: np.ndarray) -> None:
-    """Raise ``ValueError`` where a pose holds a number that is none."""
+    """Check that a pose contains only finite numbers.
+
+    Raises:
+        ValueError: If a number is NaN or infinite.
+    """
     if not np.isfinite(pose).all():
         raise ValueError("camera_to_room must contain only finite numbers")
 
 
 def view_of(pose: np.ndarray, first_row: int, ahead: float = 0.0) -> np.ndarray:
-    """Return a pose as the shader reads it, a value of ``VIEW``.
+    """Return a pose in the form that the shader reads, a ``VIEW`` value.
 
     Args:
-        pose: float64 [3, 4], camera to grid.
-        first_row: the row of the picture that the view begins with.
-        ahead: metres along the camera's z at which rays begin; see ``entry_distance``.
+        pose: Camera to grid transform, float64 [3, 4].
+        first_row: Row of the image at which the view starts.
+        ahead: Distance in metres along the camera's z axis at which rays start; see
+            ``entry_distance``.
     """
     record = np.zeros((), VIEW)
     eye = np.clip(pose[:, 3] + ahead * pose[:, 2], -MAX_COORDINATE, MAX_COORDINATE)
@@ -161,13 +166,14 @@ def view_of(pose: np.ndarray, first_row: int, ahead: float = 0.0) -> np.ndarray:
 
 
 def entry_distance(pose: np.ndarray, shape: tuple[int, ...]) -> float:
-    """Return how far parallel rays may go, in metres, before the first may enter the grid.
+    """Return the distance in metres that parallel rays can skip before entering the grid.
 
-    They share one direction, so that a camera far away can come near, where 32 bits are finer.
+    The rays share one direction, so a distant camera can be moved closer, where 32-bit numbers are
+    more precise.
 
     Args:
-        pose: float64 [3, 4], camera to grid.
-        shape: of the grid, in cells.
+        pose: Camera to grid transform, float64 [3, 4].
+        shape: Size of the grid in cells.
     """
     corners = np.stack(np.meshgrid(*([0, size] for size in shape), indexing="ij"), axis=-1)
     ways = (corners.reshape(-1, 3) - pose[:, 3]) @ pose[:, 2] / max(pose[:, 2] @ pose[:, 2], 1e-12)

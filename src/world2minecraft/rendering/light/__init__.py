@@ -1,24 +1,23 @@
-"""Light of the sky, of lamps and of the hour, and tone mapping to the screen.
+"""Light of the sky and of lamps by time of day, and tone mapping to the screen.
 
-A scene keeps a ``LightField`` (``light_field(states, palette, reach)``), whose ``lattice`` the
-kernel reads, and ``edit_light`` keeps it true where cells change. A ``LightSettings`` says how a
-picture is lit, ``scene_exposure(field, look, eyes)`` how far that is opened up; the look gives the
-kernel
+A scene has a ``LightField`` (``light_field(states, palette, reach)``), whose ``lattice`` the kernel
+reads and which ``edit_light`` updates after edits. A ``LightSettings`` describes the lighting of an
+image, and ``scene_exposure(field, look, eyes)`` computes its exposure. The settings provide to the
+kernel:
 
-- ``parameters(exposure) -> LightCoefficients``, floats alone,
+- ``parameters(exposure) -> LightCoefficients``, only floats,
 - ``background(exposure) -> Background``, the sky,
 - ``tone -> Tone``, the tables ``decode`` (texel to light) and ``encode`` (light to screen).
 
-For kernels, a pixel at a time (the picture kernel has a table of all entries of the
-lattice, ``shading.corner_lights``, in place of the first and third):
+Functions for kernels, called for each pixel (the picture kernel replaces the first and third by a
+table of all lattice entries, ``shading.corner_lights``):
 
 - ``sky, block, occluders = lattice_light(light, side, i, j, k, layer_step, p, q)``
 - ``shade = direction_shade(nx, ny, nz, cosine, params)``
-- ``r, g, b = light_multipliers(sky, block, occluders, shade, sun, params)``, the multipliers of
-  the linear texel; ``emission_light(emission, params)`` is the least of them for what shines by
-  itself
-- ``r, g, b = background_light(dx, dy, dz, background)`` where a ray meets nothing
-- ``tone_map_pixel(r, g, b, tone)``, three uint8
+- ``r, g, b = light_multipliers(sky, block, occluders, shade, sun, params)``, the multipliers of the
+  linear texel; ``emission_light(emission, params)`` is their minimum for luminous surfaces
+- ``r, g, b = background_light(dx, dy, dz, background)`` for rays without a surface
+- ``tone_map_pixel(r, g, b, tone)``, three uint8 values
 """
 
 from world2minecraft.rendering.light.exposure import scene_exposure

@@ -1,8 +1,7 @@
-"""The exposure of a scene, so that rooms are neither black nor washed out.
+"""The exposure of a scene, chosen so that rooms are neither too dark nor overexposed.
 
-One number for a scene, or for the eyes of one tour, so that pictures of it belong together. It
-comes from the light at surfaces, in the geometric mean: what a camera's meter would see if all of
-them were grey.
+There is one value per scene, or for all camera positions of a tour, so that images match. It is the
+geometric mean of the light at surfaces, like a camera's meter reading if all surfaces were grey.
 """
 
 import numpy as np
@@ -26,12 +25,12 @@ def scene_exposure(field: LightField, look: LightSettings, eyes: np.ndarray | No
     """Return the exposure of a scene for ``LightSettings.parameters`` and ``background``.
 
     Args:
-        field: the light of the volume.
-        look: how it is lit; its exposure is returned where it names one. Only ``shader`` is
-            exposed; the others give 1.
-        eyes: float [N, 3], where cameras stand, in cells of the volume: only what lies around
-            them counts, and of a volume that is seen from outside the open air. None for all
-            places where one can stand.
+        field: Light of the volume.
+        look: Light settings. Their exposure is returned if it is set. Presets other than ``shader``
+            have exposure 1.
+        eyes: Camera positions in cells of the volume, float [N, 3]. Only their surroundings are
+            used, or the open air for a volume seen from outside. None uses all places where a
+            player can stand.
     """
     if look.exposure is not None:
         return look.exposure
@@ -72,7 +71,7 @@ def _surface_light(field: LightField, look: LightSettings, cells: np.ndarray) ->
 
 
 def standing_cells(field: LightField) -> np.ndarray:
-    """Return where one can stand: free flat cells over something, int64 [N], margin counted."""
+    """Return the flat indices of free cells above a surface, int64 [N], including the margin."""
     words = field.words[field.kinds]
     free = words & (SHUT | SOLID) == 0
     below = np.zeros_like(free)

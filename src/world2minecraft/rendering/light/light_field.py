@@ -1,15 +1,15 @@
-"""The light of one volume: sky light, block light and the light lattice that pictures read.
+"""The light of a volume: sky light, block light, and the light lattice that the renderer reads.
 
-The light lattice holds, for every corner of every layer of cells, the light that a face shows
-there. ``lattice`` is uint16 [3, X + 2, Y + 2, Z + 2]: for axis 0, entry [0, i + 1, y, z] belongs to
-the layer of cells x = i (from -1 to X) and to the corner (y, z) in it, between the four cells
-(i, y - 1 to y, z - 1 to z); axis 1 has [1, x, j + 1, z], axis 2 [2, x, y, k + 1]. A face at its
-cell's boundary reads the layer in front, one inside its cell the cell's own.
+For every corner of every layer of cells, the light lattice contains the light of a face there.
+``lattice`` is uint16 [3, X + 2, Y + 2, Z + 2]: for axis 0, entry [0, i + 1, y, z] belongs to the
+layer of cells x = i (from -1 to X) and to the corner (y, z) in it, between the four cells (i, y - 1
+to y, z - 1 to z); axis 1 has [1, x, j + 1, z], axis 2 [2, x, y, k + 1]. A face at the boundary of
+its cell reads the layer in front of it; a face inside its cell reads the cell's own layer.
 
-Bits 0 to 5 hold sky light in quarters of a level, 0 to 60: the mean over those of the four cells
-that are not solid. Bits 6 to 11 hold block light in the same unit. Bits 12 and 13 count the solid
-ones, 0 to 3, but two that touch only at the corner count 3, because they leave nothing between
-them.
+Bits 0 to 5 contain sky light in quarters of a level, 0 to 60: the mean over those of the four cells
+that are not solid. Bits 6 to 11 contain block light in the same unit. Bits 12 and 13 contain the
+number of solid cells, 0 to 3; two solid cells that only touch at the corner count as 3, because
+they leave no gap.
 """
 
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ MAX_STATES = 65_535
 
 
 def quarter_level_table(reach: float) -> np.ndarray:
-    """Return uint16 [5, 1024]: quarters of a level by the number of cells and their sum."""
+    """Return uint16 [5, 1024]: quarters of a level by the number of cells and their light sum."""
     sums = np.arange(1024)
     table = np.zeros((5, 1024), np.uint16)
     for count in range(1, 5):
@@ -41,17 +41,17 @@ def quarter_level_table(reach: float) -> np.ndarray:
 
 @njit
 def fill_lattice(lattice, sky, block, kinds, words, table, low, high):
-    """Fill in the corners of all layers that the cells ``low`` to ``high`` touch.
+    """Compute the corners of all layers that the cells from ``low`` to ``high`` touch.
 
     Args:
-        lattice: uint16 [3, X + 2, Y + 2, Z + 2], changed in place.
-        sky: uint8 [X + 2, Y + 2, Z + 2], with its margin; ``block``, ``kinds`` alike.
-        block: uint8, block light.
-        kinds: uint16, rows of ``words``.
-        words: uint32 [K].
-        table: what ``quarter_level_table`` returns.
-        low: int64 [3], the first cell with the margin counted (the whole begins at 0, 0, 0).
-        high: int64 [3], past the last one (the whole ends at X + 2, Y + 2, Z + 2).
+        lattice: Light lattice, uint16 [3, X + 2, Y + 2, Z + 2], modified in place.
+        sky: Sky light with its margin, uint8 [X + 2, Y + 2, Z + 2].
+        block: Block light with its margin, uint8 [X + 2, Y + 2, Z + 2].
+        kinds: Rows of ``words``, uint16 [X + 2, Y + 2, Z + 2].
+        words: Light properties, uint32 [K].
+        table: The result of ``quarter_level_table``.
+        low: First cell including the margin, int64 [3] (0, 0, 0 for the whole volume).
+        high: End cell, int64 [3] (X + 2, Y + 2, Z + 2 for the whole volume).
     """
     shape = np.array(sky.shape)
     first, last = np.maximum(low - 1, 0), np.minimum(high + 1, shape)
@@ -94,10 +94,10 @@ def _corner(a, b, c, d, table):
 
 @dataclass(eq=False)
 class LightField:
-    """Light of a volume, kept up to date by ``relight.edit_light``.
+    """The light of a volume, kept up to date by ``relight.edit_light``.
 
-    Arrays in the grid have one cell of open air around them: cell (x, y, z) is at [x + 1, y + 1,
-    z + 1]. Light counts in 1 / ``reach`` levels.
+    Grid arrays have a margin of one cell of open air: cell (x, y, z) is at [x + 1, y + 1, z + 1].
+    Light is in units of 1 / ``reach`` levels.
     """
 
     kinds: np.ndarray  # uint16 [X + 2, Y + 2, Z + 2]: 1 + the state's index, 0 around the volume
@@ -127,18 +127,18 @@ def light_field(
     *,
     hidden_lamps: bool = True,
 ) -> LightField:
-    """Return the light of a volume.
+    """Compute the light of a volume.
 
     Args:
-        states: uint16 [X, Y, Z], indices of ``palette``.
-        palette: block states.
-        reach: how many blocks light goes for each level that it loses, 1 to 16, to a fifteenth;
-            1 is the game's.
-        hidden_lamps: whether the game's invisible light blocks shine. A room that is full of them,
-            so that no monsters come, looks natural by its windows and lamps alone.
+        states: Indices of ``palette``, uint16 [X, Y, Z].
+        palette: Block states.
+        reach: Number of blocks over which light loses one level, 1 to 16, rounded to a fifteenth; 1
+            as in the game.
+        hidden_lamps: Whether the game's invisible light blocks emit light. Rooms that are filled
+            with them, to keep monsters away, look natural only without their light.
 
     Raises:
-        ValueError: the reach is out of range, or the palette has over 65,535 states.
+        ValueError: If the reach is out of range, or if the palette has more than 65,535 states.
     """
     if len(palette) > MAX_STATES:
         raise ValueError(f"a palette may have at most {MAX_STATES:,} states, got {len(palette):,}")

@@ -1,4 +1,4 @@
-"""Light settings of a picture, and the coefficients that the kernels read."""
+"""Light settings of an image, and the coefficients that the kernels read."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,12 +36,12 @@ NEUTRAL_HEADLIGHT, NEUTRAL_CORNER, NEUTRAL_GLOW = 0.14, 0.15, 1.12
 
 @dataclass(frozen=True)
 class LightSettings:
-    """How a picture is lit.
+    """The lighting of an image.
 
-    Presets: ``shader`` is light in linear colours with a soft shoulder; ``game`` is the game's own
-    picture, in which light acts on screen values; ``neutral`` is a light at the camera and no
-    time of day: a block's colour on the screen is its own times a calm shade, so that worlds can
-    be compared with photos.
+    Presets: ``shader`` computes in linear light with a filmic tone curve. ``game`` imitates
+    Minecraft, in which light scales screen values. ``neutral`` is a light at the camera without a
+    time of day: the colour on screen is the block's own colour times a mild shade, so that worlds
+    can be compared with photos.
     """
 
     preset: str = "shader"
@@ -62,16 +62,16 @@ class LightSettings:
 
     @property
     def sky(self) -> Sky:
-        """The sky of the hour."""
+        """The sky at the hour of the settings."""
         return sky_at(self.hour)
 
     @property
     def tone(self) -> Tone:
-        """The tables that carry screen values to light and back."""
+        """The tables for conversion between screen values and light."""
         return filmic_tone() if self.preset == "shader" else screen_tone()
 
     def parameters(self, exposure: float = 1.0) -> LightCoefficients:
-        """Return what the kernel reads. ``exposure`` counts only where the look names none."""
+        """Return the coefficients for the kernel, with ``exposure`` if the settings have none."""
         exposure = exposure if self.exposure is None else self.exposure
         if self.preset == "neutral":
             return _neutral(self.exposure or 1.0)
@@ -95,7 +95,7 @@ class LightSettings:
         return SOFT_SHADE if self.soft_shade else tuple(v**SCREEN_POWER for v in GAME_SHADE)
 
     def background(self, exposure: float = 1.0) -> Background:
-        """Return the sky that the kernel draws; a sky is exposed half as far as what it lights."""
+        """Return the sky for the kernel, which is exposed half as much as the lit surfaces."""
         if self.preset == "neutral":
             greys = srgb_to_linear(np.array(NEUTRAL_SKY) / 255).reshape(-1)
             return Background._make([*greys.tolist(), 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
@@ -107,7 +107,7 @@ class LightSettings:
 
 
 def mix(first: Sequence[float], second: Sequence[float], share: float) -> np.ndarray:
-    """Return a colour between two, ``share`` of the way to the second."""
+    """Return the interpolation of two colours, with ``share`` of the second."""
     return np.array(first) * (1 - share) + np.array(second) * share
 
 

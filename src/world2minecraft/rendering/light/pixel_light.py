@@ -1,6 +1,6 @@
-"""The light of one pixel, by functions that the kernels inline.
+"""The light of one pixel, computed by functions that are inlined into the kernels.
 
-All colours here are linear multipliers of a surface's linear colour.
+All colours are linear multipliers of a surface's linear colour.
 """
 
 from typing import NamedTuple
@@ -11,7 +11,7 @@ MAX_SCREEN = 2.0  # Beyond, where all is white anyway, the polynomial of ``to_li
 
 
 class LightCoefficients(NamedTuple):
-    """What a ``LightSettings`` comes to for the kernel: floats alone, which numba keeps at hand."""
+    """The coefficients of a ``LightSettings`` for the kernel, as plain floats."""
 
     sky_r: float  # full sky light
     sky_g: float
@@ -41,17 +41,19 @@ class LightCoefficients(NamedTuple):
 
 @inlined
 def lattice_light(light, side, i, j, k, layer_step, p, q):
-    """Return ``(sky, block, occluders)`` at a place of a face, bilinear: levels, and 0 to 3.
+    """Return ``(sky, block, occluders)`` at a point of a face by bilinear interpolation.
+
+    Light is in levels, occluders are 0 to 3.
 
     Args:
-        light: uint16 [3, X + 2, Y + 2, Z + 2], see ``rendering.light.light_field``.
-        side: 0 to 5, the face's normal: -x +x -y +y -z +z.
-        i: the cell; ``j`` and ``k`` alike. It lies in the volume.
-        j: see ``i``.
-        k: see ``i``.
-        layer_step: -1 or 1 for a face at its cell's boundary to that side, 0 for one inside.
-        p: 0 to 1, the place along the first axis that is not the normal's.
-        q: 0 to 1, along the second.
+        light: Light lattice, uint16 [3, X + 2, Y + 2, Z + 2]; see ``rendering.light.light_field``.
+        side: Side of the face's normal, 0 to 5: -x +x -y +y -z +z.
+        i: Cell index along x, within the volume.
+        j: Cell index along y.
+        k: Cell index along z.
+        layer_step: -1 or 1 for a face at the cell's boundary on that side, 0 for a face inside.
+        p: Position along the first axis other than the normal's, 0 to 1.
+        q: Position along the second axis other than the normal's, 0 to 1.
     """
     # A flat view and one return: with more, numba counts references at every pixel.
     step_y = light.shape[3]
@@ -74,14 +76,14 @@ def lattice_light(light, side, i, j, k, layer_step, p, q):
 
 @inlined
 def light_multipliers(sky, block, occluders, shade, sun, params):
-    """Return the multipliers ``(r, g, b)`` of a place's light.
+    """Return the multipliers ``(r, g, b)`` for the light at a point.
 
     Args:
-        sky: sky light, 0 to 15.
-        block: block light, 0 to 15.
-        occluders: what darkens the corner, 0 to 3; 0 where a model has no ambient occlusion.
-        shade: of the face's direction, see ``direction_shade``.
-        sun: 0 where the sun does not shine or is switched off, else the cosine of its angle.
+        sky: Sky light, 0 to 15.
+        block: Block light, 0 to 15.
+        occluders: Corner occlusion, 0 to 3; 0 for models without ambient occlusion.
+        shade: Shade of the face's direction, see ``direction_shade``.
+        sun: Cosine of the sun's angle, or 0 if the sun does not shine or is disabled.
         params: ``LightCoefficients``.
     """
     s, b = sky * (1 / 15), block * (1 / 15)
@@ -100,10 +102,10 @@ def light_multipliers(sky, block, occluders, shade, sun, params):
 
 @inlined
 def direction_shade(nx, ny, nz, cosine, params):
-    """Return the shade of a face by its unit normal in block axes, whichever way it is turned.
+    """Return the shade of a face by its unit normal in block axes, at any orientation.
 
-    ``cosine`` is that of the angle between the ray and the normal, 0 to 1: the camera's own light
-    falls off with it where ``params.headlight`` is over 0.
+    ``cosine`` is the cosine of the angle between the ray and the normal, 0 to 1. The camera's own
+    light decreases with it if ``params.headlight`` is positive.
     """
     upright = params.shade_up if ny > 0 else params.shade_down
     shade = params.shade_x * nx * nx + upright * ny * ny + params.shade_z * nz * nz
@@ -112,14 +114,14 @@ def direction_shade(nx, ny, nz, cosine, params):
 
 @inlined
 def emission_light(emission, params):
-    """Return the least multiplier, grey, of a surface that shines by itself (0 to 15)."""
+    """Return the minimum grey multiplier of a luminous surface with emission 0 to 15."""
     light = emission * (1 / 15) * params.glow
     return to_linear(light) if params.screen > 0.0 else light
 
 
 @inlined
 def to_linear(value):
-    """Return value ** 2.2 for 0 to 1.5, within 0.6 of 255 on the screen; cheap enough a pixel."""
+    """Return value ** 2.2 for 0 to 1.5 by a fast approximation (error below 0.6 of 255)."""
     value = min(value, MAX_SCREEN)
     square = value * value
     high = (0.61682 - value * 0.14103) * square

@@ -1,10 +1,11 @@
-"""Sky light and block light of a volume, as the game spreads them.
+"""Propagation of sky light and block light in a volume, as in the game.
 
-Sky light is 15 where nothing is above; glass lets it fall on, water and leaves dim it; from there
-it loses 1 a step. The volume stands in open air: light comes in from above and from the sides.
-Block light starts at what a state gives. Slabs and stairs hold light back by the faces that they
-cover. A *reach* of r blocks a level keeps r finer units for each level, so that light goes r times
-as far: in a room of 4 blocks per metre a lamp then lights more than its own corner.
+Sky light is 15 below open sky. Glass lets it pass downward, water and leaves attenuate it, and
+elsewhere it loses 1 per step. The volume is surrounded by open air, so light enters from above and
+from the sides. Block light starts at the light level of a state. Slabs and stairs block light at
+the faces that they cover. A *reach* of r blocks per level uses r finer units for each level, so
+that light travels r times as far: in a room of 4 blocks per metre a lamp then lights more than its
+own corner.
 """
 
 from fnmatch import fnmatchcase
@@ -41,10 +42,10 @@ MAX_REACH = 16.0  # 15 * 16 units just fit a byte.
 
 @lru_cache(maxsize=1 << 16)
 def opacity_word(state: str) -> int:
-    """Return what ``minecraft.rules.light`` knows of a block state.
+    """Return the light properties of a block state as a word of ``minecraft.rules.light``.
 
     Raises:
-        UsageError: the text is no block state.
+        UsageError: If the text is not a valid block state.
     """
     if not lets_light_through(state):
         return SHUT | SOLID
@@ -62,15 +63,15 @@ def opacity_word(state: str) -> int:
 def light_tables(
     palette: tuple[str, ...], hidden_lamps: bool = True
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the tables of a palette, a row for each state after one for the margin.
+    """Return the light tables of a palette, with a row for the margin before those of the states.
 
     Args:
-        palette: block states.
-        hidden_lamps: whether the game's invisible light blocks shine.
+        palette: Block states.
+        hidden_lamps: Whether the game's invisible light blocks emit light.
 
     Returns:
-        uint32 [P + 1], the words of ``minecraft.rules.light``, and uint8 [P + 1], the light that
-        each gives, 0 to 15.
+        The words of ``minecraft.rules.light``, uint32 [P + 1], and the emitted light levels, uint8
+        [P + 1], 0 to 15.
     """
     words = [SHUT, *map(opacity_word, palette)]
     gives = [
@@ -99,12 +100,12 @@ def _covers(boxes: np.ndarray) -> int:
 
 
 def flood_sky(kinds: np.ndarray, words: np.ndarray, reach: float = 1.0) -> np.ndarray:
-    """Return sky light with its margin, uint8 [X + 2, Y + 2, Z + 2], in 1 / ``reach`` levels.
+    """Return sky light with a margin, uint8 [X + 2, Y + 2, Z + 2], in 1 / ``reach`` levels.
 
     Args:
-        kinds: uint16 [X + 2, Y + 2, Z + 2], rows of ``words``; the margin has row 0.
-        words: uint32 [K], see ``minecraft.rules.light``.
-        reach: blocks a level, from ``rounded_reach``; 1 is the game's.
+        kinds: Rows of ``words``, uint16 [X + 2, Y + 2, Z + 2]. The margin has row 0.
+        words: Light properties, uint32 [K]; see ``minecraft.rules.light``.
+        reach: Blocks per level, from ``rounded_reach``; 1 as in the game.
     """
     top = light_units(BRIGHTEST, reach)
     sky = np.full(kinds.shape, top, np.uint8)
@@ -121,9 +122,10 @@ def flood_sky(kinds: np.ndarray, words: np.ndarray, reach: float = 1.0) -> np.nd
 def flood_block(
     kinds: np.ndarray, words: np.ndarray, gives: np.ndarray, reach: float = 1.0
 ) -> np.ndarray:
-    """Return block light with its margin (dark), uint8 [X + 2, Y + 2, Z + 2].
+    """Return block light with a dark margin, uint8 [X + 2, Y + 2, Z + 2].
 
-    Args: as ``flood_sky``; ``gives`` uint8 [K], the levels that states give.
+    ``gives`` uint8 [K] is the light level that each state emits. The other arguments are those of
+    ``flood_sky``.
     """
     unit = np.array([light_units(level, reach) for level in range(BRIGHTEST + 1)], np.uint8)
     light = unit[gives][kinds]
@@ -133,10 +135,10 @@ def flood_block(
 
 
 def rounded_reach(reach: float) -> float:
-    """Return the nearest reach in which full light is a whole number of units.
+    """Return the nearest reach for which full light is an integer number of units.
 
     Raises:
-        ValueError: the reach is out of range.
+        ValueError: If the reach is out of range.
     """
     if not 1 <= reach <= MAX_REACH:
         raise ValueError(f"reach must be 1 to {MAX_REACH:g} blocks per light level, got {reach}")
@@ -150,7 +152,7 @@ def light_units(level: int, reach: float) -> int:
 
 @njit
 def falls_into(words, above, cell):
-    """Tell whether the full light of the sky goes straight down from a kind into another."""
+    """Return whether full sky light passes straight down from one kind of cell into another."""
     upper, lower = words[above], words[cell]
     if upper & SHUT == SHUT:  # The margin: it holds nothing back.
         upper = upper ^ SHUT
@@ -172,7 +174,7 @@ def _light_from_above(sky, kinds, words, top):
 
 @njit
 def enters(words, kind, side):
-    """Tell whether light comes into a kind of cell from open air at one of its sides."""
+    """Return whether light enters a kind of cell from open air at one of its sides."""
     return (words[kind] >> (4 * side)) & 15 != 15
 
 

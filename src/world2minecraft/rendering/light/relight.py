@@ -1,7 +1,7 @@
-"""Update light after an edit: only what the change reaches is computed again.
+"""Incremental update of light after an edit: only the affected region is computed again.
 
-The light of the changed cells, and all that may have come through them, is removed; the remaining
-light around it then spreads back in. The result equals that of a new flood fill.
+The light of the changed cells, and all light that may have passed through them, is removed. The
+remaining light around the region then spreads back in. The result equals a complete new flood fill.
 """
 
 import numpy as np
@@ -29,17 +29,17 @@ def edit_light(
     states: np.ndarray,
     palette: tuple[str, ...] | None = None,
 ) -> None:
-    """Bring the light of a volume up to date, in place, after a box of its cells was set.
+    """Update the light of a volume in place after a box of its cells was set.
 
     Args:
-        field: the light before the edit.
-        corner: the first cell of the box.
-        states: uint16 [A, B, C], what the box's cells are now.
-        palette: the volume's palette where the edit made it longer; None where it is the same.
+        field: Light before the edit.
+        corner: First cell of the box.
+        states: New states of the cells in the box, uint16 [A, B, C].
+        palette: New palette if the edit extended it, else None.
 
     Raises:
-        ValueError: the box does not lie in the volume, or the palette is too long or shorter than
-            it was.
+        ValueError: If the box is not within the volume, or if the palette is too long or shorter
+            than before.
     """
     low = np.array(corner, np.int64) + 1
     high = low + states.shape

@@ -1,7 +1,7 @@
-"""The sky by the hour: colours of its light, of the sun and of the background.
+"""The sky by time of day: the colours of its light, of the sun and of the background.
 
-A table of hours, interpolated. Colours are linear; their strengths are to
-each other as they please, not as a photometer says: a night of true darkness shows nothing.
+The values are interpolated from a table of hours. Colours are linear. Their relative strengths are
+artistic rather than photometric, because a physically dark night would show nothing.
 """
 
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ _MOMENTS = (
 
 
 class Background(NamedTuple):
-    """Linear colours, and the unit vector towards the sun in block axes."""
+    """Linear colours of the sky, and the unit vector towards the sun in block axes."""
 
     zenith_r: float
     zenith_g: float
@@ -53,7 +53,7 @@ class Background(NamedTuple):
 
 @inlined
 def background_light(dx, dy, dz, background):
-    """Return the linear ``(r, g, b)`` of the sky in a direction of block axes, a unit vector."""
+    """Return the linear ``(r, g, b)`` of the sky in a direction, a unit vector in block axes."""
     if dy >= 0.0:
         low = 1.0 - dy
         low = low * low * low
@@ -83,7 +83,7 @@ def background_light(dx, dy, dz, background):
 
 @dataclass(frozen=True)
 class Sky:
-    """The sky at an hour. Colours are linear."""
+    """The sky at an hour, with linear colours."""
 
     light: tuple[float, float, float]  # what full sky light is where nothing casts a shadow
     shade: tuple[float, float, float]  # what is left of it in the sun's shadow
@@ -94,10 +94,10 @@ class Sky:
 
 
 def sky_at(hour: float) -> Sky:
-    """Return the sky at an hour of the day, 0 to 24; the sun rises in the east at 6.
+    """Return the sky at an hour of the day, 0 to 24. The sun rises in the east at 6.
 
     Raises:
-        ValueError: the hour is out of range.
+        ValueError: If the hour is out of range.
     """
     if not 0 <= hour <= 24:
         raise ValueError(f"hour must be 0 to 24, got {hour}")
@@ -111,7 +111,7 @@ def sky_at(hour: float) -> Sky:
 
 
 def sun_direction(hour: float) -> tuple[float, float, float]:
-    """Return the unit vector towards the sun, or the moon by night, in block axes.
+    """Return the unit vector towards the sun, or at night the moon, in block axes.
 
     Example:
         >>> tuple(round(value, 2) for value in sun_direction(12))

@@ -1,8 +1,8 @@
 """Tone mapping from linear light to the screen: tables for the kernels, and numpy versions.
 
-Light up to ``SHOULDER`` comes through as it is; what is brighter is pressed together below white by
-its brightest channel, so that hues stay, and pales a little, as film does. A little contrast then
-goes on top.
+Light up to ``SHOULDER`` is unchanged. Brighter light is compressed below white by its brightest
+channel, which preserves hues, and slightly desaturated, as film does. A slight contrast curve is
+then applied.
 """
 
 from typing import NamedTuple
@@ -20,7 +20,7 @@ NEVER = 1e30
 
 
 class Tone(NamedTuple):
-    """Tables that carry screen values to linear light and back."""
+    """Tables for conversion between screen values and linear light."""
 
     decode: np.ndarray  # float32 [256]: linear light of a texel's channel
     encode: np.ndarray  # uint8 [ENCODE_STEPS]: screen value of linear light 0 to 1
@@ -28,7 +28,7 @@ class Tone(NamedTuple):
 
 
 def filmic_tone() -> Tone:
-    """Return the tone of pictures with light: sRGB, and a soft shoulder."""
+    """Return the filmic tone curve: sRGB with a soft shoulder."""
     return Tone(
         srgb_to_linear(np.arange(256) / 255).astype(np.float32),
         _screen_values(linear_to_srgb(np.linspace(0, 1, ENCODE_STEPS) ** CONTRAST)),
@@ -37,7 +37,10 @@ def filmic_tone() -> Tone:
 
 
 def screen_tone() -> Tone:
-    """Return the tone in which light acts on screen values, as in the game; white is a cut."""
+    """Return the tone curve for light that scales screen values, as in Minecraft.
+
+    Values above white are clipped.
+    """
     return Tone(
         ((np.arange(256) / 255) ** SCREEN_POWER).astype(np.float32),
         _screen_values(np.linspace(0, 1, ENCODE_STEPS) ** (1 / SCREEN_POWER)),
@@ -46,19 +49,19 @@ def screen_tone() -> Tone:
 
 
 def srgb_to_linear(screen: np.ndarray) -> np.ndarray:
-    """Return linear light, 0 to 1, of sRGB values of 0 to 1."""
+    """Convert sRGB values 0 to 1 to linear light 0 to 1."""
     screen = np.asarray(screen, np.float64)
     return np.where(screen <= 0.04045, screen / 12.92, ((screen + 0.055) / 1.055) ** 2.4)
 
 
 def linear_to_srgb(light: np.ndarray) -> np.ndarray:
-    """Return sRGB values of 0 to 1 of linear light; light outside 0 to 1 is cut."""
+    """Convert linear light to sRGB values 0 to 1. Light outside 0 to 1 is clipped."""
     light = np.clip(np.asarray(light, np.float64), 0, 1)
     return np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 def tone_map(light: np.ndarray, shoulder: float = SHOULDER) -> np.ndarray:
-    """Return linear colours [..., 3] pressed below 1, float64."""
+    """Return linear colours [..., 3] compressed below 1, float64."""
     light = np.maximum(np.asarray(light, np.float64), 0)
     peak = light.max(axis=-1, keepdims=True)
     room = 1 - shoulder
@@ -70,14 +73,14 @@ def tone_map(light: np.ndarray, shoulder: float = SHOULDER) -> np.ndarray:
 
 
 def tone_map_picture(light: np.ndarray, tone: Tone) -> np.ndarray:
-    """Return screen colours, uint8 [..., 3], of linear light, as ``tone_map_pixel`` does."""
+    """Return the screen colours of linear light, uint8 [..., 3], as ``tone_map_pixel`` does."""
     pressed = tone_map(light, tone.shoulder) if tone.shoulder < 1 else np.maximum(light, 0)
     return tone.encode[(np.minimum(pressed, 1) * (ENCODE_STEPS - 1) + 0.5).astype(np.int64)]
 
 
 @inlined
 def tone_map_pixel(r, g, b, tone):
-    """Return the screen's ``(red, green, blue)``, uint8, of a pixel's linear light."""
+    """Return the screen colour ``(red, green, blue)`` of a pixel's linear light, uint8."""
     peak = max(r, g, b)
     if peak > tone.shoulder:
         room = 1.0 - tone.shoulder

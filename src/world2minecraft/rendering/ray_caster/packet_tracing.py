@@ -1,9 +1,9 @@
-"""Trace packets of rays: what the pixels of a small tile share is found once for the tile.
+"""Tracing of ray packets: data shared by the pixels of a small tile is computed once.
 
-Empty boxes are convex. Where the four corner rays of a tile leave a box by the same face, all rays
-between them do, and none has hit anything on the way. So a packet goes from box to box until all
-cells ahead are full cubes, and then every pixel hits one plane; or until they differ, and then
-each ray is traced alone from the box that was reached.
+Empty boxes are convex. If the four corner rays of a tile leave a box by the same face, then so do
+all rays between them, and none has hit anything. A packet therefore advances from box to box until
+all cells ahead are full cubes, so that every pixel hits one plane, or until the rays diverge. Each
+ray is then traced separately from the box that was reached.
 """
 
 from typing import NamedTuple
@@ -23,7 +23,7 @@ MAX_BOXES = 64  # Empty boxes that a packet crosses.
 
 
 class PacketHit(NamedTuple):
-    """How far a packet stays together: it enters the layer of cells ``layer`` by ``face``."""
+    """The distance over which a packet stays together: it enters ``layer`` by ``face``."""
 
     mode: int
     face: int
@@ -35,12 +35,12 @@ def trace_packet(space, bounds, corners, cells):
     """Return the ``PacketHit`` of a packet.
 
     Args:
-        space: int32 [X, Y, Z].
-        bounds: int16 [V, 6].
-        corners: float64 [4, 6], origin and direction of the four corner rays, which all begin in
-            one box; where they do not, the result is ``(DIVERGED, NO_FACE, 0)``.
-        cells: int64 [4, 3]; its first two rows become the first and the last of the cells of
-            ``layer`` that the packet covers; the others are scratch.
+        space: Box of each cell, int32 [X, Y, Z].
+        bounds: Bounds of the boxes, int16 [V, 6].
+        corners: Origins and directions of the four corner rays, float64 [4, 6]. If they do not
+            start in the same box, the result is ``(DIVERGED, NO_FACE, 0)``.
+        cells: Scratch memory, int64 [4, 3]. Its first two rows receive the first and the last cell
+            of ``layer`` that the packet covers.
     """
     row = _box_of_origins(space, bounds, corners)
     face, layer = NO_FACE, 0

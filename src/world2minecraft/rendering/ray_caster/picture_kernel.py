@@ -1,9 +1,9 @@
-"""The picture kernel: one pass over the pixels gives depth, ids, faces, normals and colour.
+"""The picture kernel, which computes depth, ids, faces, normals and colour in one pass.
 
-``draw_rows`` takes tiles of eight by eight pixels: what a tile's rays share is found once
-(``rendering.ray_caster.packet_tracing``), then each pixel finds its surface, writes the outputs
-that are wanted, and is coloured by ``rendering.ray_caster.shading``. Glass is passed front to
-back, so that nothing needs sorting.
+``draw_rows`` processes tiles of eight by eight pixels: data shared by a tile's rays is computed
+once (``rendering.ray_caster.packet_tracing``), then each pixel finds its surface, writes the
+requested outputs, and is shaded by ``rendering.ray_caster.shading``. Glass is traversed front to
+back, so no sorting is needed.
 """
 
 from typing import NamedTuple
@@ -52,7 +52,7 @@ OPAQUE, NORMAL = 2, 4
 
 
 class BandMemory(NamedTuple):
-    """Scratch of one band of rows; bands that are drawn at the same time have one each."""
+    """The scratch memory of one band of rows. Parallel bands have separate memory."""
 
     cells: np.ndarray  # int64 [8, 3]: four rows of the tile's packet, four of that to the sun
     corners: np.ndarray  # float64 [4, 6]: origin and direction of the tile's corner rays
@@ -61,7 +61,7 @@ class BandMemory(NamedTuple):
 
 
 def band_memory() -> BandMemory:
-    """Return the scratch of one band."""
+    """Return the scratch memory of one band."""
     return BandMemory(
         np.empty((8, 3), np.int64),
         np.empty((4, 6)),
@@ -72,18 +72,18 @@ def band_memory() -> BandMemory:
 
 @lean
 def draw_rows(tables, side_px, camera, first, last, shading, memory, out):
-    """Fill the rows ``first`` to ``last`` (past the end) of the outputs.
+    """Render the rows from ``first`` to ``last`` (exclusive) into the outputs.
 
     Args:
-        tables: ``SceneTables``, with textures of ``side_px``.
-        side_px: the side of a texture.
+        tables: ``SceneTables`` with textures of ``side_px``.
+        side_px: Texture size in pixels.
         camera: ``GridCamera``.
-        first: the first row, a whole number of tiles.
-        last: past the last row.
+        first: First row, a multiple of the tile size.
+        last: End row.
         shading: ``ShadingParameters``.
-        memory: ``BandMemory``, this band's own.
-        out: ``PixelArrays``; depth and distance are 0 where there is nothing, index and thing -1,
-            face ``NO_FACE``.
+        memory: ``BandMemory`` of this band.
+        out: ``PixelArrays``. Without a surface, depth and distance are 0, index and thing are -1,
+            and face is ``NO_FACE``.
     """
     width = out.depth.shape[1]
     corners = memory.corners
@@ -122,10 +122,10 @@ def draw_rows(tables, side_px, camera, first, last, shading, memory, out):
 
 @inner
 def sun_on_tile(tables, lit, corners, cells, packet):
-    """Return the cosine of the sun on a tile's plane, 0 in shadow, -1 where pixels differ.
+    """Return the cosine of the sun on a tile's plane, 0 in shadow, or -1 if pixels differ.
 
-    The rays from the four corners' hits towards the sun are a packet like any other. ``corners``
-    are the tile's rays; they become those towards the sun.
+    The rays from the four corner hits towards the sun are traced as a packet. ``corners`` are the
+    rays of the tile and are replaced by those towards the sun.
     """
     side, layer = packet.face, packet.layer
     nx, ny, nz = normal_of(tables, -1, side)
@@ -147,10 +147,10 @@ def sun_on_tile(tables, lit, corners, cells, packet):
 
 @inner
 def draw_pixel(tables, side_px, camera, shading, scale, memory, packet, u, v, out):
-    """Draw one pixel.
+    """Render one pixel.
 
-    ``scale`` is blocks per metre, ``packet`` how far the rays of its tile stay together; the other
-    arguments are those of ``draw_rows``.
+    ``scale`` is the number of blocks per metre, and ``packet`` is the distance over which the
+    tile's rays stay together. The other arguments are those of ``draw_rows``.
     """
     rays, spread = camera.rays, camera.spread
     x, y = (u + 0.5 - rays[2]) / rays[0], (v + 0.5 - rays[3]) / rays[1]
@@ -199,7 +199,7 @@ def draw_pixel(tables, side_px, camera, shading, scale, memory, packet, u, v, ou
 
 @inner
 def write_hit(tables, out, v, u, length, hit):
-    """Write the outputs of the first surface but its colour."""
+    """Write the outputs of the first surface, except its colour."""
     t, i, j, k, side, element = hit
     if side == NO_FACE:
         out.depth[v, u], out.distance[v, u] = 0.0, 0.0
@@ -240,7 +240,7 @@ def write_opaque_hit(tables, out, v, u, hit):
 
 @inner
 def owner_of_hit(tables, element, i, j, k):
-    """Return the volume's cell (-1 for none) and the standing thing (-1 for none) of a hit."""
+    """Return the volume cell and the display entity of a hit, each -1 for none."""
     owner = tables.traits[element, OWNER] if element >= 0 else -1
     if owner >= 0:
         return -1, owner

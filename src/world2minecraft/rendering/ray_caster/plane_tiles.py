@@ -1,8 +1,8 @@
-"""Tiles whose pixels all meet one plane of full cubes: walls, floors and ceilings, most of a room.
+"""Fast rendering of tiles whose pixels all show one plane of full cubes, as in most of a room.
 
-Depth there is one division, and what belongs to a cell's face (its texture, its light, its class)
-is found once for the pixels that show it. Surfaces and colours are those that
-``rendering.ray_caster.picture_kernel`` finds pixel by pixel.
+Depth then needs one division, and the data of a cell face (its texture, light and class) is
+computed once for all of its pixels. The results equal those of
+``rendering.ray_caster.picture_kernel``.
 """
 
 from typing import NamedTuple
@@ -25,7 +25,7 @@ FACE_NUMBERS = 22
 
 
 class Tile(NamedTuple):
-    """Pixels of a tile, and the plane that they show: ``side`` of the cells of ``layer``."""
+    """The pixels of a tile, and the plane that they show: ``side`` of the cells of ``layer``."""
 
     u: int
     u_end: int
@@ -39,12 +39,12 @@ class Tile(NamedTuple):
 def draw_plane_tile(
     tables, side_px, camera, shading, scale, sun, tile, cells, face, out
 ):  # fmt: skip
-    """Draw a ``Tile`` of a pinhole camera; arguments that are not named here as in ``draw_rows``.
+    """Render a ``Tile`` of a pinhole camera. Other arguments are those of ``draw_rows``.
 
-    Where the sun, or a light at the camera, differs from pixel to pixel, ``picture_kernel`` draws
-    the pixels one by one. ``scale`` is blocks per metre, ``sun`` the cosine of the sun on the whole
+    If the sun or a light at the camera differs between pixels, ``picture_kernel`` renders them one
+    by one. ``scale`` is the number of blocks per metre, ``sun`` the cosine of the sun on the whole
     tile (0 in shadow), ``cells`` int64 [2, 3] the first and the last cell that the tile covers, and
-    ``face`` float64 [FACE_NUMBERS] is scratch.
+    ``face`` float64 [FACE_NUMBERS] is scratch memory.
     """
     pose, rays = camera.pose, camera.rays
     side, layer = tile.side, tile.layer
@@ -116,7 +116,7 @@ def draw_plane_tile(
 
 @inner_call
 def prepare_face(tables, shading, face, sun, side, i, j, k, with_colour):
-    """Fill ``face`` with what belongs to one face of a cell; return its texture and its index."""
+    """Fill ``face`` with the data of a cell face, and return its texture and its index."""
     first, shape = tables.window[0], tables.window[1]
     index = np.int32(((i - first[0]) * shape[1] + j - first[1]) * shape[2] + k - first[2])
     if not with_colour:

@@ -1,8 +1,8 @@
-"""Intersect one ray with a scene: empty boxes are crossed in one step, elements are tested exactly.
+"""Intersection of a ray with a scene: empty boxes take one step, elements are tested exactly.
 
-Coordinates are those of the grid: cell (i, j, k) spans [i, i + 1]. ``t`` counts in lengths of the
-direction; a direction whose camera z is 1 gives z-depth. Scalars are float64: on a CPU that costs
-no time in scalar code, and ids are exact. Directions have no component of exactly 0
+Coordinates are those of the grid: cell (i, j, k) spans [i, i + 1]. ``t`` is in units of the
+direction's length, so a direction with camera z of 1 gives z-depth. Scalars are float64, which
+costs no time in scalar CPU code and makes ids exact. Direction components are never exactly 0
 (``away_from_zero``), so that their reciprocals are finite.
 """
 
@@ -30,7 +30,7 @@ _SLACK = 1e-9  # Cells: how far outside the cell that lists it a freestanding bo
 
 
 class Ray(NamedTuple):
-    """Origin, direction and reciprocal direction of a ray, in the grid; see ``make_ray``."""
+    """The origin, direction and reciprocal direction of a ray in the grid; see ``make_ray``."""
 
     ox: float
     oy: float
@@ -44,7 +44,7 @@ class Ray(NamedTuple):
 
 
 class GridCamera(NamedTuple):
-    """A camera as the kernels read it."""
+    """A camera in grid coordinates, as read by the kernels."""
 
     pose: np.ndarray  # float64 [3, 4]: camera (z forward, metres) to grid
     rays: np.ndarray  # float64 [4]: fx, fy, cx, cy in pixels, or pixels per metre if orthographic
@@ -52,10 +52,10 @@ class GridCamera(NamedTuple):
 
 
 class Hit(NamedTuple):
-    """Where a ray is: in cell (i, j, k) at ``t``, which it entered by ``face``.
+    """The position of a ray: cell (i, j, k), entered at ``t`` by ``face``.
 
-    Of a surface, ``face`` is the face that is hit and ``element`` the element, -1 for a full cube.
-    ``NO_FACE`` stands for no surface, or for a ray that begins in the cell; i is -1 for a ray that
+    On a surface, ``face`` is the face that was hit and ``element`` is the element, or -1 for a full
+    cube. ``NO_FACE`` means no surface, or a ray that starts in the cell. i is -1 for a ray that
     misses the grid.
     """
 
@@ -70,7 +70,8 @@ class Hit(NamedTuple):
 class ElementTables(NamedTuple):
     """The fields of ``SceneTables`` that ``intersect_elements`` reads.
 
-    A call that is not inlined copies every array it is given: the whole tables cost twice as many.
+    Calls that are not inlined copy every array argument, so passing all tables would take twice as
+    long.
     """
 
     looks: np.ndarray
@@ -87,36 +88,36 @@ class ElementTables(NamedTuple):
 
 @inlined
 def away_from_zero(d):
-    """Return a direction's component, moved away from 0."""
+    """Return a component of a direction, moved away from 0."""
     return d if abs(d) > _TINY else _TINY
 
 
 @inlined
 def make_ray(ox, oy, oz, dx, dy, dz):
-    """Return the ``Ray`` of an origin and a direction."""
+    """Return the ``Ray`` with an origin and a direction."""
     dx, dy, dz = away_from_zero(dx), away_from_zero(dy), away_from_zero(dz)
     return Ray(ox, oy, oz, dx, dy, dz, 1.0 / dx, 1.0 / dy, 1.0 / dz)
 
 
 @inlined
 def floor_clamped(value, low, high):
-    """Return the whole number under a coordinate, from ``low`` to ``high`` - 1."""
+    """Return the integer part of a coordinate, clipped to ``low`` to ``high`` - 1."""
     return min(max(int(np.floor(value)), low), high - 1)
 
 
 @inlined
 def not_behind(cell, found, d):
-    """Return the cell that was found on a ray, or the one before where that lies behind it.
+    """Return the cell found on a ray, or the previous cell if the found cell is behind it.
 
-    On an edge between cells rounding, or an eye that stands right on it, may point back: two boxes
-    that overlap would then pass the ray to each other for ever.
+    On an edge between cells, rounding may point backwards, and two overlapping boxes would then
+    pass the ray to each other forever.
     """
     return max(cell, found) if d > 0 else min(cell, found)
 
 
 @inlined
 def ray_of_camera(camera, u, v):
-    """Return the ``Ray`` of a place (u, v) of a picture, in pixels."""
+    """Return the ``Ray`` through a position (u, v) of an image, in pixels."""
     x, y = (u - camera.rays[2]) / camera.rays[0], (v - camera.rays[3]) / camera.rays[1]
     ox, oy, oz, dx, dy, dz = ray_of_pixel(camera.pose, x, y, camera.spread)
     return make_ray(ox, oy, oz, dx, dy, dz)
@@ -124,7 +125,7 @@ def ray_of_camera(camera, u, v):
 
 @inlined
 def ray_of_pixel(pose, x, y, spread):
-    """Return origin and direction, in the grid, of the ray through (x, y) at z = 1."""
+    """Return the origin and direction in the grid of the ray through (x, y) at z = 1."""
     sx, sy = x * (1 - spread), y * (1 - spread)
     x, y = x * spread, y * spread
     return (
@@ -139,7 +140,7 @@ def ray_of_pixel(pose, x, y, spread):
 
 @lean
 def enter_grid(shape, ray):
-    """Return ``(t, face)`` where a ray from outside enters the grid; ``NO_FACE`` if it does not."""
+    """Return ``(t, face)`` where a ray from outside enters the grid, or ``NO_FACE`` for a miss."""
     nx, ny, nz = shape
     ox, oy, oz, rx, ry, rz = ray.ox, ray.oy, ray.oz, ray.rx, ray.ry, ray.rz
     ax, bx = min(-ox * rx, (nx - ox) * rx), max(-ox * rx, (nx - ox) * rx)
@@ -157,7 +158,7 @@ def enter_grid(shape, ray):
 
 @inlined
 def first_cell(shape, ray):
-    """Return the ``Hit`` of the first cell of a ray; i is -1 where it misses the grid."""
+    """Return the ``Hit`` of the first cell of a ray; i is -1 if the ray misses the grid."""
     nx, ny, nz = shape
     if 0 <= ray.ox < nx and 0 <= ray.oy < ny and 0 <= ray.oz < nz:
         return Hit(0.0, int(ray.ox), int(ray.oy), int(ray.oz), NO_FACE, -1)
@@ -172,7 +173,7 @@ def first_cell(shape, ray):
 
 @inner
 def cross_air(space, bounds, ray, t, i, j, k, face):
-    """Cross air from a cell on; return ``(t, i, j, k, face, kind)`` of the first other cell."""
+    """Cross air from a cell, and return ``(t, i, j, k, face, kind)`` of the first other cell."""
     ox, oy, oz, dx, dy, dz, rx, ry, rz = ray
     nx, ny, nz = np.uint64(space.shape[0]), np.uint64(space.shape[1]), np.uint64(space.shape[2])
     # Whole numbers without a sign: no code for counting from the end, and one comparison each.
@@ -204,7 +205,7 @@ def cross_air(space, bounds, ray, t, i, j, k, face):
 
 @inlined
 def intersect_box(boxes, n, ox, oy, oz, rx, ry, rz):
-    """Return ``(t, leave, face)`` where a ray enters box n from outside; ``NO_FACE`` for never."""
+    """Return ``(t, leave, face)`` where a ray from outside enters box n, or ``NO_FACE``."""
     ax, bx = (boxes[n, 0] - ox) * rx, (boxes[n, 3] - ox) * rx
     ay, by = (boxes[n, 1] - oy) * ry, (boxes[n, 4] - oy) * ry
     az, bz = (boxes[n, 2] - oz) * rz, (boxes[n, 5] - oz) * rz
@@ -222,7 +223,7 @@ def intersect_box(boxes, n, ox, oy, oz, rx, ry, rz):
 
 @inlined
 def transform(turns, row, x, y, z, w):
-    """Carry a point (w = 1) or a direction (w = 0) by a row of ``turns``."""
+    """Transform a point (w = 1) or a direction (w = 0) by a row of ``turns``."""
     m = turns[row]
     return (
         m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3] * w,
@@ -233,7 +234,7 @@ def transform(turns, row, x, y, z, w):
 
 @inlined
 def texel_at(uv, n, face, x, y, z, side_px):
-    """Return the column and row of the finest texel at a point of an element's frame."""
+    """Return the column and row of the finest texel at a point in an element's frame."""
     u = uv[n, face, 0, 0] * x + uv[n, face, 0, 1] * y + uv[n, face, 0, 2] * z + uv[n, face, 0, 3]
     v = uv[n, face, 1, 0] * x + uv[n, face, 1, 1] * y + uv[n, face, 1, 2] * z + uv[n, face, 1, 3]
     column, row = int((u - np.floor(u)) * side_px), int((v - np.floor(v)) * side_px)
@@ -244,18 +245,18 @@ def texel_at(uv, n, face, x, y, z, side_px):
 def intersect_elements(tables, side_px, i, j, k, ray, after, until):
     """Return ``(t, face, element)`` of the first intersection with the elements of a cell.
 
-    Only intersections beyond ``after`` count, and those with freestanding boxes only before
-    ``until``, where the ray leaves the cell. Of two at one place the later one counts, as in the
-    game.
+    Only intersections beyond ``after`` are considered, and those with freestanding elements only
+    before ``until``, where the ray leaves the cell. If two coincide, the later element is used, as
+    in the game.
 
     Args:
-        tables: ``ElementTables``, with textures of ``side_px``.
-        side_px: the side of a texture.
-        i: the cell; ``j`` and ``k`` alike.
-        j: see ``i``.
-        k: see ``i``.
+        tables: ``ElementTables`` with textures of ``side_px``.
+        side_px: Texture size in pixels.
+        i: Cell index along x.
+        j: Cell index along y.
+        k: Cell index along z.
         ray: ``Ray``.
-        after: ``t`` up to which everything is passed.
+        after: ``t`` up to which intersections are ignored.
         until: ``t`` at which the ray leaves the cell.
     """
     looks, look_start, refs, boxes, traits, turns, layers, uv, texels, translucent = tables
@@ -296,7 +297,7 @@ def intersect_elements(tables, side_px, i, j, k, ray, after, until):
 
 @inlined
 def joins_neighbour(looks, i, j, k, face):
-    """Tell whether the neighbour before a face looks the same."""
+    """Return whether the neighbour at a face has the same appearance."""
     a, b, c = i, j, k
     step = 1 if face % 2 else -1
     if face < 2:
@@ -313,7 +314,7 @@ def joins_neighbour(looks, i, j, k, face):
 
 @inlined
 def next_cell(i, j, k, ray):
-    """Return ``(t, i, j, k, face)`` of the next cell after one."""
+    """Return ``(t, i, j, k, face)`` of the next cell on a ray."""
     ox, oy, oz, dx, dy, dz, rx, ry, rz = ray
     tx = ((i + 1 if dx > 0 else i) - ox) * rx
     ty = ((j + 1 if dy > 0 else j) - oy) * ry
@@ -327,11 +328,11 @@ def next_cell(i, j, k, ray):
 
 @inner
 def first_hit(tables, side_px, ray, start, after):
-    """Return the ``Hit`` of the first surface from a cell on.
+    """Return the ``Hit`` of the first surface at or after a cell.
 
-    ``start`` is the ``Hit`` to go on from; surfaces up to ``after`` are passed. ``face`` is the
-    element's own, ``NO_FACE`` where there is no surface. A cube or box that holds the origin is
-    ignored: there is no near plane.
+    ``start`` is the ``Hit`` to continue from; surfaces up to ``after`` are ignored. ``face`` is in
+    the element's own frame, or ``NO_FACE`` without a surface. A cube or box that contains the
+    origin is ignored: there is no near plane.
     """
     t, i, j, k, face, _ = start
     while True:
@@ -354,7 +355,7 @@ def first_hit(tables, side_px, ray, start, after):
 
 @inner
 def is_see_through(tables, side_px, ray, hit):
-    """Tell whether one sees through a hit: it is glass, and its texture is not opaque there."""
+    """Return whether a hit is transparent: it is glass with a texture that is not opaque there."""
     t, i, j, k, face, element = hit
     if element < 0:
         return False

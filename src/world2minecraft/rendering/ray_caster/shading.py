@@ -1,7 +1,7 @@
-"""The colour of a point: its texel, times the light there, in linear light.
+"""Shading of a point: its texel times the light there, in linear light.
 
-The light of a face is found at the four corners of the block's face that the point lies in, as
-colours, and is even between them; neighbouring pixels mostly share those four.
+The light of a block's face is computed at its four corners and interpolated between them.
+Neighbouring pixels usually share these corners.
 """
 
 from typing import NamedTuple
@@ -44,7 +44,7 @@ _NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyo
 
 
 class ShadingParameters(NamedTuple):
-    """What the kernels know of light and of how it becomes sRGB."""
+    """The light and tone mapping parameters of the kernels."""
 
     lit: LightCoefficients
     corners: np.ndarray  # float32 [16384, 3]: the light that each entry of the lattice stands for
@@ -57,17 +57,17 @@ class ShadingParameters(NamedTuple):
 
 @inner
 def shade_hit(tables, side_px, shading, memo, block_px, ray, hit, speed):
-    """Return ``(red, green, blue, alpha)`` of a hit, linear.
+    """Return the linear ``(red, green, blue, alpha)`` of a hit.
 
     Args:
-        tables: ``SceneTables``, with textures of ``side_px``.
-        side_px: the side of a texture.
+        tables: ``SceneTables`` with textures of ``side_px``.
+        side_px: Texture size in pixels.
         shading: ``ShadingParameters``.
-        memo: float64 [CORNER_LIGHT_NUMBERS], see ``cache_corner_light``.
-        block_px: how many pixels a block would cover there, seen straight on.
+        memo: Cache of corner light, float64 [CORNER_LIGHT_NUMBERS]; see ``cache_corner_light``.
+        block_px: Number of pixels that a block would cover there, seen frontally.
         ray: ``Ray``.
         hit: ``Hit`` with a surface.
-        speed: the length of the ray's direction.
+        speed: Length of the ray's direction.
     """
     t, i, j, k, side, element = hit
     dx, dy, dz = ray.dx, ray.dy, ray.dz
@@ -120,18 +120,18 @@ def shade_hit(tables, side_px, shading, memo, block_px, ray, hit, speed):
 
 @inlined
 def face_shade(nx, ny, nz, cosine, lit):
-    """Return the shade of a face by its normal, linear."""
+    """Return the linear shade of a face by its normal."""
     shade = direction_shade(nx, ny, nz, cosine, lit)
     return to_linear(shade) if lit.screen > 0 else shade
 
 
 def block_face_shades(lit: LightCoefficients) -> np.ndarray:
-    """Return the shade of each face of a block, linear, float64 [6]."""
+    """Return the linear shade of each face of a block, float64 [6]."""
     return np.array([face_shade(x, y, z, 1.0, lit) for x, y, z in FACE_NORMALS.astype(float)])
 
 
 def corner_lights(lit: LightCoefficients) -> np.ndarray:
-    """Return the linear light of each entry of the light lattice, float32 [16384, 3]."""
+    """Return the linear light of each possible light lattice entry, float32 [16384, 3]."""
     result = np.empty((1 << 14, 3), np.float32)
     _fill_corners(result, lit)
     return result
@@ -147,7 +147,7 @@ def _fill_corners(result, lit):
 
 @inner
 def sun_cosine(tables, side_px, lit, turn, side, gx, gy, gz):
-    """Return the cosine of the sun on a face, 0 where it does not shine."""
+    """Return the cosine of the sun on a face, or 0 if it does not shine there."""
     nx, ny, nz = normal_of(tables, turn, side)
     cosine = nx * lit.sun_x + ny * lit.sun_y + nz * lit.sun_z
     if cosine <= 0:
@@ -165,7 +165,7 @@ def sun_cosine(tables, side_px, lit, turn, side, gx, gy, gz):
 
 @inlined
 def normal_of(tables, turn, side):
-    """Return the outward unit normal, in the grid, of a face of an element."""
+    """Return the outward unit normal of an element's face, in the grid."""
     if turn < 0:
         return (
             float(FACE_NORMALS[side, 0]),
@@ -179,7 +179,7 @@ def normal_of(tables, turn, side):
 
 @inlined
 def dominant_face(nx, ny, nz):
-    """Return the face of a block that looks most like a normal."""
+    """Return the block face whose direction is most similar to a normal."""
     x, y, z = abs(nx), abs(ny), abs(nz)
     if x >= y and x >= z:
         return 1 if nx > 0 else 0
@@ -190,7 +190,7 @@ def dominant_face(nx, ny, nz):
 
 @inlined
 def bilinear(memo, at, p, q):
-    """Return the value at (p, q) between four corners."""
+    """Return the bilinear interpolation at (p, q) of four corner values."""
     return (1 - p) * ((1 - q) * memo[at] + q * memo[at + 1]) + p * (
         (1 - q) * memo[at + 2] + q * memo[at + 3]
     )
@@ -198,7 +198,7 @@ def bilinear(memo, at, p, q):
 
 @inner
 def texel_colour(tables, side_px, tone, n, side, x, y, z, block_px, cosine):
-    """Return linear red, green, blue and alpha of the texture at a point of an element."""
+    """Return the linear red, green, blue and alpha of the texture at a point of an element."""
     n, side = np.uint64(n), np.uint64(side)
     m = tables.uv[n, side]
     u = m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]
@@ -224,10 +224,10 @@ def texel_colour(tables, side_px, tone, n, side, x, y, z, block_px, cosine):
 
 @inner
 def cache_corner_light(light, corners, memo, i, j, k, face, even, px, py, pz):
-    """Fill the memo with the light at the corners of a block's face, unless it has them.
+    """Fill the cache with the light at the corners of a block's face, unless already there.
 
-    ``memo``: the cell, face and layer that it belongs to, then red at four corners from 8 on,
-    green from 12, blue from 16. ``even`` leaves out what corners darken.
+    ``memo`` contains the cell, face and layer, then red at four corners from index 8, green from 12
+    and blue from 16. ``even`` disables ambient occlusion.
     """
     along = px if face < 2 else (py if face < 4 else pz)
     step = 0  # A face inside its cell is lit by the cell's own layer.
@@ -253,7 +253,7 @@ def cache_corner_light(light, corners, memo, i, j, k, face, even, px, py, pz):
 
 @inner_call
 def is_sunlit(tables, side_px, lit, ox, oy, oz):
-    """Tell whether nothing but glass lies between a point and the sun."""
+    """Return whether only glass is between a point and the sun."""
     ray = make_ray(ox, oy, oz, lit.sun_x, lit.sun_y, lit.sun_z)
     hit = first_cell(tables.space.shape, ray)
     if hit.i < 0:
@@ -278,7 +278,7 @@ def write_pixel(shading, colour, v, u, red, green, blue):
 
 @inner
 def write_sky(shading, colour, v, u, ray, red, green, blue, clear):
-    """Write the sky, seen through what lies before it."""
+    """Write the sky, seen through the glass in front of it."""
     if shading.by_row:
         share = v / max(colour.shape[0] - 1, 1)
         r = shading.paper[0, 0] * (1 - share) + shading.paper[1, 0] * share

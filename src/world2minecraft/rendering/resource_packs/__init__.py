@@ -1,7 +1,7 @@
-"""Resource packs and client jars of the user as a source of block models.
+"""The user's resource packs and client jars as a source of block models.
 
-``pack_files`` opens and stacks packs, ``model_json`` reads blockstates and models, ``elements`` and
-``implicit_models`` make elements of them, ``textures`` decodes pictures.
+``pack_files`` opens and stacks packs, ``model_json`` reads block states and models, ``elements``
+and ``texture_only_models`` convert them to elements, and ``textures`` decodes images.
 """
 
 from world2minecraft.rendering.resource_packs.pack_models import ResourcePackModels

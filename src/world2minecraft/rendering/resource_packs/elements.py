@@ -1,9 +1,9 @@
-"""Elements of model files: read, rotated by quarter turns, and merged where they share a box.
+"""Elements of model files: reading, quarter turns, and merging of elements with the same box.
 
-All matrices carry points of the block ([0, 1] on each axis) and rotate about its middle. A quarter
-turn keeps boxes aligned: faces change places, textures turn or stay. Elements that fill the same
-box become one, their textures laid one over another: a grass block is a cube of earth with a
-second, tinted cube at the very same place, and as one box it stays a full cube.
+All matrices transform points of the block ([0, 1] on each axis) about its centre. A quarter turn
+keeps boxes aligned: faces are permuted, and textures rotate or stay. Elements with the same box are
+merged with their textures layered: a grass block is a dirt cube with a second, tinted cube in the
+same place, and remains a full cube when merged.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -37,7 +37,7 @@ LOWEST, HIGHEST = -16.0, 32.0  # Sixteenths of a block; the game refuses others.
 
 
 def merge_coincident(elements: Sequence[Element]) -> tuple[Element, ...]:
-    """Return the elements with those of one box joined where their faces can be."""
+    """Return the elements with equal boxes merged if their faces can be layered."""
     done: list[Element] = []
     places: dict[tuple, int] = {}  # Of each box, the last element that fills it.
     for element in elements:
@@ -78,10 +78,10 @@ def _tinted_name(face: ElementFace) -> str:
 
 @lru_cache(maxsize=64)
 def quarter_turn(x_deg: int, y_deg: int, z_deg: int = 0) -> np.ndarray:
-    """Return float64 [4, 4]: turn about x, then y, then z, about the block's middle.
+    """Return the rotation about x, then y, then z, about the block's centre, float64 [4, 4].
 
-    Positive angles take up to north (x), north to east (y) and up to east (z), as in a
-    blockstates file.
+    Positive angles rotate up to north (x), north to east (y) and up to east (z), as in a block
+    state file.
     """
     turn = np.eye(3)
     for axis, angle in enumerate((x_deg, y_deg, z_deg)):
@@ -105,12 +105,12 @@ def _about(turn: np.ndarray, origin: np.ndarray) -> np.ndarray:
 def free_turn(
     angles_deg: tuple[float, float, float], origin: np.ndarray | list[float], rescale: bool
 ) -> np.ndarray:
-    """Return float64 [4, 4] of an element's own rotation: about x, then y, then z.
+    """Return an element's own rotation about x, then y, then z, float64 [4, 4].
 
     Args:
-        angles_deg: right-handed, as in a model's file.
-        origin: the point that stays, blocks.
-        rescale: whether the element is stretched to span the block again.
+        angles_deg: Right-handed angles in degrees, as in a model file.
+        origin: Fixed point, in blocks.
+        rescale: Whether to stretch the element so that it spans the block again.
     """
     turn = np.eye(3)
     for axis, angle in enumerate(np.radians(angles_deg)):
@@ -125,18 +125,18 @@ def free_turn(
 
 
 def is_quarter(matrix: np.ndarray) -> bool:
-    """Return whether a matrix maps axes onto axes."""
+    """Return whether a matrix maps axes to axes."""
     lengths = np.abs(matrix[:3, :3])  # A rescaled turn by 45 degrees has ones too, but more.
     return bool(np.allclose(lengths, lengths.round(), atol=1e-9) and lengths.round().sum() == 3)
 
 
 def apply_quarter_turn(element: Element, matrix: np.ndarray, uv_lock: bool = False) -> Element:
-    """Return an element moved by a quarter turn.
+    """Return an element rotated by a quarter turn.
 
     Args:
-        element: any element; a turned one gets the product as its turn.
-        matrix: float64 [4, 4] that maps axes onto axes.
-        uv_lock: whether textures lie as they would on an element that was made in the new place.
+        element: Any element. The rotation of a rotated element is multiplied.
+        matrix: Matrix that maps axes to axes, float64 [4, 4].
+        uv_lock: Whether textures are aligned as on an element created in the new position.
     """
     faces = element.faces
     if uv_lock:
@@ -155,7 +155,7 @@ def apply_quarter_turn(element: Element, matrix: np.ndarray, uv_lock: bool = Fal
 
 
 def side_after(side: int, matrix: np.ndarray) -> int:
-    """Return the side, 0 to 5 in the order of ``FACE_NAMES``, that a side is turned to."""
+    """Return the side, 0 to 5 in the order of ``FACE_NAMES``, that a side is rotated to."""
     return int((_NORMALS @ (matrix[:3, :3] @ _NORMALS[side])).argmax())
 
 
@@ -189,15 +189,15 @@ def _lock(side: int, matrix_bytes: bytes) -> np.ndarray:
 def element_of(
     raw: Mapping[str, Any], texture_of: Callable[[str], str], tint_of: Callable[[int], Tint]
 ) -> Element:
-    """Return an element of a model's file as it stands before the block is turned.
+    """Return an element of a model file before the rotation of the block.
 
     Args:
-        raw: the object of the file.
-        texture_of: what a face names to the texture's name.
-        tint_of: a tint index to the colour that the texture is times.
+        raw: JSON object of the element.
+        texture_of: Function from the texture reference of a face to the texture's name.
+        tint_of: Function from a tint index to the colour multiplier.
 
     Raises:
-        ValueError: it is not as the format says.
+        ValueError: If the JSON object is not a valid element.
     """
     start = np.array(as_numbers(raw.get("from"), "from", 3, LOWEST, HIGHEST)) / 16
     end = np.array(as_numbers(raw.get("to"), "to", 3, LOWEST, HIGHEST)) / 16

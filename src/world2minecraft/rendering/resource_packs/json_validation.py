@@ -1,6 +1,6 @@
-"""Values of a pack's JSON files, checked one by one: a wrong one is a ValueError that says it.
+"""Validation of values in a resource pack's JSON files, with descriptive ``ValueError`` messages.
 
-Whoever reads a file of a pack turns such an error into a line of ``problems`` and goes on.
+Readers of pack files append these errors to ``problems`` and continue.
 """
 
 import math
@@ -20,7 +20,7 @@ def as_object(value: Any, what: str) -> dict[str, Any]:
 
 
 def as_list(value: Any, what: str, most: int) -> list[Any]:
-    """Return ``value`` if it is a JSON list of at most ``most`` items, else raise ValueError."""
+    """Return ``value`` if it is a list of at most ``most`` items, else raise ValueError."""
     if not isinstance(value, list):
         raise ValueError(f"{what} must be a list, got {describe_value(value)}")
     if len(value) > most:
@@ -42,7 +42,7 @@ def as_number(value: Any, what: str, low: float = -1e6, high: float = 1e6) -> fl
 def as_numbers(
     value: Any, what: str, count: int, low: float = -1e6, high: float = 1e6
 ) -> list[float]:
-    """Return a list of ``count`` numbers from ``low`` to ``high``."""
+    """Return ``value`` as a list of ``count`` numbers from ``low`` to ``high``."""
     items = as_list(value, what, most=count)
     if len(items) != count:
         raise ValueError(f"{what} must have {count} numbers, got {len(items)}")
@@ -50,7 +50,7 @@ def as_numbers(
 
 
 def as_quarter_turn(value: Any, what: str) -> int:
-    """Return ``value`` if it is a multiple of 90, as 0, 90, 180 or 270."""
+    """Return ``value`` as 0, 90, 180 or 270 if it is a multiple of 90."""
     angle = as_number(value, what)
     if angle % 90:
         raise ValueError(f"{what} must be a multiple of 90, got {angle:g}")
@@ -58,17 +58,17 @@ def as_quarter_turn(value: Any, what: str) -> int:
 
 
 def as_text(value: Any, what: str) -> str:
-    """Return ``value`` if it is a text."""
+    """Return ``value`` if it is a string."""
     if not isinstance(value, str):
         raise ValueError(f"{what} must be a string, got {describe_value(value)}")
     return value
 
 
 def parse_resource_name(name: str, what: str) -> tuple[str, str]:
-    """Return (namespace, path) of a resource's name such as ``minecraft:block/stone``.
+    """Return (namespace, path) of a resource name such as ``minecraft:block/stone``.
 
     Raises:
-        ValueError: it is no name, or its path leads out of the pack.
+        ValueError: If the name is invalid, or if its path leads out of the pack.
 
     Example:
         >>> parse_resource_name("block/stone", "the model")
@@ -86,7 +86,7 @@ def parse_resource_name(name: str, what: str) -> tuple[str, str]:
 
 
 def describe_value(value: Any) -> str:
-    """Return a short text of any value, for a message."""
+    """Return a short description of any value for an error message."""
     if isinstance(value, (dict, list)):
         return "an object" if isinstance(value, dict) else "a list"
     words = repr(value[:50] if isinstance(value, str) else value)

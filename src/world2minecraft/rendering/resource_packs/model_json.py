@@ -1,7 +1,7 @@
-"""Blockstates and model files: the models of a state, each merged with its parents.
+"""Block state files and model files: the models of a state, each merged with its parents.
 
-Where a file leaves the choice to chance (a list with weights), the heaviest is taken, the first of
-equals: a model belongs to a state here, not to a place, so that all blocks of a state look alike.
+If a file leaves the choice to chance (a weighted list), the first model with the highest weight is
+used, because a model here depends on the state and not on the position.
 """
 
 from collections.abc import Mapping
@@ -28,7 +28,7 @@ _CURE = "pass the game's client jar before the pack"
 
 @dataclass(frozen=True)
 class ModelPart:
-    """A model and how it is turned: degrees about x first, then y, then z."""
+    """A model with its rotation in degrees, about x first, then y, then z."""
 
     model: str
     x_deg: int = 0
@@ -38,14 +38,14 @@ class ModelPart:
 
 
 def select_parts(root: Mapping[str, Any], properties: Mapping[str, str]) -> tuple[ModelPart, ...]:
-    """Return the parts that a state is drawn as; none where a multipart has none for it.
+    """Return the parts that a state is rendered with, which may be none for a multipart file.
 
     Args:
-        root: the object of ``assets/NAMESPACE/blockstates/BLOCK.json``.
-        properties: all properties of the state. One that is missing here counts as any value.
+        root: JSON object of ``assets/NAMESPACE/blockstates/BLOCK.json``.
+        properties: All properties of the state. A missing property matches any value.
 
     Raises:
-        ValueError: the file is not as the format says, or no variant is for these properties.
+        ValueError: If the file is invalid, or if no variant matches the properties.
     """
     parts: list[ModelPart] = []
     if "variants" in root:
@@ -119,9 +119,9 @@ def _heaviest(entry: Any) -> ModelPart:
 
 @dataclass(frozen=True, eq=False)
 class FlatModel:
-    """A model with its parents' values: raw elements, and texture names by their keys.
+    """A model merged with its parents: raw elements, and texture names by key.
 
-    ``in_code`` says that the game draws it in code, as it does chests and beds.
+    ``in_code`` says that the game renders the block in code, as for chests and beds.
     """
 
     elements: tuple[Mapping[str, Any], ...]
@@ -131,12 +131,13 @@ class FlatModel:
 
 
 def flatten_model(name: str, resources: PackStack) -> FlatModel:
-    """Return the model of a name such as ``minecraft:block/stone`` merged with its parents.
+    """Return the model of a name such as ``minecraft:block/stone``, merged with its parents.
 
-    The child's elements replace the parents'; textures merge, the child's first.
+    The child's elements replace those of its parents. Textures are merged, and the child's take
+    precedence.
 
     Raises:
-        ValueError: it or a parent is missing, is its own parent, or is not as the format says.
+        ValueError: If the model or a parent is missing or invalid, or if a model is its own parent.
     """
     chain = _chain(name, resources)
     textures: dict[str, Any] = {}
@@ -179,12 +180,12 @@ def _chain(name: str, resources: PackStack) -> list[dict[str, Any]]:
 
 
 def texture_of(face: str, textures: Mapping[str, Any]) -> str:
-    """Return the name ``namespace:path`` of the texture that a face names, through its keys.
+    """Return the name ``namespace:path`` of the texture of a face, resolving its keys.
 
-    Newer files hold an object with a ``sprite`` in place of a name.
+    Newer files contain an object with a ``sprite`` instead of a name.
 
     Raises:
-        ValueError: no texture is there, or the keys lead in a circle.
+        ValueError: If the texture is not set, or if the keys form a cycle.
     """
     key, seen = face.removeprefix("#"), set()
     if not face.startswith("#") and key not in textures:

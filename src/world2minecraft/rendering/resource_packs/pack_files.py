@@ -1,8 +1,8 @@
-"""Files of resource packs, alone and stacked: bytes or JSON from the highest pack that has a name.
+"""Files of resource packs, single or stacked, of which the highest pack with a name is used.
 
-A pack is a folder, a zip or a jar. Nothing is unpacked to disk, and a name that a pack holds is
-only a key here, so that no name can lead out of it. Sizes are checked before bytes are read. A file
-that cannot be read is recorded in ``problems``, and the pack below is used.
+A pack is a folder, a zip or a jar. Nothing is extracted to disk, and file names in a pack are only
+used as keys, so that they cannot lead out of it. Sizes are checked before data is read. A file that
+cannot be read is recorded in ``problems``, and the next pack is used.
 """
 
 import json
@@ -39,7 +39,7 @@ RESOURCE_FORMAT = 75
 
 @dataclass(frozen=True, eq=False)
 class PackFiles:
-    """The files of a pack: ``names`` as in the pack, ``read(name, most_bytes)`` their bytes."""
+    """The files of a pack: their ``names``, and ``read(name, most_bytes)`` for their bytes."""
 
     label: str
     names: frozenset[str]
@@ -47,11 +47,12 @@ class PackFiles:
 
 
 def open_pack(path: str | Path) -> PackFiles:
-    """Open a resource pack or a client's or mod's jar.
+    """Open a resource pack, or the jar of a client or mod.
 
     Raises:
-        InputError: nothing is there. DamagedFileError: it is no pack; the message says what one
-            looks like. LimitError: it lists too many files.
+        InputError: If the path does not exist.
+        DamagedFileError: If the path is not a resource pack. The message describes a valid pack.
+        LimitError: If the pack contains too many files.
     """
     source = Path(path)
     if source.is_dir():
@@ -179,7 +180,10 @@ def _hint(source: Path, inner: list[str]) -> str:
 
 
 class PackStack:
-    """The files of several packs. ``problems`` holds short sentences, ``problem_count`` all."""
+    """The files of several packs.
+
+    ``problems`` contains the first problems as short sentences, and ``problem_count`` counts all.
+    """
 
     def __init__(self, paths: Sequence[str | Path]):
         """Open the packs, the last above the others. Raises what ``open_pack`` raises."""
@@ -193,11 +197,11 @@ class PackStack:
             self._layers += [(pack, folder) for folder in (*self._overlays(pack), "")]
 
     def has(self, name: str) -> bool:
-        """Return whether any pack has a file of that name."""
+        """Return whether any pack has a file of this name."""
         return any(folder + name in pack.names for pack, folder in self._layers)
 
     def pictures(self) -> list[str]:
-        """Return the names of all pictures of blocks, sorted, of any pack and namespace."""
+        """Return the names of all block textures in any pack and namespace, sorted."""
         names = {
             name.removeprefix(folder)
             for pack, folder in self._layers
@@ -207,7 +211,7 @@ class PackStack:
         return sorted(name for name in names if name.startswith("assets/"))
 
     def versions(self, name: str, most_bytes: int) -> Iterator[tuple[str, bytes]]:
-        """Yield (where, bytes) of each pack's file of that name, the highest first."""
+        """Yield (location, bytes) of a file in each pack that has it, highest pack first."""
         for pack, folder in self._layers:
             if folder + name in pack.names:
                 where = f"{folder}{name} of {pack.label}"
@@ -219,7 +223,7 @@ class PackStack:
                     self.note(f"{where}: {error}")
 
     def object(self, name: str) -> dict[str, Any] | None:
-        """Return the JSON object in a file, None where no pack has one that can be read."""
+        """Return the JSON object in a file, or None if no pack has a readable one."""
         if name not in self._json:
             self._json[name] = None
             for where, data in self.versions(name, MAX_JSON_BYTES):
@@ -230,7 +234,7 @@ class PackStack:
         return self._json[name]
 
     def note(self, problem: str) -> None:
-        """Write a problem down, once."""
+        """Record a problem once."""
         if problem not in self._known:
             self.problem_count += 1
             if len(self.problems) < MAX_PROBLEMS:

@@ -1,7 +1,7 @@
-"""``ResourcePackModels``: a user's resource packs and client jars as a source of looks.
+"""``ResourcePackModels``: the user's resource packs and client jars as a model source.
 
-A state becomes its blockstates file's parts, each part its model, each model its elements, turned.
-What cannot be read is noted and left to the next source.
+A block state is converted to the parts in its block state file, each part to its model, and each
+model to its rotated elements. Problems are recorded, and the next source is used.
 """
 
 from collections.abc import Mapping, Sequence
@@ -47,18 +47,19 @@ MAX_TOTAL_ELEMENTS = 200_000  # A thousand states of the game have about 5,000.
 
 
 class ResourcePackModels:
-    """The looks of a stack of resource packs, client jars and mods' jars.
+    """The models and textures of a stack of resource packs, client jars and mod jars.
 
-    ``problems`` holds one short sentence for each file that could not be read, the first of them;
+    ``problems`` contains a short sentence for each of the first files that could not be read;
     ``problem_count`` counts all.
 
     Args:
-        paths: folders, zips and jars; the last wins over those before it, as in the game.
-        tints: colours in place of those of plains; see ``tints.PLAINS`` for the names.
-        most_px: the largest side of a texture; larger ones are reduced to it.
+        paths: Folders, zips and jars. Later packs override earlier ones, as in the game.
+        tints: Colours that replace those of the plains biome; see ``tints.PLAINS`` for the names.
+        most_px: Maximum side of a texture. Larger textures are reduced to it.
 
     Raises:
-        InputError: a pack is missing or is none. UsageError: a tint or ``most_px`` is wrong.
+        InputError: If a pack does not exist or is not a resource pack.
+        UsageError: If a tint or ``most_px`` is invalid.
     """
 
     def __init__(
@@ -78,17 +79,17 @@ class ResourcePackModels:
 
     @property
     def problems(self) -> list[str]:
-        """What could not be read so far, short sentences, at most some dozens."""
+        """The first problems so far, as short sentences."""
         return list(self._resources.problems)
 
     @property
     def problem_count(self) -> int:
-        """How many things could not be read so far."""
+        """The number of problems so far."""
         return self._resources.problem_count
 
     @property
     def summary(self) -> str:
-        """One sentence on what could not be read, for whoever made pictures; "" for nothing."""
+        """A sentence about the problems so far, or an empty string."""
         if not self.problem_count:
             return ""
         first, count = self._resources.problems[0], self.problem_count
@@ -97,11 +98,11 @@ class ResourcePackModels:
 
     @property
     def texture_px(self) -> int:
-        """The side that most of the packs' textures have, 16 to 128: a size for a scene."""
+        """The most common texture size of the packs, 16 to 128, suitable for a scene."""
         return self._textures.usual_px()
 
     def model(self, state: str) -> BlockModel | None:
-        """Return the model of a state's text; None where no pack has one that can be read."""
+        """Return the model of a state given as text, or None if no pack has a readable one."""
         if state not in self._models:
             model = self._made(state)
             self._models[state] = _shining(model) if model and is_luminous(state) else model

@@ -1,10 +1,10 @@
-"""Models of packs that have textures alone: visible boxes with the textures that a name implies.
+"""Models for packs without model files: visible boxes with textures derived from block names.
 
-Most resource packs only repaint the game's own models. Without the client jar that has those
-models, the boxes of ``minecraft/visual_shapes.py`` get the textures of a block's name:
-``oak_stairs`` those of ``oak_planks``, a log its rings at the ends, a furnace its front. The game
-draws water and lava in code; here they are a box as high as the level, still above, and flowing at
-the sides.
+Most resource packs only change the textures of the game's own models. Without the client jar, the
+boxes of ``minecraft/visual_shapes.py`` get textures by block name: ``oak_stairs`` those of
+``oak_planks``, a log its rings at the ends, a furnace its front. The game renders water and lava in
+code; here they are boxes of the fluid's height, with a still texture above and a flowing one at the
+sides.
 """
 
 from collections.abc import Callable, Sequence
@@ -61,12 +61,13 @@ def fluid_model(
     texture_of: Callable[[str], Texture | None],
     tint: tuple[int, int, int] | None,
 ) -> BlockModel | None:
-    """Return the model of water or lava, None where the packs have no texture of it.
+    """Return the model of water or lava, or None if the packs have no texture for it.
 
     Args:
-        state: with its ``level``: 0 a source, 1 to 7 lower and lower, 8 and more falling.
-        texture_of: a texture's name to the packs' texture.
-        tint: the colour of water; lava has its own.
+        state: State with its ``level``: 0 for a source, 1 to 7 for decreasing height, 8 and more
+            for falling fluid.
+        texture_of: Function from a texture name to the packs' texture.
+        tint: Colour of water. Lava has its own colour.
     """
     block = state.name.partition(":")[2]
     still, flow = (f"minecraft:block/{block}_{kind}" for kind in ("still", "flow"))
@@ -100,14 +101,14 @@ def implied_model(
     tint_of: Callable[[int], Tint],
     is_free: bool,
 ) -> BlockModel | None:
-    """Return a model of a complete state from the textures of its name; None where there are none.
+    """Return a model of a complete state from textures found by its name, or None.
 
     Args:
-        state: with all its properties.
-        texture_of: a texture's name to the packs' texture.
-        tint_of: a tint index to a colour, as for models that are read.
-        is_free: whether a block that the table does not know may be guessed: no pack says more of
-            it. It is a cube, or a cross where its texture has holes.
+        state: State with all of its properties.
+        texture_of: Function from a texture name to the packs' texture.
+        tint_of: Function from a tint index to a colour, as for model files.
+        is_free: Whether the model of an unknown block may be guessed as a cube, or as a cross if
+            its texture has holes.
     """
     is_known = state.name in block_table().blocks
     if not (is_known or is_free):
@@ -140,7 +141,7 @@ def _is_cut_out(texture: Texture | None) -> bool:
 
 
 def other_names(name: str) -> list[str]:
-    """Return what older and newer games call a block, without the namespace."""
+    """Return the names of a block in older and newer game versions, without the namespace."""
     newest = name_in_version(name, 1 << 30)
     others = [newest, new_names().get(newest, newest)]
     return [other.partition(":")[2] for other in others if other != name]

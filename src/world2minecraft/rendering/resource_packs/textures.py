@@ -1,8 +1,8 @@
-"""Textures of resource packs: PNG decoding, resampling, labPBR maps, and overlays.
+"""Textures of resource packs: PNG decoding, resampling, labPBR maps and overlays.
 
-Of an animation the first frame is read, resampled to a square of a power of two. Two files beside a
-texture hold labPBR 1.3 maps: ``NAME_n.png`` the relief, ``NAME_s.png`` the material; older layouts
-of ``_s`` look the same on disk and are read in the same way.
+Only the first frame of an animation is used. It is resampled to a square whose side is a power of
+two. Two files beside a texture contain labPBR 1.3 maps: ``NAME_n.png`` the relief, ``NAME_s.png``
+the material. Older layouts of ``_s`` cannot be distinguished and are read in the same way.
 """
 
 import io
@@ -44,10 +44,10 @@ HOLE, SOLID = 13, 242  # Of alpha: what is nearly a hole or nearly solid counts 
 
 
 def overlay_textures(layers: Sequence[tuple[Texture, tuple[int, ...]]]) -> Texture:
-    """Return one texture of several, the first at the bottom.
+    """Combine texture layers into one texture.
 
     Args:
-        layers: at least one texture, each with the sRGB colour that it is times.
+        layers: At least one texture with its sRGB colour multiplier, bottom layer first.
     """
     side = max(texture.colour.shape[0] for texture, _ in layers)
     done: Texture | None = None
@@ -116,10 +116,10 @@ def _blend_over(below: Texture, above: Texture) -> Texture:
 
 
 def normal_map(pixels: np.ndarray) -> np.ndarray:
-    """Return uint8 [N, N, 3] tangent-space normals of ``_n`` pixels, uint8 [N, N, 4].
+    """Return tangent-space normals, uint8 [N, N, 3], from ``_n`` pixels, uint8 [N, N, 4].
 
-    Red is x along u, green y along v: DirectX's way, down. The third is rebuilt; blue (corner
-    darkening) and alpha (height) are left out.
+    Red is x along u, green is y along v (DirectX convention, down). The third component is
+    computed. Blue (occlusion) and alpha (height) are ignored.
     """
     plane = pixels[..., :2] / 255 * 2 - 1
     length = np.maximum(np.sqrt((plane**2).sum(axis=-1, keepdims=True)), 1.0)
@@ -130,9 +130,9 @@ def normal_map(pixels: np.ndarray) -> np.ndarray:
 
 
 def material_maps(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return (roughness, metal, emission), uint8 [N, N] each, of ``_s`` pixels, uint8 [N, N, 4].
+    """Return (roughness, metal, emission), uint8 [N, N] each, from ``_s`` pixels [N, N, 4].
 
-    Red is perceptual smoothness, green 230 and more a metal, alpha the light that it gives.
+    Red is perceptual smoothness, green of 230 or more is metal, and alpha is the emission.
     """
     roughness = 255 - pixels[..., 0]
     metal = np.where(pixels[..., 1] >= FIRST_METAL, 255, 0).astype(np.uint8)
@@ -142,7 +142,11 @@ def material_maps(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 
 def png_size(data: bytes) -> tuple[int, int]:
-    """Return the width and height that a PNG says it has; ValueError where it is none."""
+    """Return the width and height in a PNG header.
+
+    Raises:
+        ValueError: If the data is not a PNG file.
+    """
     if not data.startswith(_HEAD) or len(data) < 24:
         raise ValueError("not a PNG file")
     width, height = struct.unpack(">II", data[16:24])
@@ -150,10 +154,10 @@ def png_size(data: bytes) -> tuple[int, int]:
 
 
 def decode_png(data: bytes) -> np.ndarray:
-    """Return uint8 [H, W, 4] of a PNG, its size checked before it is unpacked.
+    """Decode a PNG to uint8 [H, W, 4] after checking its size.
 
     Raises:
-        ValueError: it is no PNG, is damaged or too large.
+        ValueError: If the data is not a PNG file, is damaged or is too large.
     """
     width, height = png_size(data)
     if not 0 < width * height <= MAX_PIXELS:
@@ -169,14 +173,14 @@ def decode_png(data: bytes) -> np.ndarray:
 
 
 def first_frame(pixels: np.ndarray, animation: Mapping[str, Any] | None) -> np.ndarray:
-    """Return the frame that an animation begins with, the whole picture where there is none.
+    """Return the first frame of an animation, or the whole image without an animation.
 
     Args:
-        pixels: uint8 [H, W, 4].
-        animation: the ``animation`` object of the ``.mcmeta`` file beside the picture.
+        pixels: Image, uint8 [H, W, 4].
+        animation: ``animation`` object of the ``.mcmeta`` file beside the image.
 
     Raises:
-        ValueError: the animation is not as the format says.
+        ValueError: If the animation is invalid.
     """
     if animation is None:
         return pixels
@@ -206,15 +210,15 @@ def _first_index(frames: Any) -> int:
 
 
 def side_for(pixels: np.ndarray, most_px: int) -> int:
-    """Return the side of the square texture for a frame: a power of two that holds it."""
+    """Return the side of the square texture for a frame: a power of two that contains it."""
     longest = max(pixels.shape[:2])
     return min(1 << (longest - 1).bit_length(), most_px, MAX_SIDE_PX)
 
 
 def resampled(pixels: np.ndarray, side_px: int) -> np.ndarray:
-    """Return uint8 [N, N, C]: each pixel the mean of the area that it covers.
+    """Resample an image to uint8 [N, N, C], each pixel the mean of the area that it covers.
 
-    Colours of four channels count by their alpha, so that no dark rim creeps in from holes.
+    Colours with alpha are weighted by it, so that holes do not cause dark edges.
     """
     if pixels.shape[:2] == (side_px, side_px):
         return pixels
@@ -243,7 +247,7 @@ def _area_weights(count: int, side_px: int) -> np.ndarray:
 
 
 def names_clear_material(name: str) -> bool:
-    """Return whether a block's or texture's name says that one sees through its stuff."""
+    """Return whether the name of a block or texture stands for a transparent material."""
     return _CLEAR_WORDS.search(name) is not None
 
 
@@ -253,7 +257,7 @@ def _power(value: int) -> int:
 
 
 class PackTextures:
-    """The textures of a stack of packs, each read once."""
+    """The textures of a stack of packs, each loaded once."""
 
     def __init__(self, resources: PackStack, most_px: int):
         self._resources, self._most_px = resources, most_px
@@ -272,7 +276,7 @@ class PackTextures:
         return self._read[name]
 
     def usual_px(self) -> int:
-        """Return the side that most textures of blocks have, by a sample: 16, 32, 64 or 128."""
+        """Return the most common side of block textures, by a sample: 16, 32, 64 or 128."""
         names = self._resources.pictures()
         sides: Counter[int] = Counter()
         for name in names[:: max(1, len(names) // SAMPLE)]:
@@ -285,7 +289,7 @@ class PackTextures:
         return max(sides, key=lambda side: (sides[side], side), default=MIN_PX)
 
     def map_colour(self, name: str, column: int, row: int) -> tuple[int, int, int] | None:
-        """Return a pixel of a colour map of 256 x 256 px; None where no pack has that map."""
+        """Return a pixel of a 256 x 256 colour map, or None if no pack has the map."""
         file = f"assets/minecraft/textures/colormap/{name}.png"
         for where, data in self._resources.versions(file, MAX_PNG_BYTES):
             try:

@@ -1,7 +1,7 @@
-"""The colours that grey textures are times: grass, leaves, water, redstone and stems.
+"""Tint colours for grey textures: grass, leaves, water, redstone and stems.
 
-The game mixes grass, leaves and water by biome; here they are those of plains, by the pack's own
-colour maps where it has them.
+The game blends the colours of grass, leaves and water by biome. This program uses the plains biome,
+with the pack's own colour maps if it has them.
 """
 
 import re
@@ -46,14 +46,16 @@ _ON_STEMS = ("pink_petals", "wildflowers")  # Their index 0 is the flower, which
 def checked_tints(
     changes: Mapping[str, Colour] | None, map_colour: Callable[[str, int, int], Tint]
 ) -> dict[str, Colour]:
-    """Return the tints of plains, by a pack's colour maps where it has them, with some changed.
+    """Return the plains tints, from a pack's colour maps if it has them, with some changes.
 
     Args:
-        changes: name of a tint to sRGB, 0 to 255.
-        map_colour: (name of a map, column, row) to its colour, None where there is no such map.
+        changes: sRGB colours 0 to 255 by tint name.
+        map_colour: Function from (name of a map, column, row) to its colour, or None without such a
+            map.
 
     Raises:
-        UnknownNameError: a name that no tint has. UsageError: a colour that is none.
+        UnknownNameError: If a tint name is unknown.
+        UsageError: If a colour is invalid.
     """
     tints = dict(PLAINS)
     for name in COLOUR_MAPS:
@@ -68,7 +70,7 @@ def checked_tints(
 
 
 def tint_rule(state: BlockState, tints: Mapping[str, Colour]) -> Callable[[int], Tint]:
-    """Return what turns a tint index of a state's model into a colour, None for none."""
+    """Return the function from a tint index of a state's model to a colour, or None."""
     _, _, block = state.name.partition(":")
     if block == "redstone_wire":
         colour = redstone(_integer(state.get("power")))
@@ -83,7 +85,7 @@ def tint_rule(state: BlockState, tints: Mapping[str, Colour]) -> Callable[[int],
 
 
 def redstone(power: int) -> Colour:
-    """Return the colour of redstone dust, power 0 to 15.
+    """Return the colour of redstone dust for a power of 0 to 15.
 
     Example:
         >>> redstone(15)
