@@ -1,9 +1,9 @@
-"""Cut a volume open so that one can look into its rooms.
+"""Cutaways of a volume, which open its rooms to view.
 
-The ceiling is removed; of the near walls only a low rim stays, without what hangs on them, and
-walls between rooms end at breast height. The storeys of a house are placed side by side. Entities
-are removed or moved with their blocks. Only classes and places of the volume decide, never names of
-blocks.
+The ceiling is removed. The near walls are cut down to a low rim without their attachments, and
+walls between rooms are cut to chest height. The storeys of a house are placed side by side.
+Entities are removed or moved with their blocks. Cutaways only depend on the classes and positions
+of blocks, never on block names.
 """
 
 from collections.abc import Sequence
@@ -32,13 +32,14 @@ _WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
 
 
 def remaining_entities(volume: BlockVolume, drop: np.ndarray) -> tuple[Entity, ...]:
-    """Return the entities that stay when some blocks of their volume are left out.
+    """Return the entities that remain when some blocks of their volume are removed.
 
-    An object's entities go with its blocks; what has no blocks goes where its middle is cut.
+    The entities of an object are removed with its blocks. Entities without blocks are removed if
+    their centre is in a removed cell.
 
     Args:
-        volume: the whole volume.
-        drop: bool [X, Y, Z], the blocks that go.
+        volume: The whole volume.
+        drop: Mask of the removed blocks, bool [X, Y, Z].
     """
     if not volume.entities:
         return ()
@@ -57,9 +58,9 @@ def remaining_entities(volume: BlockVolume, drop: np.ndarray) -> tuple[Entity, .
 
 
 def entities_within(volume: BlockVolume, low: int, high: int) -> tuple[Entity, ...]:
-    """Return the entities whose middle lies in the layers [low, high) of a volume.
+    """Return the entities whose centre is in the layers [low, high) of a volume.
 
-    The uppermost layers hold what lies above them, the lowest what lies below.
+    Entities above the volume belong to its top layer, entities below to its bottom layer.
     """
     top = volume.states.shape[1]
     return tuple(
@@ -70,7 +71,7 @@ def entities_within(volume: BlockVolume, low: int, high: int) -> tuple[Entity, .
 
 
 def translate_entities(volume: BlockVolume, shift: np.ndarray) -> tuple[Entity, ...]:
-    """Return a volume's entities moved by a shift, float64 [3], in blocks."""
+    """Return the entities of a volume translated by a vector in blocks, float64 [3]."""
     return tuple(
         replace(one, position=tuple((np.array(one.position) + shift).tolist()))
         for one in volume.entities
@@ -88,7 +89,7 @@ def _cell_of(entity: Entity, volume: BlockVolume) -> np.ndarray:
 
 
 def without_ceiling(volume: BlockVolume) -> BlockVolume:
-    """Return the volume without its ceiling and all above it."""
+    """Return the volume without its ceiling and everything above it."""
     semantic = volume.semantic
     drop = semantic == SemanticClass.CEILING
     level = ceiling_level(semantic)
@@ -99,7 +100,7 @@ def without_ceiling(volume: BlockVolume) -> BlockVolume:
 
 
 def ceiling_level(semantic: np.ndarray) -> int | None:
-    """Return the lowest layer (y) of the flat ceiling, or None where there is none."""
+    """Return the lowest layer (y) of the flat ceiling, or None without a ceiling."""
     counts = (semantic == SemanticClass.CEILING).sum(axis=(0, 2))
     if not counts.any():
         return None
@@ -108,9 +109,9 @@ def ceiling_level(semantic: np.ndarray) -> int | None:
 
 
 def split_storeys(volume: BlockVolume) -> list[BlockVolume]:
-    """Return the storeys of a house, from the ground up, each from its floor to the next.
+    """Return the storeys of a house from the ground up, each from its floor to the next floor.
 
-    A room is its own and only storey.
+    A single room is its own only storey.
     """
     counts = (volume.semantic == SemanticClass.FLOOR).sum(axis=(0, 2))
     least = max(MIN_STOREY_SHARE * counts.max(initial=0), 1)
@@ -127,9 +128,9 @@ def split_storeys(volume: BlockVolume) -> list[BlockVolume]:
 
 
 def arrange_side_by_side(volumes: Sequence[BlockVolume]) -> BlockVolume:
-    """Return volumes of one plan in a row, on one level, in the order given.
+    """Return volumes of the same floor plan in a row, on one level, in the given order.
 
-    They stand along the shorter side of their plan, so that the row is about square.
+    They are placed along the shorter side of the plan, so that the row is roughly square.
     """
     if len(volumes) == 1:
         return volumes[0]
@@ -151,9 +152,9 @@ def arrange_side_by_side(volumes: Sequence[BlockVolume]) -> BlockVolume:
 
 
 def without_partitions(volume: BlockVolume) -> BlockVolume:
-    """Return the volume with the walls between its rooms, and what hangs on them, cut down.
+    """Return the volume with the walls between rooms, and their attachments, cut down.
 
-    Such a wall has floor before and behind it, within half a metre.
+    Such walls have floor on both sides within half a metre.
     """
     semantic = volume.semantic
     bpm = volume.blocks_per_metre
@@ -179,9 +180,9 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
     """Return the volume with the walls on two sides cut down to a rim.
 
     Args:
-        volume: the blocks.
-        near_x: which end of block x is near: +1 for its far end, -1 for its start.
-        near_z: the same for block z.
+        volume: The blocks.
+        near_x: Near side along block x: +1 for its end, -1 for its start.
+        near_z: Near side along block z: +1 for its end, -1 for its start.
     """
     semantic = volume.semantic
     floor = room_columns(semantic, volume.blocks_per_metre)
@@ -202,13 +203,13 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
 
 
 def floor_level(semantic: np.ndarray) -> int:
-    """Return the fullest floor layer (y), or 0 where there is no floor."""
+    """Return the floor layer (y) with the most blocks, or 0 without a floor."""
     counts = (semantic == SemanticClass.FLOOR).sum(axis=(0, 2))
     return int(counts.argmax())
 
 
 def floor_columns(semantic: np.ndarray) -> np.ndarray:
-    """Return bool [X, Z]: columns with floor in them and no wall at a man's height."""
+    """Return a mask of the columns with floor and without a wall at head height, bool [X, Z]."""
     return (semantic == SemanticClass.FLOOR).any(axis=1) & ~_wall_columns(semantic)
 
 
@@ -218,10 +219,11 @@ def _wall_columns(semantic: np.ndarray) -> np.ndarray:
 
 
 def room_columns(semantic: np.ndarray, blocks_per_metre: float) -> np.ndarray:
-    """Return bool [X, Z]: where rooms are: floor, and things under which nobody saw any.
+    """Return a mask of the columns that are rooms, bool [X, Z].
 
-    Without what a scan saw of a floor past a door or under a wall, sills, hedges round a house. All
-    of the floor where nothing as large as a room is left.
+    Rooms are floor, and objects below which no floor was observed. Isolated floor that a scan saw
+    through a door or below a wall, sills and hedges are excluded. If nothing as large as a room
+    remains, all floor columns are returned.
     """
     floor = floor_columns(semantic)
     named = (semantic >= SemanticClass.CHAIR) & (semantic != UNKNOWN)

@@ -1,4 +1,4 @@
-"""Virtual depth cameras: cast rays into a fine grid of full cubes, such as a 2 cm room."""
+"""Virtual depth cameras that cast rays into a fine grid of full cubes, such as a 2 cm room."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -21,7 +21,7 @@ from world2minecraft.rendering.scene_tables import NO_FACE
 
 
 class VoxelHits(NamedTuple):
-    """What the pixels of a camera meet first."""
+    """The first hits of a camera's pixels."""
 
     depth_m: np.ndarray  # float32 [H, W], z-depth, 0 where there is nothing
     voxel_index: np.ndarray  # int32 [H, W], C-order index into the labels, -1 where nothing
@@ -30,7 +30,7 @@ class VoxelHits(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class VoxelScene:
-    """A grid of cubes made ready for rays."""
+    """A grid of cubes prepared for ray casting."""
 
     cells: np.ndarray  # uint8 [X, Y, Z], see rendering.grid_traversal
     semantic: np.ndarray  # uint8 [X, Y, Z]
@@ -39,12 +39,12 @@ class VoxelScene:
 
 
 def prepare_voxels(labels: np.ndarray, voxel_m: float, origin_m: np.ndarray) -> VoxelScene:
-    """Return the scene of a grid: every cell that is neither 0 nor 255 is a full cube.
+    """Return the scene of a grid, in which every cell other than 0 and 255 is a full cube.
 
     Args:
-        labels: uint8 [X, Y, Z] in room axes.
-        voxel_m: the side of a cell in metres.
-        origin_m: float64 [3], the minimum corner of cell (0, 0, 0) in the room.
+        labels: Labels in room axes, uint8 [X, Y, Z].
+        voxel_m: Cell size in metres.
+        origin_m: Minimum corner of cell (0, 0, 0) in the room, float64 [3].
     """
     filled = (labels != 0) & (labels != 255)
     cells = np.where(filled, np.uint8(CUBE), np.uint8(NEAR_AIR))
@@ -67,13 +67,13 @@ def cast_voxels(
     """Cast the rays of a camera into a grid of full cubes.
 
     Args:
-        labels: uint8 [X, Y, Z], 0 and 255 empty; or what ``prepare_voxels`` gave, for which
-            ``voxel_m`` and ``origin_m`` are not read.
-        camera: intrinsics; its distortion is ignored.
-        camera_to_room: 4x4, OpenCV axes, metres.
-        voxel_m: the side of a cell in metres.
-        origin_m: the minimum corner of cell (0, 0, 0) in the room.
-        threads: bands of rows cast at a time; the result is the same for any number.
+        labels: Labels, uint8 [X, Y, Z], with 0 and 255 for empty cells, or the result of
+            ``prepare_voxels``, for which ``voxel_m`` and ``origin_m`` are ignored.
+        camera: Camera intrinsics. Distortion is ignored.
+        camera_to_room: Camera pose, 4x4, OpenCV axes, metres.
+        voxel_m: Cell size in metres.
+        origin_m: Minimum corner of cell (0, 0, 0) in the room.
+        threads: Number of bands of rows computed in parallel. It does not affect the result.
     """
     scene = (
         labels

@@ -1,8 +1,8 @@
-"""Our own textures: painted from recipes, at 16 to 128 px, nothing taken from elsewhere (CC0).
+"""Built-in textures, painted from recipes at 16 to 128 px, without third-party content (CC0).
 
-``texture_of("own:planks#a2824e?boards=4", 64)`` gives colour, normals, roughness, metal and
-emission; ``GENERATORS`` lists what there is, ``recipe_of`` writes a recipe, ``texture_sheet``
-draws the whole set.
+``texture_of("own:planks#a2824e?boards=4", 64)`` returns colour, normals, roughness, metal and
+emission. ``GENERATORS`` contains all generators, ``recipe_of`` writes a recipe, and
+``texture_sheet`` shows all textures.
 """
 
 from world2minecraft.rendering.textures.catalogue import GENERATORS, GROUPS

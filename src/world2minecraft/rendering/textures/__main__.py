@@ -1,4 +1,7 @@
-"""Write the sheet of all textures: ``python -m world2minecraft.rendering.textures OUT.png``."""
+"""Command that writes a sheet of all textures.
+
+Usage: ``python -m world2minecraft.rendering.textures OUT.png``.
+"""
 
 import sys
 
@@ -10,11 +13,11 @@ USAGE = "usage: python -m world2minecraft.rendering.textures OUT.png [SIZE_PX [R
 
 
 def main(words: list[str]) -> None:
-    """Write the sheet of all textures; without a size, 16 px on the left and 64 on the right.
+    """Write the sheet of all textures; without a size, at 16 px on the left and 64 px on the right.
 
     Raises:
-        UsageError: the words are not a file's name and up to two numbers.
-        OutputError: the file cannot be written.
+        UsageError: If the arguments are not a file name and up to two numbers.
+        OutputError: If the file cannot be written.
     """
     if not 1 <= len(words) <= 3 or not all(word.isdigit() for word in words[1:]):
         raise UsageError(USAGE)

@@ -1,9 +1,9 @@
-"""The canvas of a texture and the noises that tile on it.
+"""The canvas of a texture, and noise functions that tile on it.
 
-Lengths are sixteenths of a block, whatever the size in pixels: a layout that is drawn in them
-stays where it is from 16 to 128 px, and only detail is added. Noise is a lattice of hashed values
-whose points are the centres of its cells: at 16 px a noise of 16 cells is one value a texel, crisp
-as pixel art, and at 64 px the same values, smooth, with finer octaves over them.
+Lengths are sixteenths of a block for all sizes in pixels, so that a layout is the same from 16 to
+128 px, and only detail is added. Noise is a lattice of hashed values at the centres of its cells:
+at 16 px, noise with 16 cells has one value per texel, as in pixel art. At 64 px it has the same
+values interpolated smoothly, with finer octaves added.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,10 @@ MASK = (1 << 64) - 1
 
 @dataclass(frozen=True, eq=False)
 class Canvas:
-    """``x`` and ``y`` float64 [N, N]: the centres of texels, 0 to 16, right and down."""
+    """The pixel coordinates of a texture.
+
+    ``x`` and ``y`` float64 [N, N] are the centres of the texels, 0 to 16, right and down.
+    """
 
     size_px: int
     seed: int
@@ -34,7 +37,7 @@ class Canvas:
 
     @property
     def fineness(self) -> float:
-        """0 at 16 px, 1 at 64 and above: how much fine detail there is room for."""
+        """The amount of fine detail: 0 at 16 px, 1 at 64 px and above."""
         return {16: 0.0, 32: 0.5}.get(self.size_px, 1.0)
 
 
@@ -46,12 +49,12 @@ def _centres(size_px: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def canvas_of(size_px: int, seed: int) -> Canvas:
-    """Return an empty canvas of a size and a seed."""
+    """Return an empty canvas with a size and a seed."""
     return Canvas(size_px, seed, *_centres(size_px))
 
 
 def hash_values(seed: int, salt: int, index: np.ndarray) -> np.ndarray:
-    """Return a value in [-1, 1) for each integer index, the same on every machine."""
+    """Return a value in [-1, 1) for each integer index, identical on every machine."""
     start = (seed + salt * MIX[2]) & MASK
     mixed = (index.astype(np.uint64) + np.uint64(start)) * np.uint64(MIX[0])
     mixed = (mixed ^ (mixed >> np.uint64(30))) * np.uint64(MIX[1])
@@ -73,9 +76,9 @@ def noise(
     x: np.ndarray | None = None,
     y: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Return smooth noise in [-1, 1) that tiles, of ``across`` times ``down`` cells.
+    """Return smooth tiling noise in [-1, 1) with ``across`` times ``down`` cells.
 
-    ``x`` and ``y`` float64 [N, N] are places to read it at, where not at the texels.
+    ``x`` and ``y`` float64 [N, N] are the sample positions. The default is the texel centres.
     """
     left, right, part = _cell(canvas.x if x is None else x, across)
     above, below, share = _cell(canvas.y if y is None else y, down)
@@ -103,7 +106,7 @@ def fractal(
     x: np.ndarray | None = None,
     y: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Return noise with all finer octaves that the size has room for, each ``gain`` times."""
+    """Return noise with all finer octaves that the size can show, each scaled by ``gain``."""
     total = noise(canvas, across, down, salt, x, y)
     weight, octave = gain, 1
     while max(across, down) * 2**octave <= canvas.size_px:
@@ -116,19 +119,19 @@ def fractal(
 
 
 def smooth(value: np.ndarray, low: np.ndarray | float, high: np.ndarray | float) -> np.ndarray:
-    """Return 0 below ``low``, 1 above ``high``, and a soft step between."""
+    """Return 0 below ``low``, 1 above ``high``, and a smooth step between them."""
     part = np.clip((value - low) / (high - low), 0.0, 1.0)
     return part * part * (3 - 2 * part)
 
 
 def relief(canvas: Canvas, height: np.ndarray) -> np.ndarray:
-    """Return the light, -1 to 1, that a height field (sixteenths) gets from the upper left."""
+    """Return the light from the upper left on a height field in sixteenths, -1 to 1."""
     rise = 2 * height - np.roll(height, 1, axis=0) - np.roll(height, 1, axis=1)
     return np.clip(rise * (canvas.size_px / SIDE), -1.0, 1.0)
 
 
 def contour(canvas: Canvas, values: np.ndarray) -> np.ndarray:
-    """Return the way to the lines where a field is 0, in sixteenths: veins of even width."""
+    """Return the distance in sixteenths to the zero lines of a field, for veins of even width."""
     across = np.roll(values, -1, axis=1) - np.roll(values, 1, axis=1)
     down = np.roll(values, -1, axis=0) - np.roll(values, 1, axis=0)
     slope = np.sqrt(across * across + down * down) * (canvas.size_px / SIDE / 2)

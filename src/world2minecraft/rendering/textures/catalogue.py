@@ -1,4 +1,4 @@
-"""All generators by name: the one table that recipes are read by."""
+"""The table of all texture generators by name, which is used to parse recipes."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Cloth: wool, carpet, leather, a bed's cover."""
+"""Texture generators for fabrics and similar materials: wool, carpet, leather, beds, straw."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from world2minecraft.rendering.textures.tiling_layouts import box, stones
 
 
 def weave(canvas: Canvas, threads: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return height, 0 to 1, and identity of threads over and under each other."""
+    """Return the height, 0 to 1, and the identity of woven threads."""
     step = SIDE / threads
     column, row = np.floor(canvas.x / step), np.floor(canvas.y / step)
     over = (column + row) % 2 == 0
@@ -29,7 +29,7 @@ def weave(canvas: Canvas, threads: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def wool(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Wool: a knit of soft, short loops."""
+    """Return the wool texture: a knit of soft, short loops."""
     tufts = noise(canvas, 8, 8, 1) + 0.7 * noise(canvas, 16, 16, 2)
     row = np.floor(canvas.y / 2)
     loops = np.where((np.floor(canvas.x) + row) % 4 < 2, 1.0, -1.0)
@@ -56,7 +56,7 @@ def _loops(canvas: Canvas) -> tuple[np.ndarray, np.ndarray]:
 
 
 def carpet(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Carpet: short, even pile."""
+    """Return the carpet texture: a short, even pile."""
     pile, slow = noise(canvas, 16, 16, 1), noise(canvas, 4, 4, 2)
     tone, height = 0.06 * pile + 0.025 * slow, 0.05 * pile
     if canvas.fineness:  # Tufts of yarn, as many as there is room for.
@@ -67,7 +67,7 @@ def carpet(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def leather(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Leather: a net of fine creases; buttons where asked for."""
+    """Return the leather texture: a net of fine creases, optionally with buttons."""
     cells = stones(canvas, 8, 1, 0.9)
     crease = 1 - smooth(cells.edge, 0.05, 0.5)
     tone = 0.06 * noise(canvas, 4, 4, 3) - 0.12 * crease + 0.03 * pick(canvas, cells.identity, 4)
@@ -83,7 +83,7 @@ def leather(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def bed_top(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A bed from above, v to its foot: a quilted cover; at the head a pillow, the accent."""
+    """Return the bed top texture: a quilted cover with a pillow (accent), v towards the foot."""
     x, y = canvas.x, canvas.y
     slopes = (x + y) % 8, (x - y) % 8
     seam_away = np.minimum.reduce([slopes[0], 8 - slopes[0], slopes[1], 8 - slopes[1]])
@@ -106,7 +106,7 @@ def bed_top(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def straw(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Straw: stalks along v, tied by a band of the accent; thatch without one."""
+    """Return the straw texture: vertical stalks tied by a band (accent), or thatch."""
     stalks = noise(canvas, 16, 2, 1) + 0.6 * noise(canvas, 16, 4, 2)
     if canvas.fineness:
         stalks = stalks + 0.5 * canvas.fineness * fractal(canvas, 32, 4, 3)
@@ -118,7 +118,7 @@ def straw(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def drape(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A curtain: soft folds along v."""
+    """Return the curtain texture: soft vertical folds."""
     place = canvas.x + 0.5 * noise(canvas, 2, 2, 1)
     folds = np.cos(place * (2 * np.pi / 4)) + 0.4 * np.cos(place * (2 * np.pi / 8) + 1.0)
     tone = 0.13 * folds + 0.03 * fractal(canvas, 16, 16, 2)

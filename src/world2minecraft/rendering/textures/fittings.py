@@ -1,4 +1,4 @@
-"""Metal and light: brushed metal, copper, screens, lamps, grates, rails."""
+"""Texture generators for metal, glass and light: metal, copper, screens, lamps, grates, rails."""
 
 import numpy as np
 
@@ -33,7 +33,7 @@ RAIL = """
 
 
 def glass(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Glass: a frame and slanted glints; clear glass is a hole elsewhere, stained lets light by."""
+    """Return the glass texture: a frame with slanted glints, clear or stained."""
     edge = rim(canvas)
     frame = edge < (1.0 if canvas.size_px <= 16 else 0.75)
     slant, across = canvas.x + canvas.y, canvas.x - canvas.y
@@ -53,7 +53,7 @@ def glass(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def door(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Half a door: a wooden frame with panels, or panes that are holes; the accent is its knob."""
+    """Return the half door texture: a wooden frame with panels or panes, and a knob (accent)."""
     upper = recipe.word("half") == "upper"
     panes = int(recipe.number("panes"))
     top, bottom = (2.0, 16.0) if upper else (0.0, 14.0)
@@ -81,7 +81,7 @@ def door(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def ladder(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Two rails along v and four rungs, with holes between."""
+    """Return the ladder texture: two vertical rails and four rungs, with holes between."""
     rails = (np.abs(canvas.x - 3.0) < 1) | (np.abs(canvas.x - 13.0) < 1)
     place = canvas.y % 4
     rung = (place > 1.0) & (place < 3.0) & (canvas.x > 1) & (canvas.x < 15)
@@ -97,7 +97,7 @@ def ladder(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def metal(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Brushed metal: fine strokes along u and a soft sheen; a frame and rivets where asked for."""
+    """Return the metal texture: brushed metal with a soft sheen, optionally framed and riveted."""
     strokes = noise(canvas, 2, 16, 1)
     if canvas.fineness:
         strokes = 0.6 * strokes + 0.6 * fractal(canvas, 2, 32, 2)
@@ -116,7 +116,7 @@ def metal(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def copper(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Copper sheets with seams; verdigris, the accent, where asked for."""
+    """Return the copper texture: sheets with seams, optionally with verdigris (accent)."""
     pieces = bricks(canvas, 2, 2, 0.0)
     body = bevel(canvas, pieces.edge, 0.6) * (1 - pieces.joint)
     blotch = noise(canvas, 8, 8, 1) + 0.6 * fractal(canvas, 16, 16, 2)
@@ -130,7 +130,7 @@ def copper(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def screen(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A dark screen in a thin frame, the accent, with a sheen; it shows a picture when on."""
+    """Return the screen texture: a dark screen in a frame (accent), with an image if it is on."""
     edge = rim(canvas)
     frame = (edge < 1).astype(np.float64) if recipe.word("frame") == "1" else 0.0 * edge
     slant = canvas.x + canvas.y
@@ -146,7 +146,7 @@ def screen(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def lamp(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A lamp: bright panes in a lattice, the accent; dark panes when it is off."""
+    """Return the lamp texture: panes in a lattice (accent), bright if on and dark otherwise."""
     count = int(recipe.number("panes"))
     step = SIDE / count
     x, y = canvas.x % step, canvas.y % step
@@ -162,7 +162,7 @@ def lamp(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def glow(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Glowing stone: bright crystals, the accent at their heart, between darker veins."""
+    """Return the glowing stone texture: bright crystals (accent) between dark veins."""
     pieces = stones(canvas, 5, 1, 0.95)
     core = smooth(pieces.edge, 0.1, 1.4)
     shade = pick(canvas, pieces.identity, 3)
@@ -173,7 +173,7 @@ def glow(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def bars(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Upright bars with holes between, tied at the top and the bottom."""
+    """Return the bar texture: vertical bars joined at the top and the bottom, with holes."""
     step = SIDE / recipe.number("count")
     place = canvas.x % step - step / 2
     upright = np.abs(place) < 1
@@ -187,7 +187,7 @@ def bars(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def lattice(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A frame with crossing slats and holes between: a trapdoor, a grate, a fence of wire."""
+    """Return the lattice texture: a frame with crossing slats and holes, as in a grate."""
     step = SIDE / recipe.number("holes")
     edge = rim(canvas)
     frame = edge < 2
@@ -202,13 +202,13 @@ def lattice(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def chain(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Links of a chain along v with holes between."""
+    """Return the chain texture: vertical chain links with holes between."""
     _, tone, solid = draw(canvas, CHAIN)
     return Surface(tone, solid, alpha=solid, roughness=0.45, metal=1.0)
 
 
 def rail(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Two rails along v on sleepers, the accent, with holes between."""
+    """Return the rail texture: two vertical rails on sleepers (accent), with holes between."""
     drawn, tone, solid = draw(canvas, RAIL)
     paints = paints_of(drawn, recipe)
     tone = tone + 0.06 * noise(canvas, 16, 16, 1)

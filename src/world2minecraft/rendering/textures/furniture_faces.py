@@ -1,4 +1,4 @@
-"""Faces of furniture: books, drawers, a workbench, a stove, a painting, glazed tiles."""
+"""Texture generators for furniture faces: books, drawers, stoves, paintings, glazed tiles."""
 
 from itertools import pairwise
 
@@ -43,7 +43,7 @@ M22232222122322D M32222221132222D M22322211222232D MDDDDDDDDDDDDDDD
 
 
 def books(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A shelf of books: two rows of spines, the accents, between boards."""
+    """Return the bookshelf texture: two rows of spines (accents) between boards."""
     y = canvas.y % 8
     board = (y < SHELF) | (canvas.x < 1) | (canvas.x > 15)
     identity, left, right = _spines(canvas)
@@ -84,7 +84,7 @@ def _spines(canvas: Canvas) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def drawers(canvas: Canvas, recipe: Recipe) -> Surface:
-    """The front of a cupboard: drawers or doors with knobs, the accent; a chest, a barrel."""
+    """Return the drawer texture: a cupboard, chest or barrel front with knobs (accent)."""
     kind = recipe.word("kind")
     if kind == "barrel":
         return _barrel(canvas, recipe)
@@ -131,7 +131,7 @@ def _barrel(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def table_top(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A workbench from above: a board with a grid of nine squares in a frame, the accent."""
+    """Return the workbench top texture: a framed board with a grid of nine squares (accent)."""
     edge = rim(canvas)
     frame = edge < 2
     lines = (np.abs((canvas.x - 2) % 4) < canvas.joint) | (
@@ -147,7 +147,7 @@ def table_top(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def furnace_front(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A stove: stone around a grate and a mouth, with a fire of the accent when it is lit."""
+    """Return the stove texture: stone around a grate, with a fire (accent) if it is lit."""
     drawn, tone, _ = draw(canvas, FURNACE)
     mouth = np.isin(drawn, ("M", "K"))
     tone = np.where(mouth, 0.15 * (drawn == "M"), tone + 0.06 * fractal(canvas, 16, 16, 1))
@@ -160,7 +160,7 @@ def furnace_front(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def face(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A carved face in a rind: dark, or lit from within by the accent."""
+    """Return the carved face texture: a pumpkin face, dark or lit from within (accent)."""
     drawn, tone, _ = draw(canvas, FACE)
     cut = np.isin(drawn, ("M", "K", "k"))
     lit = recipe.word("lit") == "1"
@@ -173,7 +173,7 @@ def face(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def painting(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A framed picture of hills: sky of the main colour, frame and land of the accents."""
+    """Return the painting texture: hills and a frame (accents) below a sky (main colour)."""
     drawn, tone, _ = draw(canvas, PAINTING)
     brush = fractal(canvas, 8, 16, 1)
     return Surface(
@@ -185,7 +185,7 @@ def painting(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def glazed(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Glazed earthenware: a quarter of a rosette in two accents; four turned ones make it whole."""
+    """Return the glazed tile texture: a quarter of a rosette in two accents."""
     x, y = canvas.x, canvas.y
     away = np.sqrt(x * x + y * y)
     far = np.sqrt((SIDE - x) ** 2 + (SIDE - y) ** 2)
@@ -198,7 +198,7 @@ def glazed(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def crate(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A box of boards in a frame: a composter, a loom, a crate, a sound box."""
+    """Return the crate texture: framed boards, as of a composter, a loom or a note block."""
     pieces = boards(canvas, 4)
     edge = rim(canvas)
     frame = edge < 2
@@ -214,7 +214,7 @@ def crate(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def cake(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A cake: icing with berries, the accent, from above; from the side icing over sponge."""
+    """Return the cake texture: icing with berries (accent) from above, or sponge from the side."""
     fine = fractal(canvas, 16, 16, 1)
     if recipe.word("part") == "side":
         drip = 5.0 + 1.6 * noise(canvas, 8, 1, 2)

@@ -1,4 +1,4 @@
-"""A generator of textures: what it paints, its accents and options, and its laws."""
+"""The definition of a texture generator: its paint function, accents, options and properties."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -13,9 +13,10 @@ SHARED: Mapping[str, Option] = {"seed": Number(0, 0, 1e9), "contrast": Number(1.
 
 @dataclass(frozen=True)
 class Accent:
-    """A colour after the first: what it is for, and its default.
+    """A colour after the main colour: its purpose and its default.
 
-    That is a tone of the first colour, or ``#rrggbb``, of which ``share`` is mixed with the first.
+    The default is a tone of the main colour, or ``#rrggbb`` mixed with the main colour by
+    ``share``.
     """
 
     name: str
@@ -23,7 +24,7 @@ class Accent:
     share: float = 1.0
 
     def colour(self, main: tuple[int, int, int]) -> tuple[int, int, int]:
-        """Return sRGB of the default beside a main colour."""
+        """Return the default sRGB colour for a main colour."""
         if isinstance(self.default, str):
             levels = zip(main, rgb_of(self.default), strict=True)
             red, green, blue = (round(old + (new - old) * self.share) for old, new in levels)
@@ -39,11 +40,12 @@ class Accent:
 
 @dataclass(frozen=True)
 class Generator:
-    """One kind of texture.
+    """A kind of texture.
 
-    ``sample`` is a recipe's tail, for pictures of the whole set. ``holes`` and ``translucent``
-    list the values of an option ("key=value") that make it so, or ``("*",)`` for always.
-    ``tiles`` says that no seam is seen where two lie side by side; False for frames and pictures.
+    ``sample`` is the end of a recipe, used for contact sheets. ``holes`` and ``translucent`` list
+    the option values ("key=value") for which the texture has this property, or ``("*",)`` for
+    always. ``tiles`` says whether adjacent textures have no visible seam, which is False for frames
+    and pictures.
     """
 
     paint: Callable[[Canvas, Recipe], Surface]
@@ -56,10 +58,11 @@ class Generator:
 
     @property
     def about(self) -> str:
-        """One sentence on what it shows."""
-        return (self.paint.__doc__ or "").strip()
+        """A description of the texture, without a verb."""
+        text = (self.paint.__doc__ or "").strip().partition("texture: ")[2]
+        return text[:1].upper() + text[1:]
 
     @property
     def all_options(self) -> dict[str, Option]:
-        """Its own options and those that all generators have."""
+        """The generator's own options and the options that all generators share."""
         return {**self.options, **SHARED}

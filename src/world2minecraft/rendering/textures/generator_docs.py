@@ -1,4 +1,4 @@
-"""The table of all generators as Markdown, for the docs."""
+"""The table of all texture generators in Markdown, for the documentation."""
 
 from world2minecraft.rendering.textures.catalogue import GENERATORS
 from world2minecraft.rendering.textures.generator import Accent, Generator
@@ -7,7 +7,7 @@ HEAD = ("generator", "shows", "accents", "options", "holes", "see-through", "joi
 
 
 def generator_table() -> str:
-    """Return a line for each generator: what it shows, its accents, options and laws."""
+    """Return a Markdown table of all generators with their accents, options and properties."""
     rows = [HEAD, ("---",) * len(HEAD)]
     rows += [_row(name, generator) for name, generator in GENERATORS.items()]
     return "\n".join("| " + " | ".join(row) + " |" for row in rows)

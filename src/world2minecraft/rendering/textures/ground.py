@@ -1,4 +1,4 @@
-"""What one walks on out of doors, and what is dug: sand, earth, snow, ice, water, lava."""
+"""Texture generators for ground and natural materials: sand, earth, snow, ice, water, lava."""
 
 import numpy as np
 
@@ -24,14 +24,14 @@ TURF = 260  # Blades of grass on a block, seen from above.
 
 
 def sand(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Fine grains with faint ripples."""
+    """Return the sand texture: fine grains with faint ripples."""
     fine = fractal(canvas, 16, 16, 1, 0.8)
     ripples = noise(canvas, 2, 8, 2)
     return Surface(0.06 * fine + 0.03 * ripples, 0.02 * fine + 0.1 * ripples, roughness=0.95)
 
 
 def gravel(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Pebbles of many shades."""
+    """Return the gravel texture: pebbles of many shades."""
     pieces = stones(canvas, 6, 1, 0.9)
     body = smooth(pieces.edge, 0.0, 1.0)
     shade = pick(canvas, pieces.identity, 3)
@@ -40,7 +40,7 @@ def gravel(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def dirt(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Earth: crumbs, a few pebbles."""
+    """Return the dirt texture: crumbs of earth with a few pebbles."""
     crumbs = noise(canvas, 16, 16, 1) + 0.6 * noise(canvas, 8, 8, 2)
     pebbles = smooth(noise(canvas, 16, 16, 4), 0.8, 0.95)
     if not canvas.fineness:
@@ -55,7 +55,7 @@ def dirt(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def grass(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Turf from above: short blades of many greens."""
+    """Return the grass texture: turf from above, with short blades in many greens."""
     tufts = noise(canvas, 16, 16, 1) + 0.5 * noise(canvas, 8, 8, 2)
     if not canvas.fineness:
         return Surface(0.15 * tufts, 0.22 * tufts, roughness=0.95)
@@ -69,7 +69,7 @@ def grass(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def grass_side(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Earth, the main colour, under a fringe of turf, the accent."""
+    """Return the grass side texture: earth (main colour) below a fringe of turf (accent)."""
     earth = dirt(canvas, recipe)
     reach = 3.0 + 1.4 * noise(canvas, 16, 1, 11) + 0.7 * noise(canvas, 8, 1, 12)
     if canvas.fineness:
@@ -83,13 +83,13 @@ def grass_side(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def snow(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Snow: soft drifts, a little blue in the hollows."""
+    """Return the snow texture: soft drifts, slightly blue in the hollows."""
     drifts, fine = fractal(canvas, 4, 4, 1), fractal(canvas, 16, 16, 2)
     return Surface(0.03 * drifts + 0.025 * fine, 0.2 * drifts + 0.015 * fine, roughness=0.75)
 
 
 def ice(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Ice with white cracks; one sees through it, unless it is packed."""
+    """Return the ice texture: ice with white cracks, transparent unless it is packed."""
     packed = recipe.word("packed") == "1"
     x, y = canvas.x + noise(canvas, 4, 4, 1), canvas.y + noise(canvas, 4, 4, 2)
     cracks = 1 - smooth(contour(canvas, noise(canvas, 3, 3, 3, x, y)), 0.1, 0.8)
@@ -101,7 +101,7 @@ def ice(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def water(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Still water: slow waves that one sees through."""
+    """Return the water texture: still, transparent water with slow waves."""
     x, y = canvas.x + 1.5 * noise(canvas, 4, 4, 1), canvas.y + noise(canvas, 4, 4, 2)
     waves = noise(canvas, 2, 4, 3, x, y) + 0.5 * noise(canvas, 4, 8, 4, x, y)
     crests = smooth(waves, 0.5, 1.0)
@@ -111,7 +111,7 @@ def water(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def lava(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Melted rock: bright streams between darker crusts; it glows."""
+    """Return the lava texture: bright glowing streams between darker crusts."""
     x, y = canvas.x + 2 * noise(canvas, 4, 4, 1), canvas.y + 2 * noise(canvas, 4, 4, 2)
     flow = noise(canvas, 4, 4, 3, x, y) + 0.5 * noise(canvas, 8, 8, 4, x, y)
     flow = flow + 0.2 * fractal(canvas, 16, 16, 5)
@@ -127,7 +127,7 @@ def lava(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def moss(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Soft cushions of moss; also sculk, wart blocks and other growth."""
+    """Return the moss texture: soft cushions of moss, sculk, wart blocks and similar growth."""
     cushions = noise(canvas, 8, 8, 1)
     fine = fractal(canvas, 16, 16, 2, 0.8)
     tone = 0.1 * cushions + 0.11 * fine
@@ -135,7 +135,7 @@ def moss(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def wart(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Close knobs, each lit from above: nether wart, coral, mushroom stem's warts."""
+    """Return the wart texture: dense knobs lit from above, as of nether wart or coral."""
     pieces = stones(canvas, 5, 1, 0.6)
     knob = smooth(pieces.edge, 0.0, 1.3)
     tone = (
@@ -145,7 +145,7 @@ def wart(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def coral(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Winding ridges, as a brain coral has."""
+    """Return the coral texture: winding ridges, as on a brain coral."""
     x, y = canvas.x + 2 * noise(canvas, 4, 4, 1), canvas.y + 2 * noise(canvas, 4, 4, 2)
     field = noise(canvas, 4, 4, 3, x, y) + 0.5 * noise(canvas, 8, 8, 4, x, y)
     ridge = np.cos(field * 9.0)
@@ -154,7 +154,7 @@ def coral(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def sponge(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Pores of several sizes in a soft body."""
+    """Return the sponge texture: pores of several sizes in a soft body."""
     pieces = stones(canvas, 5, 1, 0.8)
     away = np.sqrt(pieces.x * pieces.x + pieces.y * pieces.y)
     size = 0.9 + 0.35 * pick(canvas, pieces.identity, 3)
@@ -164,7 +164,7 @@ def sponge(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def honey(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Thick honey or slime, with a denser core; one sees through it a little."""
+    """Return the honey texture: translucent honey or slime with a denser core."""
     x, y = np.abs(canvas.x - 8), np.abs(canvas.y - 8)
     away = np.maximum(x, y)
     core = 1 - smooth(away, 4.6, 5.4)
@@ -174,14 +174,14 @@ def honey(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def furrows(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A tilled field: earth in rows along u."""
+    """Return the farmland texture: tilled earth in horizontal rows."""
     earth = dirt(canvas, recipe)
     rows = np.cos(canvas.y * (2 * np.pi / 4) - 0.8)
     return Surface(0.7 * np.asarray(earth.tone) + 0.17 * rows, 0.8 * rows, roughness=0.98)
 
 
 def fire(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Flames that stand up and glow, bright at their heart, the accent; holes around."""
+    """Return the fire texture: upright glowing flames with a bright centre (accent) and holes."""
     rise = SIDE - canvas.y
     solid, heart = np.zeros(rise.shape, bool), np.zeros(rise.shape)
     edge = np.zeros(rise.shape)

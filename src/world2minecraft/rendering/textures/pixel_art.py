@@ -1,13 +1,13 @@
-"""Pictures drawn as sixteen rows of sixteen letters, at any size.
+"""Pixel art of sixteen rows of sixteen letters, which can be painted at any size.
 
-A letter says the ink and how light it is; ``.`` is a hole::
+A letter gives the ink and its lightness; ``.`` is a hole::
 
     main   k darkest  d dark  m  l light  h lightest
     1st    K          D       M  L        H          accent
     2nd               1       2  3
     3rd               4       5  6
 
-At 16 px a letter is a texel. Above, areas keep their place, and their stairs become slopes.
+At 16 px a letter is a texel. At larger sizes, areas keep their place and steps become slopes.
 """
 
 from collections.abc import Mapping
@@ -34,7 +34,7 @@ INKS = {
 
 @lru_cache(maxsize=256)
 def letters(art: str, size_px: int) -> np.ndarray:
-    """Return the letter of each texel, str [N, N], of 16 lines of 16 letters."""
+    """Return the letter of each texel, str [N, N], for 16 lines of 16 letters."""
     drawn = np.array([list(line) for line in art.split()])
     if drawn.shape != (16, 16):
         raise ValueError(f"a stencil must have 16 lines of 16 letters, got {drawn.shape}")
@@ -44,10 +44,10 @@ def letters(art: str, size_px: int) -> np.ndarray:
 
 
 def doubled(drawn: np.ndarray) -> np.ndarray:
-    """Return a picture of letters at twice the size; a stair becomes a slope.
+    """Return an image of letters at twice the size, with steps turned into slopes.
 
-    Each quarter of a texel takes the letter of the two neighbours beside it where they agree and
-    the two across from it do not.
+    Each quarter of a texel takes the letter of the two adjacent neighbours if these are equal and
+    the two opposite neighbours are not.
     """
     edge = np.pad(drawn, 1, mode="edge")
     up, down, left, right = edge[:-2, 1:-1], edge[2:, 1:-1], edge[1:-1, :-2], edge[1:-1, 2:]
@@ -64,7 +64,7 @@ def doubled(drawn: np.ndarray) -> np.ndarray:
 
 
 def by_letter(drawn: np.ndarray, values: Mapping[str, float], rest: float = 0.0) -> np.ndarray:
-    """Return the value of each texel's letter, float64 [N, N]."""
+    """Return the value assigned to each texel's letter, float64 [N, N]."""
     result = np.full(drawn.shape, rest)
     for letter, value in values.items():
         result[drawn == letter] = value
@@ -72,7 +72,7 @@ def by_letter(drawn: np.ndarray, values: Mapping[str, float], rest: float = 0.0)
 
 
 def paints_of(drawn: np.ndarray, recipe: Recipe) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
-    """Return the accents of a recipe where the letters say."""
+    """Return the accents of a recipe at the texels whose letters use them."""
     index = by_letter(drawn, INKS)
     return tuple(
         (recipe.ink(number), (index == number).astype(np.float64))
@@ -81,6 +81,6 @@ def paints_of(drawn: np.ndarray, recipe: Recipe) -> tuple[tuple[np.ndarray, np.n
 
 
 def draw(canvas: Canvas, art: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the letters, their tones and where there is no hole, each [N, N]."""
+    """Return the letters, their tones and a mask of the texels that are not holes, each [N, N]."""
     drawn = letters(art, canvas.size_px)
     return drawn, by_letter(drawn, TONES), (drawn != ".").astype(np.float64)

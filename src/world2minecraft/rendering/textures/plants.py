@@ -1,4 +1,4 @@
-"""Plants: leaves, blades, flowers, saplings, mushrooms, vines; most have holes."""
+"""Texture generators for plants: leaves, blades, flowers, saplings, mushrooms, vines."""
 
 from typing import NamedTuple
 
@@ -111,9 +111,9 @@ BLADES = {
 
 
 class Stamps(NamedTuple):
-    """The uppermost leaf at each texel, [N, N]: its number, -1 for none, and the place in it.
+    """The topmost leaf at each texel, [N, N]: its number, or -1, and the position within it.
 
-    ``along`` goes from -1 at its foot to 1 at its tip, ``across`` from -1 to 1 over its width.
+    ``along`` is -1 at the base and 1 at the tip, ``across`` is -1 to 1 over the width.
     """
 
     identity: np.ndarray
@@ -122,7 +122,7 @@ class Stamps(NamedTuple):
 
 
 def scatter(canvas: Canvas, count: int, length: float, width: float, salt: int) -> Stamps:
-    """Return ``count`` pointed leaves; ``length`` and ``width`` are halves, in sixteenths."""
+    """Return ``count`` pointed leaves. ``length`` and ``width`` are half sizes in sixteenths."""
     identity = np.full(canvas.x.shape, -1, np.int64)
     along, across = np.zeros(canvas.x.shape), np.zeros(canvas.x.shape)
     random = hash_values(canvas.seed, salt, np.arange(count * 4)).reshape(count, 4)
@@ -140,7 +140,7 @@ def scatter(canvas: Canvas, count: int, length: float, width: float, salt: int) 
 
 
 def leaves(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A mass of leaves of many greens with holes; blossoms in the accent where asked for."""
+    """Return the leaf texture: foliage with holes, optionally with blossoms (accent)."""
     stamps = scatter(canvas, 76, 1.9, 1.05, 1)
     identity = np.maximum(stamps.identity, 0)
     here = stamps.identity >= 0
@@ -157,7 +157,7 @@ def leaves(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def blades(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Blades that stand up, with holes between: grass, a crop, reeds; its ears in the accent."""
+    """Return the blade texture: upright grass, crops or reeds with holes and ears (accent)."""
     count, tall, sway = BLADES[recipe.word("kind")]
     solid = np.zeros(canvas.x.shape, bool)
     tone, tip = np.zeros(canvas.x.shape), np.zeros(canvas.x.shape)
@@ -181,17 +181,17 @@ def blades(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def flower(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A flower: a head of the main colour on a stem, the accent, around a heart, the second."""
+    """Return the flower texture: a head (main colour) with a centre and a stem (accents)."""
     return _sprite(canvas, recipe, FLOWERS[recipe.word("shape")])
 
 
 def sapling(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A little tree or bush: leaves of the main colour on a trunk, the accent."""
+    """Return the sapling texture: a small tree with leaves (main colour) on a trunk (accent)."""
     return _sprite(canvas, recipe, SAPLINGS[recipe.word("shape")])
 
 
 def mushroom(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A mushroom: a cap of the main colour with spots on a stem, the accent."""
+    """Return the mushroom texture: a spotted cap (main colour) on a stem (accent)."""
     return _sprite(canvas, recipe, MUSHROOM)
 
 
@@ -203,7 +203,7 @@ def _sprite(canvas: Canvas, recipe: Recipe, art: str) -> Surface:
 
 
 def vine(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Hanging shoots with leaves, and holes between."""
+    """Return the vine texture: hanging shoots with leaves, and holes between."""
     solid = np.zeros(canvas.x.shape, bool)
     tone = np.zeros(canvas.x.shape)
     for index in range(4):
@@ -219,7 +219,7 @@ def vine(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def gourd(canvas: Canvas, recipe: Recipe) -> Surface:
-    """The side of a pumpkin, melon or cactus: ribs along v; thorns in the accent for a cactus."""
+    """Return the gourd texture: the ribbed side of a pumpkin, melon or cactus (thorns: accent)."""
     ribs = recipe.number("ribs")
     wave = np.cos(canvas.x * (2 * np.pi * ribs / SIDE) + np.pi)
     tone = 0.16 * wave + 0.08 * noise(canvas, 16, 4, 1) + 0.04 * fractal(canvas, 16, 16, 2)
@@ -232,7 +232,7 @@ def gourd(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def mushroom_cap(canvas: Canvas, recipe: Recipe) -> Surface:
-    """The skin of a big mushroom: round spots of the accent."""
+    """Return the mushroom cap texture: skin with round spots (accent)."""
     pieces = stones(canvas, 3, 1, 0.8)
     away = np.sqrt(pieces.x * pieces.x + pieces.y * pieces.y)
     size = 1.5 + 0.5 * pick(canvas, pieces.identity, 3)
@@ -242,7 +242,7 @@ def mushroom_cap(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def crystal(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A cluster of pointed crystals that stand up, with holes around."""
+    """Return the crystal cluster texture: upright pointed crystals with holes around."""
     solid = np.zeros(canvas.x.shape, bool)
     tone = np.zeros(canvas.x.shape)
     rise = SIDE - canvas.y
@@ -263,7 +263,7 @@ def crystal(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def pad(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A round leaf that floats, seen from above, with a notch and veins."""
+    """Return the lily pad texture: a round leaf from above, with a notch and veins."""
     x, y = canvas.x - SIDE / 2, canvas.y - SIDE / 2
     away = np.sqrt(x * x + y * y)
     solid = (away < 6.6 + 0.3 * noise(canvas, 8, 8, 1)) & ~((np.abs(x) < -0.45 * y) & (y < 0))
@@ -273,7 +273,7 @@ def pad(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def web(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A spider's web: threads from the middle to the sides and rings between, else holes."""
+    """Return the web texture: a spider's web of radial threads and rings, with holes between."""
     x, y = canvas.x - 7.5, canvas.y - 7.5  # The middle of a texel at 16 px.
     thick = 0.5 if canvas.size_px == 16 else 0.3
     spokes = np.minimum.reduce([np.abs(x), np.abs(y), np.abs(x - y) * 0.7, np.abs(x + y) * 0.7])

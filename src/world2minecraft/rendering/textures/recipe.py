@@ -1,7 +1,7 @@
-"""Recipes: the names of our own textures, which say how each is painted.
+"""Texture recipes: the names of the built-in textures, which describe how they are painted.
 
-``own:GENERATOR#rrggbb[,#rrggbb...][?key=value&key=value]``: the first colour is the mean of the
-texture, further ones are its accents, and the options are those of the generator.
+The form is ``own:GENERATOR#rrggbb[,#rrggbb...][?key=value&key=value]``. The first colour is the
+mean of the texture, further colours are its accents, and the options are those of the generator.
 """
 
 import hashlib
@@ -21,14 +21,18 @@ EXAMPLE = "own:planks#a2824e?boards=4"
 
 @dataclass(frozen=True)
 class Number:
-    """An option that is a number from ``low`` to ``high``."""
+    """An option whose value is a number from ``low`` to ``high``."""
 
     default: float
     low: float
     high: float
 
     def read(self, text: str) -> float:
-        """Return the number that a text says; ValueError tells what was expected."""
+        """Parse the number.
+
+        Raises:
+            ValueError: If the number is invalid. The message states the valid range.
+        """
         try:
             value = float(text)
         except ValueError:
@@ -43,7 +47,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Choice:
-    """An option that is one of several words; the first is the default."""
+    """An option whose value is one of several words, of which the first is the default."""
 
     words: tuple[str, ...]
 
@@ -53,7 +57,11 @@ class Choice:
         return self.words[0]
 
     def read(self, text: str) -> str:
-        """Return the word; ValueError tells what was expected."""
+        """Check the word and return it.
+
+        Raises:
+            ValueError: If the word is invalid. The message lists the valid words.
+        """
         if text not in self.words:
             raise ValueError(f"one of {', '.join(self.words)}")
         return text
@@ -67,9 +75,9 @@ Option = Number | Choice
 
 @dataclass(frozen=True)
 class Recipe:
-    """A recipe that was read: all accents and options are there, given or by default.
+    """A parsed recipe with all accents and options, including defaults.
 
-    ``colours`` are sRGB, 0 to 255, the first is the mean; ``text`` is the canonical name.
+    ``colours`` are sRGB, 0 to 255, of which the first is the mean. ``text`` is the canonical name.
     """
 
     generator: str
@@ -79,27 +87,27 @@ class Recipe:
 
     @property
     def seed(self) -> int:
-        """64 bits of the SHA-256 of the name."""
+        """The random seed: 64 bits of the SHA-256 of the name."""
         return int.from_bytes(hashlib.sha256(self.text.encode()).digest()[:8], "little")
 
     def ink(self, index: int) -> np.ndarray:
-        """Return a colour, float64 [3]: 0 the mean, then the accents."""
+        """Return a colour, float64 [3]: index 0 is the mean, the others are the accents."""
         return np.array(self.colours[index], np.float64)
 
     def number(self, key: str) -> float:
-        """Return an option that is a number, or a word of digits."""
+        """Return an option as a number."""
         return float(self.options[key])
 
     def word(self, key: str) -> str:
-        """Return an option that is a word."""
+        """Return an option as a word."""
         return str(self.options[key])
 
 
 def split_recipe(text: str) -> tuple[str, tuple[str, ...], dict[str, str]]:
-    """Return a recipe's generator, its colours and its options as they are written.
+    """Return the generator, the colours and the options of a recipe as text.
 
     Raises:
-        UsageError: the text is no recipe.
+        UsageError: If the text is not a valid recipe.
     """
     if len(text) > MAX_LENGTH or not text.startswith(PREFIX):
         raise UsageError(f"invalid texture recipe {text[:60]!r}; use the form {EXAMPLE}")
@@ -121,7 +129,7 @@ def split_recipe(text: str) -> tuple[str, tuple[str, ...], dict[str, str]]:
 
 
 def join_recipe(generator: str, colours: tuple[str, ...], options: Mapping[str, str]) -> str:
-    """Return the canonical text: colours in lower case, keys in order."""
+    """Return the canonical recipe text, with lower-case colours and sorted keys."""
     tail = "&".join(f"{key}={options[key]}" for key in sorted(options))
     return PREFIX + generator + ",".join(colours).lower() + ("?" + tail if tail else "")
 
@@ -129,11 +137,11 @@ def join_recipe(generator: str, colours: tuple[str, ...], options: Mapping[str, 
 def read_options(
     text: str, generator: str, given: Mapping[str, str], known: Mapping[str, Option]
 ) -> dict[str, float | str]:
-    """Return all options of a generator, those that are given and the defaults of the rest.
+    """Return all options of a generator, with defaults for options that are not given.
 
     Raises:
-        UnknownNameError: the generator has no such option.
-        UsageError: a value that the option does not take.
+        UnknownNameError: If the generator has no such option.
+        UsageError: If the value of an option is invalid.
     """
     values: dict[str, float | str] = {key: option.default for key, option in known.items()}
     for key, value in given.items():

@@ -1,4 +1,4 @@
-"""Stone: rock, cobble, ore, quartz, gems and what is like them."""
+"""Texture generators for stone: rock, cobblestone, ore, quartz, gems and similar materials."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from world2minecraft.rendering.textures.tiling_layouts import bevel, rim, stones
 
 
 def rock(canvas: Canvas) -> tuple[np.ndarray, np.ndarray]:
-    """Return tone and height of grown rock: flat patches, longer than high, with ragged rims."""
+    """Return the tone and height of natural rock: flat horizontal patches with ragged edges."""
     patches = noise(canvas, 4, 8, 1) + 0.6 * noise(canvas, 8, 16, 2)
     steps = np.rint(patches * 1.6) / 1.6
     if canvas.fineness:
@@ -28,13 +28,13 @@ def rock(canvas: Canvas) -> tuple[np.ndarray, np.ndarray]:
 
 
 def stone(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Natural rock in calm, flat patches."""
+    """Return the stone texture: natural rock in flat patches of low contrast."""
     tone, height = rock(canvas)
     return Surface(tone + 0.05 * relief(canvas, height), height, roughness=0.88)
 
 
 def speckled(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Granite, andesite, terrazzo: grains of lighter and darker stone."""
+    """Return the speckled stone texture: granite, andesite or terrazzo with light and dark grains."""
     grains = noise(canvas, 16, 16, 1) + 0.4 * noise(canvas, 8, 8, 2)
     pieces = stones(canvas, 12, 3, 0.9)
     grains = 0.5 * grains + 0.75 * pick(canvas, pieces.identity, 5)
@@ -44,7 +44,7 @@ def speckled(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def cobble(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Round stones with dark joints; moss, the accent, in the joints where asked for."""
+    """Return the cobblestone texture: round stones with dark joints, or moss (accent) in them."""
     pieces = stones(canvas, int(recipe.number("stones")), 1, 0.9)
     body = smooth(pieces.edge, 0.1, 1.9)
     fine = fractal(canvas, 16, 16, 4)
@@ -58,7 +58,7 @@ def cobble(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def ore(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Rock with nuggets of the accent."""
+    """Return the ore texture: rock with nuggets of the accent colour."""
     tone, height = rock(canvas)
     pieces = stones(canvas, 4, 5, 0.5)
     away = np.abs(pieces.x) + np.abs(pieces.y) + 0.5 * noise(canvas, 8, 8, 7)
@@ -72,7 +72,7 @@ def ore(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def slate(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Rock in thin layers along u: deepslate, basalt on its side, mud bricks' clay."""
+    """Return the slate texture: rock in thin horizontal layers, such as deepslate or mud bricks."""
     bend = canvas.y + 0.8 * noise(canvas, 4, 4, 1)
     layers = noise(canvas, 4, 16, 2, y=bend) + 0.5 * noise(canvas, 8, 8, 3)
     layers = layers + 0.3 * canvas.fineness * fractal(canvas, 16, 32, 4)
@@ -81,7 +81,7 @@ def slate(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def quartz(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Smooth bright stone with faint veins; flutes along v make a pillar."""
+    """Return the quartz texture: smooth bright stone with faint veins, or a fluted pillar."""
     fine, slow = fractal(canvas, 16, 16, 1), fractal(canvas, 4, 4, 2)
     tone = 0.03 * slow + 0.02 * fine
     height = 0.02 * fine
@@ -98,7 +98,7 @@ def quartz(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def obsidian(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Dark glass of a volcano: sharp flakes with a few bright edges."""
+    """Return the obsidian texture: dark volcanic glass with sharp flakes and a few bright edges."""
     pieces = stones(canvas, 4, 1, 0.95)
     flakes = pick(canvas, pieces.identity, 3) + 0.06 * (pieces.x - pieces.y)
     glints = (1 - smooth(pieces.edge, 0.2, 0.7)) * (noise(canvas, 8, 8, 4) > 0.2)
@@ -107,7 +107,7 @@ def obsidian(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def netherrack(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Porous rock: lumps with dark pits."""
+    """Return the netherrack texture: porous rock with lumps and dark pits."""
     lumps = noise(canvas, 8, 8, 1) + 0.8 * noise(canvas, 16, 16, 2)
     lumps = lumps + 0.4 * canvas.fineness * fractal(canvas, 32, 32, 3)
     pits = smooth(-lumps, 0.4, 0.8)
@@ -116,7 +116,7 @@ def netherrack(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def prismarine(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Cells of sea stone with light veins between them, the accent."""
+    """Return the prismarine texture: cells of stone with light veins (accent) between them."""
     pieces = stones(canvas, 3, 1, 0.9)
     veins = 1 - smooth(pieces.edge, 0.3, 0.9)
     tone = 0.12 * pick(canvas, pieces.identity, 3) + 0.07 * fractal(canvas, 16, 16, 4)
@@ -124,7 +124,7 @@ def prismarine(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def facets(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Cut crystal: flat facets of many shades, as a block of amethyst or diamond has."""
+    """Return the crystal texture: flat facets of many shades, as of amethyst or diamond blocks."""
     pieces = stones(canvas, 4, 1, 0.95)
     lean = pick(canvas, pieces.identity, 3), pick(canvas, pieces.identity, 4)
     tilt = lean[0] * pieces.x + lean[1] * pieces.y
@@ -135,7 +135,7 @@ def facets(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def gem(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A block of a mineral or metal: a bright bevel around a polished face with a glint."""
+    """Return the gem texture: a mineral or metal block with a bright bevel and a polished face."""
     edge = rim(canvas)
     frame = edge < 1
     lit = frame & (canvas.x + canvas.y < SIDE)
@@ -152,7 +152,7 @@ def gem(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def bone(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Pale bone: long pores along v."""
+    """Return the bone texture: pale bone with long vertical pores."""
     pieces = stones(canvas, 6, 1, 0.8)
     kept = pick(canvas, pieces.identity, 4) > 0.45
     away = np.sqrt((pieces.x * 2.2) ** 2 + (pieces.y * 0.8) ** 2)
@@ -162,7 +162,7 @@ def bone(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def marble(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Polished marble: clouds, and veins of the accent."""
+    """Return the marble texture: polished marble with clouds and veins of the accent colour."""
     x = canvas.x + 2.5 * noise(canvas, 2, 2, 1) + 0.5 * noise(canvas, 8, 8, 2)
     y = canvas.y + 2.5 * noise(canvas, 2, 2, 3) + 0.5 * noise(canvas, 8, 8, 4)
     lines = (

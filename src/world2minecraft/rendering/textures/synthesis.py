@@ -1,4 +1,4 @@
-"""A recipe in, a texture out; the same bytes for the same recipe, on every machine."""
+"""Synthesis of textures from recipes, with identical bytes on every machine."""
 
 from functools import lru_cache
 
@@ -23,8 +23,8 @@ def recipe_of(generator: str, *colours: tuple[int, int, int], **options: float |
     """Return the canonical recipe of a generator with colours (sRGB, 0 to 255) and options.
 
     Raises:
-        UnknownNameError: no such generator or option.
-        UsageError: a colour or a value that is not allowed.
+        UnknownNameError: If the generator or an option is unknown.
+        UsageError: If a colour or the value of an option is invalid.
 
     Example:
         >>> recipe_of("planks", (162, 130, 78), boards=4)
@@ -39,11 +39,11 @@ def recipe_of(generator: str, *colours: tuple[int, int, int], **options: float |
 
 
 def parse_recipe(text: str) -> Recipe:
-    """Return a recipe that was read and checked, its defaults filled in.
+    """Parse and check a recipe, and fill in the defaults.
 
     Raises:
-        UnknownNameError: no such generator or option; the message has the nearest name.
-        UsageError: the text is no recipe, or a value is not allowed.
+        UnknownNameError: If the generator or an option is unknown. The message suggests a name.
+        UsageError: If the text is not a valid recipe, or if a value is invalid.
 
     Example:
         >>> parse_recipe("own:planks#A2824E?gaps=none&boards=2").text
@@ -65,17 +65,18 @@ def parse_recipe(text: str) -> Recipe:
 
 
 def texture_of(recipe: str, size_px: int = 16) -> Texture:
-    """Return the texture of a recipe; it is shared, so its arrays cannot be written to.
+    """Return the texture of a recipe. It is cached, so its arrays are read-only.
 
-    The mean sRGB of all texels that are no holes is within 2 of the recipe's first colour.
+    The mean sRGB of all texels that are not holes is within 2 of the recipe's first colour.
 
     Args:
         recipe: ``own:GENERATOR#rrggbb[,#rrggbb...][?key=value&key=value]``.
-        size_px: 16, 32, 64 or 128; the layout is the same, the detail finer.
+        size_px: Texture size in pixels: 16, 32, 64 or 128. The layout is the same for all sizes,
+            with finer detail at larger sizes.
 
     Raises:
-        UnknownNameError: no such generator or option.
-        UsageError: the text is no recipe, a value is not allowed, or the size.
+        UnknownNameError: If the generator or an option is unknown.
+        UsageError: If the text is not a valid recipe, or if a value or the size is invalid.
 
     Example:
         >>> texture_of("own:wool#a12722").colour.shape

@@ -1,4 +1,4 @@
-"""A painted surface, and how it becomes a texture: the one place where the mean colour is made."""
+"""Conversion of a painted surface to a texture with the required mean colour."""
 
 from dataclasses import dataclass, field
 
@@ -25,12 +25,12 @@ SLOPE = 0.6  # Of the normals, times the height's.
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """What a generator paints; every field is float64 [N, N] or a number.
+    """The result of a generator. Every field is float64 [N, N] or a number.
 
-    ``tone`` is lighter and darker, about -1 to 1, over the colours. ``paints`` lay accents over
-    the main colour in order, each a colour float64 [3] and how much of it, 0 to 1. ``height`` is
-    in sixteenths of a block. ``alpha`` is 0 to 1. ``bold`` lets the main colour go as far as
-    accents make it, as the head of a flower on its green stem does.
+    ``tone`` is the lightness relative to the colours, about -1 to 1. ``paints`` are accents laid
+    over the main colour in order, each a colour float64 [3] and its amount, 0 to 1. ``height`` is
+    in sixteenths of a block. ``alpha`` is 0 to 1. ``bold`` lets the main colour change as much as
+    the accents require, as for the head of a flower on its green stem.
     """
 
     tone: Field
@@ -45,7 +45,7 @@ class Surface:
 
 
 def texture_from(canvas: Canvas, recipe: Recipe, surface: Surface) -> Texture:
-    """Return the texture of a surface; its mean is the recipe's first colour."""
+    """Return the texture of a surface, with the recipe's first colour as its mean."""
     alpha = _bytes(canvas, surface.alpha)
     if not surface.translucent:
         alpha = np.where(alpha < 128, 0, 255).astype(np.uint8)
@@ -95,16 +95,18 @@ def _colours(canvas: Canvas, recipe: Recipe, surface: Surface) -> tuple[np.ndarr
 def match_mean(
     colour: np.ndarray, give: np.ndarray, target: np.ndarray, bold: bool = False
 ) -> np.ndarray:
-    """Return colours, float64 [M, 3] in 0 to 255, moved so that their mean is the target's.
+    """Return colours, float64 [M, 3] in 0 to 255, adjusted so that their mean is the target.
 
-    The main colour moves first, so that accents stay what they are; then everything. A move goes
-    some share of the way to white or to black, so that nothing is cut off and contrast stays.
+    The main colour is adjusted first, so that accents are preserved, and then all colours. An
+    adjustment moves colours by a fraction of the distance to white or black, so that nothing is
+    clipped and contrast remains.
 
     Args:
-        colour: float64 [M, 3], 0 to 255.
-        give: float64 [M], 1 for the main colour, 0 for accents.
-        target: float64 [3]; met within a level once rounded, and within two at black and white.
-        bold: whether the main colour may move as far as is needed, in light and hue.
+        colour: Colours, float64 [M, 3], 0 to 255.
+        give: 1 for the main colour, 0 for accents, float64 [M].
+        target: Target mean, float64 [3]. It is matched within one level after rounding, and within
+            two levels near black and white.
+        bold: Whether the main colour may change in lightness and hue as much as needed.
     """
     goal = np.clip(target, MEAN_MARGIN, 255.0 - MEAN_MARGIN)
     share = _share(colour, give[:, None], goal)

@@ -1,4 +1,4 @@
-"""A contact sheet of all generators, for people to look at."""
+"""A contact sheet of all texture generators for visual inspection."""
 
 import io
 
@@ -19,16 +19,16 @@ SEEN_PX = 128  # A tile, where a texture is smaller.
 def texture_sheet(
     size_px: int, repeat: int = 1, columns: int = COLUMNS, right_px: int | None = None
 ) -> np.ndarray:
-    """Return all generators with their names, uint8 [H, W, 3].
+    """Return an image of all texture generators with their names, uint8 [H, W, 3].
 
     Args:
-        size_px: 16, 32, 64 or 128.
-        repeat: each texture is laid so many times in both directions, to show how it tiles.
-        columns: pictures a row.
-        right_px: the size that the right half of each picture has instead, to compare.
+        size_px: Texture size in pixels: 16, 32, 64 or 128.
+        repeat: Number of repetitions in both directions, to show how textures tile.
+        columns: Textures per row.
+        right_px: Texture size of the right half of each tile, for comparison.
 
     Raises:
-        UsageError: a size is none of these.
+        UsageError: If a size is not supported.
     """
     tile = _tile_px(max(size_px, right_px or 0) * repeat)
     step = tile + GAP_PX
@@ -58,9 +58,9 @@ def _tile_px(needed_px: int) -> int:
 
 
 def tiled(recipe: str, size_px: int, repeat: int, side_px: int) -> np.ndarray:
-    """Return a texture laid several times over chequers, uint8 [side_px, side_px, 3].
+    """Return a texture repeated over a checkerboard, uint8 [side_px, side_px, 3].
 
-    ``side_px`` is a multiple of ``size_px * repeat``.
+    ``side_px`` must be a multiple of ``size_px * repeat``.
     """
     colour = np.tile(texture_of(recipe, size_px).colour, (repeat, repeat, 1))
     grown = side_px // len(colour)
@@ -72,7 +72,7 @@ def tiled(recipe: str, size_px: int, repeat: int, side_px: int) -> np.ndarray:
 
 
 def page_png(page: np.ndarray) -> bytes:
-    """Return a page, uint8 [H, W, 3], as a PNG of even levels, which is a fifth smaller."""
+    """Encode a page, uint8 [H, W, 3], as a PNG with quantized colours to reduce its size."""
     stream = io.BytesIO()
     Image.fromarray(page & np.uint8(0xFE)).save(stream, "PNG", optimize=True)
     return stream.getvalue()

@@ -1,4 +1,4 @@
-"""Layouts that tile: boards, bricks, round stones, frames; all lengths in sixteenths of a block."""
+"""Seamless layouts of boards, bricks, stones and frames; lengths are sixteenths of a block."""
 
 from typing import NamedTuple
 
@@ -8,10 +8,11 @@ from world2minecraft.rendering.textures.canvas import SIDE, Canvas, hash_values,
 
 
 class Pieces(NamedTuple):
-    """A surface cut in pieces.
+    """A surface divided into pieces.
 
-    ``identity`` int64 [N, N] numbers them; ``x`` and ``y`` are a texel's place in its piece;
-    ``edge`` is the way to the piece's edge, negative in the joint; ``joint`` is 1 in joints.
+    ``identity`` int64 [N, N] numbers the pieces. ``x`` and ``y`` are a texel's position in its
+    piece. ``edge`` is the distance to the edge of the piece, negative in a joint. ``joint`` is 1 in
+    joints.
     """
 
     identity: np.ndarray
@@ -28,7 +29,7 @@ def _pieces(identity, x, y, width: float, height: float, joint: float) -> Pieces
 
 
 def boards(canvas: Canvas, count: int) -> Pieces:
-    """Return ``count`` boards along x, one to a row, whose ends are spread over the rows."""
+    """Return ``count`` boards along x, one per row, with their ends spread over the rows."""
     height = SIDE / count
     row = np.floor(canvas.y / height)
     # Ends that are far apart in neighbouring rows: 7 and 16 have no common divisor.
@@ -40,7 +41,7 @@ def boards(canvas: Canvas, count: int) -> Pieces:
 def bricks(
     canvas: Canvas, rows: int, columns: int, bond: float = 0.5, joint: float | None = None
 ) -> Pieces:
-    """Return bricks; every other row is moved by ``bond`` of a brick."""
+    """Return bricks, with every other row shifted by ``bond`` of a brick."""
     width, height = SIDE / columns, SIDE / rows
     row = np.floor(canvas.y / height)
     along = (canvas.x + (row % 2) * bond * width) % SIDE
@@ -53,7 +54,7 @@ def bricks(
 def stones(canvas: Canvas, count: int, salt: int, jitter: float = 0.7) -> Pieces:
     """Return round pieces around ``count`` times ``count`` scattered points.
 
-    ``edge`` is 0 at the border between two and grows inwards.
+    ``edge`` is 0 at the border between two pieces and increases inwards.
     """
     step = SIDE / count
     column, row = np.floor(canvas.x / step), np.floor(canvas.y / step)
@@ -81,15 +82,15 @@ def _jitter(canvas: Canvas, cell: np.ndarray, salt: int, jitter: float) -> np.nd
 
 
 def rim(canvas: Canvas) -> np.ndarray:
-    """Return the way to the nearest side of the texture."""
+    """Return the distance to the nearest side of the texture."""
     return np.minimum.reduce([canvas.x, canvas.y, SIDE - canvas.x, SIDE - canvas.y])
 
 
 def box(canvas: Canvas, left: float, top: float, right: float, bottom: float) -> np.ndarray:
-    """Return the way to the nearest side of a box, negative outside it."""
+    """Return the distance to the nearest side of a box, negative outside the box."""
     return np.minimum.reduce([canvas.x - left, canvas.y - top, right - canvas.x, bottom - canvas.y])
 
 
 def bevel(canvas: Canvas, edge: np.ndarray, width: float) -> np.ndarray:
-    """Return a height from 0 at an edge to 1 at ``width`` inside, at least a texel wide."""
+    """Return a height from 0 at an edge to 1 at ``width`` inside, at least one texel wide."""
     return smooth(edge, 0.0, max(width, 0.5 * SIDE / canvas.size_px))

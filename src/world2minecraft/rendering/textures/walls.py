@@ -1,4 +1,4 @@
-"""Calm faces of rooms: paint, plaster, paper, polished slabs, tiles, bricks."""
+"""Texture generators for plain surfaces of rooms: paint, plaster, paper, slabs, tiles, bricks."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from world2minecraft.rendering.textures.tiling_layouts import bevel, bricks, rim
 
 
 def plain(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Paint, concrete or terracotta: almost no grain."""
+    """Return the plain texture: paint, concrete or terracotta with almost no grain."""
     grain = recipe.number("grain")
     fine = fractal(canvas, 16, 16, 1)
     slow = noise(canvas, 4, 4, 2)
@@ -26,7 +26,7 @@ def plain(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def plaster(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Plaster put on by hand: soft strokes of a trowel and a fine grain."""
+    """Return the plaster texture: hand-applied plaster with soft strokes and a fine grain."""
     x, y = canvas.x + 2 * noise(canvas, 4, 4, 1), canvas.y + 2 * noise(canvas, 4, 4, 2)
     strokes = noise(canvas, 4, 8, 3, x, y) + 0.6 * noise(canvas, 8, 4, 4, x, y)
     fine = fractal(canvas, 16, 16, 5)
@@ -36,7 +36,7 @@ def plaster(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def paper(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Wallpaper or paper; stripes along v in the accent, where asked for."""
+    """Return the paper texture: wallpaper or paper, optionally with vertical stripes (accent)."""
     count = recipe.number("stripes")
     stripes = np.floor(canvas.x * 2 * count / SIDE) % 2 if count else np.zeros(canvas.x.shape)
     fine = fractal(canvas, 16, 16, 1)
@@ -45,7 +45,7 @@ def paper(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def polished(canvas: Canvas, recipe: Recipe) -> Surface:
-    """A slab of polished stone with one bevelled frame."""
+    """Return the polished stone texture: a slab with a bevelled frame."""
     edge = rim(canvas)
     width = 1.0 if canvas.size_px <= 32 else 0.7
     height = bevel(canvas, edge - 0.2 * canvas.fineness, width)
@@ -69,7 +69,7 @@ def _smooth_frame(canvas: Canvas, edge: np.ndarray, width: float) -> np.ndarray:
 
 
 def brick_wall(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Bricks in a bond with mortar, the accent; few rows make blocks of stone."""
+    """Return the brick wall texture: bricks in a bond with mortar (accent), or stone blocks."""
     rows = int(recipe.number("rows"))
     pieces = bricks(canvas, rows, max(1, rows // 2))
     body = bevel(canvas, pieces.edge, 0.5) * (1 - pieces.joint)
@@ -84,7 +84,7 @@ def brick_wall(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def tiles(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Glazed square tiles with grout, the accent."""
+    """Return the tile texture: glazed square tiles with grout (accent)."""
     count = int(recipe.number("count"))
     pieces = bricks(canvas, count, count, 0.0)
     body = bevel(canvas, pieces.edge, 0.6) * (1 - pieces.joint)

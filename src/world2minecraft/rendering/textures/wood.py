@@ -1,4 +1,4 @@
-"""Wood: boards, parquet, bark, log ends, bare grain."""
+"""Texture generators for wood: boards, parquet, bark, log ends, bare grain."""
 
 import numpy as np
 
@@ -17,9 +17,9 @@ from world2minecraft.rendering.textures.tiling_layouts import Pieces, bevel, boa
 
 
 def fibre(canvas: Canvas, x: np.ndarray, y: np.ndarray, salt: int) -> np.ndarray:
-    """Return the grain of wood along x, about -1 to 1: streaks, and fine arcs where there is room.
+    """Return wood grain along x, about -1 to 1: streaks, with fine arcs at larger sizes.
 
-    ``x`` and ``y`` float64 [N, N] are sixteenths; the grain tiles with the texture.
+    ``x`` and ``y`` float64 [N, N] are positions in sixteenths. The grain tiles with the texture.
     """
     streaks = 0.75 * noise(canvas, 4, 16, salt, x, y) + 0.45 * noise(canvas, 2, 8, salt + 1, x, y)
     if not canvas.fineness:
@@ -32,7 +32,7 @@ def fibre(canvas: Canvas, x: np.ndarray, y: np.ndarray, salt: int) -> np.ndarray
 
 
 def planks(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Boards along u with grain, each of its own shade, and gaps between them."""
+    """Return the plank texture: horizontal boards with grain, individual shades and gaps."""
     pieces = boards(canvas, int(recipe.number("boards")))
     shift = 8 * pick(canvas, pieces.identity, 1)
     grain = fibre(canvas, canvas.x + shift, canvas.y, 2)
@@ -52,7 +52,7 @@ def _boarded(
 
 
 def parquet(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Short strips laid in squares, every other square turned."""
+    """Return the parquet texture: short strips in squares, every other square rotated."""
     squares = int(recipe.number("squares"))
     step, strips = SIDE / squares, 2 if squares == 4 else 4
     column, row = np.floor(canvas.x / step), np.floor(canvas.y / step)
@@ -76,7 +76,7 @@ def parquet(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def bark(canvas: Canvas, recipe: Recipe) -> Surface:
-    """The side of a log: ridges along v with dark furrows between."""
+    """Return the bark texture: the side of a log, with vertical ridges and dark furrows."""
     bend = canvas.x + 1.2 * noise(canvas, 4, 4, 1)
     ridges = noise(canvas, 8, 2, 2, bend) + 0.7 * noise(canvas, 16, 4, 3, bend)
     ridges = ridges + 0.35 * canvas.fineness * fractal(canvas, 32, 8, 4, x=bend)
@@ -87,13 +87,13 @@ def bark(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def grain(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Bare wood without gaps, grain along v: a stripped log, a table's leg."""
+    """Return the bare wood texture: vertical grain without gaps, as of a stripped log."""
     lines = fibre(canvas, canvas.y, canvas.x, 1)
     return Surface(0.13 * lines, 0.08 * lines, roughness=0.6 + 0.05 * lines)
 
 
 def rings(canvas: Canvas, recipe: Recipe) -> Surface:
-    """The end of a log: year rings within a border of bark, the accent."""
+    """Return the log end texture: growth rings within a border of bark (accent)."""
     x, y = np.abs(canvas.x - SIDE / 2), np.abs(canvas.y - SIDE / 2)
     away = np.maximum(x, y)
     if canvas.fineness:
