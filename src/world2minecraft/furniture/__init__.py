@@ -1,6 +1,6 @@
-"""The furniture library: parametric templates with a named front, as parts, cells and blocks.
+"""The furniture library: parametric templates with a defined front, as parts, cells and blocks.
 
-A design of your own is one data file in ``designs/``, or an entry point of the group
+Custom designs can be added as data files in ``designs/``, or through the entry point group
 ``world2minecraft.template``; see docs/furniture.md.
 """
 

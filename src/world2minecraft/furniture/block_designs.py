@@ -1,7 +1,7 @@
-"""Furniture as vanilla blocks as players build it: a chair is a stair, table legs are fences.
+"""Furniture as vanilla blocks, as players build it: a chair is a stair, table legs are fences.
 
-At few blocks per metre a leg, a seat and a back are thinner than any block; from six on, the parts
-themselves are fitted block by block, and no design by hand is needed.
+At few blocks per metre, legs, seats and backs are thinner than any block. From six blocks per
+metre, the parts themselves are fitted block by block, and no manual design is needed.
 """
 
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ PARTS_FROM = 6.0  # Blocks per metre from which parts of 8 cm are half a block t
 
 
 class DesignBlock(NamedTuple):
-    """One block: its offset in block axes (x east, y up, z south), state and part role."""
+    """A block of a design: its offset in block axes (x east, y up, z south), state and role."""
 
     offset: tuple[int, int, int]
     state: str
@@ -28,7 +28,7 @@ class DesignBlock(NamedTuple):
 
 @dataclass(frozen=True)
 class BlockDesign:
-    """A design in vanilla blocks. Offsets are from the minimum corner of its box of ``size``."""
+    """A design in vanilla blocks, with offsets from the minimum corner of its box of ``size``."""
 
     blocks: tuple[DesignBlock, ...]
     size: tuple[int, int, int]  # blocks along x, y, z in block axes
@@ -36,15 +36,14 @@ class BlockDesign:
 
 
 def block_design(placement: Placement, blocks_per_metre: float) -> BlockDesign | None:
-    """Return the vanilla design of a placement, turned as it stands.
+    """Return the vanilla block design of a placement, with the rotation of the placement.
 
     Returns:
-        The design, or None where parts are built instead: at six blocks per metre or more, where
-        the template has no design for the scale, and for an object that is built from its own
-        cells.
+        The design, or None if parts are built instead: at six or more blocks per metre, if the
+            template has no design for the scale, or for an object that is built from its own cells.
 
     Raises:
-        UnknownNameError: the library has no such template.
+        UnknownNameError: If the template is unknown.
     """
     if blocks_per_metre >= PARTS_FROM or placement.template == "cells":
         return None
@@ -56,10 +55,10 @@ def block_design(placement: Placement, blocks_per_metre: float) -> BlockDesign |
 def lay_template(
     template: Template, size: BlockSize, parameters: Parameters | None, quarter_turns: int
 ) -> BlockDesign | None:
-    """Return a template's vanilla design at a size in blocks; None where it has none for it.
+    """Return a template's vanilla design for a size in blocks, or None if it has none.
 
     Raises:
-        ParameterError: the template refuses a parameter.
+        ParameterError: If the template rejects a parameter.
     """
     local = template.blocks(size, parameters)
     if not local:
@@ -68,7 +67,7 @@ def lay_template(
 
 
 def block_size(size_m: np.ndarray, blocks_per_metre: float) -> BlockSize:
-    """Return a template's size in metres, float64 [3], in blocks: at least one each way."""
+    """Return a template's size in metres, float64 [3], as blocks, at least one per axis."""
     depth, width, height = (float(side) * blocks_per_metre for side in size_m)
     whole = (max(1, int(side + 0.5)) for side in (depth, width, height))
     return BlockSize(*whole, exact=(depth, width, height), per_metre=float(blocks_per_metre))

@@ -1,8 +1,8 @@
-"""A plan on which a family lays the blocks of a design, looking east: +x is the front.
+"""A plan on which a family places the blocks of a design that faces east (+x).
 
 A cell is (front-to-back, side, up): i counts from the back, j from the right (south) side, k from
 the bottom. The sides are ``back`` (west), ``front`` (east), ``right`` (south) and ``left`` (north).
-Stairs face their high side; the panel of an open trapdoor lies on the side opposite to its facing.
+Stairs face their high side. The panel of an open trapdoor is on the side opposite to its facing.
 """
 
 from collections.abc import Iterable, Sequence
@@ -26,7 +26,7 @@ OPPOSITE: dict[Side, Side] = {
 
 
 class Plan:
-    """The blocks of one design; what is laid later takes the place of what was laid before."""
+    """The blocks of a design, in which later blocks replace earlier ones."""
 
     def __init__(self, size: BlockSize, look: Look):
         self.size, self.look = size, look
@@ -39,46 +39,46 @@ class Plan:
 
     @property
     def depth(self) -> range:
-        """All i, from back to front."""
+        """All indices i, from back to front."""
         return range(self.size.depth)
 
     @property
     def width(self) -> range:
-        """All j, from right to left."""
+        """All indices j, from right to left."""
         return range(self.size.width)
 
     @property
     def height(self) -> range:
-        """All k, from the bottom up."""
+        """All indices k, from bottom to top."""
         return range(self.size.height)
 
     @property
     def corners(self) -> list[tuple[int, int]]:
-        """The corners (i, j) of the footprint, each once."""
+        """The corners (i, j) of the footprint, without duplicates."""
         ends = ((0, self.size.depth - 1), (0, self.size.width - 1))
         return sorted(set(product(*ends)))
 
     def layers(self, metres: float) -> int:
-        """Return how many whole blocks come nearest to a length in metres."""
+        """Return a length in metres as the nearest whole number of blocks."""
         return int(metres * self.size.per_metre + 0.5)
 
     def held(self, cell: Cell) -> bool:
-        """Whether a block lies there already."""
+        """Return whether a cell already has a block."""
         return cell in self._blocks
 
     def put(
         self, role: str, i: Numbers, j: Numbers, k: Numbers, shape: str = "full", **properties: str
     ) -> None:
-        """Lay one shape of a role's material over every cell of i x j x k."""
+        """Place a shape of a role's material in all cells of i x j x k."""
         self.put_state(role, self.look.state(role, shape, **properties), i, j, k)
 
     def put_state(self, role: str, state: str, i: Numbers, j: Numbers, k: Numbers) -> None:
-        """Lay a state, such as ``minecraft:lantern[hanging=true]``, over every cell."""
+        """Place a block state, such as ``minecraft:lantern[hanging=true]``, in all cells."""
         for cell in product(_listed(i), _listed(j), _listed(k)):
             self._blocks[cell] = LocalBlock(cell, state, role)
 
     def drop(self, i: Numbers, j: Numbers, k: Numbers) -> None:
-        """Take away what lies in the cells."""
+        """Remove the blocks in the cells."""
         for cell in product(_listed(i), _listed(j), _listed(k)):
             self._blocks.pop(cell, None)
 
@@ -91,7 +91,7 @@ class Plan:
         high: Side,
         half: Literal["bottom", "top"] = "bottom",
     ) -> None:
-        """Lay stairs whose high side is ``high``; upside down with ``half`` top."""
+        """Place stairs with ``high`` as their high side, upside down if ``half`` is top."""
         self.put(role, i, j, k, "stairs", facing=FACING[high], half=half)
 
     def slab(
@@ -102,20 +102,20 @@ class Plan:
         k: Numbers,
         half: Literal["bottom", "top"] = "bottom",
     ) -> None:
-        """Lay slabs in a half of the cells."""
+        """Place slabs in one half of the cells."""
         self.put(role, i, j, k, "slab", type=half)
 
     def panel(self, role: str, i: Numbers, j: Numbers, k: Numbers, side: Side) -> None:
-        """Stand open trapdoors at one side of the cells."""
+        """Place open trapdoors upright at one side of the cells."""
         self.put(role, i, j, k, "trapdoor", **panel_properties(side))
 
     def plate(self, role: str, i: Numbers, j: Numbers, k: Numbers, half: str = "top") -> None:
-        """Lay closed trapdoors, a plate three sixteenths thick, in a half of the cells."""
+        """Place closed trapdoors, three sixteenths thick, in one half of the cells."""
         self.put(role, i, j, k, "trapdoor", facing="east", half=half, open="false")
 
 
 def panel_properties(side: Side) -> dict[str, str]:
-    """Return the properties of an open trapdoor whose panel stands at ``side``."""
+    """Return the properties of an open trapdoor whose panel is at ``side``."""
     return {"facing": FACING[OPPOSITE[side]], "half": "bottom", "open": "true"}
 
 

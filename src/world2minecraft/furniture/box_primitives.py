@@ -1,6 +1,6 @@
-"""Primitives of furniture designs: the boxes that many templates share, and plates, legs and backs.
+"""Primitives for furniture designs: common boxes, plates, legs and backs.
 
-Parts are metres in the template's frame; what is laid goes on a ``Plan`` of blocks.
+Parts are in metres in the template's frame. Blocks are placed on a ``Plan``.
 """
 
 from collections.abc import Iterable
@@ -37,7 +37,7 @@ def legs(depth: float, width: float, height: float, thickness: float) -> list[Pa
 
 
 def backrest(depth: float, width: float, bottom: float, top: float, thickness: float) -> Part:
-    """Return an upright panel at the back of the footprint (x is smallest)."""
+    """Return an upright panel at the back of the footprint (smallest x)."""
     x = -depth / 2
     return part("back", (x, x + min(thickness, depth)), (-width / 2, width / 2), (bottom, top))
 
@@ -53,7 +53,7 @@ def arms(depth: float, width: float, bottom: float, top: float, thickness: float
 
 
 def column(role: str, side: float, bottom: float, top: float) -> Part:
-    """Return a square post in the middle of the footprint."""
+    """Return a square post in the centre of the footprint."""
     return slab(role, side, side, bottom, top)
 
 
@@ -65,10 +65,10 @@ def lay_plate(
     height: float,
     shapes: Iterable[str] = ("trapdoor", "slab", "full"),
 ) -> int:
-    """Lay a level plate whose top comes nearest to ``height`` blocks; return its layer.
+    """Place a level plate whose top is nearest to ``height`` blocks, and return its layer.
 
-    Of the shapes that the role's material has, and of equals the thinner; a plate thinner than a
-    slab needs a layer under it.
+    The plate uses one of the shapes of the role's material, preferring the thinner of equally good
+    shapes. A plate thinner than a slab needs a layer below it.
     """
     choices = [
         (round(abs(layer + RISES[shape] - height), 6), RISES[shape], layer, shape)
@@ -88,7 +88,7 @@ def lay_plate(
 
 
 def lay_legs(plan: Plan, role: str, feet: Iterable[tuple[int, int]], top: int) -> None:
-    """Stand a post on each foot (i, j) up to the layer ``top``, which is not a post's any more."""
+    """Place posts at the feet (i, j) up to the layer ``top`` (exclusive)."""
     shape = next(shape for shape in LEG_SHAPES if plan.look.has(role, shape))
     properties = {"axis": "y"} if shape == "chain" else {}
     for i, j in feet:
@@ -96,7 +96,7 @@ def lay_legs(plan: Plan, role: str, feet: Iterable[tuple[int, int]], top: int) -
 
 
 def lay_back(plan: Plan, role: str, j: Numbers, k: Numbers, i: Numbers = 0) -> None:
-    """Stand a back: panels of a wood, and whole blocks of what has none."""
+    """Place a back of panels, or of whole blocks if the material has no panels."""
     if plan.look.has(role, "trapdoor"):
         plan.panel(role, i, j, k, "back")
     else:
@@ -104,9 +104,9 @@ def lay_back(plan: Plan, role: str, j: Numbers, k: Numbers, i: Numbers = 0) -> N
 
 
 def lay_trestle(plan: Plan, role: str, k: int = 0) -> None:
-    """Lay a table one block high: a top in the upper half, and a leg along either end.
+    """Place a table one block high: a top in the upper half, and a leg at either end.
 
-    Both are of stairs turned upside down where the role's material has them.
+    The top and the legs are upside-down stairs if the role's material has stairs.
     """
     last = plan.size.width - 1
     if last == 0 or not plan.look.has(role, "stairs", "slab"):

@@ -1,8 +1,8 @@
-"""Fit a whole chair to cells of which only some were seen, at every place, turn and size.
+"""Fitting of a whole chair to partially observed cells, over all positions, turns and sizes.
 
-A chair that is turned by half a quarter lies across the cells of its template, and of one at a
-table only the back is seen. So a cell next to the template counts as met, and a free cell
-next to the chair as nothing.
+A chair rotated by an eighth turn is diagonal to the cells of its template, and only the back of a
+chair at a table is visible. Cells next to the template therefore count as covered, and free cells
+next to the chair are ignored.
 """
 
 from itertools import product
@@ -30,10 +30,11 @@ Values = tuple[tuple[str, float], ...]
 
 
 class SeatFit(NamedTuple):
-    """One chair: size in cells along its own axes, parameters, turn, and first cell.
+    """The fit of a chair: size in cells along its own axes, parameters, turn and first cell.
 
-    ``met`` is bool [N], the cells in or beside it; ``gain`` counts cells met, met exactly, and
-    twice those against; ``opposed`` is the share of its cells that were seen free.
+    ``met`` bool [N] marks the cells in or beside the chair. ``gain`` is the number of these cells,
+    plus the cells covered exactly, minus twice the opposing cells. ``opposed`` is the share of the
+    chair's cells that were observed as free.
     """
 
     gain: float
@@ -47,7 +48,7 @@ class SeatFit(NamedTuple):
 
     @property
     def cells(self) -> np.ndarray:
-        """The cells, int64 [M, 3], that the chair fills."""
+        """The cells that the chair fills, int64 [M, 3]."""
         return np.argwhere(self.solid) + self.corner
 
 
@@ -64,14 +65,14 @@ def fit_seat(
     voxel_m: float,
     look: np.ndarray,
 ) -> SeatFit | None:
-    """Return the best place of a chair for the cells that are OWN in ``code``; None without any.
+    """Return the best fit of a chair for the ``OWN`` cells in ``code``, or None without such cells.
 
     Args:
-        template: the chair.
-        code: uint8 [X, Y, Z], as ``count_overlaps`` reads it.
-        floor: the layer on which it stands.
-        voxel_m: the side of a cell.
-        look: float64 [2], the way in plan to what it stands at, of length 1; zeros for nothing.
+        template: The chair template.
+        code: Cell codes as for ``count_overlaps``, uint8 [X, Y, Z].
+        floor: Layer on which the chair stands.
+        voxel_m: Cell size in metres.
+        look: Unit vector in plan towards the table of the chair, float64 [2], or zeros.
     """
     cells = np.argwhere(code == OWN)
     if not len(cells) or floor < 0:
@@ -96,9 +97,9 @@ def fit_seat(
 
 
 def without_open_top(fit: SeatFit, template: Template, code: np.ndarray, voxel_m: float) -> SeatFit:
-    """Return the chair without its top layer where that was seen free for a good part.
+    """Return the chair without its top layer if much of that layer was observed as free.
 
-    The last cell of a back is often filled by a third, which is no half block.
+    The last cell of a back is often filled by only a third, which is less than half a block.
     """
     depth, width, height = fit.counts
     tops = fit.cells[fit.cells[:, 2] == fit.corner[2] + height - 1]
@@ -172,15 +173,15 @@ def _within(cells: np.ndarray, solid: np.ndarray, corner: np.ndarray) -> np.ndar
 
 
 def direction_to_table(cells: np.ndarray, tables: np.ndarray, reach: int) -> np.ndarray:
-    """Return the way in plan, float64 [2], from cells to the nearest table; zeros without one.
+    """Return the direction in plan from cells to the nearest table, float64 [2], or zeros.
 
-    The way leads to the middle of what lies about as near as its nearest edge, so that neither
-    the far end of a long table nor another table further off turns it.
+    The direction leads to the centre of the nearby part of the table, so that neither the far end
+    of a long table nor a more distant table affects it.
 
     Args:
-        cells: int [N, 3].
-        tables: bool [X, Y], the plan of all tables.
-        reach: how many cells from the side of the cells' box a table may be.
+        cells: Cells of the object, int [N, 3].
+        tables: Mask of all tables in plan, bool [X, Y].
+        reach: Maximum distance in cells between the cells' bounding box and a table.
     """
     low, high = cells[:, :2].min(axis=0), cells[:, :2].max(axis=0) + 1
     first = np.maximum(low - reach - EDGE, 0)

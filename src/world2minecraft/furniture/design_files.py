@@ -1,7 +1,7 @@
-"""Design files: read and check the JSON of a furniture design.
+"""Reading and validation of furniture design files in JSON.
 
-Every key is checked before it is used, for people write such files: a wrong one is refused with
-one line that says what was expected and what was given.
+Users write these files by hand, so every key is checked. Error messages state the expected and the
+given value on one line.
 """
 
 import json
@@ -26,10 +26,10 @@ OPTIONAL = ("mount", "turns", "parameters", "options", "match", "suits", "stands
 
 
 def read_design(path: Path) -> Template:
-    """Return the design that a JSON file holds.
+    """Read a design from a JSON file.
 
     Raises:
-        InputError: the file cannot be read, or says something that no design may.
+        InputError: If the file cannot be read or is not a valid design.
     """
     try:
         if path.stat().st_size > MAX_BYTES:
@@ -47,10 +47,11 @@ def read_design(path: Path) -> Template:
 
 
 def design_from_json(raw: Any) -> Template:
-    """Return the template that the content of a design file describes.
+    """Return the template described by the contents of a design file.
 
     Raises:
-        ValueError: a key is missing, unknown or wrong. UnknownNameError: a family is unknown.
+        ValueError: If a key is missing, unknown or invalid.
+        UnknownNameError: If the family is unknown.
     """
     known = _keys("a design", raw, NEEDED, OPTIONAL)
     family: Family = FAMILIES.load(_text("family", known["family"]))

@@ -1,7 +1,7 @@
-"""A family: the shape that many designs share, as metric parts and as vanilla blocks.
+"""Furniture families: shapes shared by many designs, as metric parts and as vanilla blocks.
 
-A design is a small data file that names its family and gives it sizes, parameters, options and
-materials (``design_files``); the family, one value in ``families/``, makes parts and blocks of
+A design is a small data file that names its family and defines sizes, parameters, options and
+materials (``design_files``). The family, an object in ``families/``, builds parts and blocks from
 them.
 """
 
@@ -16,13 +16,13 @@ _FOLDER = "world2minecraft.furniture.families"
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """One shape with parameters and options.
+    """A furniture shape with parameters and options.
 
-    build: metric parts of a given depth, width, height and look.
-    design: vanilla blocks of a given size and look; an empty list where the parts are better.
-    roles: what a design must give a material: the roles of its parts and blocks.
-    parameters: the spans of what ``build`` and ``design`` read; a design may narrow them.
-    options: for each choice the words it may be; the first is meant where a design says nothing.
+    build: Function from a depth, width, height and look to metric parts.
+    design: Function from a size and look to vanilla blocks, or an empty list if parts are better.
+    roles: Roles of the parts and blocks, for which a design must define materials.
+    parameters: Ranges of the parameters of ``build`` and ``design``. A design may narrow them.
+    options: Valid words for each option, of which the first is the default.
     """
 
     build: Build

@@ -1,8 +1,8 @@
 """Footprints of upright boxes: shared area and volume, and the share outside a room.
 
-In: anything with ``center_m``, ``size_m`` along its own axes and ``yaw_deg`` or ``quarter_turns``.
-Areas and volumes are exact but for ``outside_share``, which counts points, since a room may have
-any outline.
+Boxes are objects with ``center_m``, ``size_m`` along their own axes, and ``yaw_deg`` or
+``quarter_turns``. Areas and volumes are exact, except ``outside_share``, which counts sample points
+because a room may have any outline.
 """
 
 from typing import Any
@@ -15,25 +15,25 @@ POINTS = 50  # A side of the raster over a footprint: a share is exact to 0.04 %
 
 
 def shared_area_m2(a: Any, b: Any) -> float:
-    """Return the area that the footprints of two boxes share."""
+    """Return the area shared by the footprints of two boxes, in square metres."""
     return area_m2(_clip(plan_corners_m(a), plan_corners_m(b)))
 
 
 def shared_height_m(a: Any, b: Any) -> float:
-    """Return the height over which two boxes share; below 0 it is the gap between them."""
+    """Return the shared height of two boxes in metres, or the negative gap between them."""
     low = max(a.center_m[2] - a.size_m[2] / 2, b.center_m[2] - b.size_m[2] / 2)
     high = min(a.center_m[2] + a.size_m[2] / 2, b.center_m[2] + b.size_m[2] / 2)
     return float(high - low)
 
 
 def shared_volume_m3(a: Any, b: Any) -> float:
-    """Return the volume that two boxes share."""
+    """Return the volume shared by two boxes in cubic metres."""
     height_m = shared_height_m(a, b)
     return shared_area_m2(a, b) * height_m if height_m > 0 else 0.0
 
 
 def area_m2(polygon_m: np.ndarray) -> float:
-    """Return the area of a simple polygon, float64 [N, 2]; 0 with fewer than 3 corners.
+    """Return the area of a simple polygon, float64 [N, 2], or 0 with fewer than 3 corners.
 
     Example:
         >>> area_m2(np.array([[0, 0], [2, 0], [2, 3], [0, 3]]))
@@ -46,12 +46,12 @@ def area_m2(polygon_m: np.ndarray) -> float:
 
 
 def outside_share(item: Any, floor_polygon_m: np.ndarray, margin_m: float) -> float:
-    """Return the share of a box's footprint that lies farther than ``margin_m`` from a room.
+    """Return the share of a box's footprint that is more than ``margin_m`` outside a room.
 
     Args:
-        item: the box.
-        floor_polygon_m: float [N, 2], the room's outline, simple, in either direction.
-        margin_m: how far outside still counts as within.
+        item: The box.
+        floor_polygon_m: Outline of the room, float [N, 2], a simple polygon in either direction.
+        margin_m: Distance in metres outside the room that is tolerated.
     """
     corners = plan_corners_m(item)
     steps = (np.arange(POINTS) + 0.5) / POINTS

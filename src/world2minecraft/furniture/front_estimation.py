@@ -1,4 +1,4 @@
-"""Estimate the front of an object in quarter turns: by its shape, its wall, or its table."""
+"""Estimation of an object's front in quarter turns, from its shape, its wall or its table."""
 
 from typing import NamedTuple
 
@@ -19,14 +19,14 @@ BACK_CELLS = 3  # A chair seen no deeper than this is its back alone, and a back
 
 
 class Facing(NamedTuple):
-    """A front by quarter turns from +x, and how sure it is, 0 to 1."""
+    """A front as quarter turns from +x, with its confidence from 0 to 1."""
 
     quarter_turns: int
     confidence: float
 
 
 class Surroundings(NamedTuple):
-    """Context of an object: walls and windows, tables and screens, and the room's middle."""
+    """The surroundings of an object: walls, windows, tables, screens and the room's centre."""
 
     walls: np.ndarray  # bool [X, Y, Z]
     middle: np.ndarray  # float64 [2], in cells
@@ -34,7 +34,7 @@ class Surroundings(NamedTuple):
 
 
 def read_surroundings(labels: np.ndarray) -> Surroundings:
-    """Return the walls and tables of a grid, and the middle of the cells that were seen free."""
+    """Return the walls and tables of a grid, and the centre of the observed free cells."""
     walls = (labels == SemanticClass.WALL) | (labels == SemanticClass.WINDOW)
     free = np.argwhere((labels == SemanticClass.EMPTY).any(axis=2))
     shape = np.array(labels.shape[:2], np.float64)
@@ -44,13 +44,13 @@ def read_surroundings(labels: np.ndarray) -> Surroundings:
 
 
 def estimate_facing(cells: np.ndarray, class_id: int, around: Surroundings) -> Facing:
-    """Return the front of an object of ``cells``, int32 [N, 3].
+    """Estimate the front of an object with the given cells, int32 [N, 3].
 
-    Chairs: away from their high side, and where no back was seen, or nothing else, to the table
-    or screen they stand at. Sofas: away from their high side or their wall. Beds: along the long
-    side, away from the wall or the high side (a headboard). Screens and tables: across their thin
-    side, away from the wall. Others: away from the wall that covers most of a side, rather across
-    their thin side (in a corner), or towards the middle of the room.
+    Chairs face away from their high side, or without a visible back towards a nearby table or
+    screen. Sofas face away from their high side or their wall. Beds face along their long side,
+    away from the wall or the high side (headboard). Screens and tables face along their thin side,
+    away from the wall. Other objects face away from the wall that covers most of a side, preferably
+    along their thin side, or else towards the centre of the room.
     """
     low, high = cells.min(axis=0), cells.max(axis=0) + 1
     lean = _lean(cells, low, high)

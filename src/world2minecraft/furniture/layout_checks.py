@@ -1,16 +1,18 @@
-"""Physical plausibility of layouts: collisions, out of bounds, floating and lost objects.
+"""Physical plausibility of layouts: collisions, out-of-bounds objects, floating and lost objects.
 
-In: objects as boxes (ObjectInstance, LayoutObject), as placements, or as labels. Boxes are looked
-at before they become cells, so that touching furniture is no collision.
+The inputs are objects as boxes (ObjectInstance, LayoutObject), placements, or labels. Boxes are
+compared in metres, before rasterization, so that touching furniture does not collide.
 
-A **collision** is where solid parts meet. A placement is as solid as its template's parts or its
-own cells (``furniture.solid_parts``): a chair pushed under a table is none, its back
-through the table's top is one. Of an object that is but a box, all of the box is solid.
-``overlapping_boxes`` counts boxes whatever they hold, as the layout methods of the paper do.
+A **collision** is an intersection of solid parts. A placement consists of its template's parts or
+its own cells (``furniture.solid_parts``): a chair pushed under a table does not collide, but a
+chair whose back intersects the table top does. For objects that are only boxes, the whole box is
+solid. ``overlapping_boxes`` counts overlapping boxes regardless of their parts, as the layout
+methods of the paper do.
 
-**Semantic integrity** is the paper's: the categories of the true room that the scene has, over
-all of them (``category_integrity``). Beside it stands ``kept_objects``: the objects that were found
-and that blocks of their class and number still show in their place.
+**Semantic integrity** follows the paper: the number of object categories of the true room that the
+scene contains, divided by the number of all its categories (``category_integrity``).
+``kept_objects`` returns the detected objects that are still represented by blocks of their class
+and object id in their place.
 """
 
 from collections.abc import Collection, Sequence
@@ -32,7 +34,7 @@ OUTSIDE_M = 0.04  # The same, for boxes that reach into walls.
 
 @dataclass(frozen=True, eq=False)
 class Floaters:
-    """Parts of objects that no structure carries: how many, their cells, and their mask."""
+    """Object parts without structural support: their number, their cells and their mask."""
 
     parts: int
     cells: int
@@ -42,16 +44,16 @@ class Floaters:
 def collisions(
     objects: Sequence[Any], tolerance_m: float = OVERLAP_M, grid: OccupancyGrid | None = None
 ) -> list[tuple[int, int]]:
-    """Return the pairs of indices, sorted, of objects whose solid parts meet.
+    """Return the pairs of indices of objects whose solid parts intersect, sorted.
 
-    Two parts meet where they would have to be moved by more than ``tolerance_m`` to part. Several
-    placements of one object (the runs of an L) do not collide.
+    Two parts intersect if they must be moved by more than ``tolerance_m`` to be separated. Several
+    placements of one object (the segments of an L shape) do not collide.
 
     Args:
-        objects: ObjectInstance, LayoutObject or Placement.
-        tolerance_m: the depth of overlap that is forgiven.
-        grid: holds the cells of placements that are built from them; without it such a
-            placement is solid all through its box.
+        objects: ObjectInstance, LayoutObject or Placement objects.
+        tolerance_m: Overlap depth in metres that is tolerated.
+        grid: Grid with the cells of placements that are built from their own cells. Without it, the
+            whole box of such a placement is solid.
     """
     pairs = overlapping_boxes(objects, tolerance_m)
     touched = {index for pair in pairs for index in pair if isinstance(objects[index], Placement)}
@@ -66,12 +68,12 @@ def collisions(
 def overlapping_boxes(
     objects: Sequence[Any], tolerance_m: float = OVERLAP_M
 ) -> list[tuple[int, int]]:
-    """Return the pairs of indices, sorted, of objects whose boxes overlap, whatever they hold.
+    """Return the pairs of indices of objects whose boxes overlap, sorted.
 
     Args:
-        objects: ObjectInstance, LayoutObject or Placement: ``center_m``, ``size_m`` along its own
-            axes, ``yaw_deg`` or ``quarter_turns``, and where it has one ``object_id``.
-        tolerance_m: the depth of overlap that is forgiven.
+        objects: ObjectInstance, LayoutObject or Placement objects, with ``center_m``, ``size_m``
+            along their own axes, ``yaw_deg`` or ``quarter_turns``, and optionally ``object_id``.
+        tolerance_m: Overlap depth in metres that is tolerated.
     """
     pairs = []
     for (m, a), (n, b) in combinations(enumerate(objects), 2):
@@ -83,10 +85,10 @@ def overlapping_boxes(
 
 
 def overlap_depth_m(a: Any, b: Any) -> float:
-    """Return how far two boxes must be moved, along one of their axes, to separate; 0 if disjoint.
+    """Return the smallest displacement in metres that separates two boxes, or 0 if disjoint.
 
-    Boxes are upright and turned about z: they are disjoint where a side of one separates them in
-    plan, or a height does (the separating axis theorem).
+    Boxes are upright and rotated about z. They are disjoint if a side of either box separates them
+    in plan, or if they do not overlap in height (separating axis theorem).
     """
     gap_z = abs(a.center_m[2] - b.center_m[2])
     depths = [(a.size_m[2] + b.size_m[2]) / 2 - gap_z]
@@ -108,14 +110,15 @@ def out_of_bounds(
     tolerance_m: float = OUTSIDE_M,
     floor_z_m: float = 0.0,
 ) -> list[int]:
-    """Return the indices of objects of which a part lies outside the room.
+    """Return the indices of objects that extend outside the room.
 
     Args:
-        objects: as for ``overlapping_boxes``.
-        floor_polygon_m: float [N, 2], the room's inner outline, simple, in either direction.
-        height_m: where the ceiling hangs, over the floor; None = unknown.
-        tolerance_m: how far a box may reach out.
-        floor_z_m: how high the floor lies.
+        objects: Objects, as for ``overlapping_boxes``.
+        floor_polygon_m: Inner outline of the room, float [N, 2], a simple polygon in either
+            direction.
+        height_m: Height of the ceiling above the floor in metres. None ignores the ceiling.
+        tolerance_m: Distance in metres that a box may extend outside.
+        floor_z_m: z coordinate of the floor in metres.
     """
     polygon = np.asarray(floor_polygon_m, np.float64)
     if polygon.ndim != 2 or polygon.shape[1] != 2 or len(polygon) < 3:
@@ -133,7 +136,7 @@ def out_of_bounds(
 def out_of_rooms(
     objects: Sequence[Any], rooms: Sequence[Layout], tolerance_m: float = OUTSIDE_M
 ) -> list[int]:
-    """Return the indices of objects that lie wholly within none of several rooms."""
+    """Return the indices of objects that are not completely inside any of several rooms."""
     outside = set(range(len(objects)))
     for room in rooms:
         outside &= set(
@@ -145,11 +148,11 @@ def out_of_rooms(
 
 
 def category_integrity(built: Collection[int], true: Collection[int]) -> float:
-    """Return the paper's semantic integrity: the share of the true categories that are there.
+    """Return the paper's semantic integrity: the share of the true categories that are present.
 
     Args:
-        built: the object classes, 5 to 11, of the scene; others are left out.
-        true: those of the true room. Without any, nothing is missing and the share is 1.
+        built: Class ids of the scene. Only object classes, 5 to 11, are counted.
+        true: Class ids of the true room. The result is 1 if there are none.
     """
     wanted = set(true) & set(OBJECT_CLASSES)
     return len(wanted & set(built)) / len(wanted) if wanted else 1.0
@@ -161,16 +164,18 @@ def kept_objects(
     grid: OccupancyGrid,
     least_share: float = 0.5,
 ) -> list[int]:
-    """Return the indices of objects that blocks still show in their place, as their class.
+    """Return the indices of objects that are still represented by blocks of their class.
 
-    An object is kept where at least ``least_share`` of its cells lie in, or within one block of, a
-    block of its own number and class: what stands on a table goes up to the next free block.
+    An object is kept if at least ``least_share`` of its cells are in, or within one block of, a
+    block with its object id and class. The margin of one block accounts for objects on tables,
+    which move up to the next free block.
 
     Args:
-        volume: what was built.
-        instances: what was found.
-        grid: where the objects' cells lie.
-        least_share: how many of its cells are enough. Half: a template leaves out what is noise.
+        volume: The build.
+        instances: The detected objects.
+        grid: Grid with the cells of the objects.
+        least_share: Minimum share of an object's cells. The default is a half, because templates
+            omit noise.
     """
     room_to_block = invert(volume.block_to_room)
     reach_m = max(grid.voxel_m, 1 / volume.blocks_per_metre)
@@ -192,13 +197,13 @@ def kept_objects(
 
 
 def floaters(labels: np.ndarray) -> Floaters:
-    """Return the connected parts of a label grid that hold objects and touch no structure.
+    """Return the connected parts of a label grid that contain objects but touch no structure.
 
-    Cells touch where they share a face, an edge or a corner. Objects that stand on a floor, lie
-    on a table that does, or hang on a wall or a ceiling are carried.
+    Cells are connected by a face, an edge or a corner. Objects on a floor, on a table on a floor,
+    on a wall or on a ceiling are supported.
 
     Args:
-        labels: uint8 [X, Y, Z], ids 0 to 11 or 255.
+        labels: Labels, uint8 [X, Y, Z], ids 0 to 11 or 255.
     """
     is_object = np.isin(labels, OBJECT_CLASSES)
     structure = np.isin(labels, STRUCTURE_CLASSES)
@@ -210,7 +215,7 @@ def floaters(labels: np.ndarray) -> Floaters:
 
 
 def plan_corners_m(item: Any) -> np.ndarray:
-    """Return the four corners of an object's box seen from above, float64 [4, 2], in order."""
+    """Return the four corners of an object's box seen from above, in order, float64 [4, 2]."""
     turned = hasattr(item, "yaw_deg")
     angle = np.radians(item.yaw_deg if turned else 90.0 * item.quarter_turns)
     forward = np.array([np.cos(angle), np.sin(angle)])
@@ -238,7 +243,7 @@ def _outline_m(item: Any) -> np.ndarray:
 
 
 def inside_polygon(points_m: np.ndarray, polygon_m: np.ndarray, tolerance_m: float) -> np.ndarray:
-    """Return, bool [M], which points [M, 2] lie in a polygon [N, 2] or near its outline."""
+    """Return which points [M, 2] are inside a polygon [N, 2] or near its outline, as bool [M]."""
     start, end = polygon_m, np.roll(polygon_m, -1, axis=0)
     side = end - start
     to_point = points_m[:, None] - start[None]

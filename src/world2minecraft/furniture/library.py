@@ -1,9 +1,9 @@
-"""The furniture library L of the paper: names to templates, and the library as a table.
+"""The furniture library L of the paper: templates by name, and the library as a table.
 
-A template is a data file in ``designs/`` (one file each), a file of the user's own, or comes from
-a package outside through the entry point group ``world2minecraft.template``, which names a
-``Template``. Objects are matched against those that say so; the others of a family are chosen
-after the match. docs/furniture-library.md shows the table, by class.
+A template is a data file in ``designs/``, a file of the user, or a ``Template`` of another package
+that is registered in the entry point group ``world2minecraft.template``. Objects are only matched
+against templates with ``matched``; other templates of the family are chosen after the match.
+docs/furniture-library.md contains the table, by class.
 """
 
 from collections.abc import Iterable
@@ -57,7 +57,7 @@ MATCH_ORDER = (
 
 
 def group_by_class(templates: Iterable[Template]) -> dict[str, list[Template]]:
-    """Return templates under the heading of their class, classes in order, none empty."""
+    """Group templates by the heading of their class, in class order without empty groups."""
     every = list(templates)
     found = {
         HEADINGS[CLASS_NAMES[number]]: [one for one in every if one.class_id == number]
@@ -67,7 +67,7 @@ def group_by_class(templates: Iterable[Template]) -> dict[str, list[Template]]:
 
 
 def templates_to_markdown(templates: Iterable[Template]) -> str:
-    """Return a table a class in Markdown: a row a template, with a star where it is matched."""
+    """Return a Markdown table for each class, with a row per template; a star marks matched ones."""
     tables = []
     for heading, members in group_by_class(templates).items():
         rows = [_row(COLUMNS), _row(["---"] * len(COLUMNS)), *map(markdown_row, members)]
@@ -76,7 +76,7 @@ def templates_to_markdown(templates: Iterable[Template]) -> str:
 
 
 def markdown_row(one: Template) -> str:
-    """Return a template's row: smallest, usual and largest sizes in metres, and what else."""
+    """Return the row of a template: its size ranges in metres and other properties."""
     sizes = [_span(span) for span in one.size_m]
     known = ", ".join(f"{name} {_span(span)}" for name, span in one.parameters.items()) or "none"
     name = f"{one.name} \\*" if one.matched else one.name
@@ -94,22 +94,23 @@ def _span(span: Span) -> str:
 
 
 class Library(Registry):
-    """Templates by name: the library's design files, then those of other packages."""
+    """Templates by name: built-in designs, then user files and templates of other packages."""
 
     def __init__(self):
         super().__init__("template", {})
 
     def names(self) -> tuple[str, ...]:
-        """All names: those that are matched first in their order, then the others, sorted."""
+        """All names: first the matched templates in order, then the others, sorted."""
         own = builtin_design_files()
         rest = sorted({*own, *user_design_files(), *super().names()} - set(MATCH_ORDER))
         return (*(name for name in MATCH_ORDER if name in own), *rest)
 
     def load(self, name: str) -> Template:
-        """Return the template of this name.
+        """Return the template of a given name.
 
         Raises:
-            UnknownNameError: there is none. InputError: its file is no design.
+            UnknownNameError: If no template has this name.
+            InputError: If its file is not a valid design.
         """
         if name in builtin_design_files():
             return read_design(builtin_design_files()[name])
@@ -120,7 +121,7 @@ class Library(Registry):
 
 @cache
 def builtin_design_files() -> dict[str, Path]:
-    """Return the library's design files by name, sorted."""
+    """Return the design files of the library by name, sorted."""
     folder = Path(str(files("world2minecraft.furniture"))) / "designs"
     return {path.stem: path for path in sorted(folder.glob("*.json"))}
 
@@ -130,23 +131,23 @@ TEMPLATES = Library()
 
 @cache
 def template(name: str) -> Template:
-    """Return the template of this name.
+    """Return the template of a given name.
 
     Raises:
-        UnknownNameError: the library has none; the message suggests the nearest.
+        UnknownNameError: If no template has this name. The message suggests the closest name.
     """
     return TEMPLATES.load(name)
 
 
 @cache
 def templates_of_class(class_id: int) -> tuple[Template, ...]:
-    """Return the templates of a class that objects are matched against, in the library's order."""
+    """Return the templates that objects of a class are matched against, in library order."""
     every = (template(name) for name in TEMPLATES.names())
     return tuple(one for one in every if one.class_id == class_id and one.matched)
 
 
 @cache
 def variants_of(family: str) -> tuple[Template, ...]:
-    """Return all templates of a family, in the library's order."""
+    """Return all templates of a family, in library order."""
     every = (template(name) for name in TEMPLATES.names())
     return tuple(one for one in every if one.family == family)

@@ -1,8 +1,9 @@
 """Materials of furniture roles, and their vanilla blocks in each shape.
 
-``data/materials.json`` holds the kinds: wood, cloth, paint, glass, stone and metal, each with its
-values (oak, red, smooth_quartz) and the block of every shape. ``plain`` is whatever full block
-has the right colour; ``fixed`` is one block for good. A shape that the game lacks is none.
+``data/materials.json`` contains the kinds wood, cloth, paint, glass, stone and metal, each with its
+values (oak, red, smooth_quartz) and the block of every shape. ``plain`` stands for any full block
+of the right colour, ``fixed`` for one particular block. Shapes that do not exist in the game are
+omitted.
 """
 
 import json
@@ -19,7 +20,7 @@ PLAIN_KINDS = ("paint", "stone", "wood")
 
 
 class Swatch(NamedTuple):
-    """One material that a role may be made of, and the block whose colour shows it."""
+    """A material that a role may have, and the block that shows its colour."""
 
     kind: str
     value: str
@@ -27,7 +28,7 @@ class Swatch(NamedTuple):
 
 
 class Kind(NamedTuple):
-    """A kind of material: its values, the block of each shape, and those chosen by colour."""
+    """A kind of material: its values, the block of each shape, and the blocks chosen by colour."""
 
     blocks: Mapping[str, Mapping[str, str]]  # value -> shape -> block
     chosen: tuple[str, ...]
@@ -35,13 +36,13 @@ class Kind(NamedTuple):
 
 @dataclass(frozen=True)
 class Material:
-    """What a role is made of.
+    """The material of a role.
 
-    kind: one of ``kinds()``, ``plain`` or ``fixed``.
-    value: which of the kind; the full block's name for ``plain`` and ``fixed``.
-    takes_colour: whether it takes the real object's colour, by another value of the kind; a
-        ``fixed`` one gives way to plain blocks where the object is of quite another colour.
-    shapes: the blocks of a ``fixed`` one by shape, beside its full block.
+    kind: A kind of ``kinds()``, ``plain`` or ``fixed``.
+    value: Value of the kind, or the name of the full block for ``plain`` and ``fixed``.
+    takes_colour: Whether to use the value of the kind that best matches the real object's colour. A
+    ``fixed`` material is replaced by plain blocks if the object's colour is very different.
+    shapes: Blocks of a ``fixed`` material by shape, besides its full block.
     """
 
     kind: str
@@ -62,7 +63,7 @@ class Material:
             raise ValueError(f"unknown {self.kind} {self.value!r}; known: {known}")
 
     def block(self, shape: str) -> str | None:
-        """Return the name of its block of a shape, such as ``minecraft:oak_slab``, or None."""
+        """Return the block name for a shape, such as ``minecraft:oak_slab``, or None."""
         if self.kind == FIXED:
             name = dict(self.shapes).get(shape, self.value if shape == "full" else None)
             return name and f"minecraft:{name}"
@@ -77,7 +78,7 @@ class Material:
 
 
 class BlockUse(NamedTuple):
-    """Where a block stands in the table of materials."""
+    """The position of a block in the table of materials."""
 
     kind: str
     value: str
@@ -86,7 +87,7 @@ class BlockUse(NamedTuple):
 
 @cache
 def kinds() -> Mapping[str, Kind]:
-    """Return the kinds of materials of ``data/materials.json``, blocks that the game has alone."""
+    """Return the kinds of materials in ``data/materials.json``, restricted to existing blocks."""
     source = files("world2minecraft.furniture") / "data" / "materials.json"
     return {name: _kind(raw) for name, raw in json.loads(source.read_text("utf-8")).items()}
 
@@ -103,7 +104,7 @@ def _kind(raw: Mapping) -> Kind:
 
 @cache
 def block_uses(block: str) -> tuple[BlockUse, ...]:
-    """Return every place of a block, such as ``minecraft:oak_slab``, in the table."""
+    """Return every position of a block, such as ``minecraft:oak_slab``, in the table."""
     return tuple(
         BlockUse(name, value, shape)
         for name, kind in kinds().items()
@@ -115,7 +116,10 @@ def block_uses(block: str) -> tuple[BlockUse, ...]:
 
 @cache
 def list_swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
-    """Return the materials of a kind that have all the shapes; ``plain`` has those of three."""
+    """Return the materials of a kind that have all of the given shapes.
+
+    ``plain`` includes the materials of three kinds.
+    """
     names = PLAIN_KINDS if kind == PLAIN else (kind,) if kind in kinds() else ()
     return tuple(
         Swatch(name, value, kinds()[name].blocks[value]["full"])
@@ -126,13 +130,13 @@ def list_swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
 
 
 def shape_of(state: str, kind: str) -> str | None:
-    """Return the shape of a state of a kind of material, None where the kind has no such block."""
+    """Return the shape of a block state within a kind, or None if the kind has no such block."""
     names = PLAIN_KINDS if kind == PLAIN else (kind,)
     block = state.partition("[")[0]
     return next((place.shape for place in block_uses(block) if place.kind in names), None)
 
 
 def with_swatch(state: str, shape: str, swatch: Swatch) -> str:
-    """Return a state of a shape in another material; its properties stay."""
+    """Return a block state in another material, with its shape and properties unchanged."""
     _, bracket, properties = state.partition("[")
     return f"{kinds()[swatch.kind].blocks[swatch.value][shape]}{bracket}{properties}"

@@ -1,6 +1,6 @@
 """Preview volumes of one piece of furniture: on a floor, against a wall or under a ceiling.
 
-For pictures and checks of a design: what a look at it and a look for unstable blocks need.
+They are used for images and for checks of a design, such as the search for unstable blocks.
 """
 
 import numpy as np
@@ -24,18 +24,18 @@ def preview_volume(
     quarter_turns: int = 0,
     room: bool = True,
 ) -> BlockVolume | None:
-    """Return a template's vanilla design as a volume; None where it has none at this scale.
+    """Return a template's vanilla block design as a volume, or None without one at this scale.
 
     Args:
-        template: what to lay; it looks east (room +x) where it is not turned.
-        blocks_per_metre: the scale.
-        size_m: depth, width and height; the usual ones where it is None.
-        parameters: some of the template's parameters; the others are usual.
-        quarter_turns: counter-clockwise from above.
-        room: whether the floor, wall or ceiling that holds it is there too, one block thick.
+        template: The template. It faces east (room +x) if it is not rotated.
+        blocks_per_metre: Scale in blocks per metre.
+        size_m: Depth, width and height in metres. None uses the typical size.
+        parameters: Values for some of the template's parameters. The others have typical values.
+        quarter_turns: Rotation in quarter turns, counter-clockwise from above.
+        room: Whether to add the floor, wall or ceiling that supports the piece, one block thick.
 
     Raises:
-        ParameterError: the template refuses a parameter.
+        ParameterError: If the template rejects a parameter.
     """
     size = block_size(np.array(size_m or template.typical_m), blocks_per_metre)
     found = lay_template(template, size, parameters, quarter_turns)
@@ -47,7 +47,7 @@ def preview_volume(
 def preview_design(
     design: BlockDesign, template: Template, blocks_per_metre: float, quarter_turns: int, room: bool
 ) -> BlockVolume:
-    """Return a design as a volume, with what holds it where ``room`` says so."""
+    """Return a block design as a volume, with its supporting structure if ``room`` is True."""
     margin = 1 if room else 0
     states = np.zeros(np.array(design.size) + 2 * margin, np.uint16)
     palette = ["minecraft:air"]

@@ -1,4 +1,4 @@
-"""Rasterize templates to cells of a grid, and count their overlap with an object's cells."""
+"""Rasterization of templates to grid cells, and their overlap with an object's cells."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -21,18 +21,18 @@ def template_cells(
     shift: Sequence[int] = (0, 0, 0),
     voxel_m: float = 0.08,
 ) -> np.ndarray:
-    """Return the cells, int32 [N, 3], of a template whose turned box begins at ``shift``.
+    """Return the cells of a rotated template whose box starts at ``shift``, int32 [N, 3].
 
     Args:
-        template: what to rasterise.
-        size_m: depth, width and height in metres, each rounded to whole cells, one at least.
-        parameters: some of the template's parameters; the others are usual.
-        quarter_turns: counter-clockwise from above.
-        shift: the cell where the turned box begins.
-        voxel_m: the side of a cell.
+        template: The template to rasterize.
+        size_m: Depth, width and height in metres, each rounded to at least one whole cell.
+        parameters: Values for some of the template's parameters. The others have typical values.
+        quarter_turns: Rotation in quarter turns, counter-clockwise from above.
+        shift: First cell of the rotated box.
+        voxel_m: Cell size in metres.
 
     Raises:
-        ValueError: the box has more than ``MAX_CELLS`` cells, or a parameter is refused.
+        ValueError: If the box has more than ``MAX_CELLS`` cells, or if a parameter is rejected.
     """
     counts = size_in_cells(size_m, voxel_m)
     values = tuple(sorted(template.complete(parameters).items()))
@@ -53,10 +53,10 @@ def rasterize(
     values: tuple[tuple[str, float], ...],
     voxel_m: float,
 ) -> np.ndarray:
-    """Return the solid cells, bool [depth, width, height], of a template that looks to +x.
+    """Return the solid cells of a template that faces +x, bool [depth, width, height].
 
-    A part fills the cells whose centres lie in it, and at least one cell along each axis, so
-    that a thin leg or table top is never lost. Read-only, for it is cached.
+    A part fills the cells whose centres are inside it, and at least one cell along each axis, so
+    that thin legs and table tops are preserved. The result is cached and read-only.
     """
     if np.prod(counts, dtype=np.float64) > MAX_CELLS:
         raise ValueError(
@@ -90,7 +90,7 @@ def _cell_ranges(boxes: np.ndarray, counts: np.ndarray) -> list[tuple[list[int],
 
 
 def surface_cells(solid: np.ndarray) -> np.ndarray:
-    """Return the cells of a solid bool [X, Y, Z] that touch a cell outside it by a face."""
+    """Return the cells of a solid bool [X, Y, Z] that share a face with a cell outside it."""
     padded = np.pad(solid, 1)
     inner = padded.copy()
     for axis in range(3):
@@ -101,13 +101,16 @@ def surface_cells(solid: np.ndarray) -> np.ndarray:
 
 @njit
 def count_overlaps(template, code, corners):  # pragma: no cover - compiled
-    """Count own cells covered, cells against and cells beyond, for each corner; int64 [S, 3].
+    """Count the covered object cells, opposing cells and cells beyond for each corner.
+
+    Returns int64 [S, 3].
 
     Args:
-        template: bool [A, B, C], the turned template's cells, C order.
-        code: uint8 [X, Y, Z]: 1 against, 2 the object's own cell, 3 beyond it.
-        corners: int64 [S, 3], where the template's first cell lies; what falls outside the
-            window counts against.
+        template: Cells of the rotated template, bool [A, B, C], C order.
+        code: uint8 [X, Y, Z]: 1 for opposing cells, 2 for the object's own cells, 3 for cells
+            beyond the object.
+        corners: First cells of the template, int64 [S, 3]. Cells outside the window count as
+            opposing.
     """
     counts = np.zeros((len(corners), 3), np.int64)
     for x in range(template.shape[0]):

@@ -1,7 +1,7 @@
 """Solid parts of a placement: the parts of its template, or its own cells.
 
-A chair pushed under a table lies within the table's box and touches nothing of it; so whether two
-things meet is asked of their parts.
+A chair pushed under a table is inside the table's box without touching the table. Collisions are
+therefore tested between parts.
 """
 
 import numpy as np
@@ -13,21 +13,23 @@ OWN_CELLS = "cells"
 
 
 def box_m(placement: Placement) -> np.ndarray:
-    """Return the turned box of a placement, float64 [2, 3]: least and greatest corner, metres."""
+    """Return the rotated box of a placement, float64 [2, 3]: minimum and maximum corner in metres."""
     size = placement.size_m[[1, 0, 2]] if placement.quarter_turns % 2 else placement.size_m
     return np.stack([placement.center_m - size / 2, placement.center_m + size / 2])
 
 
 def solids_m(placement: Placement, grid: OccupancyGrid | None = None) -> np.ndarray:
-    """Return the solid boxes of a placement, float64 [N, 2, 3] in the room frame, metres.
+    """Return the solid boxes of a placement in the room frame in metres, float64 [N, 2, 3].
 
     Args:
-        placement: one with a template is made of the template's parts. One of own cells is made
-            of its object's cells whose centres lie in its box; without a grid, of its whole box.
-        grid: where the cells lie.
+        placement: A placement with a template consists of the template's parts. A placement of own
+            cells consists of its object's cells whose centres are in its box, or of its whole box
+            without a grid.
+        grid: Grid with the cells.
 
     Raises:
-        UnknownNameError: no template has its name. ParameterError: it refuses a parameter.
+        UnknownNameError: If the template is unknown.
+        ParameterError: If the template rejects a parameter.
     """
     if placement.template == OWN_CELLS:
         whole = box_m(placement)
@@ -43,7 +45,7 @@ def solids_m(placement: Placement, grid: OccupancyGrid | None = None) -> np.ndar
 
 
 def own_cells(placement: Placement, grid: OccupancyGrid) -> np.ndarray:
-    """Return the cells, int64 [N, 3], of a placement's object whose centres lie in its box."""
+    """Return the cells of a placement's object whose centres are in its box, int64 [N, 3]."""
     low, high = (box_m(placement) - grid.origin_m) / grid.voxel_m - 0.5
     start = np.clip(np.ceil(low - 1e-6), 0, grid.shape).astype(int)
     stop = np.clip(np.floor(high + 1e-6) + 1, start, grid.shape).astype(int)
@@ -52,10 +54,11 @@ def own_cells(placement: Placement, grid: OccupancyGrid) -> np.ndarray:
 
 
 def depth_m(one: np.ndarray, other: np.ndarray) -> float:
-    """Return how far the deepest two of two sets of boxes [N, 2, 3] must be moved to part.
+    """Return the penetration depth in metres of two sets of boxes [N, 2, 3].
 
-    It is the least way along one axis for a pair of boxes, the greatest of all pairs, and 0 where
-    none meet. So a chair's back through a thin table top counts by the back, not by the top.
+    The depth of a pair of boxes is the smallest displacement along one axis that separates them.
+    The result is the maximum over all pairs, or 0 without intersections. A chair's back through a
+    thin table top thus counts by the thickness of the back, not of the top.
     """
     if not (len(one) and len(other)):
         return 0.0

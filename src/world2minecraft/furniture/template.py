@@ -1,7 +1,7 @@
-"""Templates: parametric pieces of furniture with a named front.
+"""Templates: parametric pieces of furniture with a defined front.
 
-A template's frame: origin in the middle of its footprint, z = 0 at its bottom, its front looks to
-+x. Sizes are in the order of ``Placement.size_m``: front-to-back (x), side (y), height (z).
+The origin of a template's frame is the centre of its footprint, z = 0 is its bottom, and its front
+faces +x. Sizes are in the order of ``Placement.size_m``: front-to-back (x), side (y), height (z).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -22,30 +22,30 @@ STALE = "; recreate an outdated placements.json with --from furnish"
 
 
 class ParameterError(UsageError, ValueError):
-    """A template has no such parameter, or not with such a value."""
+    """A parameter is not defined in a template, or its value is out of range."""
 
 
 class Span(NamedTuple):
-    """The smallest, the usual and the largest value of a size in metres or of a parameter."""
+    """The minimum, typical and maximum value of a size in metres or of a parameter."""
 
     minimum: float
     typical: float
     maximum: float
 
     def clip(self, value: float) -> float:
-        """Return the value of the span that is nearest to ``value``."""
+        """Return ``value`` clipped to the range."""
         return min(max(value, self.minimum), self.maximum)
 
 
 class Part(NamedTuple):
-    """One box of a template: x0 y0 z0 x1 y1 z1 in metres, and what it is, such as ``seat``."""
+    """A box of a template: x0 y0 z0 x1 y1 z1 in metres, with its role, such as ``seat``."""
 
     box_m: np.ndarray  # float64 [6]
     role: str
 
 
 class LocalBlock(NamedTuple):
-    """One block of a design that looks east: cell (front-to-back, side, up), state and role."""
+    """A block of a design that faces east: cell (front-to-back, side, up), state and role."""
 
     cell: tuple[int, int, int]
     state: str
@@ -53,7 +53,7 @@ class LocalBlock(NamedTuple):
 
 
 class BlockSize(NamedTuple):
-    """A template's size in blocks: whole blocks that a design fills, the exact size, the scale."""
+    """A template's size in blocks: the whole blocks of a design, the exact size and the scale."""
 
     depth: int
     width: int
@@ -71,23 +71,22 @@ Design = Callable[[BlockSize, Look], Sequence[LocalBlock]]
 class Template:
     """A parametric piece of furniture.
 
-    name: as in ``Placement.template``.
-    class_id: its object class, 5 to 11.
-    size_m: how deep, wide and high such furniture is; a match looks no further.
-    build: parts of a given depth, width, height and look.
-    design: its vanilla blocks; none where its parts are to be built instead.
-    parameters: the names that ``build`` knows.
-    turns: how many quarter turns give different shapes: 4, 2 (its half turn is itself), or 1.
-    mount: ``floor`` (stands on the floor), ``wall`` (hangs on one), ``ceiling`` (hangs from it)
-        or ``any``.
-    title: what people call it; the name in words where none is given.
-    family: which templates are of one shape, so that one may stand for another.
-    materials: what each role is made of; without any, blocks are recoloured by their names.
-    options: the choices that its family offers, as this template makes them.
-    clearance_m: the room that it needs before its front, behind it and at each side.
-    matched: whether objects are matched against it; others are chosen after the match.
-    suits: the colours, sRGB, of things that rather are of this design than of another of its
-        family; empty suits all.
+    name: Name, as in ``Placement.template``.
+    class_id: Object class, 5 to 11.
+    size_m: Ranges of depth, width and height in metres, which limit matching.
+    build: Function from a depth, width, height and look to parts.
+    design: Function that returns vanilla blocks, or none if the parts should be built instead.
+    parameters: Ranges of the parameters of ``build``.
+    turns: Number of quarter turns with different shapes: 4, 2 (symmetric under a half turn) or 1.
+    mount: ``floor``, ``wall``, ``ceiling`` or ``any``.
+    title: Display name. The default is the name in words.
+    family: Name shared by templates of the same shape, which can replace each other.
+    materials: Material of each role. Without materials, blocks are recoloured by their names.
+    options: Values of the options of its family.
+    clearance_m: Free space required in front, behind and at each side, in metres.
+    matched: Whether objects are matched against this template. Others are chosen after the match.
+    suits: sRGB colours of objects for which this design is preferred within its family. Empty for
+    all colours.
     """
 
     name: str
@@ -123,16 +122,16 @@ class Template:
 
     @property
     def typical_m(self) -> tuple[float, float, float]:
-        """The usual size."""
+        """The typical size in metres."""
         depth, width, height = (span.typical for span in self.size_m)
         return depth, width, height
 
     def complete(self, parameters: Parameters | None = None) -> dict[str, float]:
-        """Return every parameter of the template, the usual value where none is given.
+        """Return the values of all parameters, with typical values for those that are not given.
 
         Raises:
-            ParameterError: a name is unknown, or a value lies outside its span, as in the
-                placements of another version; it is a ValueError too.
+            ParameterError: If a name is unknown or a value is out of range, as may happen with
+                placements of another version. It is also a ValueError.
         """
         given = dict(parameters or {})
         for name, value in given.items():
@@ -152,30 +151,32 @@ class Template:
         }
 
     def parts(self, size_m: np.ndarray, parameters: Parameters | None = None) -> tuple[Part, ...]:
-        """Return the boxes of a template of any size, in its own frame.
+        """Return the boxes of a template of a given size, in its own frame.
 
         Args:
-            size_m: depth, width and height in metres, each above 0.
-            parameters: some of the template's parameters; the others are usual.
+            size_m: Depth, width and height in metres, each above 0.
+            parameters: Values for some of the template's parameters. The others have typical
+                values.
 
         Raises:
-            ValueError: a size is not above 0. ParameterError: ``complete`` refuses a parameter.
+            ValueError: If a size is not above 0.
+            ParameterError: If ``complete`` rejects a parameter.
         """
         depth, width, height = (checks.positive("size_m", float(side)) for side in size_m)
         return tuple(self.build(depth, width, height, self.look(parameters)))
 
     def look(self, parameters: Parameters | None = None) -> Look:
-        """Return what its build and its design go by: parameters, options and materials.
+        """Return the look for ``build`` and ``design``: parameters, options and materials.
 
         Raises:
-            ParameterError: ``complete`` refuses a parameter.
+            ParameterError: If ``complete`` rejects a parameter.
         """
         return Look(self.name, self.complete(parameters), self.options, self.materials)
 
     def blocks(self, size: BlockSize, parameters: Parameters | None = None) -> list[LocalBlock]:
-        """Return its vanilla blocks at a size; none where its parts are to be built instead.
+        """Return the vanilla blocks for a size, or none if the parts should be built instead.
 
         Raises:
-            ParameterError: ``complete`` refuses a parameter.
+            ParameterError: If ``complete`` rejects a parameter.
         """
         return list(self.design(size, self.look(parameters)))

@@ -1,7 +1,7 @@
-"""The look of one piece of furniture: its parameters, options and materials.
+"""The look of a piece of furniture: its parameters, options and materials.
 
-A family makes its parts and its blocks from a look. It reads as the mapping of its parameters, so
-that ``look["seat_height"]`` is a number in metres or a share.
+A family builds its parts and blocks from a look. The look is a mapping of its parameters:
+``look["seat_height"]`` is a number in metres, or a ratio.
 """
 
 from collections.abc import Iterator, Mapping
@@ -10,7 +10,7 @@ from world2minecraft.furniture.materials import Material
 
 
 class Look(Mapping[str, float]):
-    """The parameters, options and materials of one template."""
+    """The parameters, options and materials of a template."""
 
     def __init__(
         self,
@@ -33,19 +33,19 @@ class Look(Mapping[str, float]):
         return len(self._parameters)
 
     def option(self, name: str) -> str:
-        """Return the choice that the design makes for one of its family's options."""
+        """Return the value that the design has for one of its family's options."""
         return self._options[name]
 
     def has(self, role: str, *shapes: str) -> bool:
-        """Whether a role's material has a block of each of these shapes."""
+        """Return whether the material of a role has blocks of all given shapes."""
         material = self._materials.get(role)
         return material is not None and all(material.block(shape) for shape in shapes)
 
     def state(self, role: str, shape: str = "full", **properties: str) -> str:
-        """Return the state of a role's material in a shape, such as ``minecraft:oak_slab[...]``.
+        """Return the block state of a role's material in a shape, such as ``minecraft:oak_slab``.
 
         Raises:
-            ValueError: the design gives the role no material, or one that has no such shape.
+            ValueError: If the role has no material, or if its material does not have the shape.
         """
         material = self._materials.get(role)
         if material is None:

@@ -1,4 +1,4 @@
-"""Validation of templates, for writers of templates of the library and of others."""
+"""Validation of furniture templates, for authors of templates."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -15,12 +15,13 @@ DESIGN_SCALES = (1.0, 2.0, 4.0)
 
 
 def check_template(template: Template) -> tuple[str, ...]:
-    """Return what is wrong with a template, one sentence each; nothing where it is sound.
+    """Return the problems of a template as sentences, or an empty list for a valid template.
 
-    At its smallest, usual and largest size and with each parameter at either end of its span:
-    parts have a volume and lie in the box, they reach its bottom, top and sides, and none
-    floats: each hangs together with one on the floor (for a wall's, at the back). The turns it
-    states are those of its shape. Its block design stays in its box at 1, 2 and 4 blocks per metre.
+    The template is checked at its minimum, typical and maximum size, and with each parameter at
+    either end of its range. Parts must have a volume and be inside the bounding box, reach its
+    bottom, top and sides, and be connected to a part on the floor (for wall furniture, at the
+    back). ``turns`` must match the symmetry of the shape. The block design must be inside its
+    bounding box at 1, 2 and 4 blocks per metre.
     """
     problems: dict[str, None] = {}
     for size, parameters in _cases(template):

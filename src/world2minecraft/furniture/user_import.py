@@ -1,7 +1,7 @@
-"""Import blocks that someone built as a piece of furniture, as ``user_library`` stores it.
+"""Import of blocks as a piece of furniture in the format of ``user_library``.
 
-The box of the blocks is trimmed of air and turned so that its front looks east. What is seen of
-each block gives the metric boxes, by which a match knows the piece.
+The volume is cropped to its blocks and rotated so that its front faces east. The visible shapes of
+the blocks give the metric boxes that are used for matching.
 """
 
 from collections import Counter
@@ -34,7 +34,7 @@ INVISIBLE = ("air", "cave_air", "void_air", "structure_void", "barrier", "light"
 
 
 class ImportRequest(NamedTuple):
-    """What the one who adds a piece says of it; None leaves it to the blocks."""
+    """The user's description of a piece of furniture. None derives a value from the blocks."""
 
     name: str
     kind: str  # chair, bed, sofa, table, tvs, furn or objs
@@ -48,7 +48,7 @@ class ImportRequest(NamedTuple):
 
 
 class ImportedFurniture(NamedTuple):
-    """The content of an own file, and what its adder should know."""
+    """The contents of a user furniture file, with notes for the user."""
 
     content: dict[str, Any]
     front: str
@@ -56,15 +56,15 @@ class ImportedFurniture(NamedTuple):
 
 
 def import_blocks(volume: BlockVolume, wish: ImportRequest) -> ImportedFurniture:
-    """Return the file of a piece that is built of a volume's blocks.
+    """Return the user furniture file for a piece built from the blocks of a volume.
 
     Args:
-        volume: the blocks; block entities and entities are left behind.
-        wish: what it is called, what it is, and its scale.
+        volume: The blocks. Block entities and entities are ignored.
+        wish: Name, class, scale and other properties of the piece.
 
     Raises:
-        UsageError: the wish or the blocks cannot be: no blocks, too many, an unknown class, no
-            front to be seen.
+        UsageError: If the request or the blocks are invalid: no blocks, too many blocks, an unknown
+            class, or no recognizable front.
     """
     _check(wish)
     trimmed = _trim(volume)
@@ -167,10 +167,10 @@ def _join_connections(volume: BlockVolume) -> BlockVolume:
 
 
 def front_of(volume: BlockVolume, kind: str) -> str | None:
-    """Return the side to which most blocks that have a front look; None where none has.
+    """Return the side that most directional blocks face, or None without such blocks.
 
-    Stairs and beds rise to where they face, so what one sits or lies on looks the other way; a
-    barrel, a chest or a furnace looks where it faces. Doors and what hangs on walls tell nothing.
+    Stairs and beds rise towards their facing, so the front is on the opposite side. Barrels, chests
+    and furnaces face the front. Doors and wall-mounted blocks are ignored.
     """
     votes: Counter[str] = Counter()
     counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))

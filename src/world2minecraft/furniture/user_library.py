@@ -1,8 +1,8 @@
-"""Furniture of the user's own: block for block, one file per piece in a folder of the user's.
+"""The user's own furniture, block by block, with one file per piece in a user folder.
 
-A file holds the blocks as they were built, at the scale they were built at, and the boxes that
-they show; ``user_import`` makes it. At its own scale the piece is those blocks; at any other its
-boxes are fitted like any template's. A design file of a family may lie in the folder too.
+A file contains the original blocks with their scale, and the boxes that they form. ``user_import``
+creates such files. At its own scale the piece consists of exactly these blocks. At other scales its
+boxes are fitted like those of any template. The folder may also contain design files of a family.
 """
 
 import math
@@ -34,9 +34,10 @@ NEAR_SCALE = 1.26  # Up to this factor off its scale a piece keeps its blocks: a
 def user_design_folder(
     environment: Mapping[str, str] = os.environ, platform: str = sys.platform
 ) -> Path:
-    """Return where the user's own furniture lies; it need not be there.
+    """Return the folder of the user's furniture, which may not exist.
 
-    ``W2M_FURNITURE`` names it, else it is ``world2minecraft/furniture`` in the folder of settings.
+    It is ``W2M_FURNITURE`` if this variable is set, else ``world2minecraft/furniture`` in the
+    settings folder.
     """
     if environment.get("W2M_FURNITURE"):
         return Path(environment["W2M_FURNITURE"])
@@ -47,7 +48,7 @@ def user_design_folder(
 
 
 def user_design_files() -> dict[str, Path]:
-    """Return the user's furniture files by name, sorted; files of other names are no furniture."""
+    """Return the user's furniture files by name, sorted. Files with other names are ignored."""
     folder = user_design_folder()
     if not folder.is_dir():
         return {}
@@ -56,10 +57,10 @@ def user_design_files() -> dict[str, Path]:
 
 
 def check_name(name: str) -> str:
-    """Return a name that a piece may have.
+    """Check the name of a piece of furniture, and return it.
 
     Raises:
-        UsageError: it is none.
+        UsageError: If the name is invalid.
     """
     if not NAME.fullmatch(name):
         raise UsageError(
@@ -70,11 +71,12 @@ def check_name(name: str) -> str:
 
 
 def read_user_design(path: Path) -> Template:
-    """Return the template that a file of the user's own holds.
+    """Read the template in a user furniture file.
 
     Raises:
-        InputError: the file cannot be read. DamagedFileError: it says what none may.
-        LimitError: it is too large.
+        InputError: If the file cannot be read.
+        DamagedFileError: If the contents are invalid.
+        LimitError: If the file is too large.
     """
     raw = read_json(path, MAX_BYTES)
     try:
@@ -92,10 +94,10 @@ def read_user_design(path: Path) -> Template:
 
 
 def template_from_json(raw: Mapping[str, Any]) -> Template:
-    """Return the template of a file's content.
+    """Return the template for the contents of a user furniture file.
 
     Raises:
-        ValueError: a key is missing or wrong; it says which and what was expected.
+        ValueError: If a key is missing or invalid. The message names the key and the valid values.
     """
     kind = _text(raw, "class")
     if kind not in CLASS_NAMES or CLASS_NAMES.index(kind) not in OBJECT_CLASSES:
@@ -132,10 +134,10 @@ def template_from_json(raw: Mapping[str, Any]) -> Template:
 
 @lru_cache(maxsize=4096)
 def material_of(role: str, recoloured: bool) -> Material:
-    """Return what a role of an own piece is made of: the block whose name the role is.
+    """Return the material of a role of user furniture, where the role is a block name.
 
-    A block of a known kind takes another value of its kind where ``recoloured`` says so; any
-    other is that block for good, drawn as the full block that comes nearest to it in colour.
+    A block of a known kind can be recoloured within its kind if ``recoloured`` is True. Any other
+    block is fixed, and rendered as the full block with the most similar colour.
     """
     places = [place for place in block_uses(f"minecraft:{role}") if place.shape != "bed"]
     if places and recoloured:
@@ -185,7 +187,7 @@ def _blocks(raw: Mapping[str, Any]) -> tuple[LocalBlock, ...]:
 
 
 def role_of(state: str) -> str:
-    """Return the role of a block of an own piece: its name, without namespace and properties."""
+    """Return the role of a block: its name without namespace and properties."""
     return state.partition("[")[0].rpartition(":")[2]
 
 

@@ -1,1 +1,1 @@
-"""The shapes of furniture, as metric parts and as vanilla blocks; ``family.py`` names each."""
+"""The furniture families, as metric parts and vanilla blocks; ``family.py`` defines ``Family``."""

@@ -1,4 +1,4 @@
-"""The bathroom: toilets, tubs, basins, showers."""
+"""Bathroom furniture families: toilets, tubs, basins, showers."""
 
 from typing import Literal
 

@@ -1,7 +1,7 @@
-"""Beds for one, for two, and one over another.
+"""Bed families: single beds, double beds and bunk beds.
 
-At one block per metre they are the game's own beds, side by side. At more, where those are too
-short, a mattress of wool lies on a frame, under a blanket in the bed's colour.
+At one block per metre they are the game's own beds, side by side. At larger scales, at which those
+are too short, they have a wool mattress on a frame, and a blanket in the bed's colour.
 """
 
 from world2minecraft.furniture.block_plan import Plan

@@ -1,7 +1,7 @@
-"""Closed cases: chests of drawers, sideboards, wardrobes, glass cabinets, chests with a lid.
+"""Closed storage families: chests of drawers, sideboards, wardrobes, glass cabinets, chests.
 
-Where the depth leaves room before the body, doors are plates or carry buttons as handles; else
-the foremost blocks are the ``face``, such as barrels.
+If the depth leaves space in front of the body, doors are plates or have buttons as handles.
+Otherwise the front blocks have the role ``face``, such as barrels.
 """
 
 from collections.abc import Sequence

@@ -1,7 +1,7 @@
-"""Seats for one that people move: chairs, swivel chairs and stools.
+"""Chair families: movable seats for one person, such as chairs, swivel chairs and stools.
 
-At one block per metre a chair is a stair. At two it has a back of an open trapdoor on it, and from
-three on legs, a seat at its height and a back.
+At one block per metre a chair is a stair. At two blocks per metre an open trapdoor is added as its
+back. From three blocks per metre it has legs, a seat at the correct height and a back.
 """
 
 from world2minecraft.furniture.block_plan import Plan

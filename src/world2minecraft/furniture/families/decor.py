@@ -1,4 +1,4 @@
-"""Decor: fireplaces, clocks, aquariums, pianos, bicycles and small things on boards."""
+"""Decoration families: fireplaces, clocks, aquariums, pianos, bicycles and small objects."""
 
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import column, part, slab

@@ -1,7 +1,8 @@
-"""Fronts that stand out a little: how deep the solid body is, and what is put on its face.
+"""Fronts of cupboards: the depth of the solid body, and the plates and handles on its face.
 
-A cupboard of 0.6 m is 1.2 blocks deep at two blocks a metre: one block of body, and a plate or a
-handle in the cell before it, which is as deep as the rest. So a front needs no depth of its own.
+A cupboard of 0.6 m is 1.2 blocks deep at two blocks per metre: one block for the body, and a plate
+or a handle in the cell in front of it, which fills the rest. The front thus needs no whole block of
+its own.
 """
 
 from typing import NamedTuple
@@ -15,22 +16,22 @@ COARSE = 1.5  # Up to so many blocks a metre a front beyond the body would be in
 
 
 class Body(NamedTuple):
-    """The cells of a body: how many are solid, front to back, and the cell of its front."""
+    """The cells of a cupboard body: the number of solid cells in depth, and the cell of its front."""
 
     depth: int
     front: int | None  # i of the cell before the body, None where the size leaves none
 
     @property
     def face(self) -> int:
-        """The i of the foremost solid cell."""
+        """The index i of the foremost solid cell."""
         return self.depth - 1
 
 
 def body_of(size: BlockSize) -> Body:
-    """Return how deep the solid body of a size is, and where its front stands.
+    """Return the depth of the solid body for a size, and the position of its front.
 
-    Where the depth is whole blocks, or rounds up to them, the front stands out by its own
-    thickness; the build sets the body at its place all the same.
+    If the depth is a whole number of blocks, or rounds up to one, the front protrudes by its own
+    thickness. The body is nevertheless placed correctly.
     """
     whole = int(size.exact[0])
     rest = size.exact[0] - whole
@@ -40,14 +41,14 @@ def body_of(size: BlockSize) -> Body:
 
 
 def handles(plan: Plan, body: Body, role: str, j: Numbers, k: Numbers) -> None:
-    """Put buttons on the face of a body, where the size leaves room for them."""
+    """Place buttons as handles on the face of a body, if the size leaves space for them."""
     if body.front is not None:
         properties = {"face": "wall", "facing": "east", "powered": "false"}
         plan.put(role, body.front, j, k, "button", **properties)
 
 
 def panels(plan: Plan, body: Body, role: str, j: Numbers, k: Numbers) -> None:
-    """Hang upright plates on the face of a body; where there is no room, the face itself is it."""
+    """Place upright plates on the face of a body, or replace the face if there is no space."""
     if body.front is None:
         plan.put(role, body.face, j, k)
     else:
@@ -55,7 +56,7 @@ def panels(plan: Plan, body: Body, role: str, j: Numbers, k: Numbers) -> None:
 
 
 def door_columns(width: int, per_metre: float) -> list[int]:
-    """Return the columns j with a handle: one for each door, doors in pairs about their middle."""
+    """Return the columns j with a handle, one per door, with doors in pairs about their centre."""
     if per_metre < 3:
         return list(range(width))
     if width < 4:
@@ -69,7 +70,7 @@ def door_columns(width: int, per_metre: float) -> list[int]:
 
 
 def faces(plan: Plan, role: str, i: Numbers, j: Numbers, k: Numbers) -> None:
-    """Lay whole blocks of a role whose own front, where they have one, looks to the front."""
+    """Place whole blocks of a role, with the front of directional blocks towards the front."""
     state = plan.look.state(role)
     block = block_table().blocks.get(state)
     turnable = block is not None and any(name == "facing" for name, _ in block.properties)

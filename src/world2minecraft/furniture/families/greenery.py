@@ -1,7 +1,7 @@
-"""Plants in pots, in boxes and under the ceiling.
+"""Plant families: plants in pots, in boxes and below the ceiling.
 
-Leaves are persistent, so that they stay without a tree, and nothing here grows: no saplings, vines
-or bamboo but in flower pots.
+Leaves are persistent, so that they do not decay without a tree. Nothing grows: saplings, vines and
+bamboo are only used in flower pots.
 """
 
 from world2minecraft.furniture.block_plan import Plan

@@ -1,6 +1,6 @@
-"""Flat hangings: curtains, blinds, pictures, mirrors, radiators, rugs on the floor.
+"""Flat hanging families: curtains, blinds, pictures, mirrors and radiators; also rugs.
 
-Nothing here holds on to the wall: plates, panes and wool stand by themselves in the game.
+No block needs the support of a wall: plates, panes and wool stay in place on their own in the game.
 """
 
 from world2minecraft.furniture.block_plan import Plan

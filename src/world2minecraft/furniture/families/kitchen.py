@@ -1,7 +1,6 @@
-"""The kitchen: counters, sinks, cookers, fridges, hoods.
+"""Kitchen furniture families: counters, sinks, cookers, fridges, hoods.
 
-A worktop is upside-down stairs: half a block of stone that stands out over a dark groove, as
-worktops do over the doors below.
+A worktop consists of upside-down stairs: half a block of stone that overhangs the doors below it.
 """
 
 from world2minecraft.furniture.block_plan import Plan

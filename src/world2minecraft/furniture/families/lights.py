@@ -1,7 +1,7 @@
-"""Lamps that stand, hang or stick out of a wall.
+"""Lamp families: standing, hanging and wall lamps.
 
-A shade wider than a block is a glowing block in four plates; nothing here needs a wall to hold it,
-and what hangs holds on to its own chain.
+A shade wider than a block is a luminous block with four plates. No block needs the support of a
+wall, and hanging lamps are supported by their own chain.
 """
 
 from world2minecraft.furniture.block_plan import Plan, Side
@@ -21,7 +21,7 @@ AROUND: dict[Side, tuple[int, int]] = {
 
 
 def shade(plan: Plan, i: int, j: int, rows: range) -> None:
-    """Lay a glowing column and stand a plate at each of its sides."""
+    """Place a luminous column with a plate at each of its sides."""
     plan.put("light", i, j, rows)
     for side, (di, dj) in AROUND.items():
         plan.panel("shade", i + di, j + dj, rows, side)

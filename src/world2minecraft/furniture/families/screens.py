@@ -1,7 +1,8 @@
-"""Screens: on a wall, or on a foot.
+"""Screen families: screens on a wall or on a foot.
 
-A thin one is of panes, which join side by side to one dark plate. One block wide a pane would be a
-post, so that is a panel, or at few blocks a metre a whole block: a panel is brown, a screen is not.
+A thin screen consists of panes, which join side by side to one dark plate. A single pane would be a
+post, so a screen that is one block wide is a panel, or a whole block at few blocks per metre,
+because panels are brown and screens are not.
 """
 
 from world2minecraft.furniture.block_plan import Plan

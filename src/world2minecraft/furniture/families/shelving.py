@@ -1,7 +1,7 @@
-"""Open storage: bookcases, cubes, boards on a wall, racks.
+"""Open storage families: bookcases, cube shelves, wall shelves, racks.
 
-A row of things and the board over it take one and a half blocks, so boards are upper slabs: books
-stand on a board, and air is between them and the next.
+A row of objects and the board above it are one and a half blocks high, so boards are upper slabs:
+books stand on a board with air between them and the next board.
 """
 
 from collections.abc import Sequence

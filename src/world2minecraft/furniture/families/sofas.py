@@ -1,7 +1,8 @@
-"""Upholstered seats: easy chairs, sofas, corner sofas and benches.
+"""Sofa families: armchairs, sofas, corner sofas and benches.
 
-Where the material has stairs and slabs (wood, stone), seat, arms and back come out at their heights
-to half a block. Cloth is whole blocks alone, so a sofa in a strong colour is a plush one.
+If the material has stairs and slabs (wood, stone), the heights of seat, arms and back are accurate
+to half a block. Cloth only has whole blocks, so a sofa in a strong colour looks thickly
+upholstered.
 """
 
 from collections.abc import Iterable

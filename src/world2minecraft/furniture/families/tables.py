@@ -1,7 +1,7 @@
-"""Tables: on four legs, round ones on a post, low ones and desks.
+"""Table families: tables on four legs, round pedestal tables, low tables and desks.
 
-A top thinner than half a block is a plate of trapdoors or a carpet on fences. Where a table is no
-higher than a block it is a trestle of stairs turned upside down.
+A top thinner than half a block consists of trapdoors, or of carpet on fences. A table no higher
+than a block is a trestle of upside-down stairs.
 """
 
 from world2minecraft.furniture.block_plan import Plan

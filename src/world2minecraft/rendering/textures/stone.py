@@ -34,7 +34,7 @@ def stone(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def speckled(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Return the speckled stone texture: granite, andesite or terrazzo with light and dark grains."""
+    """Return the speckled stone texture: granite, andesite or terrazzo with visible grains."""
     grains = noise(canvas, 16, 16, 1) + 0.4 * noise(canvas, 8, 8, 2)
     pieces = stones(canvas, 12, 3, 0.9)
     grains = 0.5 * grains + 0.75 * pick(canvas, pieces.identity, 5)
