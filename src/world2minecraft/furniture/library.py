@@ -67,7 +67,10 @@ def group_by_class(templates: Iterable[Template]) -> dict[str, list[Template]]:
 
 
 def templates_to_markdown(templates: Iterable[Template]) -> str:
-    """Return a Markdown table for each class, with a row per template; a star marks matched ones."""
+    """Return a Markdown table for each class, with a row per template.
+
+    Templates that objects are matched against are marked with a star.
+    """
     tables = []
     for heading, members in group_by_class(templates).items():
         rows = [_row(COLUMNS), _row(["---"] * len(COLUMNS)), *map(markdown_row, members)]

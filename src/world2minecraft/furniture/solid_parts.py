@@ -13,7 +13,7 @@ OWN_CELLS = "cells"
 
 
 def box_m(placement: Placement) -> np.ndarray:
-    """Return the rotated box of a placement, float64 [2, 3]: minimum and maximum corner in metres."""
+    """Return the rotated box of a placement in metres, float64 [2, 3]: minimum, maximum corner."""
     size = placement.size_m[[1, 0, 2]] if placement.quarter_turns % 2 else placement.size_m
     return np.stack([placement.center_m - size / 2, placement.center_m + size / 2])
 

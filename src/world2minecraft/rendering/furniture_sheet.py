@@ -130,7 +130,7 @@ def object_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
         background=(CARD, CARD),
     )
     if picture.colour is None:
-        raise ValueError("the image has no colour; request the output 'rgb'")
+        raise ValueError("the image has no colour; request the output 'colour'")
     return picture.colour
 
 

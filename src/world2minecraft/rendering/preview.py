@@ -159,5 +159,5 @@ def _check_size(width_px: int, height_px: int) -> None:
 
 def _colour_of(picture: Picture) -> np.ndarray:
     if picture.colour is None:
-        raise ValueError("the image has no colour; request the output 'rgb'")
+        raise ValueError("the image has no colour; request the output 'colour'")
     return picture.colour

@@ -16,7 +16,7 @@ COARSE = 1.5  # Up to so many blocks a metre a front beyond the body would be in
 
 
 class Body(NamedTuple):
-    """The cells of a cupboard body: the number of solid cells in depth, and the cell of its front."""
+    """The cells of a cupboard body: the number of solid cells in depth, and the front cell."""
 
     depth: int
     front: int | None  # i of the cell before the body, None where the size leaves none

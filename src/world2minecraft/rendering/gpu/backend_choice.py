@@ -63,7 +63,7 @@ class Renderer(Protocol):
         ...
 
     def update(self, scene: BlockScene) -> None:
-        """Switch to another scene, or reload the scene after its blocks have changed."""
+        """Replace the scene to render; also call this after blocks of the scene have changed."""
         ...
 
     def close(self) -> None:

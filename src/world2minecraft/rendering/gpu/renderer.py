@@ -107,7 +107,7 @@ class GpuRenderer:
         return self._engine.name
 
     def update(self, scene: BlockScene) -> None:
-        """Switch to another scene, or reload the scene after its blocks have changed."""
+        """Replace the scene to render; also call this after blocks of the scene have changed."""
         self._scene = scene
         self._close_buffers()
         self._open()

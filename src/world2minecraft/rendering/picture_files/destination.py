@@ -123,7 +123,7 @@ class Writer:
     def colour(self, shot: Shot, colour: np.ndarray | None) -> None:
         """Write an image that only has colour."""
         if colour is None:
-            raise ValueError("the image has no colour; request the output 'rgb'")
+            raise ValueError("the image has no colour; request the output 'colour'")
         if self._moving is not None:
             self._moving(colour)
             self._line(shot, {"rgb": self.target.path.name})

@@ -148,7 +148,7 @@ def turntable(
         )
         for shot, picture in zip(some, pictures, strict=True):
             if picture.colour is None:
-                raise ValueError("the image has no colour; request the output 'rgb'")
+                raise ValueError("the image has no colour; request the output 'colour'")
             yield shot, _on_ground(picture.colour, picture.depth_m > 0, studio, shot, samples)
 
 
