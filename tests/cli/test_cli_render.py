@@ -175,7 +175,7 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["--pose", "1,2,3"], "--pose must be x,y,z,yaw,pitch or x,y,z,yaw,pitch,eye, got '1,2,3'"),
+        (["--pose", "1,2,3"], "--pose must be x,y,z,yaw,pitch or x,y,z,yaw,pitch,eye, not '1,2,3'"),
         (["--pose", "1,2,3,4,95"], "pitch must be -90 (up) to 90 (down) degrees, got 95"),
         (["--orbit", "--tour"], "--orbit and --tour exclude each other; give one of them"),
         (["--orbit", "--pose", "1,2,3,4,5"],
@@ -187,15 +187,15 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
         (["--vfov", "0"], "the field of view must be above 0 and at most 170 degrees, got 0"),
         (["--frames", "0"], "--frames must be 1 to 1,000,000, got 0"),
         (["--fps", "0"], "--fps must be 1 to 240, got 0"),
-        (["--box", "1,2,3"], "--box must be six integers x0,y0,z0,x1,y1,z1, got '1,2,3'"),
+        (["--box", "1,2,3"], "--box must be six integers x0,y0,z0,x1,y1,z1, not '1,2,3'"),
         (["--box", "1,2,3,1,5,6"],
          "--box must end after it begins on each axis, not '1,2,3,1,5,6'"),
         (["--box", "100,0,0,101,1,1"],
          "--box lies beside the build, which is 8 x 5 x 7 blocks from"),
-        (["--format", "bmp"], "--format must be png, jpg or webp, got 'bmp'"),
-        (["--depth-format", "tif"], "--depth-format must be png, exr or npy, got 'tif'"),
-        (["--quality", "0"], "--quality must be 1 to 100, got 0"),
-        (["--depth-scale", "0"], "--depth-scale must be 1 to 65535, got 0"),
+        (["--format", "bmp"], "--format must be png, jpg or webp, not 'bmp'"),
+        (["--depth-format", "tif"], "--depth-format must be png, exr or npy, not 'tif'"),
+        (["--quality", "0"], "--quality must be 1 to 100, not 0"),
+        (["--depth-scale", "0"], "--depth-scale must be 1 to 65535, not 0"),
         (["--outputs", "rbg"], "no output is named 'rbg'; did you mean 'rgb'?"),
         (["--out", "a.tiff"],
          "a.tiff: --out must end in .png, .jpg, .jpeg, .webp, .exr, .npy, .gif, .apng, .mp4, "
@@ -217,9 +217,9 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
         (["--device", "tpu"], "--device must be auto, cpu or gpu, got 'tpu'"),
         (["--jobs", "0"], "--jobs must be 1 to 256, got 0"),
         (["--jobs", "2", "--photo"],
-         "--jobs cannot be combined with -; remove one of them-photo"),
+         "--jobs cannot be combined with --photo; remove one of them"),
         (["--jobs", "2", "--device", "gpu"],
-         "--jobs cannot be combined with -; remove one of them-device gpu"),
+         "--jobs cannot be combined with --device gpu; remove one of them"),
         (["--jobs", "2", "--turntable", "--out", "t.gif"],
          "--turntable cannot be combined with --jobs; remove --jobs"),
         (["--photo-samples", "0"], "--photo-samples must be 1 to 4,096, got 0"),
@@ -234,10 +234,10 @@ def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
 @pytest.mark.parametrize(
     ("size", "text"),
     [
-        ("big", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got 'big'"),
-        ("-3x4", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got '-3x4'"),
-        ("0x4", "invalid camera: width_px must be 1 to 20000, got 0"),
-        ("99999x4", "invalid camera: width_px must be 1 to 20000, got 99999"),
+        ("big", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, not 'big'"),
+        ("-3x4", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, not '-3x4'"),
+        ("0x4", "invalid camera: width_px must be 1 to 20000, not 0"),
+        ("99999x4", "invalid camera: width_px must be 1 to 20000, not 99999"),
         ("9000x9000", "9000x9000 with --samples 2 is too large; the limits are 64,000,000 "
                       "samples in total and 20,000 pixels per side"),
     ],
@@ -249,7 +249,7 @@ def test_a_wrong_size_is_told(schem, size, text, capsys):
 
 def test_threads_are_counted(schem, capsys):
     assert cli.run(["render", str(schem), "--threads", "0"]) == 2
-    assert capsys.readouterr().err == "error: --threads must be 1 to 512, got 0\n"
+    assert capsys.readouterr().err == "error: --threads must be 1 to 512, not 0\n"
 
 
 def test_bad_input_is_told(tmp_path, schem, capsys):

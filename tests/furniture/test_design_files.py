@@ -85,7 +85,7 @@ def test_every_file_of_the_library_is_read_under_its_own_name():
             _changed("parameters", value={"legs": [1, 2, 3]}),
             "parameters contains the unknown key 'legs'; keys: seat_height",
         ),
-        (_changed("materials", "leg", drop=True), "materials lacks 'leg'"),
+        (_changed("materials", "leg", drop=True), "materials does not contain the key 'leg'"),
         (
             _changed("materials", "leg", "of", value="redwood"),
             "unknown wood 'redwood'; known: oak, spruce, birch, jungle, acacia, dark_oak, "
@@ -119,7 +119,7 @@ def test_a_file_is_named_as_its_design(tmp_path):
     path.write_text(json.dumps(CHAIR))
     with pytest.raises(InputError) as caught:
         read_design(path)
-    assert str(caught.value) == f"{path}: the template name must match the file name, got 'chair'"
+    assert str(caught.value) == f"{path}: the design name must match the file name, got 'chair'"
 
 
 @given(st.binary(max_size=200))

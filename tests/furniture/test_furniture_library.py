@@ -102,7 +102,10 @@ def _outside(size: BlockSize, p):
 @pytest.mark.parametrize(
     ("made", "problem"),
     [
-        (_template(_lifted), "the shade is not connected to the other parts"),
+        (
+            _template(_lifted),
+            "thing at 0.50 x 0.50 x 0.50: the shade is not connected to the other parts",
+        ),
         (
             _template(_wide),
             "thing at 0.50 x 0.50 x 0.50: the top extends beyond the bounding box: "

@@ -154,7 +154,7 @@ def test_what_would_not_stay_and_what_is_a_mods_is_told():
     assert "unknown in vanilla Minecraft, treated as full blocks: chair" in notes
     hanging = volume_of({(1, 2, 1): "minecraft:torch", (2, 1, 1): "minecraft:stone"})
     assert any(
-        "would not stay" in n for n in import_blocks(hanging, WISH._replace(front="east")).notes
+        "need support" in n for n in import_blocks(hanging, WISH._replace(front="east")).notes
     )
 
 

@@ -153,7 +153,7 @@ def test_feet_or_eye_must_be_said(tmp_path):
     with pytest.raises(UsageError) as raised:
         read_screenshots(tmp_path, at="head")  # type: ignore[arg-type]
     assert one_line(raised) == (
-        "at must be feet (what F3 and most mods tell) or eye (1.62 above it), got 'head'"
+        "at must be feet (what F3 and most mods tell) or eye (1.62 above it), not 'head'"
     )
 
 
@@ -182,11 +182,11 @@ def test_folders_without_pictures_or_poses(tmp_path):
         ({"image": "/etc/passwd"}, "is not below its folder"),
         ({"image": "C:\\a.png"}, "is not below its folder"),
         ({"image": "b.png"}, "names b.png, which is not there"),
-        ({"image": "a.png", "x": float("nan")}, "line 1 is no pose"),
-        ({"image": "a.png", "y": 1e12}, "line 1 is no pose"),
-        ({"image": "a.png", "pitch": 100}, "pitch is -90 (up) to 90 (down)"),
+        ({"image": "a.png", "x": float("nan")}, "line 1 is not a valid pose"),
+        ({"image": "a.png", "y": 1e12}, "line 1 is not a valid pose"),
+        ({"image": "a.png", "pitch": 100}, "pitch must be -90 (up) to 90 (down)"),
         ({"image": "a.png", "at": "knee"}, "at must be 'feet' or 'eye', got 'knee'"),
-        ({"image": "a.png", "vertical_fov_deg": "wide"}, "line 1 is no pose"),
+        ({"image": "a.png", "vertical_fov_deg": "wide"}, "line 1 is not a valid pose"),
     ],
 )
 def test_lines_of_a_sidecar_that_cannot_be(tmp_path, row, text):

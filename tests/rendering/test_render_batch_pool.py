@@ -180,7 +180,7 @@ def test_a_killed_worker_is_told_and_nothing_is_left(volume, poses):
     if hasattr(signal, "SIGKILL"):
         assert " with code -9" in str(caught.value)
         assert str(caught.value).endswith(
-            "; it was killed, probably because memory ran out; use fewer workers"
+            ": it was killed, probably because memory ran out; use fewer workers"
         )
     assert len(names) == 2
     assert all(is_gone(name) for name in names)

@@ -75,9 +75,9 @@ def test_gpu_says_which_adapters_there_are(machine, monkeypatch):
     with pytest.raises(GpuError) as caught:
         choose_device("gpu")
     assert str(caught.value) == (
-        "no graphics card was found (adapters: llvmpipe (LLVM 15.0.6, 256 bits)); install its "
-        "Vulkan driver, or use --device cpu; W2M_GPU_ADAPTER=software takes a software adapter, "
-        "for tests"
+        "no GPU found (adapters: llvmpipe (LLVM 15.0.6, 256 bits)); install its "
+        "Vulkan driver or use --device cpu (W2M_GPU_ADAPTER=software selects a software adapter "
+        "for tests)"
     )
     assert caught.value.exit_code == 2
     machine(CARD)

@@ -85,6 +85,8 @@ def test_an_edit_may_bring_new_states():
 
 def test_a_box_outside_the_volume_is_refused():
     field = light_field(np.zeros((3, 3, 3), np.uint16), PALETTE)
-    with pytest.raises(ValueError, match=r"^the box at \(2, 0, 0\) of \(2, 1, 1\) is not in the"):
+    with pytest.raises(
+        ValueError, match=r"^the box at \(2, 0, 0\) with size \(2, 1, 1\) is not within the"
+    ):
         edit_light(field, (2, 0, 0), np.zeros((2, 1, 1), np.uint16))
     edit_light(field, (0, 0, 0), np.zeros((0, 1, 1), np.uint16))

@@ -93,7 +93,7 @@ def test_an_exr_is_read_by_openexr(tmp_path, compress):
 
 
 def test_an_exr_needs_channels_of_one_size():
-    with pytest.raises(ValueError, match="channels of one size"):
+    with pytest.raises(ValueError, match="of the same size"):
         exr_bytes({"Z": np.zeros((2, 3), np.float32), "A": np.zeros((3, 2), np.float32)})
 
 

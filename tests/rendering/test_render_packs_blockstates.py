@@ -90,7 +90,7 @@ def test_all_cases_that_hold_are_drawn_in_order():
         ({}, "contains neither variants nor multipart"),
         ({"variants": []}, "variants must be an object, got a list"),
         ({"variants": {"": 3}}, "a variant must be an object, got 3"),
-        ({"variants": {"": {}}}, "model must be a text, got None"),
+        ({"variants": {"": {}}}, "model must be a string, got None"),
         ({"variants": {"": []}}, "contains an empty list of models"),
         ({"variants": {"": {"model": "a", "x": 45}}}, "x must be a multiple of 90, got 45"),
         ({"variants": {"": {"model": "a", "y": "90"}}}, "y must be a number, got '90'"),
@@ -99,7 +99,7 @@ def test_all_cases_that_hold_are_drawn_in_order():
         ({"multipart": [7]}, "a case of multipart must be an object, got 7"),
         ({"multipart": [{}]}, "a variant must be an object, got None"),
         ({"multipart": [{"when": [], "apply": {}}]}, "when must be an object, got a list"),
-        ({"multipart": [{"when": {"a": None}}]}, "a value in when must be a text, got None"),
+        ({"multipart": [{"when": {"a": None}}]}, "a value in when must be a string, got None"),
     ],
 )
 def test_what_is_wrong_is_said(root, text):

@@ -44,7 +44,7 @@ def problem(tmp_path, files, state="minecraft:thing") -> str:
     looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     assert looks.model(state) is None
     assert looks.problem_count == len(looks.problems) == 1
-    told = "1 thing in the resource packs, first: " + looks.problems[0]
+    told = "1 problem in the resource packs, first: " + looks.problems[0]
     assert looks.summary == told
     return looks.problems[0]
 
@@ -55,9 +55,9 @@ def test_nothing_there(tmp_path):
 
 def test_no_pack(tmp_path):
     (tmp_path / "empty").mkdir()
-    assert refusal(tmp_path / "empty") == f"is no resource pack; {TEACHES}"
+    assert refusal(tmp_path / "empty") == f"not a resource pack; {TEACHES}"
     zip_pack(tmp_path / "a.zip", {"readme.txt": b"hello"})
-    assert refusal(tmp_path / "a.zip") == f"is no resource pack; {TEACHES}"
+    assert refusal(tmp_path / "a.zip") == f"not a resource pack; {TEACHES}"
 
 
 def test_no_zip(tmp_path):
@@ -83,7 +83,7 @@ def test_packs_of_other_kinds_are_told_apart(tmp_path):
     folder_pack(tmp_path / "data_pack", {"data/minecraft/tags/a.json": {}})
     assert refusal(tmp_path / "data_pack").startswith("not a resource pack, but a data pack; ")
     folder_pack(tmp_path / "bedrock", {"manifest.json": {}, "textures/blocks/stone.png": RED})
-    assert refusal(tmp_path / "bedrock").startswith("is no resource pack, but one for Bedrock")
+    assert refusal(tmp_path / "bedrock").startswith("not a resource pack, but a pack for Bedrock")
 
 
 def test_a_zip_with_its_folder_around_it_is_read(tmp_path):
@@ -127,7 +127,7 @@ def test_a_bomb_is_not_unpacked(tmp_path):
     looks = ResourcePackModels([zip_pack(tmp_path / "a.zip", files)])
     assert looks.model("thing") is None
     assert looks.problems[0].startswith(
-        "assets/minecraft/models/block/thing.json of a.zip: unpacks to "
+        "assets/minecraft/models/block/thing.json of a.zip: compression ratio "
     )
     files[MODEL.format("thing")] = b" " * (5 << 20)
     looks = ResourcePackModels([zip_pack(tmp_path / "b.zip", files)])
@@ -183,9 +183,9 @@ def test_a_broken_file_falls_through_to_the_pack_below(tmp_path):
     assert looks.model("thing") is not None
     assert looks.problem_count == 2
     assert looks.problems[0].startswith(
-        "assets/minecraft/blockstates/thing.json of bad: is not JSON (Expecting"
+        "assets/minecraft/blockstates/thing.json of bad: invalid JSON (Expecting"
     )
-    assert looks.problems[1] == "assets/minecraft/textures/block/thing.png of bad: is no PNG"
+    assert looks.problems[1] == "assets/minecraft/textures/block/thing.png of bad: not a PNG file"
 
 
 def test_a_missing_texture_leaves_the_block_to_the_next_source(tmp_path):
@@ -209,7 +209,7 @@ def element(**changes) -> dict:
     [
         ({"parent": "block/thing"}, "model block/thing is its own parent"),
         ({"parent": "block/no"}, "model minecraft:block/no (parent of block/thing) not found"),
-        ({"parent": 7}, "parent must be a text, got 7"),
+        ({"parent": 7}, "parent must be a string, got 7"),
         ({"loader": "forge:obj"}, "model block/thing uses a mod's own format, which is not"),
         ({"textures": []}, "textures must be an object, got a list"),
         ({"elements": {"a": 1}}, "elements must be a list, got an object"),
@@ -221,7 +221,7 @@ def element(**changes) -> dict:
         (element(to=[1, 2, 10**400]), "to must be a finite number"),
         (element(faces=[]), "faces must be an object, got a list"),
         (element(faces={"up": 1}), "face up must be an object, got 1"),
-        (element(faces={"up": {}}), "texture of a face must be a text, got None"),
+        (element(faces={"up": {}}), "texture of a face must be a string, got None"),
         (element(faces={"up": {"texture": "#no"}}), "texture #no is not set"),
         (element(faces={"up": {"texture": "#all", "uv": [0]}}), "uv must have 4 numbers, got 1"),
         (
@@ -253,7 +253,7 @@ def test_parents_without_end(tmp_path):
 
 def test_deep_json(tmp_path):
     files = cube_files("thing", RED) | {BLOCK.format("thing"): b"[" * 200_000}
-    assert "is not JSON (" in problem(tmp_path, files)
+    assert "invalid JSON (" in problem(tmp_path, files)
 
 
 def test_too_many_elements(tmp_path):
@@ -287,7 +287,7 @@ def test_problems_are_counted_and_only_some_are_kept(tmp_path):
     assert looks.problem_count == 70
     assert len(looks.problems) == resources.MAX_PROBLEMS
     assert looks.summary.startswith(
-        "70 things in the resource packs, first: assets/minecraft/blockstates/thing_0"
+        "70 problems in the resource packs, first: assets/minecraft/blockstates/thing_0"
     )
 
 

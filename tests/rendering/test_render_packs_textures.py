@@ -230,7 +230,7 @@ def test_a_broken_map_is_left_out_and_said(tmp_path):
     looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     texture = looks.texture("minecraft:block/a")
     assert texture is not None and texture.normal is None
-    assert looks.problems == ["assets/minecraft/textures/block/a_n.png of pack: is no PNG"]
+    assert looks.problems == ["assets/minecraft/textures/block/a_n.png of pack: not a PNG file"]
 
 
 def test_joined_textures_keep_the_maps_of_what_is_seen(tmp_path):
@@ -256,7 +256,7 @@ def test_the_size_is_read_before_the_picture():
         ValueError, match="image has 60000 x 60000 pixels, the limit is 33,554,432 pixels"
     ):
         decode_png(huge)
-    with pytest.raises(ValueError, match="is a damaged PNG"):
+    with pytest.raises(ValueError, match="damaged PNG file"):
         decode_png(head[:60])
-    with pytest.raises(ValueError, match="is no PNG"):
+    with pytest.raises(ValueError, match="not a PNG file"):
         decode_png(b"GIF89a")

@@ -53,7 +53,7 @@ def test_intrinsics_come_as_four_numbers_or_as_a_matrix():
         ({"vertical_fov_deg": float("nan")},
          "the field of view must be above 0 and at most 170 degrees, got nan"),
         ({"intrinsics": [[40, 1, 32], [0, 40, 24], [0, 0, 1]]},
-         "invalid camera: K must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]"),
+         "invalid camera: the intrinsics matrix must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]"),
         ({"intrinsics": [1, 2]},
          "invalid camera: intrinsics must be fx, fy, cx, cy or a 3x3 matrix, got shape [2]"),
     ],

@@ -224,7 +224,9 @@ def test_the_same_columns_come_as_csv(tmp_path, end):
 def test_what_is_no_csv_is_told(tmp_path):
     path = tmp_path / "tour.csv"
     path.write_text("x,y,z,yaw,pitch\n" + "1" * 140_000)
-    with pytest.raises(DamagedFileError, match=r"tour.csv: is no CSV \(field larger than"):
+    with pytest.raises(
+        DamagedFileError, match=r"tour.csv: not a valid CSV file \(field larger than"
+    ):
         read_tour(path)
 
 
@@ -241,7 +243,7 @@ def test_what_is_no_csv_is_told(tmp_path):
          "line 1 is not a valid pose (pitch must be -90 (up) to 90 (down) degrees, got 100)"),
         (json.dumps({"x": 1, "y": 2, "z": 3, "yaw": 0, "pitch": 0, "width": 1e9, "height": 4,
                      "vertical_fov_deg": 70}),
-         "line 1 is not a valid pose (invalid camera: width_px must be 1 to 20000, got "
+         "line 1 is not a valid pose (invalid camera: width_px must be 1 to 20000, not "
          "1000000000)"),
     ],
 )  # fmt: skip

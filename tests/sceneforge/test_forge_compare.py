@@ -44,7 +44,7 @@ def test_a_file_is_compared_over_http(tmp_path):
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
-        ("a.exe", b"x", "a.exe: not an occupancy file"),
+        ("a.exe", b"x", "a.exe: unsupported file type"),
         ("a.npz", b"x", "a.npz: is not a readable .npz"),
         ("a.json", b"[" * 100_000, "a.json: is not JSON"),
         ("a.npy", npy(np.full((2, 2, 2), 77)), "a.npy: holds no grid of class ids"),
