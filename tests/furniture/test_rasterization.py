@@ -89,6 +89,6 @@ def test_the_surface_is_the_cells_with_an_open_face(seed):
 
 def test_a_box_beyond_reason_is_refused():
     with pytest.raises(
-        ValueError, match="template box has .* cells, the limit is 8000000 per axis"
+        ValueError, match="template box has .* cells, the limit is 8000000 in total"
     ):
         template_cells(template("box"), (100.0, 100.0, 100.0), voxel_m=0.02)

@@ -60,7 +60,7 @@ def rasterize(
     """
     if np.prod(counts, dtype=np.float64) > MAX_CELLS:
         raise ValueError(
-            f"template {template.name} has {counts} cells, the limit is {MAX_CELLS} per axis"
+            f"template {template.name} has {counts} cells, the limit is {MAX_CELLS} in total"
         )
     size = np.array(counts, np.float64) * voxel_m
     parts = template.parts(size, dict(values))

@@ -58,7 +58,7 @@ def instances_from_centers(
     wanted = [one for one in centers if one.class_id in OBJECT_CLASSES]
     if len(wanted) > MAX_CENTERS:
         raise LimitError(
-            "centers", f"contains {len(wanted):,} object centers, the limit is {MAX_CENTERS:,}"
+            "centers", f"contains {len(wanted):,} object centres, the limit is {MAX_CENTERS:,}"
         )
     instance = np.zeros(grid.shape, np.uint16)
     around = read_surroundings(grid.labels)
