@@ -39,9 +39,9 @@ class EditableScene:
         reach: float | None = None,
         hidden_lamps: bool | None = None,
     ):
-        """Make the scene; the volume itself never changes.
+        """Create the scene of a volume. The volume itself is never modified.
 
-        Args: as ``prepare_scene``.
+        The arguments are those of ``prepare_scene``.
         """
         self._baker = Baker(looks or BuiltinModels(texture_px), texture_px)
         scene, self._guests = bake_scene(volume, self._baker, reach, hidden_lamps)

@@ -48,7 +48,7 @@ class Editor:
     def __init__(
         self, document: MemoryDocument | OpenedScene, clock: Callable[[], float] = time.time
     ):
-        """Take an open document, or a scene to be edited in memory alone; see ``Editor.open``."""
+        """Create an editor for an open document, or for a scene in memory. See ``Editor.open``."""
         self.document = (
             MemoryDocument(document, clock) if isinstance(document, OpenedScene) else document
         )

@@ -53,7 +53,7 @@ class PlacedPhoto:
 
 @dataclass(eq=False)
 class RunPhotos:
-    """The photos of one run. Any thread may request images, which are decoded one at a time."""
+    """The photos of one run. Any thread may request images, and one image is decoded at a time."""
 
     photos: tuple[PlacedPhoto, ...]
     encoding: DepthEncoding

@@ -66,7 +66,7 @@ class SlotRing:
     """A ring of slots in shared memory with their tasks, in the order of the images."""
 
     def __init__(self, slots: int, slot_bytes: int):
-        """Begin with all slots free."""
+        """Create a ring in which all slots are free."""
         self.free = deque(range(slots))
         self.taken: dict[int, Task] = {}
         self.done: dict[int, Reply] = {}
@@ -136,14 +136,15 @@ class RenderPool:
     """
 
     def __init__(self, scene: BlockScene, workers: int | None = None):
-        """Share the scene, compile what is not compiled yet, and start the workers.
+        """Share the scene, compile the kernels if necessary, and start the workers.
 
         Args:
-            scene: ``prepare_scene`` of a volume, or ``EditableScene.scene``.
-            workers: how many processes; as many as there are cores where None.
+            scene: The result of ``prepare_scene`` for a volume, or ``EditableScene.scene``.
+            workers: Number of processes. None uses the number of CPU cores.
 
         Raises:
-            UsageError: the number is out of range, or there is no shared memory.
+            UsageError: If the number of workers is out of range, or if there is not enough shared
+                memory.
         """
         count = usable_cores() if workers is None else workers
         if not 1 <= count <= MAX_WORKERS:

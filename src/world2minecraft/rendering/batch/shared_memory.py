@@ -50,7 +50,7 @@ class SharedArrays:
     """A block of shared memory with arrays."""
 
     def __init__(self, memory: SharedMemory, plan: SharedLayout, *, owned: bool):
-        """Use ``create`` or ``join``."""
+        """Wrap a block of shared memory. Use ``create`` or ``join`` instead of this constructor."""
         self.plan, self._memory, self._owned = plan, memory, owned
 
     @classmethod

@@ -97,7 +97,7 @@ class WorkerState:
     """
 
     def __init__(self):
-        """Begin with nothing."""
+        """Create a state without a scene or a job."""
         self._scene: SceneMessage | None = None
         self._job: Job | None = None
         self._stage: KernelScene | None = None

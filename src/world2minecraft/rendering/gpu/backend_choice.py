@@ -77,7 +77,7 @@ class CpuRenderer:
     name = "CPU"
 
     def __init__(self, scene: BlockScene, threads: int = 1):
-        """Draw a scene on some threads."""
+        """Create a renderer of a scene that uses a number of threads."""
         self._scene, self._threads = scene, threads
 
     def render(

@@ -59,12 +59,12 @@ class BufferSet:
     """A set of buffers that is used by one call at a time."""
 
     def __init__(self, engine: Any, scene: Mapping[str, Any], out_bytes: int):
-        """Make the buffers.
+        """Create the buffers.
 
         Args:
-            engine: ``device`` and ``pipeline``.
-            scene: the buffers of ``PackedScene`` by name.
-            out_bytes: room for outputs.
+            engine: Engine with ``device`` and ``pipeline``.
+            scene: Buffers of the ``PackedScene`` by name.
+            out_bytes: Size in bytes of the output buffer.
         """
         usage = wgpu_module().BufferUsage
         self.scene, self.out_bytes, self._engine, self._bytes = scene, out_bytes, engine, 0

@@ -90,12 +90,13 @@ class GpuRenderer:
         """Copy a scene to the GPU.
 
         Args:
-            scene: what pictures are taken of.
-            adapter: a part of an adapter's name, or ``software``; None for the best hardware.
+            scene: The scene to render.
+            adapter: A part of an adapter's name, or ``software``. None uses the best hardware
+                adapter.
 
         Raises:
-            MissingExtraError: wgpu is not installed.
-            GpuError: there is no such adapter, or the scene does not fit.
+            MissingExtraError: If wgpu is not installed.
+            GpuError: If the adapter is not found, or if the scene does not fit its memory.
         """
         self._adapter = find_adapter(adapter)
         self._scene = scene

@@ -91,7 +91,7 @@ class Writer:
     """A writer of images as they are rendered, and of their poses at the end."""
 
     def __init__(self, target: Target, block_to_room: np.ndarray, scene_id: str, tour_id: str):
-        """Begin with nothing written."""
+        """Create a writer that has not written any images yet."""
         self.target, self.lines = target, []
         self._block_to_room, self._ids = block_to_room, {"scene_id": scene_id, "tour_id": tour_id}
         self._moving: Any = None

@@ -186,7 +186,11 @@ class PackStack:
     """
 
     def __init__(self, paths: Sequence[str | Path]):
-        """Open the packs, the last above the others. Raises what ``open_pack`` raises."""
+        """Open the packs. The last pack has the highest priority.
+
+        Raises:
+            InputError: If a pack does not exist or is not a resource pack.
+        """
         self.problems: list[str] = []
         self.problem_count = 0
         self._known: set[str] = set()

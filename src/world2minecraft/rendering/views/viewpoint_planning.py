@@ -29,7 +29,7 @@ class WalkRoutes:
     """The N positions in the part of a floor that is worth visiting, and the paths between them."""
 
     def __init__(self, volume: BlockVolume, hiding: ViewBlockers):
-        """Find the places where a player walks, and keep the part that is worth it."""
+        """Find the places where a player can walk, and keep the part that is worth visiting."""
         self.hiding = hiding
         graph = walk_graph(volume)
         scale = graph.blocks_per_metre

@@ -63,7 +63,14 @@ class Document(MemoryDocument):
     """
 
     def __init__(self, folder: Path, clock: Callable[[], float], lock: Lock | None, reason: str):
-        """Read a document; ``lock`` is held, or None where it is to be looked at. Use ``open``."""
+        """Read a document. Use ``open`` instead of this constructor.
+
+        Args:
+            folder: Folder of the document.
+            clock: Function that returns the time in seconds since 1970.
+            lock: The acquired lock, or None to open the document read-only.
+            reason: Reason why the document is read-only, or an empty string.
+        """
         self.folder, self.clock, self.read_only = folder, clock, reason
         self.notes: list[str] = []
         self.history_bytes = HISTORY_BYTES

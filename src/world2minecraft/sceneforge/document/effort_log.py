@@ -26,7 +26,7 @@ class EffortLog:
     """
 
     def __init__(self, folder: Path):
-        """Look where the log ends; a line that was cut off is taken away with the next one."""
+        """Find the end of the log. An incomplete last line is removed by the next write."""
         self.path = folder / EFFORT_FILE
         self.fault = ""
         self.last_rev, self._active_s = 0, float("-inf")

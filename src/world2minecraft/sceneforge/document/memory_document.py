@@ -25,7 +25,7 @@ class MemoryDocument:
     opened: OpenedScene
 
     def __init__(self, opened: OpenedScene, clock: Callable[[], float]):
-        """Take a scene that was read."""
+        """Create a document for a scene that was read."""
         self.opened, self.clock = opened, clock
         self.draft = SceneDraft(opened.grid, opened.objects)
         self.history = SceneHistory(self.draft, MemoryLog())

@@ -57,7 +57,11 @@ class JobProgress(Protocol):
     """A ``Progress`` callback for a job's work, which can also register how to stop the work."""
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
-        """Report one step. Raises CancelledError where the job was cancelled."""
+        """Report one step.
+
+        Raises:
+            CancelledError: If the job was cancelled.
+        """
         ...
 
     def on_cancel(self, stop: Callable[[], None]) -> None:
@@ -184,7 +188,7 @@ class _Job:
         self._stop: Callable[[], None] = lambda: None
 
     def begin(self, work: JobFunction, ended: Callable[[JobState], None]) -> None:
-        """Run the work in a thread."""
+        """Start the work in a thread."""
         self._tell(self.state.message())
         self.thread = threading.Thread(
             target=self._run, args=(work, ended), name=self.state.id, daemon=True
@@ -192,19 +196,19 @@ class _Job:
         self.thread.start()
 
     def cancel(self) -> None:
-        """Cut the work off, or let it end at its next report."""
+        """Stop the work, or let it end at its next progress report."""
         self._cancelled.set()
         if self.state.state == "running":
             self._stop()
 
     def on_cancel(self, stop: Callable[[], None]) -> None:
-        """See ``JobProgress``."""
+        """Register a function that stops the work. See ``JobProgress.on_cancel``."""
         self._stop = stop
         if self._cancelled.is_set():
             stop()
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
-        """See ``JobProgress``."""
+        """Report one step. See ``JobProgress``."""
         if self._cancelled.is_set():
             raise CancelledError
         now = self._clock()

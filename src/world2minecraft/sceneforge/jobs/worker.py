@@ -52,7 +52,7 @@ class LineProgress:
         self._answers = answers
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
-        """Say one step."""
+        """Write one step as a line of JSON."""
         step = {"stage": stage, "done": int(done), "total": int(total), "note": note}
         write_line(self._answers, step)
 

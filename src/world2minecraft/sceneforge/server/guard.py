@@ -68,7 +68,7 @@ class Guard:
         self.session = new_token()  # What the cookie holds: a token in the link is not it.
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Let a request through, or refuse it with 403 and a line that says why."""
+        """Pass a request on to the application, or reject it with status 403 and a reason."""
         if scope["type"] == "lifespan":
             await self.app(scope, receive, send)
             return

@@ -98,11 +98,11 @@ class PageServer:
             self._thread.join()
 
     def __enter__(self) -> Self:
-        """Start."""
+        """Start the server and return it."""
         return self.start()
 
     def __exit__(self, *_: object) -> None:
-        """Stop."""
+        """Stop the server."""
         self.stop()
 
     async def _serve(self, ready: Callable[[], None]) -> None:
