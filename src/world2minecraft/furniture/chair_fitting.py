@@ -123,7 +123,7 @@ class _ObjectCells(NamedTuple):
     def best_fit(
         self, counts: Cells, values: Values, turns: int, solid: np.ndarray, corners: np.ndarray
     ) -> SeatFit:
-        """Return the best of several chair positions, int64 [S, 3]; the first if several are equal."""
+        """Return the best of several chair positions, int64 [S, 3]; the first of equal ones."""
         exact = count_overlaps(solid, self.code, corners)
         wide = ndimage.binary_dilation(np.pad(solid, ((1, 1), (1, 1), (0, 0))), FACE_NEIGHBOURS)
         near = count_overlaps(wide, self.code, corners - MARGIN)[:, 0]
