@@ -92,7 +92,7 @@ def _turn_design(local: list[LocalBlock], quarter_turns: int) -> BlockDesign:
 
 
 def _connect_blocks(blocks: list[DesignBlock], size: tuple[int, int, int]) -> list[DesignBlock]:
-    """Give fences, panes and stairs the connections and shapes that the game would compute."""
+    """Set the connections of fences and panes and the stair shapes that the game would compute."""
     from world2minecraft.minecraft.rules.connections import update_connections  # noqa: PLC0415
 
     palette = ["minecraft:air", *sorted({block.state for block in blocks})]

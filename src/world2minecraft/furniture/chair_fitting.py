@@ -137,7 +137,7 @@ class _ObjectCells(NamedTuple):
 
 
 def _candidate_shapes(template: Template, tall: int, voxel_m: float) -> list[tuple[Cells, Values]]:
-    """Return sizes and parameters: the usual first, then one cell less deep and other seats."""
+    """Return candidate sizes and parameters: the typical ones, then variants."""
     depth, width = (int(span.typical / voxel_m + 0.5) for span in template.size_m[:2])
     least, most = (int(limit / voxel_m + 0.5) for limit in template.size_m[2][::2])
     height = min(max(tall, least), most)
@@ -158,7 +158,7 @@ def _turn_template(
 def _candidate_corners(
     shape: tuple[int, ...], low: np.ndarray, high: np.ndarray, floor: int
 ) -> np.ndarray:
-    """Return every first cell, int64 [S, 3], at which a box of ``shape`` meets the object's."""
+    """Return all first cells at which a box of ``shape`` overlaps the object's, int64 [S, 3]."""
     along = [np.arange(low[axis] - shape[axis] + 1, high[axis]) for axis in (0, 1)]
     x, y = np.meshgrid(*along, indexing="ij")
     return np.stack([x.ravel(), y.ravel(), np.full(x.size, floor)], axis=1).astype(np.int64)

@@ -82,7 +82,7 @@ def design_from_json(raw: Any) -> Template:
 
 
 def _matched_family(known: Mapping[str, Any]) -> str:
-    """Return the family whose matches a design may stand for: its own where it says no other."""
+    """Return the family whose matches a design may replace, by default its own."""
     stood = _text("stands_for", known.get("stands_for", known["family"]))
     FAMILIES.load(stood)
     return stood

@@ -77,7 +77,7 @@ def _best(score: np.ndarray) -> Facing:
 
 
 def _lean(cells: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """How far the upper part leans away from each front, 0 to 1 of half the side."""
+    """Return how far the upper part leans away from each front, 0 to 1 of half the side."""
     upper = cells[:, 2] >= high[2] - max(1.0, UPPER_SHARE * (high[2] - low[2]))
     offset = cells[upper, :2].mean(axis=0) + 0.5 - (low[:2] + high[:2]) / 2
     share = offset / np.maximum((high[:2] - low[:2]) / 2, 1.0)
@@ -85,14 +85,14 @@ def _lean(cells: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def _seen_back(lean: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """The lean; of a chair of which the back alone was seen, that it looks across it."""
+    """Return the lean; a chair of which only the back was seen faces across it."""
     depth = (high - low)[:2]
     alone = depth.min() <= BACK_CELLS and depth.min() * 2 <= depth.max()
     return _across(low, high) if alone else lean
 
 
 def _table(cells: np.ndarray, around: Surroundings) -> np.ndarray:
-    """How far each front looks to the nearest edge of a table, 0 to 1; zeros without one."""
+    """Return how directly each front faces the nearest table edge, 0 to 1; zeros without tables."""
     high = around.tables > cells[:, 2].max() + 1 - TABLE_BELOW
     way = direction_to_table(cells, high, TABLE_REACH)
     return np.array([max(0.0, sign * way[axis]) for axis, sign in SIDES])
@@ -101,7 +101,7 @@ def _table(cells: np.ndarray, around: Surroundings) -> np.ndarray:
 def _wall_share(
     low: np.ndarray, high: np.ndarray, axis: int, sign: int, around: Surroundings
 ) -> float:
-    """The share of a side's face that has a wall within reach."""
+    """Return the share of a side's face that has a wall within reach."""
     begin, end = low.copy(), high.copy()
     if sign > 0:
         begin[axis], end[axis] = high[axis] - 1, high[axis] + WALL_REACH
@@ -120,7 +120,7 @@ def _inward(low: np.ndarray, high: np.ndarray, around: Surroundings) -> np.ndarr
 
 
 def _across(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """1 for fronts across the thin side, so that the long side is the object's side."""
+    """Return 1 for fronts across the thin side, at which the long side is the object's side."""
     size = (high - low)[:2]
     thin = 0 if size[0] <= size[1] else 1
     return np.array([float(axis == thin) for axis, _ in SIDES])

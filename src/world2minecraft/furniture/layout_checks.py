@@ -233,7 +233,7 @@ def plan_corners_m(item: Any) -> np.ndarray:
 
 
 def _outline_m(item: Any) -> np.ndarray:
-    """Return the corners and the points between them, about every 10 cm, for concave rooms."""
+    """Return the corners and points about every 10 cm between them, for concave rooms."""
     corners = plan_corners_m(item)
     points = []
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):

@@ -74,7 +74,7 @@ def preview_design(
 
 
 def _put_room(states: np.ndarray, number: int, mount: str, quarter_turns: int) -> None:
-    """Put a floor, and behind what hangs on a wall a wall, over what hangs a ceiling, in place."""
+    """Add a floor, and a wall or ceiling that supports wall or ceiling furniture."""
     if mount != "wall":
         states[:, 0 if mount != "ceiling" else -1, :] = number
         return

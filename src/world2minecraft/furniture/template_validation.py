@@ -60,7 +60,7 @@ def _check_parts(template: Template, size: np.ndarray, parts: tuple[Part, ...]) 
 
 
 def _floating(boxes: np.ndarray, low: np.ndarray, hangs: bool) -> list[int]:
-    """Return the parts that no chain of touching parts joins to the floor or the back."""
+    """Return the parts that are not connected to the floor or the back by touching parts."""
     begin = np.maximum(boxes[:, None, :3], boxes[None, :, :3])
     end = np.minimum(boxes[:, None, 3:], boxes[None, :, 3:])
     touch = np.all(begin <= end + GAP_M, axis=2)

@@ -119,7 +119,7 @@ def _check_size(size: np.ndarray) -> None:
 
 
 def _trim(volume: BlockVolume) -> BlockVolume:
-    """Return the part of a volume that holds blocks one sees, without entities."""
+    """Return the part of a volume that contains visible blocks, without entities."""
     seen = np.array([role_of(state) not in INVISIBLE for state in volume.palette])
     filled = seen[volume.states]
     if not filled.any():
@@ -206,7 +206,7 @@ def _parts(volume: BlockVolume) -> list[tuple]:
 
 
 def _fine_grid(volume: BlockVolume, roles: list[str]) -> np.ndarray:
-    """Return the role, from 1, that is seen in each eighth of a block, int16 in block axes."""
+    """Return the visible role, from 1, of each eighth of a block, int16 in block axes."""
     from world2minecraft.minecraft.visual_shapes import visual_boxes  # noqa: PLC0415
 
     count = PARTS_PER_BLOCK
@@ -229,13 +229,13 @@ def _fine_grid(volume: BlockVolume, roles: list[str]) -> np.ndarray:
 
 
 def _pool(labels: np.ndarray, coarse: int) -> np.ndarray:
-    """Return labels at a coarser step, each the largest of its cells."""
+    """Return labels at a coarser resolution, each the maximum of its cells."""
     x, y, z = (side // coarse for side in labels.shape)
     return labels.reshape(x, coarse, y, coarse, z, coarse).max(axis=(1, 3, 5))
 
 
 def _turns(volume: BlockVolume) -> int:
-    """Return how many quarter turns of a piece differ: 1, 2 or 4."""
+    """Return the number of different quarter turns of a piece: 1, 2 or 4."""
 
     def same(turns: int) -> bool:
         turned = turn_volume(volume, turns)
@@ -250,7 +250,7 @@ def _turns(volume: BlockVolume) -> int:
 
 
 def _size_span(side: float) -> list[float]:
-    """Return the span of a size: smallest, usual, largest."""
+    """Return the range of a size: minimum, typical, maximum."""
     return [round(float(side) * share, 4) for share in (1 - SIZE_SHARE, 1.0, 1 + SIZE_SHARE)]
 
 

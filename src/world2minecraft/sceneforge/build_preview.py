@@ -142,7 +142,7 @@ class BlockBuild:
 
 
 def _arrays(mesh: BlockMesh) -> dict[str, np.ndarray]:
-    """Return what is drawn, a row for each corner, and what a click tells, a row for each quad."""
+    """Return the mesh arrays with a row per corner, and the click data with a row per quad."""
     emission = np.repeat(mesh.emission[:, None], 4, axis=1)[..., None]
     colour = np.concatenate([mesh.tint, mesh.shade[:, None]], axis=1)
     facts = mesh.semantic + mesh.cuts * np.uint16(256)

@@ -131,7 +131,7 @@ def stats_latex(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> st
 
 
 def _rows(*means: Row) -> list[tuple[str, str, int]]:
-    """Return the paper's rows, and those of ours that are not nothing throughout."""
+    """Return the rows of the paper, and our additional rows that are not all zero."""
     more = [row for row in MORE_ROWS if any(mean[row[0]] for mean in means)]
     return [*ROWS, *more]
 

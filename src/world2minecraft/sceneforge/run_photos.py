@@ -170,7 +170,7 @@ def ideal_camera(camera: Camera, longest_px: int = MAX_SIDE_PX) -> Camera:
 
 
 def _depth_picture(frame: FrameFiles, encoding: DepthEncoding, longest_px: int) -> np.ndarray:
-    """Near is light, far is dark, holes are black; for captures without colour."""
+    """Return a depth image for captures without colour: near is light, holes are black."""
     if frame.depth_path is None:
         raise InputError(frame.name, "frame has neither a colour image nor a depth image")
     depth = read_depth(frame.depth_path, encoding)

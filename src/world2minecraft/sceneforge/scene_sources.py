@@ -77,7 +77,7 @@ def instances_from_centers(
 
 
 def _nearest(points_m: np.ndarray, places_m: np.ndarray) -> np.ndarray:
-    """Return for each point, float64 [N, 3], the number of the nearest place."""
+    """Return the index of the nearest centre for each point, float64 [N, 3]."""
     found = KDTree(places_m).query(points_m)[1] if len(points_m) else []
     return np.asarray(found, np.int64)
 

@@ -272,7 +272,7 @@ class Session:
         await self.show(None)
 
     def _take(self, editor: Editor | None) -> None:
-        """Show a document, and tell the tabs of each step whoever does it."""
+        """Show a document, and send each of its steps to the tabs, whoever performs it."""
         self.editor = editor
         self._volumes.clear()
         self.shown = 0
@@ -291,7 +291,7 @@ class Session:
         return self.document.draft.labels.size <= QUICK_CELLS
 
     async def _step(self, act: Callable[[], Operation]) -> dict[str, Any]:
-        """Do a planned step: at once, or by the thread where it may be of millions of cells."""
+        """Apply a planned step, in a thread if it may affect millions of cells."""
         operation = act() if self._is_small else await asyncio.to_thread(act)
         return await self._done(operation)
 
@@ -305,12 +305,12 @@ class Session:
         }
 
     async def _run_in_background(self, name: str, work: Callable[[Editor], Value]) -> Value:
-        """Return what long work on a copy of the scene gives; only copying takes a turn."""
+        """Return the result of long work on a copy of the scene. Only the copying takes a turn."""
         copy = await self._read(copy_editor)
         return await run_in_background(self.jobs, name, copy, work)
 
     async def _do_long(self, name: str, command: Command, actor: str) -> dict[str, Any]:
-        """Plan a command beside and do it, where its cells are still what they were."""
+        """Plan a command in the background, and apply it if its cells have not changed."""
         document = self.document
         planned = await self._run_in_background(name, lambda copy: _plan(copy, command))
         async with self._turn:
@@ -324,7 +324,7 @@ class Session:
 
 
 def _plan(document: Editor, command: Command) -> Operation:
-    """Plan without the document's lock: its turn keeps other edits of the server away."""
+    """Plan without the document's lock, because the turn prevents other edits by the server."""
     return command.plan(document.draft, document.tools)
 
 

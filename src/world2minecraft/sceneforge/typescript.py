@@ -64,7 +64,7 @@ def _name(model: type[BaseModel]) -> str:
 
 
 def _interface(name: str, schema: Mapping[str, Any]) -> str:
-    """Return one type; fields with a default may be left out, but for the name of a command."""
+    """Return one type, in which fields with a default are optional, except a command's name."""
     if "properties" not in schema and schema.get("type") != "object":
         return f"{_comment(schema, '')}export type {name} = {_type(schema)};\n"
     required = {*schema.get("required", ()), "op"}
@@ -78,10 +78,10 @@ def _interface(name: str, schema: Mapping[str, Any]) -> str:
 
 
 def _type(schema: Mapping[str, Any]) -> str:
-    """Return the TypeScript of a JSON schema.
+    """Return the TypeScript type for a JSON schema.
 
     Raises:
-        World2MinecraftError: it says something that this writer does not know.
+        World2MinecraftError: If the schema contains an unsupported feature.
     """
     if "$ref" in schema:
         return schema["$ref"].rpartition("/")[2]
@@ -120,7 +120,7 @@ def _array(schema: Mapping[str, Any]) -> str:
 
 
 def _comment(schema: Mapping[str, Any], indent: str) -> str:
-    """Return the first paragraph of a description as a comment, and the bounds of a number."""
+    """Return the first paragraph of a description as a comment, with the bounds of a number."""
     text = re.sub(r"\s+", " ", schema.get("description", "").split("\n\n")[0]).strip()
     bounds = _bounds(schema)
     text = f"{text} {bounds}".strip() if bounds else text

@@ -136,7 +136,7 @@ def _ignored(path: str) -> bool:
 
 
 def _check_distinct(paths: Iterable[str]) -> None:
-    """Refuse files that would overwrite each other where case does not count."""
+    """Reject files that would overwrite each other on a case-insensitive file system."""
     seen: set[str] = set()
     folders: set[str] = set()
     for path in paths:
@@ -260,7 +260,7 @@ class CaptureFolder:
             _RECEIVING.discard(place)
 
     async def _append(self, number: int, chunks: AsyncIterator[bytes]) -> int:
-        """Append chunks to a file, and return how many bytes of it are there."""
+        """Append chunks to a file, and return the number of its bytes so far."""
         place, file = self.place_of(number), self.files[number]
         place.parent.mkdir(parents=True, exist_ok=True)
         held = _size(place)

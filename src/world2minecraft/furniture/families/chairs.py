@@ -49,7 +49,7 @@ def _chair_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
 
 
 def _is_small(size: BlockSize, look: Look) -> bool:
-    """Whether a chair has no room for legs: a stair stands for it."""
+    """Return whether a chair is too small for legs, so that a stair represents it."""
     return size.per_metre < FINE or (size.depth == 1 and look["seat_height"] * size.per_metre < 1.5)
 
 

@@ -36,7 +36,7 @@ def _upholstered(back_m: float, arm_m: float) -> Build:
 
 
 class _Run(NamedTuple):
-    """The cells of a seat in plan: those of its back with the side it lies at, and its arms."""
+    """The cells of a seat in plan: its back cells with their side, and its arm cells."""
 
     seat: list[tuple[int, int]]
     back: list[tuple[int, int, Side]]

@@ -74,7 +74,7 @@ def _tops(look: Look) -> tuple[str, ...]:
 
 
 def _is_low(plan: Plan) -> bool:
-    """Lay a table that is no higher than a block, or one block wide; whether it is one."""
+    """Place a table no higher or wider than a block, and return whether it is one."""
     look, height = plan.look, plan.size.exact[2]
     if height > LOW:
         return False

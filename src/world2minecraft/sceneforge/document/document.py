@@ -179,7 +179,7 @@ class Document(MemoryDocument):
         self._snapshot_rev, self._snapshot_s = self.rev, self.clock()
 
     def _own(self, found: RecoveredScene) -> None:
-        """Make the folder ready to be written to."""
+        """Prepare the document folder for writing."""
         _tidy(self.folder)
         path = self.folder / JOURNAL_FILE
         if found.fault:
@@ -197,7 +197,7 @@ class Document(MemoryDocument):
         self._effort.opened(self.clock())
 
     def _log_again(self, effort: EffortLog) -> None:
-        """Note the steps that a kill kept from the effort log."""
+        """Add the steps to the effort log that were lost when the program was killed."""
         for rev, step in enumerate(self._journal.steps, self._journal.start + 1):
             if rev <= effort.last_rev:
                 continue
@@ -220,7 +220,7 @@ class Document(MemoryDocument):
         return operation
 
     def _shorten(self) -> None:
-        """Forget the oldest operations, so that undo reaches ``history_bytes`` of them."""
+        """Remove the oldest operations, so that ``history_bytes`` of operations can be undone."""
         self.wait()
         reached = len(self.history.line.numbers)
         line, journal = self.history.line, self._journal
@@ -242,7 +242,7 @@ class Document(MemoryDocument):
         self._take(replace(found, journal=journal, line=line, rev=rev))
 
     def _snapshot(self) -> None:
-        """Write a snapshot beside the work; one that fails is told and tried again later."""
+        """Write a snapshot in a thread. A failure is noted, and a later snapshot is tried."""
         self.wait()
         self._snapshot_rev, self._snapshot_s = self.rev, self.clock()
         self._writer = threading.Thread(target=self._write, args=(self.state(),))
@@ -257,7 +257,7 @@ class Document(MemoryDocument):
 
 
 def _take_lock(folder: Path) -> tuple[Lock | None, str]:
-    """Return the lock of a document, or None and why it cannot be had."""
+    """Return the lock of a document, or None and the reason why it is not available."""
     lock = Lock(folder / "lock")
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -277,7 +277,7 @@ def _take_lock(folder: Path) -> tuple[Lock | None, str]:
 def _prepare(
     folder: Path, source: Path | None, out: Path | None, opened: OpenedScene | None
 ) -> list[str]:
-    """Bring the files of a document in order before it is read; return what to tell the user."""
+    """Repair the files of a document before it is read, and return notes for the user."""
     notes = []
     if is_document(folder) and saving.finish_interrupted_save(folder, read_identity(folder).target):
         notes.append("An interrupted save was completed.")
@@ -297,14 +297,14 @@ def generation_of(opened: OpenedScene) -> str:
 
 
 def _prune(folder: Path, generation: str) -> None:
-    """Remove old snapshots of a generation, but for the newest and the first."""
+    """Remove the old snapshots of a generation, except the newest and the first."""
     held = [path for path in snapshot_paths(folder) if path.stem.endswith(generation)]
     for path in held[MAX_SNAPSHOTS:-1]:
         path.unlink(missing_ok=True)
 
 
 def _tidy(folder: Path) -> None:
-    """Remove what a kill left half-written."""
+    """Remove incomplete files left by a killed program."""
     for path in [*folder.glob(".*.npz.*"), *folder.glob(".*.json.*"), folder / "journal.new"]:
         try:
             path.unlink(missing_ok=True)

@@ -143,7 +143,7 @@ def changed_inputs(folder: Path) -> list[Path]:
 
 
 def _retire(folder: Path) -> Path:
-    """Move everything of a document but its lock into a folder within it."""
+    """Move all files of a document except its lock into a subfolder."""
     names = (folder / f"old-{number}" for number in count(1))
     aside = next(path for path in names if not path.exists())
     try:

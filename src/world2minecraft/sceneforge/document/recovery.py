@@ -138,7 +138,7 @@ def copy_damaged(path: Path) -> Path:
 
 
 def _base(folder: Path) -> State:
-    """Return the scene as it was opened first; where that is damaged, the newest snapshot."""
+    """Return the scene as it was first opened, or the newest snapshot if the base is damaged."""
     try:
         return read_state(folder / BASE_FILE)
     except InputError:
@@ -148,7 +148,7 @@ def _base(folder: Path) -> State:
 
 
 def _journal(folder: Path, base: State) -> tuple[SceneJournal, str]:
-    """Return the journal and what is wrong with it; an empty one where it cannot be read."""
+    """Return the journal and its damage, or an empty journal if it cannot be read."""
     path = folder / JOURNAL_FILE
     try:
         journal = SceneJournal(path, base.grid.shape)
@@ -166,7 +166,7 @@ def _journal(folder: Path, base: State) -> tuple[SceneJournal, str]:
 
 
 def _newest(folder: Path, journal: SceneJournal, base: State) -> State:
-    """Return the newest state that can be read: of the journal's generation, else of any."""
+    """Return the newest readable state of the journal's generation, or else of any generation."""
     of_journal = [*_states(folder, journal.generation)] if journal.generation else []
     if not of_journal and journal.generation == base.generation:
         return base
@@ -175,7 +175,7 @@ def _newest(folder: Path, journal: SceneJournal, base: State) -> State:
 
 
 def _states(folder: Path, generation: str) -> Iterator[State]:
-    """Go through at most one state, the newest whole one of a generation."""
+    """Yield the newest intact state of a generation, if there is one."""
     for path in snapshot_paths(folder):
         if generation and not path.stem.endswith(generation):
             continue
@@ -189,7 +189,7 @@ def _states(folder: Path, generation: str) -> Iterator[State]:
 def _replay(
     state: State, journal: SceneJournal, steps: Sequence[Step]
 ) -> tuple[SceneDraft, Timeline, int, str]:
-    """Do steps again; return the scene, the line, how many were done and why no more."""
+    """Apply steps again; return the scene, the line, the number of steps and the reason to stop."""
     draft, line = state.draft(), state.line
     for done, step in enumerate(steps):
         if not step.verb:
@@ -211,7 +211,7 @@ def _effect(journal: SceneJournal, step: Step) -> Operation:
 
 
 def _reachable(line: Timeline, journal: SceneJournal) -> Timeline:
-    """Return the part of a line around now whose operations are there."""
+    """Return the part of a line around the current position whose operations are available."""
     missing = [at for at, number in enumerate(line.numbers) if not journal.bytes_of(number)]
     first = max((at + 1 for at in missing if at < line.done), default=0)
     last = min((at for at in missing if at >= line.done), default=len(line.numbers))
@@ -219,7 +219,7 @@ def _reachable(line: Timeline, journal: SceneJournal) -> Timeline:
 
 
 def _trim_line(line: Timeline, journal: SceneJournal, keep_bytes: int) -> Timeline:
-    """Return a line without its oldest operations, so that it takes at most so many bytes."""
+    """Return a line without its oldest operations, limited to a number of bytes."""
     first, held = len(line.numbers), 0
     while first > 0 and held + journal.bytes_of(line.numbers[first - 1]) <= keep_bytes:
         first -= 1

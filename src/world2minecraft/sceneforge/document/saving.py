@@ -142,7 +142,7 @@ def _remove_staged(staged: Path) -> None:
 
 
 def _read_record(document: Path) -> dict[str, Any]:
-    """Return what ``saved.json`` tells; as if nothing was saved where it is missing or damaged."""
+    """Return the contents of ``saved.json``, or those of an unsaved scene if it is not readable."""
     try:
         record = read_json(document / SAVED_FILE, 1 << 20)
         pending = record.get("pending", {"rev": 0, "files": {}})

@@ -173,7 +173,7 @@ class Jobs:
 
 
 class _Job:
-    """One job: its state, its thread, and the ``JobProgress`` that its work calls."""
+    """A job: its state, its thread, and the ``JobProgress`` that its work calls."""
 
     def __init__(
         self,

@@ -83,7 +83,7 @@ def _plan_told(source: Path, lines: list[str]) -> dict[str, Any]:
 
 
 def _rows(lines: list[str]) -> list[list[str]]:
-    """Return the named lines of a summary: those between its head and its next command."""
+    """Return the named lines of a summary, between its heading and its next command."""
     rows = [line.strip().partition(" ") for line in lines[1:-1]]
     doubts = ("ok", "warning", "stop", "hint")
     return [[name, text.strip()] for name, _, text in rows if name not in doubts]

@@ -63,14 +63,14 @@ def start_worker(task: str, needs: Mapping[str, Any]) -> "subprocess.Popen[bytes
 
 
 def _pipe(stream: Any) -> Any:
-    """Return a stream of a process that was opened with pipes."""
+    """Return a stream of a process that was started with pipes."""
     if stream is None:
         raise WorkerError("the job process was started without pipes for stdin and stdout")
     return stream
 
 
 def _relay(process: "subprocess.Popen[bytes]", report: JobProgress) -> Any:
-    """Relay what a process says to a job, and return its result."""
+    """Forward the progress of a process to a job, and return its result."""
     report.on_cancel(lambda: stop_worker(process))
     try:
         for line in _pipe(process.stdout):

@@ -65,7 +65,7 @@ def _bytes(world: BlockWorld, facts: dict[str, Any]) -> bytes:
 
 
 def _block_axes_to_room(grid: OccupancyGrid) -> np.ndarray:
-    """Carry cells in block axes (x, z, -y) to room metres, float64 [4, 4]."""
+    """Return the transform from cells in block axes (x, z, -y) to room metres, float64 [4, 4]."""
     x, y, z = grid.origin_m
     v = grid.voxel_m
     return np.array(
@@ -74,7 +74,7 @@ def _block_axes_to_room(grid: OccupancyGrid) -> np.ndarray:
 
 
 def _start(grid: OccupancyGrid, world: BlockWorld) -> tuple[tuple[float, float, float], float]:
-    """Return where to stand in the middle of the floor, looking at the middle of the furniture."""
+    """Return a start position in the middle of the floor, facing the middle of the furniture."""
     axes = np.linalg.inv(_block_axes_to_room(grid))
     floor = _middle(grid, grid.labels == SemanticClass.FLOOR)
     things = _middle(grid, np.isin(grid.labels, OBJECT_CLASSES))
@@ -88,7 +88,7 @@ def _start(grid: OccupancyGrid, world: BlockWorld) -> tuple[tuple[float, float, 
 
 
 def _middle(grid: OccupancyGrid, where: np.ndarray) -> np.ndarray:
-    """Return the middle of some cells in room metres, of the whole grid where there are none."""
+    """Return the centre of cells in room metres, or of the whole grid without cells."""
     cells = np.argwhere(where)
     middle = np.median(cells, axis=0) + 0.5 if len(cells) else np.array(grid.shape) / 2
     return grid.origin_m + middle * grid.voxel_m
@@ -125,11 +125,11 @@ class BuildCache:
         )
 
     def _held(self, editor: Editor) -> SceneSnapshot:
-        """Copy the scene in its turn: while it is built another room may be opened."""
+        """Copy the scene in its turn, because another room may be opened during the build."""
         return replace(SceneSnapshot.of(editor), shown=self.session.shown)
 
     def _of(self, scene: SceneSnapshot, options: BuildOptions) -> BlockBuild:
-        """Return the build of a scene; called by one thread at a time."""
+        """Return the build of a scene. Only one thread at a time may call this."""
         key = (scene.shown, scene.rev, options)
         if key not in self._volumes:
             self._volumes[key] = BlockBuild.of(scene, options)
@@ -151,7 +151,7 @@ class BuildCache:
             return scene.rev, packed
 
     async def _told(self, work: Coroutine[Any, Any, bytes]) -> bytes:
-        """Wait for a build; after a second tell the tabs of it."""
+        """Wait for a build, and announce it to the tabs after a second."""
         task = asyncio.ensure_future(work)
         done, _ = await asyncio.wait([task], timeout=NOTIFY_AFTER_S)
         if done:
@@ -195,7 +195,11 @@ def _builds(request: Request) -> BuildCache:
 
 
 def _options(request: Request) -> BuildOptions:
-    """Return what the query asks for. Raises UsageError where it is wrong."""
+    """Return the build options of a request.
+
+    Raises:
+        UsageError: If an option is invalid.
+    """
     query = request.query_params
     text = query.get("blocks_per_metre", "4")
     try:

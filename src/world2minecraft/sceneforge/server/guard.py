@@ -84,7 +84,7 @@ class Guard:
         await self.app(scope, receive, _with_headers(scope, send))
 
     def _foreign(self, headers: dict[str, list[str]]) -> str:
-        """Why a request is not from our own page or a program; empty where it may be."""
+        """Return why a request is neither from the server's page nor from a program, or ""."""
         hosts = headers.get("host", [])
         if len(hosts) != 1 or not self._is_ours(hosts[0].lower()):
             return "unknown host name; use the link that w2m forge printed"
@@ -102,14 +102,14 @@ class Guard:
         return found["name"] in self.hosts or (self.any_address and _is_address(found["name"]))
 
     def _brings_token(self, scope: Scope) -> bool:
-        """Whether this is a visit to the link that was printed."""
+        """Return whether a request is a visit to the printed link."""
         if scope["type"] != "http" or scope["method"] != "GET" or scope["path"] != "/":
             return False
         brought = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
         return len(brought) == 1 and _same(brought[0], self.token)
 
     def _unknown(self, headers: dict[str, list[str]]) -> str:
-        """Why the sender is not known; empty where it is."""
+        """Return why the sender is not authenticated, or an empty string."""
         for value in headers.get("authorization", []):
             scheme, _, given = value.partition(" ")
             if scheme.lower() == "bearer" and _same(given.strip(), self.token):
@@ -153,7 +153,7 @@ def _is_address(name: str) -> bool:
 
 
 async def _welcome(scope: Scope, send: Send, cookie: str) -> None:
-    """Set the cookie and go on to the page without the token in the address bar."""
+    """Set the cookie and redirect to the page without the token in the address bar."""
     cookie_header = f"{cookie}; HttpOnly; SameSite=Strict; Path=/"
     headers = [
         (b"location", b"/"),
@@ -166,7 +166,7 @@ async def _welcome(scope: Scope, send: Send, cookie: str) -> None:
 
 
 async def _refuse(scope: Scope, receive: Receive, send: Send, why: str) -> None:
-    """Answer 403; a websocket is refused before it is opened."""
+    """Answer with status 403, or reject a websocket before it is opened."""
     if scope["type"] == "websocket":
         await receive()
         await send({"type": "websocket.close", "code": 1008, "reason": why})
@@ -182,7 +182,7 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, why: str) -> None:
 
 
 def _with_headers(scope: Scope, send: Send) -> Send:
-    """Return ``send`` that adds the security headers to every answer."""
+    """Return a ``send`` function that adds the security headers to every answer."""
     if scope["type"] != "http":
         return send
     always = [*HEADERS, NO_STORE] if _never_kept(scope["path"]) else [*HEADERS]

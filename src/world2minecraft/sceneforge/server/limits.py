@@ -98,7 +98,7 @@ def parse_json(data: bytes | str) -> Any:
 
 
 def _depth(raw: bytes) -> int:
-    """How deep brackets are nested; those in strings are left out."""
+    """Return the nesting depth of brackets outside strings."""
     signs = np.frombuffer(STRINGS.sub(b"", raw), np.uint8)
     opens = (signs == ord("[")) | (signs == ord("{"))
     closes = (signs == ord("]")) | (signs == ord("}"))

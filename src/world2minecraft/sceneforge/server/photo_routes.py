@@ -29,7 +29,7 @@ def routes() -> list[BaseRoute]:
 
 
 async def _all(request: Request) -> Response:
-    """Tell the photos, or why there are none: that is no error of the one who asks."""
+    """Return the photos, or the reason why there are none, which is not an error of the request."""
     try:
         found = await asyncio.to_thread(_photos, request)
     except World2MinecraftError as error:

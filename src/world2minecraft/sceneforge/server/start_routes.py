@@ -152,7 +152,7 @@ async def _forget(request: Request) -> Response:
 
 
 def _delete_capture(workspace: Workspace, capture: str, job: str | None) -> None:
-    """End what is at work on a capture and delete it; in a thread, for both may take seconds."""
+    """End the job on a capture and delete the capture. This may take seconds."""
     if job is not None:
         workspace.jobs.cancel(job)
         workspace.jobs.wait(job, 10)

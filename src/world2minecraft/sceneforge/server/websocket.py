@@ -45,7 +45,7 @@ async def live(socket: WebSocket) -> None:
 
 
 async def _send(socket: WebSocket, tab: Tab, session: Session) -> None:
-    """Send what waits; ends with the socket."""
+    """Send the queued messages until the socket is closed."""
     try:
         while True:
             await socket.send_text(await tab.get(session.hello))
@@ -54,7 +54,7 @@ async def _send(socket: WebSocket, tab: Tab, session: Session) -> None:
 
 
 async def _answer(received: Mapping[str, Any], tab: Tab, session: Session) -> None:
-    """Do what one message asks, and tell the tab that it was done or why not."""
+    """Process one message, and send its result or the reason for its failure to the tab."""
     if received["type"] == "websocket.disconnect":
         raise WebSocketDisconnect(received.get("code", 1005))
     message: Any = None
@@ -72,7 +72,7 @@ async def _answer(received: Mapping[str, Any], tab: Tab, session: Session) -> No
 
 
 async def _do(message: dict[str, Any], tab: Tab, session: Session) -> bool:
-    """Do what a message says; return whether it is answered."""
+    """Process a message, and return whether it is answered."""
     kind = message.get("type")
     if kind == "active":
         await session.active(tab.actor)
