@@ -59,27 +59,31 @@ def _cut(path, share=0.5):
 
 
 def test_missing_empty_and_unknown_captures_are_refused(tmp_path):
-    assert _refused(tmp_path / "none").endswith("none: is not there")
+    assert _refused(tmp_path / "none").endswith("none: not found")
     (tmp_path / "scan.zip").write_bytes(b"PK")
-    _refused(tmp_path / "scan.zip", "is a file (.zip) of another kind; a capture is one of these")
+    _refused(tmp_path / "scan.zip", "is a file (.zip) of an unknown format; supported formats")
     (tmp_path / "empty").mkdir()
-    _refused(tmp_path / "empty", "is empty; a capture is one of these", "plain layout")
+    _refused(tmp_path / "empty", "is empty; supported formats", "plain layout")
     (tmp_path / "music").mkdir()
     (tmp_path / "music" / "song.txt").write_text("la")
-    _refused(tmp_path / "music", "another kind, which holds 1 .txt;", "7-Scenes", "captures.md")
+    _refused(
+        tmp_path / "music", "an unknown format, which contains 1 .txt;", "7-Scenes", "captures.md"
+    )
 
 
 def test_a_capture_one_folder_deeper_is_named(tmp_path, views):
     write_plain(tmp_path / "download" / "room", views)
     (tmp_path / "download" / "LICENSE").write_text("free")
     line = _refused(tmp_path / "download", "which holds 1 file without suffix, 1 folder; ")
-    assert line.endswith(f"a capture lies one folder deeper: give {tmp_path / 'download' / 'room'}")
+    assert line.endswith(
+        f"there is a capture one folder deeper, use {tmp_path / 'download' / 'room'}"
+    )
 
 
 def test_of_two_captures_one_folder_deeper_none_is_chosen(tmp_path, views):
     for name in ("kitchen", "hall"):
         write_plain(tmp_path / "flat" / name, views)
-    _refused(tmp_path / "flat", "which holds 2 folders; a capture is one of these")
+    _refused(tmp_path / "flat", "which contains 2 folders; supported formats")
 
 
 @pytest.mark.parametrize("layout", list(WRITERS))
@@ -122,7 +126,7 @@ def test_frames_of_one_stream_that_differ_in_size(tmp_path, views):
     Image.fromarray(np.ones((60, 80), np.uint16)).save(tmp_path / "frame-000002.depth.png")
     _refused(
         tmp_path, "frame-000002.depth.png: is 80x60 but frame-000000.depth.png is 160x120",
-        "all depth images must have one size",
+        "all depth images must have the same size",
     )  # fmt: skip
 
 
@@ -132,17 +136,23 @@ def test_a_depth_size_that_its_intrinsics_do_not_speak_of(tmp_path, views, layou
     for path in tmp_path.rglob("*.png"):
         if "depth" in str(path.relative_to(tmp_path)):
             Image.fromarray(np.full((120, 200), 1500, np.uint16)).save(path)
-    _refused(tmp_path, "its intrinsics speak of another image", "no uniform scale of 160x120")
+    _refused(tmp_path, "does not match its intrinsics", "no uniform scale of 160x120")
 
 
 @pytest.mark.parametrize(
     ("pixels", "words"),
     [
-        (np.full((120, 160), 90, np.uint8), "is 8-bit; depth needs 16-bit or float values"),
+        (
+            np.full((120, 160), 90, np.uint8),
+            "is an 8-bit image, but depth requires 16-bit or float values",
+        ),
         (np.full((120, 160, 3), 90, np.uint8), "is a colour image (RGB)"),
-        (np.zeros((120, 160), np.uint16), "is all holes, as are all 4 depth images"),
+        (
+            np.zeros((120, 160), np.uint16),
+            "contains no depth values, like all 4 sampled depth images",
+        ),
         (np.full((120, 160), 65535, np.uint16), "is all holes"),
-        (np.full((120, 160), 3, np.uint16), "a typical depth of 0.003 m (read as millimetres)"),
+        (np.full((120, 160), 3, np.uint16), "a median depth of 0.003 m if read as millimetres"),
     ],
 )
 def test_depth_that_is_none(tmp_path, views, pixels, words):
@@ -154,19 +164,21 @@ def test_depth_that_is_none(tmp_path, views, pixels, words):
 
 def test_captures_without_depth(tmp_path, views):
     write_plain(tmp_path, [replace(v, depth_m=None, depth_camera=None) for v in views])
-    with pytest.raises(CaptureError, match="has no depth images; w2m reconstruct computes them"):
+    with pytest.raises(
+        CaptureError, match="contains no depth images; use w2m reconstruct, which computes them"
+    ):
         open_scan(tmp_path)
 
 
 def test_missing_poses_and_intrinsics(tmp_path, views):
     write_seven_scenes(tmp_path / "a", views)
     (tmp_path / "a" / "camera-intrinsics.txt").unlink()
-    _refused(tmp_path / "a", "has no camera-intrinsics.txt (3x3: fx 0 cx")
+    _refused(tmp_path / "a", "does not contain camera-intrinsics.txt (3x3: fx 0 cx")
     write_seven_scenes(tmp_path / "b", views)
     for path in (tmp_path / "b").glob("*.pose.txt"):
         path.unlink()
-    _refused(tmp_path / "b", "no frame has a pose (frame-000000.pose.txt beside its images)")
-    for key, words in (("fl_x", "has no intrinsics"), ("frames", 'must hold "frames"')):
+    _refused(tmp_path / "b", "contains no camera poses (frame-000000.pose.txt next to the images)")
+    for key, words in (("fl_x", "contains no intrinsics"), ("frames", 'must hold "frames"')):
         write_nerfstudio(tmp_path / "c", views)
         stated = json.loads((tmp_path / "c" / "transforms.json").read_text())
         del stated[key]
@@ -183,15 +195,18 @@ def test_missing_poses_and_intrinsics(tmp_path, views):
 def test_huge_images_are_refused_from_their_header(tmp_path, views, size):
     write_seven_scenes(tmp_path, views)
     _png_of_size(tmp_path / "frame-000001.depth.png", *size)
-    _refused(tmp_path, "frame-000001.depth.png", "megapixels; at most 64", kind=LimitError)
+    _refused(tmp_path, "frame-000001.depth.png", "megapixels; the limit is 64", kind=LimitError)
 
 
 @pytest.mark.parametrize(
     ("bend", "words"),
     [
-        (np.diag([-1.0, 1, 1, 1]), "mirrors (determinant -1.000)"),
+        (np.diag([-1.0, 1, 1, 1]), "is mirrored (determinant -1.000)"),
         (np.diag([2.0, 2, 2, 1]), "is scaled by 2; poses must be rigid"),
-        (np.array([[1, 0.02, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]), "is bent"),
+        (
+            np.array([[1, 0.02, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]),
+            "is not orthonormal",
+        ),
     ],
 )
 def test_poses_that_are_no_rotation(tmp_path, views, bend, words):
@@ -207,7 +222,7 @@ def test_poses_in_millimetres(tmp_path, views):
         pose = view.camera_to_scan.copy()
         pose[:3, 3] *= 1000
         np.savetxt(tmp_path / f"frame-{index:06d}.pose.txt", pose)
-    _refused(tmp_path, "they look like millimetres: divide the translations by 1000")
+    _refused(tmp_path, "appear to be in millimetres: divide them by 1000")
 
 
 def test_a_single_wrong_or_stray_pose_is_left_out(tmp_path, box_room):
@@ -238,15 +253,15 @@ def test_poses_slightly_off_are_repaired(tmp_path, box_room):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"format": "other"}, 'must be an object with "format"'),
-        ({"version": 9}, '"version" must be 1, not 9'),
+        ({"format": "other"}, 'must be a JSON object with "format"'),
+        ({"version": 9}, '"version" must be 1, got 9'),
         ({"frames": []}, '"frames" must be a list'),
-        ({"frames": [{"name": "../up"}]}, "name must be its files' without suffix"),
-        ({"frames": [{"name": "a", "camera_to_world": [[1, 2], [3]]}]}, "four rows of four"),
-        ({"depth_unit": 5}, '"depth_unit" must be a name'),
+        ({"frames": [{"name": "../up"}]}, "name must be the stem of its files"),
+        ({"frames": [{"name": "a", "camera_to_world": [[1, 2], [3]]}]}, "must be a 4x4 matrix"),
+        ({"depth_unit": 5}, '"depth_unit" must be a string'),
         ({"depth_unit": "furlong"}, "no depth unit is named 'furlong'"),
-        ({"colour_camera": {"width_px": 160}}, '"colour_camera" lacks height_px'),
-        ({"colour_camera": [1]}, 'has no "colour_camera"'),
+        ({"colour_camera": {"width_px": 160}}, '"colour_camera" does not contain height_px'),
+        ({"colour_camera": [1]}, '"colour_camera" must be an object'),
     ],
 )
 def test_invalid_values_in_a_plain_capture(tmp_path, views, change, words):
@@ -261,9 +276,9 @@ def test_invalid_values_in_a_plain_capture(tmp_path, views, change, words):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"camera_model": "OPENCV_FISHEYE"}, "'OPENCV_FISHEYE' is not read; undistort"),
-        ({"k4": 0.1}, "fourth radial term"),
-        ({"fl_x": "long"}, '"fl_x" must be a number, not long'),
+        ({"camera_model": "OPENCV_FISHEYE"}, "'OPENCV_FISHEYE' is not supported; undistort"),
+        ({"k4": 0.1}, "distortion coefficient k4"),
+        ({"fl_x": "long"}, '"fl_x" must be a number, got long'),
         ({"fl_x": -5}, "fx_px must be above 0"),
         ({"applied_scale": 0}, '"applied_scale" must be above 0'),
         ({"w": 10**9}, "width_px must be 1 to"),
@@ -283,7 +298,7 @@ def test_a_missing_image_is_listed_even_where_no_size_is_stated(tmp_path, box_ro
     del stated["w"], stated["h"]
     path.write_text(json.dumps(stated))
     (tmp_path / "images" / "000005.png").unlink()
-    assert open_scan(tmp_path).frames_skipped == (("000005", "000005.png is not there"),)
+    assert open_scan(tmp_path).frames_skipped == (("000005", "000005.png not found"),)
 
 
 @pytest.mark.parametrize("name", ["../secret.png", "/etc/passwd", "images/../../x.png", ""])
@@ -293,7 +308,7 @@ def test_transforms_cannot_reach_out_of_the_folder(tmp_path, views, name):
     stated = json.loads(path.read_text())
     stated["frames"][0]["file_path"] = name
     path.write_text(json.dumps(stated))
-    _refused(tmp_path, "must be relative and stay inside the folder")
+    _refused(tmp_path, "must be relative and inside the folder")
 
 
 def test_files_that_are_no_json_or_no_matrix(tmp_path, views):
@@ -302,21 +317,21 @@ def test_files_that_are_no_json_or_no_matrix(tmp_path, views):
     _refused(tmp_path / "a", "is not JSON", kind=InputError)
     write_seven_scenes(tmp_path / "b", views)
     (tmp_path / "b" / "camera-intrinsics.txt").write_text("1 2 3")
-    _refused(tmp_path / "b", "must hold 9 numbers, a 3x3 matrix, not 3")
+    _refused(tmp_path / "b", "must contain 9 numbers (a 3x3 matrix), got 3")
     write_seven_scenes(tmp_path / "c", views)
     for path in (tmp_path / "c").glob("*.pose.txt"):
         path.write_text("1 0 0 0")
-    _refused(tmp_path / "c", "none of 4 frames can be used", "must hold 16 numbers")
+    _refused(tmp_path / "c", "none of 4 frames can be used", "must contain 16 numbers")
 
 
 def test_npy_depth_is_checked_against_its_length(tmp_path, views):
     write_plain(tmp_path, views, depth_unit="m")
     for path in (tmp_path / "depth").glob("*.npy"):
         _cut(path)
-    _refused(tmp_path, "is no whole .npy")
+    _refused(tmp_path, "is not a complete .npy")
     for path in (tmp_path / "depth").glob("*.npy"):
         np.save(path, np.array([{"a": 1}], dtype=object), allow_pickle=True)
-    _refused(tmp_path, "is no whole .npy")
+    _refused(tmp_path, "is not a complete .npy")
 
 
 @pytest.mark.parametrize("content", [b"", b"GIF89a" + b"\0" * 40, b"\x89PNG\r\n\x1a\n"])
@@ -330,8 +345,8 @@ def test_files_that_are_no_image(tmp_path, content):
 @pytest.mark.parametrize(
     ("camera", "words"),
     [
-        ({"fx_px": "130.0"}, "fx_px must be a number, not '130.0'"),
-        ({"width_px": None}, "width_px must be a number, not None"),
+        ({"fx_px": "130.0"}, "fx_px must be a number, got '130.0'"),
+        ({"width_px": None}, "width_px must be a number, got None"),
     ],
 )
 def test_a_lens_in_quotes(tmp_path, views, camera, words):
@@ -349,32 +364,32 @@ def test_whole_numbers_too_long_for_a_matrix(tmp_path, views):
     stated = json.loads(path.read_text())
     stated["frames"][0]["camera_to_world"] = [[10**400] * 4] * 4
     path.write_text(json.dumps(stated))
-    _refused(tmp_path, "four rows of four numbers")
+    _refused(tmp_path, "must be a 4x4 matrix")
 
 
 def test_a_layout_none_of_whose_frames_is_there(tmp_path):
     (tmp_path / "results").mkdir()
     Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(tmp_path / "results" / "frame_one.jpg")
     np.savetxt(tmp_path / "traj.txt", np.eye(4).reshape(1, 16))
-    _refused(tmp_path, "looks like a capture of the kind replica", "docs/captures.md shows how")
+    _refused(tmp_path, "has the layout of a replica capture", "see docs/captures.md")
 
 
 def test_a_7_scenes_folder_without_a_readable_image(tmp_path):
     (tmp_path / "frame-000000.color.png").write_bytes(b"no image")
     np.savetxt(tmp_path / "frame-000001.pose.txt", np.eye(4))
-    _refused(tmp_path, "has poses but no image that can be read")
+    _refused(tmp_path, "contains poses but no readable image")
 
 
 def test_other_archives_are_refused_with_advice(tmp_path):
     (tmp_path / "room.tgz").write_bytes(b"")
-    _refused(tmp_path / "room.tgz", "is packed as .tgz", "unpack it, and give its folder")
+    _refused(tmp_path / "room.tgz", "is a .tgz archive", "unpack it and use the unpacked folder")
 
 
 def test_a_fisheye_of_instant_ngp(tmp_path, views):
     write_nerfstudio(tmp_path, views)
     path = tmp_path / "transforms.json"
     path.write_text(json.dumps(json.loads(path.read_text()) | {"is_fisheye": True}))
-    _refused(tmp_path, "is of a fisheye lens, which is not read; undistort first")
+    _refused(tmp_path, "uses a fisheye lens, which is not supported; undistort the images first")
 
 
 def test_whole_numbers_of_npy_depth_must_be_unsigned(tmp_path, views):
@@ -382,20 +397,22 @@ def test_whole_numbers_of_npy_depth_must_be_unsigned(tmp_path, views):
     for path in (tmp_path / "depth").glob("*.npy"):
         np.save(path, np.full((120, 160), 2000, np.int32))
     _refused(
-        tmp_path, "must hold unsigned or float numbers [H, W], not int32 (120, 160)",
+        tmp_path, "must contain unsigned integers or floats of shape [H, W], got int32 (120, 160)",
         "save it as uint16 or float32",
     )  # fmt: skip
 
 
 def test_depth_that_the_device_trusts_nowhere(tmp_path, views):
     write_plain(tmp_path, [replace(v, trust=np.zeros(v.depth_m.shape, np.uint8)) for v in views])
-    with pytest.raises(CaptureError, match="none of the 4 depth images looked at has any depth"):
+    with pytest.raises(
+        CaptureError, match="contains no reliable depth in the 4 sampled depth images"
+    ):
         describe_capture(tmp_path)
 
 
 @pytest.mark.parametrize("size_m", [(4.0, 3.0, 2.5), (9.7, 8.3, 3.1)])
 def test_the_reported_minimum_voxel_is_accepted(size_m):
     alignment = Alignment(np.eye(4), np.array(size_m), ())
-    with pytest.raises(UsageError, match="take at least --voxel") as caught:
+    with pytest.raises(UsageError, match="use --voxel") as caught:
         check_cell_count(alignment, 0.001)
     check_cell_count(alignment, float(str(caught.value).split()[-1]))

@@ -102,7 +102,7 @@ def test_labels_of_another_folder_are_matched_by_name(tmp_path, views):
     labelled = next(view for view in scan.views if view.labels is not None)
     assert labelled.labels.shape == (120, 160)
     Image.fromarray(half + 40).save(tmp_path / "masks" / "000003.png")
-    with pytest.raises(CaptureError, match="class ids 0 to 11 or 255, not 48"):
+    with pytest.raises(CaptureError, match="class ids from 0 to 11, or 255; got 48"):
         open_scan(tmp_path / "capture", labels=tmp_path / "masks")
     with pytest.raises(CaptureError, match="no label image for any frame"):
         open_scan(tmp_path / "capture", labels=tmp_path / "capture" / "depth" / "..")
@@ -164,9 +164,9 @@ def test_every_takes_each_nth_frame_and_wrong_options_are_named(tmp_path, views)
     assert len(open_scan(tmp_path, options={"every": "2"}).views) == 6
     with pytest.raises(UnknownNameError, match="did you mean 'depth_unit'"):
         open_scan(tmp_path, options={"depht_unit": "mm"})
-    with pytest.raises(UsageError, match="whole number above 0, not '0'"):
+    with pytest.raises(UsageError, match="positive integer, got '0'"):
         open_scan(tmp_path, options={"every": "0"})
-    with pytest.raises(UsageError, match="take at least --voxel 0.010"):
+    with pytest.raises(UsageError, match="use --voxel 0.010 or more"):
         open_scan(tmp_path, voxel_m=0.002)
 
 

@@ -114,15 +114,15 @@ def test_the_text_of_a_good_scan(whole):
     lines = "\n".join(summary_lines(whole)).replace(str(whole.folder), "SCAN")
     assert lines == (
         "SCAN: posed RGB-D frames (test), 24 of 24 frames usable\n"
-        "  route     depth and poses are taken as they are: about 10 s\n"
+        "  route     depth and poses are used as stated: about 10 s\n"
         "  colour    160x120, focal length 130 px\n"
-        "  depth     160x120, focal length 130 px, millimetres, typically 2.1 m away\n"
-        "  poses     24 good, 0 lost, cameras up to 1.1 m apart\n"
+        "  depth     160x120, focal length 130 px, millimetres, median 2.1 m\n"
+        "  poses     24 valid, 0 lost, camera positions span 1.1 m\n"
         f"  room      about {' x '.join(f'{side:.1f}' for side in whole.room_size_m)} m\n"
-        "  ok        floor, ceiling and all four walls were met\n"
-        "  ok        all 24 pictures looked at are sharp\n"
-        "  ok        depth from 0.9 to 2.8 m, 0% of it holes\n"
-        "  ok        every heading is looked at\n"
+        "  ok        floor, ceiling and all four walls were detected\n"
+        "  ok        all 24 sampled images are sharp\n"
+        "  ok        depth from 0.9 to 2.8 m, 0% missing\n"
+        "  ok        all horizontal directions are covered\n"
         "next: w2m reconstruct SCAN --out OUT"
     )
 
@@ -131,16 +131,16 @@ def test_the_text_of_photos(tmp_path):
     lines = "\n".join(summary_lines(photos(tmp_path, panned()))).replace(str(tmp_path), "PHOTOS")
     assert lines == (
         "PHOTOS: photos without poses (photos), 10 of 10 frames usable\n"
-        "  route     poses and depth are computed from the pictures: about 20 s\n"
-        "  colour    160x120, focal length found with the poses\n"
-        "  depth     none; it is computed from the pictures\n"
-        "  poses     none; they are found from the pictures\n"
-        "  warning   only 10 pictures; 40 to 100 from all sides show a room: take more, each "
-        "sharing two thirds with the one before\n"
-        "  warning   nothing says how large the room is; it is judged from heights that are "
-        'usual: measure one thing and say it: --known "table height" 0.72\n'
-        "  ok        all 10 pictures looked at are sharp\n"
-        "  ok        neighbours share about 81%\n"
+        "  route     poses and depth are computed from the images: about 20 s\n"
+        "  colour    160x120, focal length estimated with the poses\n"
+        "  depth     none; computed from the images\n"
+        "  poses     none; computed from the images\n"
+        "  warning   only 10 images; use 40 to 100 from all directions: take more images, each "
+        "sharing two thirds with the previous image\n"
+        "  warning   the capture has no scale; the size is estimated from typical "
+        'heights: measure one length and set it, for example --known "table height" 0.72\n'
+        "  ok        all 10 sampled images are sharp\n"
+        "  ok        neighbouring images overlap by about 81%\n"
         "next: w2m reconstruct PHOTOS --out OUT"
     )
 
@@ -149,11 +149,11 @@ def test_the_text_of_posed_pictures(tmp_path, box_room):
     summary = posed(tmp_path, box_room, box_room.poses(24), depth=False)
     lines = "\n".join(summary_lines(summary)).replace(str(tmp_path), "POSED").splitlines()
     assert lines[:5] == [
-        "POSED: pictures with poses, no depth (test), 24 of 24 frames usable",
-        "  route     poses are checked and depth is computed from the pictures: about 30 s",
+        "POSED: images with poses, without depth (test), 24 of 24 frames usable",
+        "  route     poses are checked and depth is computed from the images: about 30 s",
         "  colour    160x120, focal length 130 px",
-        "  depth     none; it is computed from the pictures",
-        "  poses     24 good, 0 lost, cameras up to 1.0 m apart",
+        "  depth     none; computed from the images",
+        "  poses     24 valid, 0 lost, camera positions span 1.0 m",
     ]
 
 
@@ -208,9 +208,8 @@ def test_blur_is_detected_relative_to_the_others(tmp_path):
         pictures[index] = np.asarray(soft)
     summary = photos(tmp_path / "p", pictures)
     assert level_of(summary, "blur") == "warn"
-    assert (
-        "5 of 24 pictures looked at are blurred: picture 000, picture 005, picture 010"
-        in " ".join(summary.warnings)
+    assert "5 of 24 sampled images are blurred: image 000, image 005, image 010" in " ".join(
+        summary.warnings
     )
     pictures[5:] = panned(10, count=24)[5:]
     assert level_of(photos(tmp_path / "q", pictures), "blur") == "ok"

@@ -86,7 +86,7 @@ def test_a_stated_unit_wins(tmp_path):
     assert find_encoding([path], "0.002") == DepthEncoding("0.002")
     with pytest.raises(UnknownNameError, match="no depth unit is named 'feet'"):
         find_encoding([path], "feet")
-    with pytest.raises(CaptureError, match="a typical depth of 2e\\+03 m"):
+    with pytest.raises(CaptureError, match="a median depth of 2e\\+03 m"):
         find_encoding([path], "m")
 
 

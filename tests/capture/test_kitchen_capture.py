@@ -91,7 +91,7 @@ def test_the_summary_of_the_kitchen(shared_data):
 def test_a_folder_of_another_kind_is_refused(shared_data):
     from world2minecraft.core.errors import CaptureError
 
-    with pytest.raises(CaptureError, match="of another kind, which holds .*; a capture"):
+    with pytest.raises(CaptureError, match="of an unknown format, which contains .*; supported"):
         open_scan(shared_data / "layoutgpt_outputs")
 
 

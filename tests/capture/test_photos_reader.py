@@ -144,7 +144,7 @@ def test_what_is_no_photo_of_the_room_is_left_out_with_reasons(tmp_path):
     assert [f.name for f in capture.frames] == ["copy_of_2", "IMG_1", "IMG_3", "IMG_4", "IMG_5"]
     reasons = dict(capture.skipped)
     assert reasons["IMG_2.jpg"] == "is copy of 2.jpg again"
-    assert reasons["IMG_E3.jpg"] == "is an edit of IMG_3, which is read"
+    assert reasons["IMG_E3.jpg"] == "is an edited copy of IMG_3, which is used instead"
     assert "thumbnail" in reasons["small.jpg"] and "panorama" in reasons["wide.jpg"]
     assert reasons["Screenshot_20.png"] == reasons["paint.png"] == "is a screenshot"
     assert "copy it again" in reasons["broken.jpg"]
@@ -212,7 +212,7 @@ def test_five_ways_of_damage_are_refused_in_one_line(tmp_path, damage):
 
 def test_too_few_photos_are_refused(tmp_path):
     _photos(tmp_path, 2)
-    _refused(tmp_path, "holds 2 photos that can be used", "take 30 or more", kind=CaptureError)
+    _refused(tmp_path, "contains 2 photos that can be used", "take 30 or more", kind=CaptureError)
 
 
 def test_heic_photos_that_are_called_jpg(tmp_path):

@@ -32,7 +32,9 @@ def capture(tmp_path, monkeypatch):
 def test_text_and_picture(capture, tmp_path, capsys):
     assert w2m(["scan", str(capture)]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == (f"{capture}: pictures with poses, no depth (plain), 12 of 12 frames usable")
+    assert lines[0] == (
+        f"{capture}: images with poses, without depth (plain), 12 of 12 frames usable"
+    )
     assert lines[-2] == "picture: den-scan.png"
     assert lines[-1] == f"next: w2m reconstruct {capture} --out OUT"
     assert Image.open(tmp_path / "here" / "den-scan.png").size == (1600, 1040)
@@ -87,14 +89,14 @@ def test_a_room_plan(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(roomplan, "read_roomplan", lambda path: plan)
     assert w2m(["scan", "Room.json"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith("Room.json: a RoomPlan capture, 1 room, 0 walls")
+    assert lines[0].startswith("Room.json: a RoomPlan capture with 1 room, 0 walls")
     assert lines[-1] == "next: w2m reconstruct Room.json --out OUT"
 
 
 def test_frames_with_a_plan_beside_them_are_frames(capture, capsys):
     (capture / "Room.json").write_text('{"walls": [], "doors": []}')
     assert w2m(["scan", str(capture), "--no-picture"]) == 0
-    assert "pictures with poses, no depth (plain)" in capsys.readouterr().out
+    assert "images with poses, without depth (plain)" in capsys.readouterr().out
 
 
 def test_a_place_that_cannot_be_read_is_bad_input(capsys):

@@ -231,8 +231,8 @@ def test_a_bomb_is_seen_when_it_is_looked_at(server, script):
 def test_what_is_no_capture_says_what_is(server, script):
     number = sent(script, {"notes.pdf": b"hello"})
     state = ended(server, script.post(f"/api/start/captures/{number}/look"))
-    assert state.state == "failed" and "a capture is one of these" in state.note
-    assert state.note.startswith("notes.pdf: is a file (.pdf) of another kind")
+    assert state.state == "failed" and "supported formats: " in state.note
+    assert state.note.startswith("notes.pdf: is a file (.pdf) of an unknown format")
     told = script.get(f"/api/start/captures/{number}").json()
     assert told["survey"] is None and told["job"] is None
 

@@ -1,8 +1,8 @@
-"""Stage 1: a capture on disk becomes an aligned ``Scan``.
+"""Stage 1 of the pipeline: open a capture on disk as an aligned ``Scan``.
 
-``open_scan`` detects the kind of capture, validates its frames, aligns the room and returns views
-that are read from disk one at a time. ``describe_capture`` summarises a capture in seconds.
-``write_plain`` writes the program's own layout.
+``open_scan`` detects the format of a capture, validates its frames, aligns the room and returns
+views that are read from disk one at a time. ``describe_capture`` summarises a capture within
+seconds. ``write_plain`` writes captures in the project's own layout.
 """
 
 from world2minecraft.capture.alignment.room_frame import realign

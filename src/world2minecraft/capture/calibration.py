@@ -1,9 +1,10 @@
 """Calibration of the colour camera of captures that state one matrix for depth and colour.
 
-Depth sensors of the Kinect kind see depth and colour through two lenses, yet many captures state
-one matrix. Where depth jumps, colour mostly changes too: the scale of the focal length and the
-shift of the principal point that align depth edges with colour edges are the colour camera's. They
-are estimated on one half of the frames and used only if the other half gains clearly from them.
+Kinect-like sensors record depth and colour through two lenses, but many captures state only one
+intrinsic matrix. Colour usually changes where depth jumps. The focal-length scale and the shift of
+the principal point that align depth edges with colour edges therefore describe the colour camera.
+They are estimated on half of the frames, and used only if they clearly improve the alignment on the
+other half.
 """
 
 from collections.abc import Iterable, Sequence
@@ -32,10 +33,14 @@ MIN_INSIDE_SHARE = 0.6
 
 @dataclass(frozen=True)
 class ColourCameraEstimate:
-    """The colour camera relative to the stated matrix; shifts in pixels of the colour image.
+    """An estimate of the colour camera relative to the stated intrinsics.
 
-    ``gain`` is how much better the held-out frames fit, as a ratio; ``clear`` says
-    whether it is enough to use the estimate.
+    Attributes:
+        scale: Ratio of the estimated to the stated focal length.
+        shift_x_px: Shift of the principal point in pixels of the colour image, to the right.
+        shift_y_px: Shift of the principal point in pixels of the colour image, downward.
+        gain: Ratio by which the alignment of held-out frames improves.
+        clear: Whether the improvement is large enough to use the estimate.
     """
 
     scale: float
@@ -57,9 +62,9 @@ class ColourCameraEstimate:
 
 @dataclass(frozen=True)
 class _DepthEdges:
-    """One frame's depth edges as rays, float64 [N, 2], and maps of colour change, float32 [h, w].
+    """The depth edges of a frame as rays, float64 [N, 2], and colour gradients, float32 [h, w].
 
-    Edges across the image's rows come first, then those along them; each has its own map.
+    Horizontal depth jumps come first, then vertical ones; each direction has its own gradient map.
     """
 
     rays: tuple[np.ndarray, np.ndarray]
@@ -67,10 +72,10 @@ class _DepthEdges:
 
 
 def estimate_colour_camera(views: Iterable[View]) -> ColourCameraEstimate | None:
-    """Estimate the colour camera from some views, read once and one at a time.
+    """Estimate the colour camera from views, which are read once and one at a time.
 
     Returns:
-        The estimate, clear or not, or None where there are too few edges to say anything.
+        The estimate, which may be unclear, or None if there are too few edges.
     """
     edges: list[_DepthEdges] = []
     stated = None
@@ -100,7 +105,7 @@ def _edge_count(frames: Sequence[_DepthEdges]) -> int:
 def _extract_edges(view: View) -> _DepthEdges:
     depth, camera, colour = view.depth_m, view.depth_camera, view.colour
     if depth is None or camera is None or colour is None:
-        raise ValueError(f"view {view.name} has not both depth and colour")
+        raise ValueError(f"view {view.name} must have depth and colour")
     down, across = _depth_edges(depth.T), _depth_edges(depth)
     focal = np.array([camera.fx_px, camera.fy_px])
     center = np.array([camera.cx_px, camera.cy_px])
@@ -114,10 +119,9 @@ def _extract_edges(view: View) -> _DepthEdges:
 
 
 def _depth_edges(depth_m: np.ndarray) -> np.ndarray:
-    """Return where depth jumps along rows, float64 [N, 2]: the borders' x and y in pixels.
+    """Return the positions of depth jumps along rows in pixels, float64 [N, 2] (x, y).
 
-    Sensors see nothing right at a border, so a jump may have a hole in it; the border is where
-    the nearer surface ends.
+    Sensors have holes at depth edges. The position is the border of the nearer surface.
     """
     columns = np.arange(depth_m.shape[1], dtype=np.int32)
     latest = np.maximum.accumulate(np.where(depth_m > 0, columns, -1), axis=1)[:, :-1]
@@ -132,7 +136,7 @@ def _depth_edges(depth_m: np.ndarray) -> np.ndarray:
 
 
 def _colour_gradient(pixels: np.ndarray, axis: int) -> np.ndarray:
-    """Return how much colour changes along an axis, 0 to 1 with its mean taken off."""
+    """Return the colour change along an axis, from 0 to 1, with the mean subtracted."""
     gradient = np.zeros(pixels.shape[:2], np.float32)
     for channel in range(3):
         smoothed = gaussian_filter1d(pixels[..., channel], BLUR_PX, axis=1 - axis)
@@ -144,7 +148,7 @@ def _colour_gradient(pixels: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _search_camera(frames: Sequence[_DepthEdges], matrix: np.ndarray) -> tuple[float, float, float]:
-    """Return the best scale and shifts: all coarse ones, then the best one's neighbours."""
+    """Return the best scale and shifts by a coarse search with local refinement."""
     scores = {
         (scale, x, y): _alignment_score(frames, matrix, scale, x, y)
         for scale in SCALES.tolist()
@@ -173,9 +177,9 @@ def _search_camera(frames: Sequence[_DepthEdges], matrix: np.ndarray) -> tuple[f
 def _alignment_score(
     frames: Sequence[_DepthEdges], matrix: np.ndarray, scale: float, shift_x: float, shift_y: float
 ) -> float:
-    """Return the mean colour change under the depth edges that fall into the image.
+    """Return the mean colour gradient at the depth edges that project into the image.
 
-    Those outside say nothing; a camera that leaves most of them out is none.
+    Edges outside the image are ignored; a camera for which most edges are outside is rejected.
     """
     total, inside = 0.0, 0
     for frame in frames:

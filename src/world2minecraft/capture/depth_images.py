@@ -1,7 +1,7 @@
-"""Depth images in metres, and detection of their unit.
+"""Conversion of depth images to metres, and detection of their unit.
 
-``DEPTH_UNITS`` names the encodings that depth cameras write. Where a capture does not state which
-is meant, it is inferred from the values: their range, and the steps that an encoding leaves.
+``DEPTH_UNITS`` lists the encodings used by depth cameras. If a capture does not state its encoding,
+the encoding is inferred from the range and the quantisation of the values.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,14 +19,14 @@ DISTINCT_VALUES = 12  # Fewer say nothing about steps.
 
 
 def _nyu_raw(raw: np.ndarray) -> np.ndarray:
-    """Decode Kinect disparities as NYUv2 dumped them: bytes swapped, metres by a rational fit."""
+    """Decode Kinect disparities of NYUv2 raw data: swap bytes, then apply a rational fit."""
     disparity = raw.astype(np.uint16).byteswap().astype(np.float64)
     seen = disparity < 1090  # Beyond, the fit runs to infinity; 2047 marks a hole.
     return np.where(seen, 351.3 / (1092.5 - np.where(seen, disparity, 0)), 0)
 
 
 def _rotated(raw: np.ndarray) -> np.ndarray:
-    """Undo SUN RGB-D's rotation of the 16 bits by three."""
+    """Undo the 3-bit rotation of 16-bit depth values in SUN RGB-D."""
     bits = raw.astype(np.uint16)
     return ((bits >> 3) | (bits << 13)) / 1000.0
 
@@ -49,7 +49,12 @@ _DESCRIPTIONS = {
 
 @dataclass(frozen=True)
 class DepthEncoding:
-    """How the stored values become metres: a name of ``DEPTH_UNITS`` or metres per unit."""
+    """The encoding of stored depth values.
+
+    Attributes:
+        unit: A name in ``DEPTH_UNITS``, or metres per unit as a string.
+        guessed: Whether the unit was inferred from the values.
+    """
 
     unit: str
     guessed: bool = False
@@ -64,7 +69,7 @@ class DepthEncoding:
         return _DESCRIPTIONS.get(self.unit, f"units of {self.unit} m")
 
     def to_metres(self, raw: np.ndarray) -> np.ndarray:
-        """Return float32 metres of stored values; whatever is no depth becomes 0."""
+        """Convert stored values to metres as float32; invalid values become 0."""
         valid = np.isfinite(raw) & (raw > 0)
         if raw.dtype.kind != "f":
             valid &= raw != INVALID
@@ -86,35 +91,40 @@ def _is_scale(unit: str) -> bool:
 
 
 def check_depth_kind(path: ImagePlace, header: ImageHeader) -> None:
-    """Refuse an image that cannot hold depth.
+    """Check that an image has a pixel format that can contain depth.
 
     Raises:
-        CaptureError: it has 8 bits a pixel or is a colour image.
+        CaptureError: If the image has 8 bits per pixel or is a colour image.
     """
     if header.mode in ("1", "L", "P", "LA", "PA", "uint8"):
-        raise CaptureError(path, "is 8-bit; depth needs 16-bit or float values: export it again")
+        raise CaptureError(
+            path, "is an 8-bit image, but depth requires 16-bit or float values; export it again"
+        )
     if not header.mode.startswith(("I", "F", "uint", "float")):
         raise CaptureError(
-            path, f"is a colour image ({header.mode}); depth needs one 16-bit or float channel"
+            path,
+            f"is a colour image ({header.mode}), but depth requires a single 16-bit "
+            "or float channel",
         )
 
 
 def find_encoding(paths: Sequence[ImagePlace], stated: str | None) -> DepthEncoding:
-    """Return the encoding of a stream of depth images, stated or inferred from some of them.
+    """Determine the encoding of a stream of depth images.
 
     Args:
-        paths: a few depth images of the stream.
-        stated: the unit that the capture or the user states, or None.
+        paths: Sample of depth images of the stream.
+        stated: Unit stated by the capture or the user, or None to infer it.
 
     Raises:
-        CaptureError: none of the images has any depth, or no unit makes a room of them.
-        UnknownNameError: no unit has the stated name.
+        CaptureError: If the images contain no depth, or the depth is implausible for a room.
+        UnknownNameError: If the stated unit is unknown.
     """
     values = np.concatenate([_sample_values(path) for path in paths])
     if not len(values):
         raise CaptureError(
             paths[0],
-            f"is all holes, as are all {len(paths)} depth images looked at: record it again",
+            f"contains no depth values, like all {len(paths)} sampled depth images; record "
+            "the scan again",
         )
     encoding = DepthEncoding(stated) if stated else DepthEncoding(_guess_unit(values), guessed=True)
     _check_range(paths[0], encoding, values)
@@ -122,13 +132,13 @@ def find_encoding(paths: Sequence[ImagePlace], stated: str | None) -> DepthEncod
 
 
 def read_depth(path: ImagePlace, encoding: DepthEncoding) -> np.ndarray:
-    """Return float32 [H, W] z-depth in metres, 0 where there is none."""
+    """Read a depth image in metres as float32 [H, W], with 0 for missing depth."""
     check_depth_kind(path, read_header(path))
     return encoding.to_metres(read_raw(path))
 
 
 def _sample_values(path: ImagePlace) -> np.ndarray:
-    """Return the valid stored values of every third pixel of one image."""
+    """Return the valid stored values of every third pixel of an image."""
     raw = read_raw(path)[::3, ::3].reshape(-1)
     valid = np.isfinite(raw) & (raw > 0)
     if raw.dtype.kind != "f":
@@ -137,7 +147,7 @@ def _sample_values(path: ImagePlace) -> np.ndarray:
 
 
 def _guess_unit(values: np.ndarray) -> str:
-    """Infer the unit from the values' range and steps."""
+    """Infer the unit from the range and the quantisation of the values."""
     typical, far = np.percentile(values, [50, 98])
     if values.dtype.kind == "f" and far < 100:
         return "m"
@@ -156,6 +166,7 @@ def _check_range(path: ImagePlace, encoding: DepthEncoding, values: np.ndarray) 
     if not 0.15 <= typical <= MAX_INDOOR_M:
         raise CaptureError(
             path,
-            f"a typical depth of {typical:.3g} m (read as {encoding.description}) is no room; "
-            f"say --set capture.depth_unit={'|'.join(DEPTH_UNITS)} or metres per unit",
+            f"has a median depth of {typical:.3g} m if read as {encoding.description}, which "
+            "is implausible for a room; set --set "
+            f"capture.depth_unit={'|'.join(DEPTH_UNITS)} or metres per unit",
         )

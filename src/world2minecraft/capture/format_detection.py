@@ -1,7 +1,7 @@
-"""Detection of the kind of a capture.
+"""Detection of the format of a capture.
 
-A new kind is one file with a ``Source``, one line here and one test; other packages add theirs
-through the entry point group ``world2minecraft.source``.
+To add a format, write a module with a ``Source``, add it to ``SOURCES`` and add a test. Other
+packages register formats through the entry point group ``world2minecraft.source``.
 """
 
 from collections import Counter
@@ -52,27 +52,28 @@ UNREAD_ARCHIVE_SUFFIXES = (".tar", ".tgz", ".gz", ".bz2", ".xz", ".zst", ".7z", 
 
 
 def find_capture(path: str | Path, options: ScanOptions | None = None) -> Capture:
-    """Detect the kind of capture at a path and list its frames.
+    """Detect the format of the capture at a path and list its frames.
 
     Args:
-        path: a folder, one of its ``INDEX_FILES``, a zip of either, or a file that a source knows.
-        options: the user's options; passed to sources that are ``ConfigurableSource``.
+        path: A folder, one of its ``INDEX_FILES``, a zip archive of a capture, or a file of a
+            supported format.
+        options: User options, passed to sources that implement ``ConfigurableSource``.
 
     Raises:
-        CaptureError: it is missing, empty, of another kind or contradicts itself.
+        CaptureError: If the capture is missing, empty, inconsistent or of an unknown format.
     """
     place = Path(path)
     try:
         if place.is_file() and place.name in INDEX_FILES:
             place = place.parent
         if not place.exists():
-            raise CaptureError(place, "is not there")
+            raise CaptureError(place, "not found")
         empty = place.is_dir() and next(place.iterdir(), None) is None
     except OSError as error:
         raise CaptureError(place, f"cannot be read: {error.strerror or error}") from error
     if place.is_file() and place.suffix.lower() in UNREAD_ARCHIVE_SUFFIXES:
-        reason = f"is packed as {place.suffix}; of packed files zips alone are read: unpack it"
-        raise CaptureError(place, f"{reason}, and give its folder")
+        reason = f"is a {place.suffix} archive; only zip archives can be read directly: unpack it"
+        raise CaptureError(place, f"{reason} and use the unpacked folder")
     names = sorted(SOURCES.names(), key=lambda name: name in FALLBACK_SOURCES)
     sources: list[Source] = [SOURCES.load(name)() for name in names]
     choosy = sources[: -len(FALLBACK_SOURCES)]
@@ -83,15 +84,15 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
     kind = (
         "is empty"
         if empty
-        else f"is a {_describe_kind(place)} of another kind{_describe_contents(place)}"
+        else f"is a {_describe_kind(place)} of an unknown format{_describe_contents(place)}"
     )
     within = _capture_one_level_down(place, choosy)
     if within is not None:
-        raise CaptureError(place, f"{kind}; a capture lies one folder deeper: give {within}")
+        raise CaptureError(place, f"{kind}; there is a capture one folder deeper, use {within}")
     known = ", ".join(_layout_name(source.layout) for source in sources)
     raise CaptureError(
         place,
-        f"{kind}; a capture is one of these: {known}; docs/captures.md shows the files of each",
+        f"{kind}; supported formats: {known}; see docs/captures.md for their files",
     )
 
 
@@ -102,7 +103,7 @@ def _read_source(source: Source, place: AnyPath, options: ScanOptions | None) ->
 
 
 def _candidate_places(place: Path) -> Iterator[AnyPath]:
-    """Yield where a capture may lie: there, inside its zip, or in the one folder that it holds."""
+    """Yield the places to search: the path, the inside of its zip, and lone subfolders."""
     yield place
     inner: AnyPath = ArchivePath(place) if place.is_file() and is_zip(place) else place
     for _ in range(MAX_WRAPPINGS):
@@ -123,7 +124,7 @@ def _describe_kind(place: Path) -> str:
 
 
 def _describe_contents(place: Path) -> str:
-    """Return what a folder holds, in words: that tells which part of an export is missing."""
+    """Return a summary of a folder's entries, which helps to find missing parts of an export."""
     if not place.is_dir():
         return ""
     entries = list(place.iterdir())
@@ -132,11 +133,11 @@ def _describe_contents(place: Path) -> str:
         for entry in entries
     )
     most = sorted(kinds.items(), key=lambda item: (-item[1], item[0]))[:4]
-    return ", which holds " + ", ".join(_count_phrase(count, kind) for kind, count in most)
+    return ", which contains" + ", ".join(_count_phrase(count, kind) for kind, count in most)
 
 
 def _count_phrase(count: int, kind: str) -> str:
-    """Return how many there are, in words.
+    """Return a count with its noun.
 
     Example:
         >>> [_count_phrase(count, "file without suffix") for count in (1, 2)]
@@ -149,7 +150,7 @@ def _count_phrase(count: int, kind: str) -> str:
 
 
 def _capture_one_level_down(place: Path, sources: Sequence[Source]) -> Path | None:
-    """Return the folder in a folder that is a capture; None where none or several are."""
+    """Return the only subfolder that is a capture; None if there is none or more than one."""
     if not place.is_dir():
         return None
     folders = sorted(entry for entry in place.iterdir() if entry.is_dir())[:MAX_HINT_FOLDERS]
@@ -158,7 +159,7 @@ def _capture_one_level_down(place: Path, sources: Sequence[Source]) -> Path | No
 
 
 def _layout_name(layout: str) -> str:
-    """Return the name of a layout: in brackets at its end, or all of it.
+    """Return the name of a layout, which is in brackets at its end, or else the whole text.
 
     Example:
         >>> _layout_name("rgb.txt, depth.txt and groundtruth.txt (TUM RGB-D)")

@@ -1,9 +1,8 @@
-"""Reading images of a capture, which are untrusted until checked.
+"""Reading of the images of a capture, which are untrusted input.
 
-The size is read from the header and compared with ``MAX_PIXELS`` before anything is decoded, only
-the formats that captures use are tried, and a truncated file is found without decoding it. An
-image lies in a file, in a member of a zip, or wherever an ``ImageSource`` takes it from: a video,
-a ``.sens`` file, a rendered mesh.
+The size in the header is compared with ``MAX_PIXELS`` before an image is decoded. Only the formats
+that captures use are tried, and truncated files are detected without decoding. An image is a file,
+a member of a zip archive, or an ``ImageSource``, such as a frame of a video or a rendered view.
 """
 
 import warnings
@@ -35,33 +34,33 @@ _FILES = (Path, ArchivePath)
 
 
 class NamedByFile:
-    """An image that is called as its file ``path``."""
+    """Mixin for images that are named after their file ``path``."""
 
     path: AnyPath
 
     def __str__(self) -> str:
-        """The file's path, for messages."""
+        """Return the path of the file, for messages."""
         return str(self.path)
 
     @property
     def stem(self) -> str:
-        """The file's name without suffix."""
+        """The name of the file without suffix."""
         return self.path.stem
 
     @property
     def name(self) -> str:
-        """The file's name."""
+        """The name of the file."""
         return self.path.name
 
 
 class NamedByFrame:
-    """An image within the larger file ``path`` that is called as its ``frame``."""
+    """Mixin for images inside a larger file ``path`` that are named after their ``frame``."""
 
     path: AnyPath
     frame: str
 
     def __str__(self) -> str:
-        """The file and the frame in it."""
+        """Return the path of the file and the frame, for messages."""
         return f"{self.path}/{self.frame}"
 
     @property
@@ -77,7 +76,7 @@ class NamedByFrame:
 
 @dataclass(frozen=True)
 class ImageHeader:
-    """Size and mode of an image; ``mode`` is Pillow's, or the dtype of a ``.npy``."""
+    """The size and mode of an image. ``mode`` is a Pillow mode, or the dtype of a ``.npy`` file."""
 
     width_px: int
     height_px: int
@@ -85,15 +84,15 @@ class ImageHeader:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height in pixels."""
+        """The width and height in pixels."""
         return self.width_px, self.height_px
 
 
 class ImageSource(Protocol):
-    """An image that lies in no file of its own.
+    """An image that is not a file of its own, such as a frame of a video.
 
-    ``str()`` of it names it in messages, as ``scan.sens/frame 12``. Its methods raise what the
-    functions of this module raise.
+    ``str()`` returns its name for messages, such as ``scan.sens/frame 12``. Its methods raise the
+    same exceptions as the functions of this module.
     """
 
     @property
@@ -107,19 +106,19 @@ class ImageSource(Protocol):
         ...
 
     def header(self) -> ImageHeader:
-        """Return size and mode, cheaply."""
+        """Return the size and mode of the image without decoding it."""
         ...
 
     def check_whole(self) -> None:
-        """Check, without decoding, that the image is there whole."""
+        """Check without decoding that the image is complete."""
         ...
 
     def colour(self) -> np.ndarray:
-        """Return uint8 [H, W, 3] sRGB."""
+        """Return the image as sRGB, uint8 [H, W, 3]."""
         ...
 
     def raw(self) -> np.ndarray:
-        """Return [H, W] values as stored: depth, labels, confidence."""
+        """Return the stored values, such as depth, labels or confidence, as [H, W]."""
         ...
 
 
@@ -127,11 +126,12 @@ ImagePlace = AnyPath | ImageSource
 
 
 def read_header(path: ImagePlace) -> ImageHeader:
-    """Read an image's size and kind, without its pixels.
+    """Read the size and mode of an image without its pixels.
 
     Raises:
-        InputError: it is missing. DamagedFileError: it is no image. LimitError: it is over
-            ``MAX_PIXELS``.
+        InputError: If the file is missing.
+        DamagedFileError: If the file is not an image.
+        LimitError: If the image has more than ``MAX_PIXELS`` pixels.
     """
     if not isinstance(path, _FILES):
         found = path.header()
@@ -145,10 +145,10 @@ def read_header(path: ImagePlace) -> ImageHeader:
 
 
 def check_whole(path: ImagePlace) -> None:
-    """Check that an image file is not cut short, without decoding it where its end tells.
+    """Check that an image file is complete, without decoding it if possible.
 
     Raises:
-        DamagedFileError: it ends early or fails its own check sums.
+        DamagedFileError: If the file is truncated or a checksum is wrong.
     """
     if not isinstance(path, _FILES):
         return path.check_whole()
@@ -166,17 +166,21 @@ def check_whole(path: ImagePlace) -> None:
 
 
 def _check_by_decoding(path: AnyPath) -> None:
-    """Decode a JPEG whose end is not at the file's: phones append a video or facts of their own."""
+    """Decode a JPEG with data after its end marker, which phones append."""
     try:
         with _open_checked(path) as image:
             image.load()
     except DamagedFileError as error:
-        reason = "is cut short (a JPEG without its end); copy it again"
+        reason = "is truncated (JPEG without an end marker); copy the file again"
         raise DamagedFileError(path, reason) from error
 
 
 def read_colour(path: ImagePlace) -> np.ndarray:
-    """Decode a colour image to uint8 [H, W, 3] sRGB. Raises what ``read_header`` raises."""
+    """Decode a colour image to sRGB, uint8 [H, W, 3].
+
+    Raises:
+        InputError: If the image is missing, damaged or too large.
+    """
     if not isinstance(path, _FILES):
         return path.colour()
     with _open_checked(path) as image:
@@ -184,10 +188,12 @@ def read_colour(path: ImagePlace) -> np.ndarray:
 
 
 def read_small(path: ImagePlace, longest_px: int) -> np.ndarray:
-    """Decode a colour image to at most ``longest_px`` a side, uint8 [h, w, 3] sRGB.
+    """Decode a colour image to sRGB, uint8 [h, w, 3], with at most ``longest_px`` per side.
 
-    A JPEG is decoded at an eighth to a half of its size where that is enough, which is several
-    times as fast. Raises what ``read_header`` raises.
+    A JPEG is decoded at a reduced resolution if possible, which is several times faster.
+
+    Raises:
+        InputError: If the image is missing, damaged or too large.
     """
     if not isinstance(path, _FILES):
         image = Image.fromarray(path.colour())
@@ -206,7 +212,7 @@ def _shrink_to(image: Image.Image, longest_px: int) -> np.ndarray:
 
 
 def read_raw(path: ImagePlace) -> np.ndarray:
-    """Decode an image of single values as it is stored, [H, W] of any number type."""
+    """Decode a single-channel image to its stored values, [H, W] of any numeric dtype."""
     if not isinstance(path, _FILES):
         return path.raw()
     if path.suffix == ".npy":
@@ -216,29 +222,30 @@ def read_raw(path: ImagePlace) -> np.ndarray:
 
 
 class Openable(Protocol):
-    """What opens like a file: a part of a larger one, for instance."""
+    """An object that can be opened like a file, such as a part of a larger file."""
 
     def open(self, mode: str = "rb") -> IO[bytes]:
-        """Open it for reading bytes."""
+        """Open the object for reading bytes."""
         ...
 
     def stat(self) -> Any:
-        """Return ``st_size`` in bytes."""
+        """Return an object with the size in bytes as ``st_size``."""
         ...
 
 
 def open_image(source: AnyPath | Openable) -> AbstractContextManager[Image.Image]:
-    """Open an image that lies within another file, with its size checked.
+    """Open an image after checking its size.
 
     Raises:
-        DamagedFileError: it is no image. LimitError: it is over ``MAX_PIXELS``.
+        DamagedFileError: If the source is not an image.
+        LimitError: If the image has more than ``MAX_PIXELS`` pixels.
     """
     return _open_checked(source)
 
 
 @contextmanager
 def _open_checked(path: AnyPath | Openable) -> Iterator[Image.Image]:
-    """Open an image with its size checked; any way to fail becomes one of our errors."""
+    """Open an image after checking its size, and convert all errors to project exceptions."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Ours is the stricter limit, checked below.
@@ -251,25 +258,29 @@ def _open_checked(path: AnyPath | Openable) -> Iterator[Image.Image]:
     except Image.DecompressionBombError as error:
         raise LimitError(
             path,
-            f"has over {MAX_PIXELS * 2 // 1_000_000} megapixels; at most 64 are read: export it "
-            "smaller",
+            f"has over {MAX_PIXELS * 2 // 1_000_000} megapixels, the limit is 64; export a "
+            "smaller image",
         ) from error
     except UnidentifiedImageError as error:
-        kind = "is empty" if path.stat().st_size == 0 else f"is none of {', '.join(FORMATS)}"
-        raise DamagedFileError(path, f"{kind}; copy it again") from error
+        kind = (
+            "is empty"
+            if path.stat().st_size == 0
+            else f"is not in a supported image format ({', '.join(FORMATS)})"
+        )
+        raise DamagedFileError(path, f"{kind}; copy the file again") from error
     except FileNotFoundError as error:
-        raise InputError(path, "is not there") from error
+        raise InputError(path, "not found") from error
     except (OSError, SyntaxError, ValueError, EOFError, IndexError, MemoryError) as error:
         # Pillow raises SyntaxError for a PNG whose chunks fail their check sums.
         raise DamagedFileError(
-            path, f"is damaged ({reason_of(error, 120)}); copy it again"
+            path, f"is damaged ({reason_of(error, 120)}); copy the file again"
         ) from error
 
 
 def _formats(head: bytes) -> tuple[str, ...]:
-    """Return the formats to try; the reader of HEIF is looked for only where one is met.
+    """Return the image formats to try; HEIF support is imported only for HEIF files.
 
-    Its first bytes tell, not its name: apps send HEIC photos that are called ``.jpg``.
+    The format is detected from the first bytes, because apps send HEIC photos named ``.jpg``.
     """
     if head[4:8] != b"ftyp" or head[8:12] not in HEIF_BRANDS:
         return FORMATS
@@ -282,7 +293,7 @@ def _formats(head: bytes) -> tuple[str, ...]:
 
 
 def _check_boxes(path: AnyPath) -> None:
-    """Check that the boxes of a HEIF file end where the file does."""
+    """Check that the boxes of a HEIF file end at the end of the file."""
     size, at = path.stat().st_size, 0
     with path.open("rb") as stream:
         while at < size:
@@ -293,35 +304,35 @@ def _check_boxes(path: AnyPath) -> None:
                 length = int.from_bytes(head[8:16], "big")
             at = size if length == 0 else at + max(length, 8)
     if at > size:
-        raise DamagedFileError(path, "is cut short (its last part is missing); copy it again")
+        raise DamagedFileError(path, "is truncated (its last part is missing); copy the file again")
 
 
 def _check_pixels(path: object, width_px: int, height_px: int) -> None:
     if width_px * height_px > MAX_PIXELS:
         raise LimitError(
             path,
-            f"is {width_px}x{height_px}, {width_px * height_px / 1e6:.0f} megapixels; "
-            f"at most {MAX_PIXELS // 1_000_000} are read: export it smaller",
+            f"is {width_px}x{height_px} px, {width_px * height_px / 1e6:.0f} megapixels; the "
+            f"limit is {MAX_PIXELS // 1_000_000}; export a smaller image",
         )
 
 
 def _open_npy(path: AnyPath) -> Any:
-    """Map a ``.npy`` of [H, W] numbers; its length is checked against its header."""
+    """Map a ``.npy`` file of [H, W] numbers, and check its length against its header."""
     try:
         if isinstance(path, Path):
             array = np.load(path, mmap_mode="r", allow_pickle=False)
         else:
             array = np.load(path.open("rb"), allow_pickle=False)
     except FileNotFoundError as error:
-        raise InputError(path, "is not there") from error
+        raise InputError(path, "not found") from error
     except (OSError, ValueError, EOFError) as error:
-        reason = f"is no whole .npy ({reason_of(error, 120)}); copy it again"
+        reason = f"is not a complete .npy file ({reason_of(error, 120)}); copy the file again"
         raise DamagedFileError(path, reason) from error
     if array.ndim != 2 or array.dtype.kind not in "fu" or not array.size:
         raise DamagedFileError(
             path,
-            f"must hold unsigned or float numbers [H, W], not {array.dtype} {array.shape}; "
-            "save it as uint16 or float32",
+            f"must contain unsigned integers or floats of shape [H, W], got {array.dtype} "
+            f"{array.shape}; save it as uint16 or float32",
         )
     _check_pixels(path, array.shape[1], array.shape[0])
     return array

@@ -1,4 +1,4 @@
-"""Label images from a separate folder: ``FOLDER/NAME.png``, one 8-bit class id per pixel."""
+"""Label images in a separate folder: ``FOLDER/NAME.png`` with one 8-bit class id per pixel."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,19 +12,19 @@ from world2minecraft.core.errors import CaptureError
 
 
 def attach_labels(frames: Sequence[FrameFiles], folder: Path) -> tuple[FrameFiles, ...]:
-    """Return the frames with the label images of a folder, matched by the frame's name.
+    """Return the frames with label images from a folder, matched by frame name.
 
     Raises:
-        CaptureError: the folder is missing or none of its images is named like a frame.
+        CaptureError: If the folder is missing or no image matches a frame.
     """
     if not folder.is_dir():
         raise CaptureError(
-            folder, "is no folder of label images: give one with NAME.png for each frame"
+            folder, "is not a folder of label images; give a folder with NAME.png for each frame"
         )
     labelled = tuple(replace(frame, labels_path=_label_of(frame, folder)) for frame in frames)
     if not any(frame.labels_path for frame in labelled):
         raise CaptureError(
-            folder, f"has no label image for any frame, such as {frames[0].name}.png"
+            folder, f"contains no label image for any frame, such as {frames[0].name}.png"
         )
     return labelled
 
@@ -36,10 +36,11 @@ def _label_of(frame: FrameFiles, folder: Path) -> ImagePlace | None:
 
 
 def check_labels(frames: Sequence[FrameFiles]) -> None:
-    """Decode the first label image, so that a wrong kind is refused before any long work.
+    """Decode the first label image, to reject wrong formats before long computations.
 
     Raises:
-        CaptureError: it is no 8-bit image of class ids, or has another shape than the colour.
+        CaptureError: If the image does not contain 8-bit class ids, or its aspect ratio differs
+            from the colour image.
     """
     for frame in frames:
         if frame.labels_path is None or frame.colour_camera is None:
@@ -48,16 +49,19 @@ def check_labels(frames: Sequence[FrameFiles]) -> None:
         try:
             frame.colour_camera.resized(*header.size)
         except ValueError as error:
-            raise CaptureError(frame.labels_path, f"labels lie on colour: {error}") from error
+            raise CaptureError(
+                frame.labels_path, f"label image does not match the colour image: {error}"
+            ) from error
         labels = read_raw(frame.labels_path)
         if labels.dtype != np.uint8 or labels.ndim != 2:
             given = f"{labels.dtype} {labels.shape}"
             raise CaptureError(
-                frame.labels_path, f"must hold one 8-bit class id a pixel, not {given}"
+                frame.labels_path, f"must be a single-channel image of 8-bit class ids, got {given}"
             )
         wrong = labels[(labels > 11) & (labels != 255)]
         if len(wrong):
             raise CaptureError(
-                frame.labels_path, f"must hold class ids 0 to 11 or 255, not {int(wrong[0])}"
+                frame.labels_path,
+                f"must contain class ids from 0 to 11, or 255; got {int(wrong[0])}",
             )
         return

@@ -1,4 +1,4 @@
-"""``open_scan``: open a capture on disk as an aligned Scan that is read view by view."""
+"""Opening of a capture on disk as an aligned scan that is read view by view."""
 
 import math
 from collections.abc import Mapping
@@ -29,23 +29,25 @@ def open_scan(
     progress: Progress = no_progress,
     options: Mapping[str, str] | None = None,
 ) -> Scan:
-    """Open a capture: detect its layout, validate it and align its room.
+    """Open a capture: detect its format, validate its frames and align its room.
 
     Args:
-        path: the capture's folder.
-        voxel_m: the cell that the room will be cut into; a room of too many cells is refused
-            here, before any long work. The room's inner corner is a corner of a cell.
-        labels: a folder of label images ``NAME.png`` (uint8 class ids), one for each frame.
-        progress: called with the stage ``scan``.
-        options: see ``ScanOptions``: ``depth_unit``, ``every``, ``colour_camera``.
+        path: Path of the capture.
+        voxel_m: Edge length in metres of the cells for later stages. Rooms with too many cells are
+            rejected before any long computation. The room's inner corner is a cell corner.
+        labels: Folder of label images ``NAME.png`` (uint8 class ids), one for each frame.
+        progress: Callback for the progress of the stage ``scan``.
+        options: Capture options such as ``depth_unit``, ``every`` and ``colour_camera``; see
+            ``ScanOptions``.
 
     Raises:
-        CaptureError: the capture cannot be used; the message says why and what to do.
-        LimitError: an image is too large. UsageError: an option is wrong.
+        CaptureError: If the capture cannot be used.
+        LimitError: If an image is too large.
+        UsageError: If an option is not valid.
     """
     chosen = parse_options(options or {})
     if not voxel_m > 0:
-        raise UsageError(f"the voxel must be above 0 m, not {voxel_m}")
+        raise UsageError(f"the voxel size must be above 0 m, got {voxel_m}")
     validated = validate_capture(
         path,
         chosen,
@@ -56,15 +58,15 @@ def open_scan(
         lacks = "depth images" if validated.posed else "poses"
         raise CaptureError(
             validated.capture.folder,
-            f"has no {lacks}; w2m reconstruct computes them from the pictures first",
+            f"contains no {lacks}; use w2m reconstruct, which computes them from the images",
         )
     stream = CaptureViews(validated.frames, validated.encoding, validated.capture.full_trust)
     notes = list(validated.notes)
     if validated.capture.one_matrix and chosen.colour_camera == "auto":
-        progress(STAGE, 40, PROGRESS_STEPS, "finding the colour camera")
+        progress(STAGE, 40, PROGRESS_STEPS, "estimating the colour camera")
         stream, found = _estimate_colour_camera(stream)
         notes.append(found)
-    progress(STAGE, 60, PROGRESS_STEPS, "finding gravity and walls")
+    progress(STAGE, 60, PROGRESS_STEPS, "estimating gravity and walls")
     alignment = _align(validated, stream)
     check_cell_count(alignment, voxel_m)
     progress(STAGE, PROGRESS_STEPS, PROGRESS_STEPS)
@@ -85,13 +87,15 @@ def open_scan(
 
 
 def _estimate_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
-    """Return the stream with the estimated colour camera where it is clear, and a note."""
+    """Return the stream with the estimated colour camera if the estimate is clear, and a note."""
     both = [frame for frame in stream.frames if frame.depth_path and frame.colour_path]
     estimate = estimate_colour_camera(stream.read(evenly_spaced(both, CALIBRATION_FRAMES)))
     if estimate is None:
-        return stream, "too few depth edges to check the colour camera; it is taken as stated"
+        return stream, (
+            "too few depth edges to check the colour camera; using the stated intrinsics"
+        )
     if not estimate.clear:
-        return stream, "depth edges meet colour edges: one camera, as stated"
+        return stream, "depth edges match colour edges; using the stated intrinsics for colour"
     frames = tuple(
         replace(frame, colour_camera=estimate.applied(frame.colour_camera))
         if frame.colour_camera
@@ -100,9 +104,10 @@ def _estimate_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
     )
     stated = next(frame.colour_camera for frame in both if frame.colour_camera)
     note = (
-        f"the colour camera is estimated from edges: focal length {estimate.scale:.3f} of the "
-        f"stated {stated.fx_px:.0f} px, principal point moved by ({estimate.shift_x_px:+.1f}, "
-        f"{estimate.shift_y_px:+.1f}) px; frames kept apart fit {estimate.gain:.1f} times better"
+        f"the colour camera is estimated from edges: focal length {estimate.scale:.3f} "
+        f"times the stated {stated.fx_px:.0f} px, principal point shifted by "
+        f"({estimate.shift_x_px:+.1f}, {estimate.shift_y_px:+.1f}) px; held-out frames "
+        f"match {estimate.gain:.1f} times better"
     )
     return CaptureViews(frames, stream.encoding, stream.full_trust), note
 
@@ -119,11 +124,16 @@ def _align(validated: ValidatedCapture, stream: CaptureViews) -> Alignment:
 
 
 def check_cell_count(alignment: Alignment, voxel_m: float) -> None:
-    """Raise UsageError where a room has too many cells; the message names a voxel that will do."""
+    """Check that a room does not have too many cells.
+
+    Raises:
+        UsageError: If there are too many cells. The message contains a suitable voxel size.
+    """
     volume_m3 = float(alignment.room_size_m.prod())
     if volume_m3 / voxel_m**3 > MAX_CELLS:
         min_voxel_m = (volume_m3 / MAX_CELLS) ** (1 / 3)
         raise UsageError(
-            f"a voxel of {voxel_m:g} m would cut this room into {volume_m3 / voxel_m**3:,.0f} "
-            f"cells; take at least --voxel {math.ceil(1000 * min_voxel_m) / 1000:.3f}"
+            f"--voxel {voxel_m:g} divides this room into {volume_m3 / voxel_m**3:,.0f} "
+            f"cells, the limit is {MAX_CELLS:,}; use --voxel "
+            f"{math.ceil(1000 * min_voxel_m) / 1000:.3f} or more"
         )

@@ -18,45 +18,46 @@ UP_AXES = ("x", "y", "z", "-x", "-y", "-z")
 
 @dataclass(frozen=True)
 class ScanOptions:
-    """The options, parsed; each default is what fits most captures."""
+    """The parsed options of the capture stage. The defaults suit most captures."""
 
     depth_unit: str | None = None
-    """mm, 5000, rotated, m, nyu_raw or metres per unit; else as stated, else inferred."""
+    """Depth unit: mm, 5000, rotated, m, nyu_raw or metres per unit. Default: stated or inferred."""
     every: int = 1
-    """Take each n-th frame; a video's neighbours say little new."""
+    """Use every n-th frame; neighbouring frames of a video add little information."""
     colour_camera: str = "auto"
-    """auto: estimate it where depth and colour share one stated matrix; stated: take that."""
+    """auto: estimate the colour camera if depth and colour share one matrix; stated: do not."""
     unit: str | None = None
-    """Of a mesh or point cloud: m, cm, mm, inch or foot; else inferred from its size."""
+    """Unit of a mesh or point cloud: m, cm, mm, inch or foot. Default: inferred from the size."""
     up: str | None = None
-    """Of a mesh or point cloud: which of its axes points up; else inferred from its surfaces."""
+    """Up axis of a mesh or point cloud. Default: inferred from the surfaces."""
     inside: tuple[float, float, float] | None = None
-    """Of a mesh or point cloud: a point inside the room, in the file's own units and axes."""
+    """A point inside the room of a mesh or point cloud, in the units and axes of the file."""
     frames: int | None = None
-    """How many pictures to take of a video (else 100 at most) or a folder of photos (else all)."""
+    """Maximum number of frames of a video (default 100) or photos of a folder (default all)."""
     fov_deg: float | None = None
-    """Of one photo: the angle from its lower to its upper edge; else by EXIF, else a usual lens."""
+    """Vertical field of view of a single photo in degrees. Default: from EXIF, or common."""
     eye_height_m: float = 1.5
-    """Of one photo without depth: how high over the floor the camera was held."""
+    """Camera height above the floor for a single photo without depth, in metres."""
     pitch_deg: float = 0.0
-    """Of one photo without depth: how far the camera looked up; below 0 down."""
+    """Camera pitch for a single photo without depth, in degrees; negative values look down."""
 
 
 def parse_options(options: Mapping[str, str]) -> ScanOptions:
-    """Return the options by name.
+    """Parse the options of the capture stage.
 
     Raises:
-        UnknownNameError: an option is not known. UsageError: a value is wrong.
+        UnknownNameError: If an option is unknown.
+        UsageError: If a value is not valid.
     """
     for name in options:
         if name not in OPTION_NAMES:
             raise UnknownNameError("scan option", name, OPTION_NAMES)
     every = options.get("every", "1")
     if not every.isascii() or not every.isdigit() or not 0 < int(every) < 10**6:
-        raise UsageError(f"every must be a whole number above 0, not {every!r}")
+        raise UsageError(f"capture.every must be a positive integer, got {every!r}")
     colour_camera = options.get("colour_camera", "auto")
     if colour_camera not in ("auto", "stated"):
-        raise UsageError(f"colour_camera must be auto or stated, not {colour_camera!r}")
+        raise UsageError(f"capture.colour_camera must be auto or stated, got {colour_camera!r}")
     unit = options.get("depth_unit")
     if unit is not None:
         DepthEncoding(unit)
@@ -82,7 +83,7 @@ def _number(name: str, value: str | None, minimum: float, maximum: float) -> flo
     except ValueError:
         number = math.nan
     if not minimum <= number <= maximum:
-        raise UsageError(f"{name} must be {minimum:g} to {maximum:g}, not {value!r}")
+        raise UsageError(f"capture.{name} must be from {minimum:g} to {maximum:g}, got {value!r}")
     return number
 
 
@@ -90,13 +91,15 @@ def _frames(value: str | None) -> int | None:
     if value is None:
         return None
     if not value.isascii() or not value.isdigit() or not MIN_FRAMES <= int(value) < 10**5:
-        raise UsageError(f"frames must be a whole number of {MIN_FRAMES} or more, not {value!r}")
+        raise UsageError(
+            f"capture.frames must be an integer of {MIN_FRAMES} or more, got {value!r}"
+        )
     return int(value)
 
 
 def _choice(name: str, value: str | None, known: tuple[str, ...]) -> str | None:
     if value is not None and value not in known:
-        raise UsageError(f"{name} must be one of {', '.join(known)}, not {value!r}")
+        raise UsageError(f"capture.{name} must be one of {', '.join(known)}, got {value!r}")
     return value
 
 
@@ -108,5 +111,5 @@ def _point(name: str, value: str | None) -> tuple[float, float, float] | None:
     except ValueError:
         x = y = z = math.nan
     if not all(map(math.isfinite, (x, y, z))):
-        raise UsageError(f"{name} must be three numbers such as 1.5,2,1.2, not {value!r}")
+        raise UsageError(f"capture.{name} must be three numbers such as 1.5,2,1.2, got {value!r}")
     return x, y, z

@@ -1,7 +1,6 @@
-"""The photos of a capture as a stream, at the size that poses and depth are computed at.
+"""The photos of a capture as a stream, at the resolution used to compute poses and depth.
 
-Input are validated frames, output is a ``PhotoStream``. Each photo is decoded when its turn comes
-and again the next time, so that a capture is never in memory as a whole.
+Photos are decoded on each access, so that a capture is never completely in memory.
 """
 
 from collections.abc import Iterator
@@ -22,11 +21,13 @@ MAX_SIDE_PX = 1024
 
 @dataclass(eq=False, repr=False)
 class CapturePhotos:
-    """Photos read from disk one at a time, in the order of the frames.
+    """The photos of a capture, read from disk one at a time in frame order.
 
-    ``frames`` all have a colour image. ``lens`` is that of the ``Capture``. ``damaged`` maps the
-    names of frames that could not be decoded to the reason; they are left out while iterating,
-    and listed here.
+    Attributes:
+        frames: The frames; all have a colour image.
+        lens: Whether the intrinsics are ``stated`` or a ``guess``, as in ``Capture``.
+        longest_px: Maximum length of the longer image side in pixels.
+        damaged: Reasons by name of the frames that could not be decoded, which iteration skips.
     """
 
     frames: tuple[FrameFiles, ...]
@@ -35,11 +36,11 @@ class CapturePhotos:
     damaged: dict[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
-        """The number of frames, those that turn out damaged while decoding included."""
+        """Return the number of frames, including frames that may fail to decode."""
         return len(self.frames)
 
     def __iter__(self) -> Iterator[Photo]:
-        """Read the photos from the first."""
+        """Read the photos from the start."""
         for frame in self.frames:
             try:
                 photo = read_photo(frame, self.lens, self.longest_px)
@@ -50,21 +51,21 @@ class CapturePhotos:
 
 
 def photos_of_capture(validated: ValidatedCapture, longest_px: int = MAX_SIDE_PX) -> CapturePhotos:
-    """Return the photos of a validated capture: its usable frames that have a colour image."""
+    """Return the photos of a validated capture: the usable frames that have a colour image."""
     frames = tuple(frame for frame in validated.frames if frame.colour_path is not None)
     return CapturePhotos(frames, validated.capture.lens, longest_px)
 
 
 def read_photo(frame: FrameFiles, lens: str = "stated", longest_px: int = MAX_SIDE_PX) -> Photo:
-    """Decode the colour image of a frame, and make it and its camera smaller where it is large.
+    """Decode the colour image of a frame, and downscale the image and its camera if necessary.
 
     Args:
-        frame: with a colour image.
-        lens: whether its camera is ``stated`` or a ``guess``.
-        longest_px: the longer side that it has at most.
+        frame: A frame with a colour image.
+        lens: Whether its intrinsics are ``stated`` or a ``guess``.
+        longest_px: Maximum length of the longer image side in pixels.
 
     Raises:
-        InputError: the image cannot be decoded, or its camera speaks of another one.
+        InputError: If the image cannot be decoded, or does not match its intrinsics.
     """
     place: ImagePlace | None = frame.colour_path
     if place is None:
@@ -86,14 +87,14 @@ def read_photo(frame: FrameFiles, lens: str = "stated", longest_px: int = MAX_SI
 
 
 def downscale(colour: np.ndarray, longest_px: int) -> np.ndarray:
-    """Return a picture of at most ``longest_px`` on its longer side.
+    """Downscale an image so that its longer side has at most ``longest_px`` pixels.
 
     Args:
-        colour: uint8 [H, W, 3].
-        longest_px: above 0. Smaller pictures stay as they are.
+        colour: Image, uint8 [H, W, 3].
+        longest_px: Maximum length of the longer side. Smaller images are returned unchanged.
 
     Returns:
-        uint8 [h, w, 3]; each pixel is the mean over its own footprint, so that nothing aliases.
+        The image as uint8 [h, w, 3]. Each pixel is the mean of its area, to avoid aliasing.
     """
     height, width = colour.shape[:2]
     share = longest_px / max(height, width)

@@ -1,4 +1,4 @@
-"""Camera poses: read, repaired where slightly off, skipped where lost, refused where wrong."""
+"""Validation of camera poses: repair of small errors, and rejection of wrong poses."""
 
 from collections.abc import Sequence
 
@@ -16,14 +16,15 @@ MAX_POSE_BYTES = 10_000
 
 
 def read_pose(path: AnyPath) -> np.ndarray:
-    """Read four rows of four numbers; what is not a number (-1.#IND, nan) becomes NaN.
+    """Read a 4x4 pose from a text file; entries such as nan or -1.#IND become NaN.
 
     Raises:
-        CaptureError: there are not 16 entries. InputError: the file cannot be read.
+        CaptureError: If the file does not contain 16 entries.
+        InputError: If the file cannot be read.
     """
     words = read_bytes(path, MAX_POSE_BYTES).decode("ascii", "replace").split()
     if len(words) != 16:
-        raise CaptureError(path, f"must hold 16 numbers, a 4x4 matrix, not {len(words)}")
+        raise CaptureError(path, f"must contain 16 numbers, a 4x4 matrix, got {len(words)}")
     return np.array([_number(path, word) for word in words]).reshape(4, 4)
 
 
@@ -33,44 +34,50 @@ def _number(path: AnyPath, word: str) -> float:
     except ValueError as error:
         if "#" in word:  # How Windows' C library prints NaN and infinity.
             return float("nan")
-        raise CaptureError(path, f"holds {word[:20]!r}, which is no number") from error
+        raise CaptureError(path, f"contains {word[:20]!r}, which is not a number") from error
 
 
 def is_lost(pose: np.ndarray) -> bool:
-    """Return whether tracking was lost: a NaN or an infinity stands in the pose."""
+    """Return whether tracking was lost, that is, whether the pose contains NaN or infinity."""
     return not np.isfinite(pose).all()
 
 
 def repair_pose(pose: np.ndarray, where: AnyPath, frame: str) -> np.ndarray:
-    """Return a rigid pose, exactly orthonormal.
+    """Return a rigid pose with an exactly orthonormal rotation.
 
     Args:
-        pose: float64 [4, 4], finite, camera to world.
-        where: the file that states it, for the message.
-        frame: the frame's name, for the message.
+        pose: Camera-to-world matrix, finite, float64 [4, 4].
+        where: File that contains the pose, for error messages.
+        frame: Name of the frame, for error messages.
 
     Raises:
-        CaptureError: the rotation is mirrored, scaled or no rotation at all.
+        CaptureError: If the rotation is mirrored, scaled or not a rotation.
     """
     rotation = pose[:3, :3]
     if not np.allclose(pose[3], [0, 0, 0, 1], rtol=0, atol=1e-6):
         raise CaptureError(
             where,
-            f"the pose of {frame} ends with {pose[3].tolist()}, not 0 0 0 1: transpose it",
+            f"the last row of the pose of {frame} must be 0 0 0 1, got {pose[3].tolist()}; "
+            "transpose the matrix",
         )
     left, sizes, right = np.linalg.svd(rotation)
     if np.linalg.det(rotation) < 0:
         raise CaptureError(
             where,
-            f"the pose of {frame} mirrors (determinant {np.linalg.det(rotation):.3f}); poses must "
-            "be rotations: an axis was flipped on export",
+            f"the pose of {frame} is mirrored (determinant {np.linalg.det(rotation):.3f}); "
+            "poses must be rotations, check for an axis flipped on export",
         )
     off = np.abs(rotation @ rotation.T - np.eye(3)).max()
     if off > ORTHONORMAL_TOLERANCE:
-        kind = f"is scaled by {sizes.mean():.4g}" if np.ptp(sizes) < 0.01 * sizes[0] else "is bent"
+        kind = (
+            f"is scaled by {sizes.mean():.4g}"
+            if np.ptp(sizes) < 0.01 * sizes[0]
+            else "is not orthonormal"
+        )
         raise CaptureError(
             where,
-            f"the rotation of {frame} {kind}; poses must be rigid: divide the scale out",
+            f"the rotation of {frame} {kind}; poses must be rigid: divide by the scale, or "
+            "export again",
         )
     repaired = np.eye(4)
     repaired[:3, :3] = left @ right if off > ROUNDING else rotation
@@ -81,33 +88,33 @@ def repair_pose(pose: np.ndarray, where: AnyPath, frame: str) -> np.ndarray:
 def check_camera_spread(
     frames: Sequence[FrameFiles], where: AnyPath, typical_depth_m: float
 ) -> tuple[tuple[FrameFiles, ...], tuple[tuple[str, str], ...]]:
-    """Refuse poses whose places cannot be those of a camera in one room; leave out strays.
+    """Check that the camera positions are plausible for one room, and remove outliers.
 
     Args:
-        frames: with rigid poses.
-        where: the file or folder that states them.
-        typical_depth_m: what the cameras see, in metres; 0 where there is no depth.
+        frames: Frames with rigid poses.
+        where: File or folder that contains the poses, for error messages.
+        typical_depth_m: Median depth in metres, or 0 without depth.
 
     Returns:
-        The frames that stay, and (name, reason) of those whose tracking jumped away.
+        The remaining frames, and (name, reason) of the frames with outlying positions.
 
     Raises:
-        CaptureError: the places are too far apart, as millimetres taken for metres are.
+        CaptureError: If the positions are too far apart, for example because of a wrong unit.
     """
     places = np.array([np.asarray(frame.camera_to_world)[:3, 3] for frame in frames])
     away_m = np.linalg.norm(places - np.median(places, axis=0), axis=1)
     spread_m = float(np.quantile(away_m, 0.9))
     if spread_m > MAX_DISTANCE_M:
-        advice = "they look like millimetres: divide the translations by 1000"
+        advice = "the positions appear to be in millimetres: divide them by 1000"
         raise CaptureError(
             where,
-            f"the cameras stand up to {spread_m:,.0f} m from their middle"
-            + (f" and see {typical_depth_m:.1f} m far; " if typical_depth_m else "; ")
-            + (advice if spread_m / 1000 < MAX_DISTANCE_M else "the poses must be in metres"),
+            f"camera positions are up to {spread_m:,.0f} m from their median"
+            + (f", but the median depth is {typical_depth_m:.1f} m; " if typical_depth_m else "; ")
+            + (advice if spread_m / 1000 < MAX_DISTANCE_M else "poses must be in metres"),
         )
     inside = away_m <= MAX_DISTANCE_M
     strays = tuple(
-        (frame.name, f"tracking jumped: its camera is {away:,.0f} m from the others")
+        (frame.name, f"tracking jumped: the camera is {away:,.0f} m from the others")
         for frame, away, stay in zip(frames, away_m, inside, strict=True)
         if not stay
     )

@@ -1,4 +1,4 @@
-"""Recognition of the page that ``w2m scan`` draws, so that it is not read as a photo."""
+"""Detection of the page that ``w2m scan`` writes, so that it is not read as a photo."""
 
 from PIL import Image
 
@@ -9,7 +9,7 @@ POSTER_SUFFIX = "-scan.png"
 
 
 def is_poster(path: AnyPath) -> bool:
-    """Return whether a file is such a page, which may be replaced."""
+    """Return whether a file is a page written by ``w2m scan``, which may be overwritten."""
     try:
         with path.open("rb") as stream, Image.open(stream, formats=("PNG",)) as image:
             return getattr(image, "text", {}).get("Software") == SOFTWARE_TAG

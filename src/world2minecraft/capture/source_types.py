@@ -1,7 +1,7 @@
-"""Types of an unread capture: its frames' files, stated cameras and poses, and ``Source``.
+"""Types of a capture that has not been validated: frames, captures and the ``Source`` protocol.
 
-Nothing is decoded here. Paths, matrices and units are as the capture states them; ``validation``
-checks them afterwards, in the same way for every source.
+Nothing is decoded here. Paths, matrices and units are as stated by the capture; ``validation``
+checks them afterwards in the same way for all sources.
 """
 
 from dataclasses import dataclass, field
@@ -16,9 +16,9 @@ from world2minecraft.core.types import Camera
 
 
 def as_floats(values: object) -> np.ndarray:
-    """Return stated numbers as float64 in the shape of their lists; empty where they are none.
+    """Convert nested lists to a float64 array; the result is empty if that is not possible.
 
-    NaN and infinity stay; a whole number too long for a float makes the whole empty.
+    NaN and infinity are kept. An integer too large for a float makes the whole result empty.
 
     Example:
         >>> as_floats([[1, 2], [3, 4]]).shape, as_floats([[1, 2], [3]]).shape, as_floats("x").shape
@@ -32,13 +32,23 @@ def as_floats(values: object) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class FrameFiles:
-    """One frame as stated: unread images, unchecked pose.
+    """A frame as stated by a capture, with unread images and an unchecked pose.
 
-    ``camera_to_world`` is float64 [4, 4] of an OpenCV camera, that of the colour image or of the
-    depth image where there is no colour; it may hold NaN where tracking was lost, and is None
-    where the capture states none. ``problem`` says why the frame cannot be used at all.
-    ``trust_path`` is an image of how far each depth pixel is to be trusted, at the depth image's
-    size; ``Capture.full_trust`` tells its unit. ``time_s`` orders the frames of videos.
+    Attributes:
+        name: Name of the frame.
+        camera_to_world: Pose of the colour camera, or of the depth camera without colour, float64
+            [4, 4] with OpenCV axes. It contains NaN if tracking was lost, and is None if no pose is
+            stated.
+        colour_path: Colour image, or None.
+        colour_camera: Intrinsics of the colour image, or None.
+        depth_path: Depth image, or None.
+        depth_camera: Intrinsics of the depth image, or None.
+        depth_to_colour: Transform from the depth camera to the colour camera, float64 [4, 4].
+        labels_path: Label image, or None.
+        problem: Why the frame cannot be used, or an empty string.
+        trust_path: Confidence image of the size of the depth image, in units of
+            ``Capture.full_trust``.
+        time_s: Time in seconds, which orders the frames of a video, or None.
     """
 
     name: str
@@ -56,18 +66,25 @@ class FrameFiles:
 
 @dataclass(frozen=True, eq=False)
 class Capture:
-    """A capture that was detected and listed but not yet validated.
+    """A capture that has been detected and listed but not yet validated.
 
-    ``folder`` is the folder or file that the user named. ``one_matrix`` says that depth and colour
-    share one stated matrix, so that the colour camera may truly be another. ``depth_unit`` is None
-    where the capture does not state it. ``depth_kind`` says what made the depth: a ``sensor``,
-    ``stereo``, a ``network``, or nothing that errs (``exact``, a rendered mesh). ``lens``
-    says whether the colour cameras are ``stated`` or a first ``guess`` (EXIF, or none).
-    ``full_trust`` is the value of ``trust_path`` that means full trust; 0 always means none.
-    ``world_up`` is a unit vector of the world frame where the capture is known to stand upright.
-    ``scale`` and ``scale_sigma`` are as in ``Scan``: ``unknown`` where poses have no unit.
-    ``skipped`` are frames that were left out before, with reasons. ``room`` is ``scan_to_room``
-    and the room's size in metres where depth cannot tell them: of one photo that has none.
+    Attributes:
+        folder: Folder or file given by the user.
+        source: Name of the format.
+        frames: The frames as stated.
+        depth_unit: Depth unit, or None if the capture does not state it.
+        one_matrix: Whether depth and colour share one stated matrix, so that the colour camera may
+            differ from it.
+        notes: Remarks for the user.
+        depth_kind: Origin of the depth: ``sensor``, ``stereo``, ``network``, or ``exact`` for
+            rendered depth without errors.
+        lens: Whether the colour intrinsics are ``stated`` or a ``guess`` (from EXIF, or missing).
+        full_trust: Value in ``trust_path`` images that means full confidence; 0 always means none.
+        world_up: Up direction as a unit vector in the world frame, or None if unknown.
+        scale: Kind of scale, as in ``Scan``; ``unknown`` if the poses have no unit.
+        scale_sigma: Relative standard deviation of the scale, as in ``Scan``.
+        skipped: Names of frames skipped earlier, with reasons.
+        room: ``scan_to_room`` and the room size in metres if stated, for captures without depth.
     """
 
     folder: AnyPath
@@ -87,31 +104,31 @@ class Capture:
 
 
 class Source(Protocol):
-    """One kind of capture on disk.
+    """A reader of one format of captures.
 
-    A place is a folder, a file, or the inside of a zip (``archive.ArchivePath``, which has the
-    part of ``Path`` that readers need), so that most sources read zips without knowing it.
+    Paths are folders, files or places in a zip archive. ``ArchivePath`` implements the part of
+    ``Path`` that readers use, so that most sources can read archives without special code.
     """
 
     layout: str  # One line that shows a reader what it looks like.
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether this kind of capture lies there, from names alone where that tells."""
+        """Return whether a path is a capture of this format, from file names only if possible."""
         ...
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames.
+        """Read the list of frames.
 
         Raises:
-            CaptureError: something that every frame needs is missing or contradicts itself.
+            CaptureError: If required data is missing or inconsistent.
         """
         ...
 
 
 @runtime_checkable
 class ConfigurableSource(Source, Protocol):
-    """A source that options of the user can help, such as the unit of a mesh."""
+    """A source that supports user options, such as the unit of a mesh."""
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
-        """List the frames, as ``read`` does."""
+        """Read the list of frames with user options."""
         ...

@@ -1,4 +1,4 @@
-"""``describe_capture``: a summary of a capture, as text and as JSON values."""
+"""Summary of a capture, as text and as JSON values."""
 
 import dataclasses
 import shlex
@@ -28,7 +28,7 @@ MAX_SKIPPED_LINES = 8
 
 
 def reconstruct_command(capture: AnyPath, options: Mapping[str, str]) -> str:
-    """Return the command that reconstructs a capture read with some options, to be typed as it is.
+    """Return the shell command that reconstructs a capture with the given options.
 
     Example:
         >>> reconstruct_command(Path("my room"), {"unit": "cm"})
@@ -41,12 +41,12 @@ def reconstruct_command(capture: AnyPath, options: Mapping[str, str]) -> str:
 
 
 def shell_command(words: Sequence[str]) -> str:
-    """Return words as one line for this system's shell, in quotes where they need them."""
+    """Join words to a command line for the system's shell, with quotes where necessary."""
     return subprocess.list2cmdline(words) if sys.platform == "win32" else shlex.join(words)
 
 
 def summary_to_json(summary: "CaptureSummary") -> dict[str, Any]:
-    """Return a summary as JSON values: its fields without the pictures."""
+    """Return the fields of a summary as JSON values, without images."""
     data = {
         field.name: getattr(summary, field.name)
         for field in dataclasses.fields(summary)
@@ -58,7 +58,7 @@ def summary_to_json(summary: "CaptureSummary") -> dict[str, Any]:
 
 
 def summary_lines(summary: "CaptureSummary") -> list[str]:
-    """Return what is printed of a capture, the next command last."""
+    """Return the printed text of a summary, with the next command as the last line."""
     route = summary.route
     usable = f"{summary.usable} of {summary.frames} frames usable"
     lines = [
@@ -91,32 +91,32 @@ def _colour_text(summary: "CaptureSummary") -> str:
         return "none"
     text = f"{summary.colour_size_px[0]}x{summary.colour_size_px[1]}"
     if summary.colour_focal_px is None:
-        return f"{text}, focal length found with the poses"
-    guessed = " (a first guess)" * summary.lens_guessed
+        return f"{text}, focal length estimated with the poses"
+    guessed = " (initial estimate)" * summary.lens_guessed
     return f"{text}, focal length {summary.colour_focal_px:.0f} px{guessed}"
 
 
 def _depth_text(summary: "CaptureSummary") -> str:
     size, focal = summary.depth_size_px, summary.depth_focal_px
     if not summary.survey.validated.has_depth:
-        return "none; it is computed from the pictures"
+        return "none; computed from the images"
     lens = f"{size[0]}x{size[1]}, focal length {focal:.0f} px, " if size and focal else ""
-    guessed = " (guessed)" * summary.depth_unit_guessed
-    return f"{lens}{summary.depth_unit}{guessed}, typically {summary.typical_depth_m:.1f} m away"
+    guessed = " (inferred)" * summary.depth_unit_guessed
+    return f"{lens}{summary.depth_unit}{guessed}, median {summary.typical_depth_m:.1f} m"
 
 
 def _poses_text(summary: "CaptureSummary") -> str:
     if not summary.posed:
-        return "none; they are found from the pictures"
+        return "none; computed from the images"
     unit = "" if summary.survey.validated.capture.scale == "unknown" else " m"
     return (
-        f"{summary.usable} good, {summary.lost_poses} lost, cameras up to "
-        f"{summary.cameras_apart_m:.1f}{unit} apart"
+        f"{summary.usable} valid, {summary.lost_poses} lost, camera positions span "
+        f"{summary.cameras_apart_m:.1f}{unit}"
     )
 
 
 def roomplan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
-    """Return what is printed of a RoomPlan, the next command last."""
+    """Return the printed text for a RoomPlan capture, with the next command as the last line."""
     rooms = plan.rooms
     kinds = ("walls", "openings", "objects")
     counts = [(kind, sum(len(getattr(room, kind)) for room in rooms)) for kind in kinds]
@@ -125,8 +125,8 @@ def roomplan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
         for kind, count in [("rooms", len(rooms)), *counts]
     )
     return [
-        f"{capture}: a RoomPlan capture, {held}",
-        "  route     walls and furniture are built as they were measured: about 10 s",
+        f"{capture}: a RoomPlan capture with {held}",
+        "route     walls and furniture are built as measured: about 10 s",
         *(f"  note      {note}" for note in plan.notes),
         "  hint      with a scan of the same room: w2m reconstruct SCAN --plan "
         f"{shell_command([str(capture)])} --out OUT",
@@ -136,12 +136,32 @@ def roomplan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
 
 @dataclass(frozen=True)
 class CaptureSummary:
-    """What ``w2m scan`` prints.
+    """The summary printed by ``w2m scan``.
 
-    ``frames`` counts all, ``usable`` those that a reconstruction would read; ``skipped`` names
-    the others with reasons. Focal lengths are None where nothing is stated; ``lens_guessed`` says
-    that they are a first guess. ``next_command`` is what to type. ``survey`` is what the picture
-    is drawn from.
+    Attributes:
+        folder: Path of the capture.
+        source: Name of the format.
+        route: Processing steps of ``w2m reconstruct``.
+        frames: Number of all frames.
+        usable: Number of frames that a reconstruction would use.
+        lost_poses: Number of frames without a valid pose.
+        posed: Whether the capture contains poses.
+        colour_size_px: Width and height of the colour images, or None.
+        depth_size_px: Width and height of the depth images, or None.
+        colour_focal_px: Focal length of the colour images, or None if it is not stated.
+        depth_focal_px: Focal length of the depth images, or None if it is not stated.
+        lens_guessed: Whether the focal lengths are initial estimates.
+        depth_unit: Depth unit in words.
+        depth_unit_guessed: Whether the depth unit was inferred.
+        typical_depth_m: Median depth in metres, or 0.
+        cameras_apart_m: Largest extent of the camera positions along an axis.
+        room_size_m: Size of the room in metres, or None.
+        labelled: Number of frames with labels.
+        skipped: Names of the skipped frames, with reasons.
+        notes: Remarks about the capture.
+        diagnostics: Findings, the most severe first.
+        next_command: Command to run next.
+        survey: Data from which the poster is drawn.
     """
 
     folder: AnyPath
@@ -170,16 +190,18 @@ class CaptureSummary:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The texts of the diagnostics that are not ok."""
+        """The texts of the diagnostics with a level other than ``ok``."""
         return tuple(diagnostic.text for diagnostic in self.diagnostics if diagnostic.level != "ok")
 
 
 def describe_capture(
     path: str | Path, *, options: Mapping[str, str] | None = None
 ) -> CaptureSummary:
-    """Describe a capture from its headers and some decoded images.
+    """Summarise a capture from image headers and some decoded images.
 
-    Raises what ``validate_capture`` raises for captures that cannot be read.
+    Raises:
+        CaptureError: If the capture cannot be used.
+        LimitError: If an image is too large.
     """
     return describe_validated(validate_capture(path, parse_options(options or {})), options)
 
@@ -187,7 +209,7 @@ def describe_capture(
 def describe_validated(
     validated: ValidatedCapture, options: Mapping[str, str] | None = None
 ) -> CaptureSummary:
-    """Describe a validated capture; ``options`` are named again in the next command."""
+    """Summarise a validated capture. ``options`` are repeated in the next command."""
     frames = validated.frames
     survey = survey_capture(validated)
     route = choose_route(validated)
@@ -232,7 +254,7 @@ def _camera_size(camera: Camera | None) -> tuple[int, int] | None:
 
 
 def _colour_size(validated: ValidatedCapture, camera: Camera | None) -> tuple[int, int] | None:
-    """Return the size of the colour images, from a header where no camera is stated."""
+    """Return the size of the colour images, read from a header if no camera is stated."""
     place = next((frame.colour_path for frame in validated.frames if frame.colour_path), None)
     if camera is None and place is not None:
         return read_header(place).size

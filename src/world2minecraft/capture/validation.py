@@ -1,8 +1,8 @@
-"""Validation of a capture: its usable frames, the depth's unit and notes.
+"""Validation of a capture: usable frames, depth unit and notes.
 
-``open_scan`` and ``describe_capture`` share this part; it decodes only a few images. One bad frame
-among many is skipped and listed with the reason. What concerns all frames (no poses, sizes that
-contradict the intrinsics, images of mixed sizes) is refused at once.
+``open_scan`` and ``describe_capture`` both use this module, which decodes only a few images. A
+single bad frame is skipped and listed with its reason. Problems that concern all frames (missing
+poses, sizes that contradict the intrinsics, images of mixed sizes) raise an error.
 """
 
 from collections import Counter
@@ -55,24 +55,24 @@ T = TypeVar("T")
 def check_frames(
     capture: Capture, step: Callable[[int], None] = lambda done: None
 ) -> tuple[tuple[FrameFiles, ...], SkippedFrames]:
-    """Return the frames that can be used, cameras at their images' sizes and poses rigid.
+    """Return the usable frames, with cameras scaled to the image sizes and rigid poses.
 
     Args:
-        capture: as its source listed it.
-        step: called after each frame with the number of frames done.
+        capture: The capture as listed by its source.
+        step: Called after each frame with the number of completed frames.
 
     Returns:
         The usable frames in order, and (name, reason) of the others.
 
     Raises:
-        CaptureError: there are none, none can be used, or all of them share a fault.
-        LimitError: an image is too large to decode.
+        CaptureError: If no frame can be used, or all frames have the same fault.
+        LimitError: If an image is too large to decode.
     """
     if not capture.frames:
         raise CaptureError(
             capture.folder,
-            f"looks like a capture of the kind {capture.source}, but none of its frames is there; "
-            "docs/captures.md shows how the files are named",
+            f"has the layout of a {capture.source} capture, but contains none of its frames; "
+            "see docs/captures.md for the file names",
         )
     sizes: dict[str, tuple[ImagePlace, ImageHeader]] = {}
     used: list[FrameFiles] = []
@@ -98,22 +98,22 @@ def check_frames(
 
 
 def is_posed(frames: Sequence[FrameFiles]) -> bool:
-    """Return whether the capture states poses at all."""
+    """Return whether any frame has a pose."""
     return any(frame.camera_to_world is not None for frame in frames)
 
 
 def _pose_problem(frame: FrameFiles) -> str:
     if frame.camera_to_world is None:
         return "has no pose"
-    return "tracking was lost (its pose is not finite)" if is_lost(frame.camera_to_world) else ""
+    return "tracking was lost (the pose is not finite)" if is_lost(frame.camera_to_world) else ""
 
 
 def _check_images(
     frame: FrameFiles, sizes: dict[str, tuple[ImagePlace, ImageHeader]], posed: bool
 ) -> FrameFiles:
-    """Check a frame's image files against those before it; nothing is decoded.
+    """Check the image files of a frame against those of earlier frames, without decoding.
 
-    Photos without poses may be of any sizes: some are taken upright, some lying.
+    Photos without poses may have different sizes, such as portrait and landscape.
     """
     for kind, path in _image_paths(frame):
         header = read_header(path)
@@ -124,8 +124,9 @@ def _check_images(
         if header.size != first.size and (posed or kind == "depth"):
             raise CaptureError(
                 path,
-                f"is {header.width_px}x{header.height_px} but {first_path.name} is "
-                f"{first.width_px}x{first.height_px}; all {kind} images must have one size",
+                f"is {header.width_px}x{header.height_px} px, but {first_path.name} is "
+                f"{first.width_px}x{first.height_px} px; all {kind} images must have the same "
+                "size",
             )
     return frame
 
@@ -141,7 +142,7 @@ def _image_paths(frame: FrameFiles) -> Iterable[tuple[str, ImagePlace]]:
 
 
 def _fit_cameras(frame: FrameFiles) -> FrameFiles:
-    """Return the frame with its stated cameras carried to the sizes that its images have."""
+    """Return the frame with its stated cameras scaled to the sizes of its images."""
     colour = _fit_camera(frame.colour_path, frame.colour_camera)
     depth = _fit_camera(frame.depth_path, frame.depth_camera)
     return replace(frame, colour_camera=colour, depth_camera=depth)
@@ -155,16 +156,16 @@ def _fit_camera(path: ImagePlace | None, camera: Camera | None) -> Camera | None
         fitted = camera.resized(*size)
     except ValueError as error:
         raise CaptureError(
-            path, f"its intrinsics speak of another image: {error}; give those of this size"
+            path, f"does not match its intrinsics: {error}; use the intrinsics for this image size"
         ) from error
     if not (
         0.2 < fitted.cx_px / fitted.width_px < 0.8 and 0.2 < fitted.cy_px / fitted.height_px < 0.8
     ):
         raise CaptureError(
             path,
-            f"is {size[0]}x{size[1]} but the principal point of its intrinsics is at "
-            f"({fitted.cx_px:.0f}, {fitted.cy_px:.0f}); they speak of another "
-            "image size: give those of this one",
+            f"is {size[0]}x{size[1]} px, but the principal point of its intrinsics is at "
+            f"({fitted.cx_px:.0f}, {fitted.cy_px:.0f}); use the intrinsics for this image "
+            "size",
         )
     return fitted
 
@@ -184,16 +185,17 @@ def _refuse_if_broken(
         (reason, count), *_ = Counter(reason for _, reason in skipped).most_common(1)
         raise CaptureError(
             capture.folder,
-            f"none of {len(capture.frames)} frames can be used; {count} of them: {reason}",
+            f"none of {len(capture.frames)} frames can be used; most common reason ({count} "
+            f"frames): {reason}",
         )
 
 
 def _repair_poses(
     capture: Capture, frames: list[FrameFiles]
 ) -> tuple[tuple[FrameFiles, ...], SkippedFrames]:
-    """Return the frames with rigid poses, and those whose pose is wrong where they are few.
+    """Return the frames with rigid poses, and the frames with wrong poses if those are few.
 
-    Frames of a capture without poses stay as they are.
+    Frames of a capture without poses are returned unchanged.
     """
     repaired: list[FrameFiles] = []
     wrong: list[CaptureError] = []
@@ -217,7 +219,16 @@ def _repair_poses(
 
 @dataclass(frozen=True, eq=False)
 class ValidatedCapture:
-    """What can be used of a capture; ``typical_depth_m`` is the median over some frames, or 0."""
+    """The usable data of a capture.
+
+    Attributes:
+        capture: The capture as listed by its source.
+        frames: The usable frames.
+        skipped: Names of the skipped frames, with reasons.
+        encoding: Encoding of the depth images.
+        typical_depth_m: Median depth over some frames in metres, or 0.
+        notes: Remarks for the user.
+    """
 
     capture: Capture
     frames: tuple[FrameFiles, ...]
@@ -238,7 +249,7 @@ class ValidatedCapture:
 
     @property
     def complete(self) -> bool:
-        """Whether the capture has all that ``open_scan`` needs; else ``prepare`` makes it."""
+        """Whether the capture has depth and poses, which ``open_scan`` requires."""
         return self.has_depth and self.posed
 
 
@@ -248,10 +259,17 @@ def validate_capture(
     labels: Path | None = None,
     step: Callable[[int, int], None] = lambda done, total: None,
 ) -> ValidatedCapture:
-    """Detect a capture's layout, check its frames and infer its depth unit.
+    """Detect the format of a capture, check its frames and infer its depth unit.
+
+    Args:
+        path: Path of the capture.
+        options: Options of the capture stage.
+        labels: Optional folder of label images.
+        step: Called with the numbers of completed and of all frames.
 
     Raises:
-        CaptureError: it cannot be used. LimitError: an image is too large.
+        CaptureError: If the capture cannot be used.
+        LimitError: If an image is too large.
     """
     return validate(find_capture(path, options), options, labels, step)
 
@@ -262,7 +280,12 @@ def validate(
     labels: Path | None = None,
     step: Callable[[int, int], None] = lambda done, total: None,
 ) -> ValidatedCapture:
-    """Check the frames of a capture that was found. Raises what ``validate_capture`` raises."""
+    """Check the frames of a detected capture and infer its depth unit.
+
+    Raises:
+        CaptureError: If the capture cannot be used.
+        LimitError: If an image is too large.
+    """
     total = len(capture.frames[:: options.every])
     capture = replace(capture, frames=capture.frames[:: options.every])
     frames, skipped = check_frames(capture, lambda done: step(done, total))
@@ -279,7 +302,7 @@ def validate(
         frames, strayed = check_camera_spread(frames, capture.folder, typical_m)
     notes = [*capture.notes, *turned]
     if encoding.guessed:
-        notes.append(f"depth is read as {encoding.description}, told from its values")
+        notes.append(f"depth is read as {encoding.description}, inferred from its values")
     return ValidatedCapture(
         capture, frames, (*capture.skipped, *skipped, *strayed), encoding, typical_m, tuple(notes)
     )
@@ -288,16 +311,16 @@ def validate(
 def _rotate_upright(
     frames: tuple[FrameFiles, ...], capture: Capture
 ) -> tuple[tuple[FrameFiles, ...], tuple[str, ...]]:
-    """Return the frames with upright images where the capture knows up, and a note."""
+    """Return the frames with images rotated upright if the up direction is known, and a note."""
     turns = 0 if capture.world_up is None else find_quarter_turns(frames, capture.world_up)
     if turns == 0:
         return frames, ()
-    note = f"the images lie on their side or head; they are read with {TURN_DESCRIPTIONS[turns]}"
+    note = f"the images are not upright; they are read with {TURN_DESCRIPTIONS[turns]}"
     return tuple(rotate_frame(frame, turns) for frame in frames), (note,)
 
 
 def _drop_undecodable(paths: list[ImagePlace]) -> list[ImagePlace]:
-    """Return the images that can be decoded: one that cannot is left out when its turn comes."""
+    """Return the images that can be decoded; others are skipped later when they are read."""
     found = []
     for path in paths:
         try:
@@ -318,13 +341,13 @@ def _find_encoding(
 
 
 def evenly_spaced(items: Sequence[T], count: int) -> list[T]:
-    """Return at most ``count`` of the items, evenly spread, the first among them."""
+    """Return at most ``count`` evenly spaced items, including the first."""
     chosen = np.unique(np.linspace(0, len(items) - 1, min(count, len(items))).round().astype(int))
     return [items[index] for index in chosen]
 
 
 def _median_depth(paths: Sequence[ImagePlace], encoding: DepthEncoding) -> float:
-    """Return the median depth in metres over some images."""
+    """Return the median depth of some images in metres."""
     medians = []
     for path in paths[:4]:
         depth = read_depth(path, encoding)[::4, ::4]

@@ -1,4 +1,4 @@
-"""The views of a capture as a stream: each is decoded when it is read, and again next time."""
+"""The views of a capture as a stream, decoded on each access."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -14,10 +14,13 @@ from world2minecraft.core.types import Scan, View
 
 @dataclass(eq=False, repr=False)
 class CaptureViews:
-    """Views read from disk one at a time, in the order of the frames.
+    """The views of a capture, read from disk one at a time in frame order.
 
-    ``damaged`` maps the names of frames whose files passed the check of their outside but could
-    not be decoded to the reason; they are left out while iterating, and listed here.
+    Attributes:
+        frames: The frames to read.
+        encoding: Encoding of the depth images.
+        full_trust: Value in confidence images that means full confidence.
+        damaged: Reasons by name of the frames that could not be decoded, which iteration skips.
     """
 
     frames: tuple[FrameFiles, ...]
@@ -26,19 +29,19 @@ class CaptureViews:
     damaged: dict[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
-        """The number of frames, those that turn out damaged while decoding included."""
+        """Return the number of frames, including frames that may fail to decode."""
         return len(self.frames)
 
     def __iter__(self) -> Iterator[View]:
-        """Read the views from the first."""
+        """Read the views from the start."""
         return self.read(self.frames)
 
     def depth_views(self) -> Iterator[View]:
-        """Read the views that have depth, without decoding their colours and labels."""
+        """Read the views that have depth, without decoding colour and labels."""
         return self.read(without_colour(self.frames))
 
     def read(self, frames: Sequence[FrameFiles]) -> Iterator[View]:
-        """Read the views of some frames; those that cannot be decoded are left out and noted."""
+        """Read the views of frames; frames that cannot be decoded are skipped and recorded."""
         for frame in frames:
             try:
                 view = read_view(frame, self.encoding, self.full_trust)
@@ -49,7 +52,7 @@ class CaptureViews:
 
 
 def without_colour(frames: Sequence[FrameFiles]) -> list[FrameFiles]:
-    """Return the frames that have depth, without colour; the depth camera's pose stays the same."""
+    """Return the frames that have depth, without colour, with unchanged poses."""
     return [
         replace(frame, colour_path=None, colour_camera=None, labels_path=None)
         for frame in frames
@@ -58,9 +61,9 @@ def without_colour(frames: Sequence[FrameFiles]) -> list[FrameFiles]:
 
 
 def skip_damaged_frames(scan: Scan) -> Scan:
-    """Return the scan with the frames that could not be decoded among those skipped.
+    """Return a scan whose skipped frames include those that could not be decoded.
 
-    Call it after its views have been read.
+    Call this function after the views have been read.
     """
     damaged = getattr(scan.views, "damaged", {})
     late = [(name, reason) for name, reason in damaged.items() if name in scan.frames_used]
@@ -72,7 +75,11 @@ def skip_damaged_frames(scan: Scan) -> Scan:
 
 
 def read_view(frame: FrameFiles, encoding: DepthEncoding, full_trust: float = 255.0) -> View:
-    """Decode one frame. Raises InputError where a file cannot be decoded."""
+    """Decode the images of a frame.
+
+    Raises:
+        InputError: If a file cannot be decoded.
+    """
     colour = None if frame.colour_path is None else read_colour(frame.colour_path)
     depth = None if frame.depth_path is None else read_depth(frame.depth_path, encoding)
     trust = _read_trust(frame, depth, full_trust)
@@ -96,32 +103,34 @@ def read_view(frame: FrameFiles, encoding: DepthEncoding, full_trust: float = 25
 
 
 def _read_labels(frame: FrameFiles, colour: np.ndarray | None) -> np.ndarray | None:
-    """Return a frame's label image, carried to the colour image's size by nearest pixels."""
+    """Return the label image of a frame, resampled to the colour image by nearest neighbour."""
     if frame.labels_path is None or colour is None:
         return None
     labels = read_raw(frame.labels_path)
     if labels.dtype != np.uint8 or labels.ndim != 2:
         given = f"{labels.dtype} {labels.shape}"
         raise DamagedFileError(
-            frame.labels_path, f"must hold one 8-bit class id a pixel, not {given}"
+            frame.labels_path, f"must be a single-channel image of 8-bit class ids, got {given}"
         )
     return _resize_nearest(labels, colour.shape[:2])
 
 
 def _read_trust(frame: FrameFiles, depth: np.ndarray | None, full: float) -> np.ndarray | None:
-    """Return how far each depth pixel is to be trusted, uint8 at the depth image's size."""
+    """Return the depth confidence as uint8 at the size of the depth image."""
     if frame.trust_path is None or depth is None:
         return None
     stored = read_raw(frame.trust_path)
     if stored.ndim != 2 or stored.dtype.kind not in "uf":
         given = f"{stored.dtype} {stored.shape}"
-        raise DamagedFileError(frame.trust_path, f"must hold one confidence a pixel, not {given}")
+        raise DamagedFileError(
+            frame.trust_path, f"must be a single-channel confidence image, got {given}"
+        )
     share = np.clip(np.nan_to_num(stored.astype(np.float32)) / np.float32(full), 0, 1)
     return _resize_nearest(np.round(255 * share).astype(np.uint8), depth.shape)
 
 
 def _resize_nearest(image: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Return an image at another size, by nearest pixels."""
+    """Resize an image by nearest neighbour."""
     if image.shape == shape:
         return image
     rows = (np.arange(shape[0]) + 0.5) * image.shape[0] / shape[0]

@@ -242,9 +242,9 @@ def tiny_scene(folder, labels=(2, 2, 2), **files):
 @pytest.mark.parametrize(
     ("files", "message"),
     [
-        ({"txt": None}, f"{NAME}.txt: axisAlignment not found; scenes of the train and val splits"),
-        ({"txt": "axisAlignment = 1 2 3\n"}, "axisAlignment must be 16 numbers"),
-        ({"txt": "axisAlignment = -1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"}, "must be 16 numbers"),
+        ({"txt": None}, f"{NAME}.txt: states no axisAlignment; scenes of the train and val splits"),
+        ({"txt": "axisAlignment = 1 2 3\n"}, "axisAlignment must contain 16 numbers"),
+        ({"txt": "axisAlignment = -1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"}, "must contain 16 numbers"),
         ({"segments": None}, "--type _vh_clean_2.0.010000.segs.json"),
         ({"segments": "[]"}, "the list segIndices is missing; copy the file again"),
         (
@@ -277,7 +277,7 @@ def test_a_mesh_cut_short_and_a_folder_without_scenes_are_named(tmp_path, capsys
     mesh = folder / f"{NAME}_vh_clean_2.labels.ply"
     mesh.write_bytes(mesh.read_bytes()[:-4])
     assert w2m(["evaluate", "scannet", str(folder)]) == 3
-    assert "is cut short or wrong" in capsys.readouterr().err
+    assert "is truncated or damaged" in capsys.readouterr().err
     (tmp_path / "empty").mkdir()
     assert w2m(["evaluate", "scannet", str(tmp_path / "empty")]) == 3
     assert "give a ScanNet scene, or a folder of scenes" in capsys.readouterr().err

@@ -103,7 +103,7 @@ def test_the_lens_is_as_told_else_by_exif_else_a_usual_one(tmp_path, photo):
     assert told is not None and told.fy_px == pytest.approx(260.0) == told.fx_px
     usual = find_capture(photo)
     assert usual.frames[0].colour_camera.fx_px == 0.8 * 320
-    assert "--fov tells another" in usual.notes[0]
+    assert "set --fov to change it" in usual.notes[0]
     exif = Image.Exif()
     exif.get_ifd(0x8769)[0xA405] = 26
     path = tmp_path / "by_phone.jpg"
@@ -148,4 +148,4 @@ def test_another_predictor_makes_the_photo_anew(tmp_path, photo, network, monkey
 def test_a_look_at_one_photo_names_what_would_help(photo):
     lines = summary_lines(describe_capture(photo))
     (stop,) = [line for line in lines if line.strip().startswith("stop")]
-    assert "only 1 picture" in stop and "or let a network guess: --depth hf:ORG/NAME" in stop
+    assert "only 1 picture" in stop and "or estimate depth with a network: --depth hf:ORG/NAME" in stop

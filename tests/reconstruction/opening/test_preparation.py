@@ -206,7 +206,7 @@ def test_what_was_made_is_taken_again_until_something_changes(tmp_path, views, s
 
 
 def test_too_few_photos_and_a_known_length_of_what_has_depth(tmp_path, views, stood_in):
-    with pytest.raises(CaptureError, match="holds 2 photos that can be used; take 30 or more"):
+    with pytest.raises(CaptureError, match="contains 2 photos that can be used; take at least 30"):
         prepare_capture(write_photos(tmp_path / "two", views[:2]), tmp_path / "OUT", Parameters())
     write_plain(tmp_path / "in", views)
     with pytest.raises(UsageError, match="contains poses and depth, so its scale is fixed; omit"):
@@ -250,7 +250,7 @@ def test_trust_scale_and_notes_go_through_a_plain_capture(tmp_path, views):
     "key, value, words",
     [
         ("scale", "big", '"scale" must be one of metric, estimated, unknown'),
-        ("scale_sigma", -1, '"scale_sigma" must be a share'),
+        ("scale_sigma", -1, '"scale_sigma" must be a relative error'),
         ("notes", "one", '"notes" must be a list'),
         ("skipped", [["x"]], '"skipped" must be a list of'),
         ("depth_kind", 3, '"depth_kind" must be one of'),

@@ -1,8 +1,9 @@
-"""A quick survey of a capture: sharpness of its pictures, view directions, a top view.
+"""Quick survey of a capture: sharpness of its images, view directions and a top view.
 
-A few pictures are decoded, small; where there are depth and poses, some frames are laid into one
-top view. ``survey_capture`` gathers it, ``diagnose_capture`` rates it, and the package
-``capture.poster`` draws it on one page.
+A sample of images is decoded at low resolution. If there are depth and poses, some frames are
+rendered to a top view. ``survey_capture`` collects the results, ``diagnose_capture`` rates them,
+and
+the package ``capture.poster`` draws them on a page.
 """
 
 from world2minecraft.capture.quality.survey import Survey, survey_capture

@@ -1,4 +1,4 @@
-"""Diagnostics of a capture: what could go wrong, each with advice."""
+"""Diagnostics of a capture: possible problems, each with advice."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -25,12 +25,19 @@ MAX_HOLE_SHARE, MIN_TRUST, MAX_RANGE_M = 0.5, 0.4, 8.0
 STILL_SHARE = 0.1  # Of the typical depth: cameras that near to one another see no parallax.
 STILL_M = 0.3  # The same where there is no depth, in a room.
 MAX_LOST_SHARE = 0.2
-SCALE_ADVICE = 'measure one thing and say it: --known "table height" 0.72'
+SCALE_ADVICE = 'measure one length and set it, for example --known "table height" 0.72'
 
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One finding, rated ``ok``, ``warn`` (worse rooms) or ``stop`` (no room at all)."""
+    """A finding about a capture.
+
+    Attributes:
+        level: ``ok``, ``warn`` (lower quality) or ``stop`` (no reconstruction possible).
+        about: Short key of the finding.
+        text: Description of the finding.
+        advice: What to do about it.
+    """
 
     level: Literal["ok", "warn", "stop"]
     about: str
@@ -39,7 +46,7 @@ class Diagnostic:
 
 
 def diagnose_capture(survey: Survey, route: Route) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics of a survey, the worst first."""
+    """Return the diagnostics of a survey, the most severe first."""
     checks: tuple[Callable[[Survey, Route], Iterator[Diagnostic]], ...] = (
         _check_extras,
         _check_count,
@@ -63,13 +70,13 @@ def diagnose_capture(survey: Survey, route: Route) -> tuple[Diagnostic, ...]:
 def _check_extras(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     needs = route.kind in ("photos", "video", "unposed rgbd", "posed photos")
     if needs and not is_installed("pycolmap"):
-        text = str(MissingExtraError("finding poses", "capture"))
+        text = str(MissingExtraError("pose estimation", "capture"))
         feature, _, install = text.partition(": ")
         yield Diagnostic("stop", "extra", f"{feature} that is not installed", install)
 
 
 def is_installed(module: str) -> bool:
-    """Return whether an optional library is there, without importing it."""
+    """Return whether an optional library is installed, without importing it."""
     return find_spec(module) is not None
 
 
@@ -78,19 +85,23 @@ def _check_count(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     if route.kind == "solid":
         return
     if not survey.validated.posed and count < MIN_PHOTOS:
-        text = f"only {count} {_plural('picture', count)}; places are found from 3 or more"
-        advice = "take 40 to 100 from all over the room, each overlapping"
+        text = f"only {count} {_plural('image', count)}; pose estimation requires 3 or more"
+        advice = "take 40 to 100 images of the whole room that overlap"
         if survey.validated.capture.source == "photo":
-            advice += "; or let a network guess: --depth hf:ORG/NAME"
+            advice += "; or estimate depth with a network: --depth hf:ORG/NAME"
         yield Diagnostic("stop", "few", text, advice)
     elif (route.from_pictures or not survey.validated.posed) and count < FEW_PHOTOS:
-        text = f"only {count} pictures; 40 to 100 from all sides show a room"
-        more = "take more, each sharing two thirds with the one before"
-        advice = "film longer, around the room along its walls" if route.kind == "video" else more
+        text = f"only {count} images; use 40 to 100 from all directions"
+        more = "take more images, each sharing two thirds with the previous image"
+        advice = (
+            "film longer, around the room along its walls"
+            if route.kind == "film longer, along all walls of the room"
+            else more
+        )
         yield Diagnostic("warn", "few", text, advice)
     elif count < FEW_FRAMES:
-        text = f"only {count} {_plural('frame', count)}; 30 or more from all sides show a room"
-        yield Diagnostic("warn", "few", text, "record longer, and turn to every wall")
+        text = f"only {count} {_plural('frame', count)}; use 30 or more from all directions"
+        yield Diagnostic("warn", "few", text, "record longer, and point the camera at every wall")
 
 
 def _check_skipped(survey: Survey, route: Route) -> Iterator[Diagnostic]:
@@ -98,10 +109,10 @@ def _check_skipped(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     total = len(survey.validated.frames) + len(skipped)
     for reason, count in Counter(reason for _, reason in skipped).most_common(3):
         lost = "pose" in reason or "tracking" in reason
-        advice = "move slower, with texture in view" if lost else ""
+        advice = "move more slowly, with textured surfaces in view" if lost else ""
         level = "warn" if count > MAX_LOST_SHARE * total or not lost else "ok"
         yield Diagnostic(
-            level, "left out", f"{count} of {total} frames are left out: {reason}", advice
+            level, "left out", f"{count} of {total} frames are skipped: {reason}", advice
         )
 
 
@@ -112,15 +123,15 @@ def _check_room(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     if plan.problem:
         yield Diagnostic("stop", "room", plan.problem, "")
     advice = {
-        "no floor": "tilt the camera down while you walk",
-        "no wall": "turn to every wall",
-        "no ceiling": "one look up at each wall's top is enough",
+        "no floor": "tilt the camera down while walking",
+        "no wall": "point the camera at every wall",
+        "no ceiling": "point the camera once at the top of each wall",
     }
     for note in plan.notes:
         words = " ".join(note.split()[:2])
         yield Diagnostic("warn", words, note, advice.get(words, ""))
     if survey.validated.has_depth and not plan.problem and not plan.notes:
-        yield Diagnostic("ok", "room", "floor, ceiling and all four walls were met")
+        yield Diagnostic("ok", "room", "floor, ceiling and all four walls were detected")
 
 
 def _check_movement(survey: Survey, route: Route) -> Iterator[Diagnostic]:
@@ -133,14 +144,19 @@ def _check_movement(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     typical = survey.validated.typical_depth_m
     if spread > (STILL_SHARE * typical if typical else STILL_M):
         return
-    text = f"all cameras stand within {2 * spread:.2f} m; the camera turned but did not walk"
+    text = (
+        f"all camera positions are within {2 * spread:.2f} m; the camera was rotated but not moved"
+    )
     if route.from_pictures:
         yield Diagnostic(
-            "stop", "turning", text, "walk around while you film, for depth needs steps aside"
+            "stop",
+            "turning",
+            text,
+            "walk around while filming; depth estimation requires sideways motion",
         )
     else:
         yield Diagnostic(
-            "warn", "turning", text, "walk around, or what stands behind things stays unseen"
+            "warn", "turning", text, "walk around, or surfaces behind objects will be missing"
         )
 
 
@@ -150,19 +166,19 @@ def _check_blur(survey: Survey, route: Route) -> Iterator[Diagnostic]:
         return
     blurred = blurred_pictures(lit)
     if len(blurred) > TOLERATED_SHARE * len(lit):
-        text = f"{len(blurred)} of {len(lit)} pictures looked at are blurred: {_named(blurred)}"
-        advice = "hold still for each photo; film slowly and in good light"
+        text = f"{len(blurred)} of {len(lit)} sampled images are blurred: {_named(blurred)}"
+        advice = "hold the camera still for each photo; film slowly and in good light"
         yield Diagnostic("warn", "blur", text, advice)
     elif blurred:
         are = "is" if len(blurred) == 1 else "are"
-        text = f"{len(blurred)} of {len(lit)} pictures looked at {are} blurred: {_named(blurred)}"
+        text = f"{len(blurred)} of {len(lit)} sampled images {are} blurred: {_named(blurred)}"
         yield Diagnostic("ok", "blur", text)
     else:
-        yield Diagnostic("ok", "blur", f"all {len(lit)} pictures looked at are sharp")
+        yield Diagnostic("ok", "blur", f"all {len(lit)} sampled images are sharp")
 
 
 def blurred_pictures(pictures: Sequence[Picture]) -> list[Picture]:
-    """Return those that are blurred compared with the others, or by any measure."""
+    """Return the images that are blurred in comparison with the others, or in absolute terms."""
     if not pictures:
         return []
     limit = max(BLURRED_SHARE * float(np.median([p.sharpness for p in pictures])), MIN_SHARPNESS)
@@ -176,9 +192,12 @@ def _check_light(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     count = len(survey.pictures)
     level = "warn" if len(dark) > TOLERATED_SHARE * count else "ok"
     are = "is" if len(dark) == 1 else "are"
-    text = f"{len(dark)} of {count} pictures looked at {are} dark: {_named(dark)}"
+    text = f"{len(dark)} of {count} sampled images {are} dark: {_named(dark)}"
     yield Diagnostic(
-        level, "dark", text, "switch the lights on, open the curtains" * (level != "ok")
+        level,
+        "switch on the lights and open the curtains",
+        text,
+        "switch the lights on, open the curtains" * (level != "ok"),
     )
 
 
@@ -186,8 +205,10 @@ def _check_texture(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     bare = [picture for picture in survey.pictures if picture.bare > BARE_PICTURE_SHARE]
     if not route.from_pictures or len(bare) <= MAX_BARE_PICTURES * len(survey.pictures):
         return
-    text = f"{len(bare)} of {len(survey.pictures)} pictures show little but bare surface"
-    yield Diagnostic("warn", "bare", text, "stand back, with corners, edges and furniture in view")
+    text = (
+        f"{len(bare)} of {len(survey.pictures)} sampled images show mostly surfaces without texture"
+    )
+    yield Diagnostic("warn", "bare", text, "step back, with corners, edges and furniture in view")
 
 
 def _check_overlap(survey: Survey, route: Route) -> Iterator[Diagnostic]:
@@ -197,15 +218,18 @@ def _check_overlap(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     median = float(np.median(known))
     jumps = int((known < ISOLATED_SHARE).sum())
     if median < LOW_OVERLAP or jumps > 0.25 * len(known):
-        text = f"neighbours share about {median:.0%}; {jumps} of {len(known)} share next to nothing"
+        text = (
+            f"neighbouring images overlap by about {median:.0%}; {jumps} of {len(known)} "
+            "pairs hardly overlap"
+        )
         if median < ISOLATED_SHARE:
-            text = f"{jumps} of {len(known)} neighbours share next to nothing"
-        advice = "each picture should share two thirds with the last"
+            text = f"{jumps} of {len(known)} pairs of neighbouring images hardly overlap"
+        advice = "each image should share two thirds with the previous image"
         if route.kind == "video":
-            advice = "film slowly, a step a second"
+            advice = "film slowly, at one step per second"
         yield Diagnostic("warn", "overlap", text, advice)
     else:
-        yield Diagnostic("ok", "overlap", f"neighbours share about {median:.0%}")
+        yield Diagnostic("ok", "overlap", f"neighbouring images overlap by about {median:.0%}")
 
 
 def _check_depth(survey: Survey, route: Route) -> Iterator[Diagnostic]:
@@ -213,21 +237,26 @@ def _check_depth(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     if plan is None or not survey.validated.has_depth or route.kind == "solid":
         return
     if plan.holes > MAX_HOLE_SHARE:
-        text = f"{plan.holes:.0%} of the depth is holes"
+        text = f"{plan.holes:.0%} of the depth pixels are missing"
         yield Diagnostic(
-            "warn", "holes", text, "stay 0.5 to 4 m away; glass and black gloss show none"
+            "warn",
+            "holes",
+            text,
+            "keep a distance of 0.5 to 4 m; glass and glossy black surfaces return no depth",
         )
     if plan.trust is not None and plan.trust < MIN_TRUST:
-        text = f"the device trusts its depth by {plan.trust:.0%} only"
-        yield Diagnostic("warn", "trust", text, "go nearer, move slower; sunlight blinds LiDAR")
+        text = f"the mean depth confidence of the device is only {plan.trust:.0%}"
+        yield Diagnostic(
+            "warn", "trust", text, "move closer and more slowly; avoid direct sunlight"
+        )
     if plan.far_m > MAX_RANGE_M:
-        text = f"depth reaches {plan.far_m:.1f} m; sensors for rooms err past 5 m"
+        text = f"the depth extends to {plan.far_m:.1f} m; indoor sensors are inaccurate beyond 5 m"
         yield Diagnostic("warn", "far", text, "check the depth unit: --set capture.depth_unit=mm")
     if plan.holes <= MAX_HOLE_SHARE and plan.far_m <= MAX_RANGE_M:
-        text = f"depth from {plan.near_m:.1f} to {plan.far_m:.1f} m, {plan.holes:.0%} of it holes"
+        text = f"depth from {plan.near_m:.1f} to {plan.far_m:.1f} m, {plan.holes:.0%} missing"
         yield Diagnostic("ok", "depth", text)
     if survey.validated.capture.one_matrix:
-        text = "depth and colour share one stated matrix; the colour camera is estimated"
+        text = "depth and colour share one stated matrix; the colour camera will be estimated"
         yield Diagnostic("ok", "one matrix", text)
 
 
@@ -237,44 +266,50 @@ def _check_directions(survey: Survey, route: Route) -> Iterator[Diagnostic]:
         return
     gaps = seen.gaps()
     if len(gaps) == 8:
-        yield Diagnostic("warn", "gap", "no picture looks level", "hold the camera upright")
+        yield Diagnostic("warn", "gap", "no image looks horizontally", "hold the camera level")
     elif gaps:
-        yield Diagnostic("warn", "gap", f"no picture looks {_listed(gaps)}", "turn to every wall")
+        yield Diagnostic(
+            "warn", "gap", f"no image looks {_listed(gaps)}", "point the camera at every wall"
+        )
     else:
-        yield Diagnostic("ok", "gap", "every heading is looked at")
+        yield Diagnostic("ok", "gap", "all horizontal directions are covered")
     if survey.validated.has_depth:
         return  # The alignment knows whether floor and ceiling were met.
     if seen.share_below() == 0:
-        text = "no picture looks steeply down; the floor may be missing"
-        yield Diagnostic("warn", "no floor", text, "tilt the camera down while you walk")
+        text = "no image looks steeply down; the floor may be missing"
+        yield Diagnostic("warn", "no floor", text, "tilt the camera down while walking")
     if not (seen.seen[seen.pitches_deg > 20] > 0).any():
-        text = "no picture looks up; the ceiling may be missing"
-        yield Diagnostic("warn", "no ceiling", text, "one look up at each wall's top is enough")
+        text = "no image looks up; the ceiling may be missing"
+        yield Diagnostic(
+            "warn", "no ceiling", text, "point the camera once at the top of each wall"
+        )
 
 
 def _check_scale(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     if route.kind in ("photos", "video"):
-        text = "nothing says how large the room is; it is judged from heights that are usual"
+        text = "the capture has no scale; the size is estimated from typical heights"
         yield Diagnostic("warn", "scale", text, SCALE_ADVICE)
     elif route.kind == "unposed rgbd":
         return  # Depth in metres gives it.
     elif survey.validated.capture.scale == "unknown":
-        text = "its poses have no unit; the size is judged from heights that are usual"
+        text = "the poses have no unit; the size is estimated from typical heights"
         yield Diagnostic("warn", "scale", text, SCALE_ADVICE)
     elif survey.validated.capture.scale == "estimated":
-        text = f"its scale is an estimate, {survey.validated.capture.scale_sigma:.0%} unsure"
+        text = (
+            f"the scale is an estimate with an error of {survey.validated.capture.scale_sigma:.0%}"
+        )
         yield Diagnostic("ok", "scale", text, SCALE_ADVICE)
 
 
 def _check_colour(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     if not any(frame.colour_path for frame in survey.validated.frames):
-        text = "no colour images: blocks will have the colours of their classes"
+        text = "no colour images; blocks will have the colours of their classes"
         yield Diagnostic("warn", "colour", text)
 
 
 def _named(pictures: Sequence[Picture]) -> str:
     names = ", ".join(
-        f"picture {picture.name}" if picture.name.isdigit() else picture.name
+        f"image {picture.name}" if picture.name.isdigit() else picture.name
         for picture in pictures[:3]
     )
     return names + (f" and {len(pictures) - 3} more" if len(pictures) > 3 else "")

@@ -1,4 +1,4 @@
-"""The way of a capture through ``w2m reconstruct``, in words, and about how long it takes."""
+"""The processing steps of ``w2m reconstruct`` for a capture, with their duration."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -13,7 +13,14 @@ BUILD_S, FRAME_S, POSE_S, STEREO_S = 6.0, 0.1, 0.7, 0.7
 
 @dataclass(frozen=True)
 class Route:
-    """``kind`` of input, what it is called, what reconstruct does with it, and for how long."""
+    """The processing steps for one kind of input.
+
+    Attributes:
+        kind: Kind of input.
+        called: Name of the input for users.
+        words: Description of the processing steps.
+        about_s: Expected duration in seconds.
+    """
 
     kind: Kind
     called: str
@@ -22,37 +29,37 @@ class Route:
 
     @property
     def about(self) -> str:
-        """The time, as rough as it is."""
+        """The expected duration, rounded, as text."""
         if self.about_s < 60:
             return f"about {max(10, round(self.about_s / 10) * 10)} s"
         return f"about {round(self.about_s / 60)} min"
 
     @property
     def from_pictures(self) -> bool:
-        """Whether depth is computed from the pictures."""
+        """Whether depth is computed from the images."""
         return self.kind in ("posed photos", "photos", "video")
 
 
 _INPUT_NAMES = {
     "rgbd": "posed RGB-D frames",
-    "posed photos": "pictures with poses, no depth",
+    "posed photos": "images with poses, without depth",
     "photos": "photos without poses",
     "video": "a video without poses",
     "unposed rgbd": "RGB-D frames without poses",
-    "solid": "a solid, looked at from within",
+    "solid": "a mesh or point cloud, rendered from inside",
 }
 _DESCRIPTIONS = {
-    "rgbd": "depth and poses are taken as they are",
-    "posed photos": "poses are checked and depth is computed from the pictures",
-    "photos": "poses and depth are computed from the pictures",
-    "video": "poses and depth are computed from its sharpest pictures",
-    "unposed rgbd": "poses are found from the pictures, their scale from the depth",
-    "solid": "its surface is seen by virtual cameras and read like depth",
+    "rgbd": "depth and poses are used as stated",
+    "posed photos": "poses are checked and depth is computed from the images",
+    "photos": "poses and depth are computed from the images",
+    "video": "poses and depth are computed from the sharpest frames",
+    "unposed rgbd": "poses are computed from the images, and their scale from the depth",
+    "solid": "depth images are rendered with virtual cameras",
 }
 
 
 def choose_route(validated: ValidatedCapture) -> Route:
-    """Return the route of a validated capture."""
+    """Return the processing route of a validated capture."""
     kind = _kind(validated)
     each = FRAME_S
     if kind in ("photos", "video", "unposed rgbd"):

@@ -1,4 +1,4 @@
-"""``survey_capture``: the results of a quick survey of a capture."""
+"""The results of a quick survey of a capture."""
 
 from dataclasses import dataclass
 
@@ -18,10 +18,15 @@ PICTURES_POSED = 40  # Where poses tell what was seen, a sample of pictures is e
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """Results of a quick survey.
+    """The results of a quick survey of a capture.
 
-    ``shares`` float64 [len(pictures) - 1] is how much of each picture the next shows too, NaN
-    where that is not known. ``plan`` and ``directions`` are None where there are no poses.
+    Attributes:
+        validated: The validated capture.
+        pictures: Sampled images with their quality.
+        shares: Share of each image that the next image shows too, float64 [len(pictures) - 1]; NaN
+            if unknown.
+        plan: Top view, or None without poses.
+        directions: Covered view directions, or None without poses.
     """
 
     validated: ValidatedCapture
@@ -32,7 +37,7 @@ class Survey:
 
 
 def survey_capture(validated: ValidatedCapture) -> Survey:
-    """Sample pictures of a validated capture and, where it has poses, lay out a plan."""
+    """Sample images of a validated capture and, if it has poses, render a top view."""
     if validated.posed:
         pictures = sample_pictures(validated.frames, PICTURES_POSED)
         plan = make_top_view(validated)

@@ -1,7 +1,7 @@
-"""A top view of a capture: coloured points of some frames, rasterised in one level frame.
+"""Top view of a capture: coloured points of some frames, rasterised in a levelled frame.
 
-Points above ``CUT_HEIGHT_SHARE`` of the room's height are left out, so that one looks in from
-above; where a column holds points at many heights stands a wall or something tall.
+Points above ``CUT_HEIGHT_SHARE`` of the room's height are excluded, so that the view shows the
+inside. Columns with points at many heights are walls or tall furniture.
 """
 
 from collections.abc import Iterator, Sequence
@@ -33,13 +33,24 @@ UNCOLOURED = np.array([176, 178, 180], np.uint8)
 
 @dataclass(frozen=True, eq=False)
 class TopView:
-    """A top view, +y (north) at the top of the picture.
+    """A top view of a capture, with +y (north) at the top.
 
-    ``colour`` uint8 [H, W, 3], ``seen`` bool [H, W] and ``tall`` float32 [H, W] 0 to 1 have row 0
-    at the north; they are empty (H = W = 0) where there is no depth. ``corner_m`` is the south
-    west corner of the raster, ``size_m`` its extent, ``cell_m`` its grain. ``cameras`` float64
-    [F, 4, 4] are all usable frames in the plan's frame. ``room_size_m`` is None where no room was
-    found; then ``problem`` says why. ``notes`` are those of the alignment.
+    Attributes:
+        colour: Colours, uint8 [H, W, 3]; row 0 is in the north. H = W = 0 without depth.
+        seen: Cells with points, bool [H, W].
+        tall: Extent in height of the points in each cell, float32 [H, W] from 0 to 1.
+        height_m: Height of the highest points in each cell in metres.
+        corner_m: South-west corner of the raster in metres.
+        size_m: Extent of the raster in metres.
+        cell_m: Edge length of a raster cell in metres.
+        cameras: Poses of all usable frames in the frame of the view, float64 [F, 4, 4].
+        room_size_m: Size of the room in metres, or None if no room was found.
+        notes: Notes of the alignment.
+        problem: Why no room was found.
+        near_m: Near end of the depth range in metres.
+        far_m: Far end of the depth range in metres.
+        holes: Share of depth pixels without depth.
+        trust: Mean depth confidence, or None if it is unknown.
     """
 
     colour: np.ndarray
@@ -60,7 +71,7 @@ class TopView:
 
 
 def make_top_view(validated: ValidatedCapture) -> TopView:
-    """Lay some frames of a posed capture into a plan; without depth, the cameras alone."""
+    """Render frames of a posed capture to a top view; without depth, only the cameras."""
     poses = np.array([np.asarray(frame.camera_to_world) for frame in validated.frames])
     with_depth = [frame for frame in validated.frames if frame.depth_path]
     if not with_depth:
@@ -74,15 +85,15 @@ def make_top_view(validated: ValidatedCapture) -> TopView:
     if not sum(map(len, gathered.points)):
         raise CaptureError(
             validated.capture.folder,
-            f"none of the {len(gathered.holes)} depth images looked at has any depth that the "
-            "device trusts; scan again, nearer and slower",
+            f"contains no reliable depth in the {len(gathered.holes)} sampled depth images; "
+            "scan again from closer and more slowly",
         )
     scan_to_level = _level_frame(validated, poses) if found is None else found.scan_to_room
     return _rasterise(gathered, scan_to_level @ poses, scan_to_level, found, problem)
 
 
 class _PointCollector:
-    """Reads views once for ``align`` and keeps some coloured points of each on the way."""
+    """A reader of views for ``align`` that also collects coloured points."""
 
     def __init__(self, validated: ValidatedCapture, frames: Sequence[FrameFiles]):
         self._stream = CaptureViews(
@@ -96,7 +107,7 @@ class _PointCollector:
         self.trusts: list[float] = []
 
     def views(self) -> Iterator[View]:
-        """Yield the views, in order."""
+        """Yield the views in order."""
         for view in self._stream.read(self._frames):
             self._keep(view)
             yield view
@@ -116,7 +127,7 @@ class _PointCollector:
 
 
 def _sample_colours(view: View, points: np.ndarray) -> np.ndarray:
-    """Return what the colour image shows at points of its camera, uint8 [N, 3]."""
+    """Return the colours of a view's colour image at 3D points, uint8 [N, 3]."""
     colours = np.tile(UNCOLOURED, (len(points), 1))
     if view.colour is None or view.colour_camera is None:
         return colours
@@ -131,7 +142,7 @@ def _sample_colours(view: View, points: np.ndarray) -> np.ndarray:
 
 
 def _level_frame(validated: ValidatedCapture, poses: np.ndarray) -> np.ndarray:
-    """Return a turn that sets the scan upright, first look to the north, from what is known."""
+    """Return a rotation that levels the scan, with the first view direction to the north."""
     up = validated.capture.world_up
     turned = np.eye(4)
     turned[:3, :3] = rotation_to_z(estimate_up(poses) if up is None else np.asarray(up))
@@ -216,7 +227,7 @@ def _rasterise(
 def _extent(
     points: np.ndarray, places: np.ndarray, found: Alignment | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the corners of the plan: almost all points, all cameras, and the room."""
+    """Return the corners of the view: almost all points, all cameras and the room."""
     low = np.minimum(np.quantile(points[:, :2], 0.003, axis=0), places.min(axis=0))
     high = np.maximum(np.quantile(points[:, :2], 0.997, axis=0), places.max(axis=0))
     if found is not None:
@@ -227,7 +238,7 @@ def _extent(
 
 
 def _tallness(pixel: np.ndarray, z: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Return how many different heights each cell's points have, as a share of a wall's."""
+    """Return the number of different heights of the points in each cell, relative to a wall."""
     raised = (z > 0.15) & (z < 3.0)
     bins = (z[raised] / RISE_M).astype(np.int64)
     distinct = np.unique(pixel[raised] * 64 + bins) // 64
@@ -238,7 +249,7 @@ def _tallness(pixel: np.ndarray, z: np.ndarray, shape: tuple[int, ...]) -> np.nd
 def _top_colours(
     pixel: np.ndarray, z: np.ndarray, colours: np.ndarray, shape: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the mean colour and height of the highest points of each cell, and which have any."""
+    """Return the mean colour and height of each cell's highest points, and occupied cells."""
     count = shape[0] * shape[1]
     top = np.full(count, -np.inf)
     np.maximum.at(top, pixel, z)
@@ -256,7 +267,7 @@ def _top_colours(
 
 
 def _fill_holes(sums: np.ndarray, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Close small holes: a cell without points takes those of its neighbours, if three have any."""
+    """Fill small holes: empty cells with three occupied neighbours get their mean."""
     for _ in range(3):
         near, near_sums = np.zeros_like(weight), np.zeros_like(sums)
         filled = (weight > 0).astype(np.float64)

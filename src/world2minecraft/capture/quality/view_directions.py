@@ -1,4 +1,4 @@
-"""View directions: how many pictures cover each heading and pitch."""
+"""View directions: the number of images that cover each heading and pitch."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,44 +16,44 @@ STEEP_DEG = 40.0  # Beyond it, from the middle of a usual room, one sees floor o
 
 @dataclass(frozen=True, eq=False)
 class ViewDirections:
-    """``seen`` int64 [18, 36]: pictures that look there.
+    """The number of images that show each direction, ``seen`` int64 [18, 36].
 
-    Rows are pitches from -85 to +85 degrees, columns headings from 5 to 355: clockwise from
-    north, which is +y of the plan.
+    Rows are pitches from -85 to +85 degrees. Columns are headings from 5 to 355 degrees, clockwise
+    from north, which is +y of the top view.
     """
 
     seen: np.ndarray
 
     @property
     def pitches_deg(self) -> np.ndarray:
-        """The middles of the rows."""
+        """The pitch of each row in degrees."""
         return np.arange(PITCHES) * STEP_DEG - 90 + STEP_DEG / 2
 
     def sectors(self) -> np.ndarray:
-        """Return the share of each of the eight sectors that is seen level, float64 [8]."""
+        """Return the share of each sector that is covered at level pitch, float64 [8]."""
         level = self.seen[np.abs(self.pitches_deg) < LEVEL_DEG] > 0
         heading = np.arange(HEADINGS) * STEP_DEG + STEP_DEG / 2
         sector = np.round(heading / 45).astype(int) % 8
         return np.array([level[:, sector == index].mean() for index in range(8)])
 
     def gaps(self) -> tuple[str, ...]:
-        """Return the sectors that hardly any picture looks to."""
+        """Return the names of the sectors that hardly any image covers."""
         shares = self.sectors()
         return tuple(name for name, share in zip(SECTORS, shares, strict=True) if share < 0.1)
 
     def share_below(self) -> float:
-        """Return the share of steep looks down that some picture covers."""
+        """Return the share of steep downward directions that some image covers."""
         return float((self.seen[self.pitches_deg < -STEEP_DEG] > 0).mean())
 
 
 def count_view_directions(
     cameras: Sequence[Camera | None], camera_to_level: np.ndarray
 ) -> ViewDirections:
-    """Count for each direction the pictures that show it.
+    """Count the images that show each direction.
 
     Args:
-        cameras: one a frame; None counts as 60 degrees across, 45 down.
-        camera_to_level: float64 [F, 4, 4], into a frame whose z points up.
+        cameras: One camera per frame; None is treated as a field of view of 60 by 45 degrees.
+        camera_to_level: Camera poses in a frame with z up, float64 [F, 4, 4].
     """
     pitch = np.radians(np.arange(PITCHES) * STEP_DEG - 90 + STEP_DEG / 2)
     heading = np.radians(np.arange(HEADINGS) * STEP_DEG + STEP_DEG / 2)
@@ -70,17 +70,17 @@ def count_view_directions(
 
 
 def _tangents(camera: Camera | None) -> tuple[float, float]:
-    """Return the tangents of half the fields of view."""
+    """Return the tangents of half the horizontal and vertical fields of view."""
     if camera is None:
         return float(np.tan(np.radians(30))), float(np.tan(np.radians(22.5)))
     return camera.width_px / 2 / camera.fx_px, camera.height_px / 2 / camera.fy_px
 
 
 def estimate_up(camera_to_world: np.ndarray) -> np.ndarray:
-    """Return the direction that image rows are level to and columns point away from.
+    """Estimate the up direction, which is orthogonal to the image rows.
 
     Args:
-        camera_to_world: float64 [F, 4, 4] OpenCV cameras, held upright most of the time.
+        camera_to_world: Poses of OpenCV cameras that are mostly upright, float64 [F, 4, 4].
     """
     right, down = camera_to_world[:, :3, 0], camera_to_world[:, :3, 1]
     mean = -down.mean(axis=0)

@@ -1,1 +1,1 @@
-"""Readers: one module for each kind of capture, from its files to frames."""
+"""Readers of captures, one module for each format."""

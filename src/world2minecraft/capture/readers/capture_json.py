@@ -1,7 +1,8 @@
-"""Reader and writer of the program's own layout: ``capture.json`` with images.
+"""Reader and writer of the project's own layout: ``capture.json`` with image files.
 
-The layout is described in docs/captures.md. ``write_plain`` writes it from views; what it writes
-is read back equal, but for depth, which is rounded to whole millimetres unless the unit is metres.
+docs/captures.md describes the layout. ``write_plain`` writes views in this layout. Reading them
+returns equal views, except that depth is rounded to whole units, unless it is stored as float
+metres.
 """
 
 import io
@@ -31,34 +32,40 @@ _CAMERA_FIELDS = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 
 
 class PlainSource:
-    """Reads a folder with a ``capture.json``."""
+    """A reader of folders with a ``capture.json``."""
 
-    layout = "capture.json with colour/NAME.png, depth/NAME.png (our plain layout)"
+    layout = "capture.json with colour/NAME.png, depth/NAME.png (plain layout)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether there is a ``capture.json``."""
+        """Return whether the folder contains a ``capture.json``."""
         return (folder / "capture.json").is_file()
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames of a plain capture. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of a plain capture.
+
+        Raises:
+            CaptureError: If ``capture.json`` is not valid.
+        """
         path = folder / "capture.json"
         stated = read_json(path)
         if not isinstance(stated, dict) or stated.get("format") != FORMAT:
-            raise CaptureError(path, f'must be an object with "format": "{FORMAT}"')
+            raise CaptureError(path, f'must be a JSON object with "format": "{FORMAT}"')
         if stated.get("version") != VERSION:
-            raise CaptureError(path, f'"version" must be {VERSION}, not {stated.get("version")!r}')
+            raise CaptureError(path, f'"version" must be {VERSION}, got {stated.get("version")!r}')
         entries = stated.get("frames")
         if not isinstance(entries, list) or not entries:
             raise CaptureError(path, '"frames" must be a list of {"name", "camera_to_world"}')
         unit = stated.get("depth_unit")
         if unit is not None and not isinstance(unit, str):
-            raise CaptureError(path, f'"depth_unit" must be a name, not {unit!r}')
+            raise CaptureError(path, f'"depth_unit" must be a string, got {unit!r}')
         files = _files_by_stem(folder)
         posed = any(isinstance(entry, dict) and "camera_to_world" in entry for entry in entries)
         frames = tuple(_frame(path, stated, entry, files, posed) for entry in entries)
         names = [frame.name for frame in frames]
         if len(set(names)) != len(names):
-            raise CaptureError(path, "names a frame twice; every name must be its own")
+            raise CaptureError(
+                path, "contains two frames with the same name; every name must be unique"
+            )
         return Capture(
             folder,
             _made_from(path, stated),
@@ -76,7 +83,7 @@ class PlainSource:
 
 
 def _files_by_stem(folder: AnyPath) -> dict[str, dict[str, AnyPath]]:
-    """Return the image files of each subfolder, by their name without suffix."""
+    """Return the image files of each subfolder by file stem."""
     return {
         kind: {
             found.stem: found
@@ -94,7 +101,7 @@ def _frame(
     files: dict[str, dict[str, AnyPath]],
     posed: bool,
 ) -> FrameFiles:
-    """Return a frame; where no frame is ``posed``, its lens may be left out too."""
+    """Return a frame; if no frame is ``posed``, its intrinsics may be missing too."""
     name = _frame_name(path, entry.get("name") if isinstance(entry, dict) else None)
     colour_path, depth_path = files["colour"].get(name), files["depth"].get(name)
     pose = _matrix(path, entry, "camera_to_world")
@@ -118,19 +125,19 @@ def _frame(
 
 
 def _frame_name(path: AnyPath, name: Any) -> str:
-    """Return the name of a frame, by which its files are found: that of its photo, say."""
+    """Return the name of a frame, which is the stem of its files."""
     try:
         return checks.identifier("name", name if isinstance(name, str) else "")
     except ValueError as error:
         raise CaptureError(
-            path, f"a frame's name must be its files' without suffix, such as 000012, not {name!r}"
+            path, f"a frame's name must be the stem of its files, such as 000012, got {name!r}"
         ) from error
 
 
 def _notes(path: AnyPath, stated: dict[str, Any]) -> tuple[str, ...]:
     notes = stated.get("notes", [])
     if not isinstance(notes, list) or not all(isinstance(note, str) for note in notes):
-        raise CaptureError(path, '"notes" must be a list of sentences')
+        raise CaptureError(path, '"notes" must be a list of strings')
     return tuple(" ".join(note.split())[:MAX_NOTE_CHARS] for note in notes[:MAX_NOTES])
 
 
@@ -146,25 +153,27 @@ def _skipped(path: AnyPath, stated: dict[str, Any]) -> tuple[tuple[str, str], ..
 
 
 def _made_from(path: AnyPath, stated: dict[str, Any]) -> str:
-    """Return the kind of capture that this one was computed from; of most, plain itself."""
+    """Return the kind of capture that this capture was computed from; by default ``plain``."""
     name = stated.get("made_from", "plain")
     if not isinstance(name, str) or not _KIND.fullmatch(name):
-        raise CaptureError(path, f'"made_from" must be the name of a kind, not {name!r}')
+        raise CaptureError(path, f'"made_from" must be the name of a kind of capture, got {name!r}')
     return name
 
 
 def _room(path: AnyPath, stated: dict[str, Any]) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return where the room lies, of a capture that cannot tell it by depth."""
+    """Return the stated position and size of the room, for captures without depth."""
     room = stated.get("room")
     if room is None:
         return None
     matrix = _matrix(path, room, "scan_to_room") if isinstance(room, dict) else None
     size = room.get("size_m") if isinstance(room, dict) else None
     if matrix is None or not isinstance(size, list) or len(size) != 3:
-        raise CaptureError(path, '"room" must hold "scan_to_room" and three numbers "size_m"')
+        raise CaptureError(
+            path, '"room" must contain "scan_to_room" and "size_m" with three numbers'
+        )
     size_m = as_floats(size)
     if size_m.shape != (3,) or not ((size_m > 0) & (size_m < 1000)).all():
-        raise CaptureError(path, f'"size_m" must be metres above 0, not {size}')
+        raise CaptureError(path, f'"size_m" must contain lengths in metres above 0, got {size}')
     return matrix, size_m
 
 
@@ -174,21 +183,23 @@ def _world_up(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:
     up = as_floats(stated["world_up"])
     length = float(np.linalg.norm(up))
     if up.shape != (3,) or not 0.5 < length < 2:
-        raise CaptureError(path, '"world_up" must be three numbers such as [0, 1, 0]')
+        raise CaptureError(path, '"world_up" must be three numbers, such as [0, 1, 0]')
     return up / length
 
 
 def _one_of(path: AnyPath, stated: dict[str, Any], key: str, known: tuple[str, ...]) -> Any:
     value = stated.get(key, known[0])
     if value not in known:
-        raise CaptureError(path, f'"{key}" must be one of {", ".join(known)}, not {value!r}')
+        raise CaptureError(path, f'"{key}" must be one of {", ".join(known)}, got {value!r}')
     return value
 
 
 def _sigma(path: AnyPath, stated: dict[str, Any]) -> float:
     value = stated.get("scale_sigma", 0.0)
     if not isinstance(value, int | float) or not 0 <= value < 10:
-        raise CaptureError(path, f'"scale_sigma" must be a share such as 0.1, not {value!r}')
+        raise CaptureError(
+            path, f'"scale_sigma" must be a relative error such as 0.1, got {value!r}'
+        )
     return float(value)
 
 
@@ -197,15 +208,15 @@ def _camera(path: AnyPath, stated: dict[str, Any], key: str, needed: bool) -> Ca
     if value is None and not needed:
         return None  # It is found with the poses.
     if not isinstance(value, dict):
-        raise CaptureError(path, f'has no "{key}" with {", ".join(_CAMERA_FIELDS)}')
+        raise CaptureError(path, f'"{key}" must be an object with {", ".join(_CAMERA_FIELDS)}')
     try:
         sizes = [value[field] for field in _CAMERA_FIELDS]
         for field, number in zip(_CAMERA_FIELDS, sizes, strict=True):
             if not isinstance(number, int | float):
-                raise TypeError(f"{field} must be a number, not {number!r}")
+                raise TypeError(f"{field} must be a number, got {number!r}")
         return Camera(*sizes, distortion=tuple(value.get("distortion", (0.0,) * 5)))
     except KeyError as error:
-        raise CaptureError(path, f'"{key}" lacks {error.args[0]}') from error
+        raise CaptureError(path, f'"{key}" does not contain {error.args[0]}') from error
     except (TypeError, ValueError, OverflowError) as error:
         raise CaptureError(path, f'"{key}": {error}') from error
 
@@ -216,7 +227,7 @@ def _matrix(path: AnyPath, stated: dict[str, Any], key: str) -> np.ndarray | Non
         return None
     matrix = as_floats(value)
     if matrix.shape != (4, 4):
-        raise CaptureError(path, f'"{key}" must be four rows of four numbers')
+        raise CaptureError(path, f'"{key}" must be a 4x4 matrix')
     return matrix
 
 
@@ -229,19 +240,20 @@ def write_plain(
     stated: Mapping[str, Any] | None = None,
     jpeg: bool = False,
 ) -> None:
-    """Write views as a plain capture, one at a time; the bytes depend on the views alone.
+    """Write views as a plain capture, one at a time. The output is deterministic.
 
     Args:
-        folder: made where it is missing; files of the same names are replaced.
-        views: written in their order. ``camera_to_scan`` becomes ``camera_to_world``.
+        folder: Output folder, created if missing. Files with the same names are replaced.
+        views: Views in output order. ``camera_to_scan`` is written as ``camera_to_world``.
         depth_unit: ``"mm"`` or metres per unit such as ``"0.0002"`` (16-bit PNG, rounded), or
             ``"m"`` (float32 ``.npy``, exact).
-        extra: JSON values to keep under ``"extra"``; readers ignore them.
-        stated: more of what ``capture.json`` says: ``depth_kind``, ``scale``, ``notes`` ...
-        jpeg: write colour as JPEG of high quality, a fifth of the size.
+        extra: JSON values to store under ``"extra"``, which readers ignore.
+        stated: Further fields of ``capture.json``, such as ``depth_kind``, ``scale`` or ``notes``.
+        jpeg: Whether to write colour as high-quality JPEG, a fifth of the size of PNG.
 
     Raises:
-        OutputError: the folder cannot be written. UnknownNameError: another depth unit.
+        OutputError: If the folder cannot be written.
+        UnknownNameError: If the depth unit is not valid.
     """
     unit_m = _unit_m(depth_unit)
     root = Path(folder)
@@ -262,7 +274,7 @@ def write_plain(
 
 
 def _shared_values(view: View) -> dict[str, Any]:
-    """Return what most captures state once for all frames."""
+    """Return the values that most captures state once for all frames."""
     values: dict[str, Any] = {"depth_to_colour": view.depth_to_colour.tolist()}
     for key in ("colour_camera", "depth_camera"):
         camera: Camera | None = getattr(view, key)
@@ -273,7 +285,7 @@ def _shared_values(view: View) -> dict[str, Any]:
 
 
 def _unit_m(depth_unit: str) -> float | None:
-    """Return the metres of one step of a 16-bit image, or None for float metres."""
+    """Return metres per unit of a 16-bit image, or None for float metres."""
     if depth_unit in ("mm", "m"):
         return 0.001 if depth_unit == "mm" else None
     try:

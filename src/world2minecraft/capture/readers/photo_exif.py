@@ -1,7 +1,7 @@
-"""EXIF of photos: upright orientation, lens and time.
+"""EXIF metadata of photos: orientation, lens and time.
 
-Only photos without poses are rotated upright: the intrinsics of posed captures speak of the pixels
-as they are stored.
+Only photos without poses are rotated upright, because the intrinsics of posed captures refer to the
+pixels as stored.
 """
 
 import math
@@ -27,7 +27,15 @@ SHARE_OF_DIAGONAL = (0.2, 15.0)  # From a fisheye to a long telephoto; else the 
 
 @dataclass(frozen=True)
 class PhotoMetadata:
-    """Metadata of a photo: upright size, its lens, when it was taken, by a camera."""
+    """Metadata of a photo.
+
+    Attributes:
+        width_px: Width in pixels after upright rotation.
+        height_px: Height in pixels after upright rotation.
+        focal_px: Focal length in pixels, or None if unknown.
+        time_s: Time of the photo as a Unix time stamp, or None if unknown.
+        by_camera: Whether the EXIF data was written by a camera.
+    """
 
     width_px: int
     height_px: int
@@ -37,7 +45,7 @@ class PhotoMetadata:
 
     @property
     def camera(self) -> Camera | None:
-        """A first guess of the lens, None where nothing is said."""
+        """An initial estimate of the intrinsics, or None if the focal length is unknown."""
         if self.focal_px is None:
             return None
         middle = (self.width_px / 2, self.height_px / 2)
@@ -46,31 +54,35 @@ class PhotoMetadata:
 
 @dataclass(frozen=True)
 class UprightPhoto(NamedByFile):
-    """An ``ImageSource``: a photo file, upright."""
+    """A photo file, rotated upright. It implements ``ImageSource``."""
 
     path: AnyPath
 
     def header(self) -> ImageHeader:
-        """Return the size after turning."""
+        """Return the size after rotation, and the mode."""
         with open_image(self.path) as image:
             return ImageHeader(*_upright_size(image), image.mode)
 
     def check_whole(self) -> None:
-        """Check that the file is not cut short."""
+        """Check that the file is not truncated."""
         check_whole(self.path)
 
     def colour(self) -> np.ndarray:
-        """Return uint8 [H, W, 3] sRGB."""
+        """Return the upright photo as sRGB, uint8 [H, W, 3]."""
         with open_image(self.path) as image:
             return np.array(ImageOps.exif_transpose(image).convert("RGB"), np.uint8)
 
     def raw(self) -> np.ndarray:
-        """Raise: a photo holds colours."""
-        raise DamagedFileError(self, "holds colours, not single values")
+        """Raise DamagedFileError, because a photo contains colours."""
+        raise DamagedFileError(self, "contains colours, not single values")
 
 
 def read_photo_metadata(path: AnyPath) -> PhotoMetadata:
-    """Read the metadata of a photo. Raises what ``read_header`` raises."""
+    """Read the metadata of a photo.
+
+    Raises:
+        InputError: If the photo cannot be read.
+    """
     with open_image(path) as image:
         width, height = _upright_size(image)
         general, own = _exif_tags(image)
@@ -79,7 +91,7 @@ def read_photo_metadata(path: AnyPath) -> PhotoMetadata:
 
 
 def _exif_tags(image: Image.Image) -> tuple[dict[int, Any], dict[int, Any]]:
-    """Return the general and the camera's EXIF tags; damaged ones are none."""
+    """Return the general and the camera-specific EXIF tags; damaged tags are omitted."""
     try:
         exif = image.getexif()
         return dict(exif), dict(exif.get_ifd(EXIF_IFD))
@@ -93,7 +105,7 @@ def _upright_size(image: Image.Image) -> tuple[int, int]:
 
 
 def _focal_length_px(tags: dict[int, Any], size: tuple[int, int]) -> float | None:
-    """Return the focal length in pixels by the diagonal rule, else by the pixels' pitch."""
+    """Return the focal length in pixels, from the 35 mm equivalent or else from the pixel pitch."""
     diagonal_px = math.hypot(*size)
     film = _number(tags.get(FOCAL_35MM))
     focal = film / DIAGONAL_MM * diagonal_px

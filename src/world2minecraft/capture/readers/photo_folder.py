@@ -1,7 +1,7 @@
-"""Reader of a folder of photos without poses, perhaps with depth.
+"""Reader of folders of photos without poses, optionally with depth.
 
-What is no photo of the room is left out with a reason: screenshots, thumbnails, panoramas,
-copies, edits next to their originals, and what operating systems and phones add.
+Files that are not photos of the room are skipped with a reason: screenshots, thumbnails,
+panoramas, duplicates, edits next to their originals, and files added by operating systems.
 """
 
 import hashlib
@@ -46,33 +46,44 @@ class _PhotoFile:
 
 
 class PhotoFolderSource:
-    """Reads a folder, or a zip, of photos."""
+    """A reader of folders and zip archives of photos."""
 
-    layout = "a folder of photos (.jpg, .png, .heic, .webp), with depth/NAME.png beside rgb/ or not"
+    layout = (
+        "a folder of photos (.jpg, .png, .heic, .webp), optionally with depth/NAME.png next to rgb/"
+    )
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether photos lie there, and not beside the files of a scanner app."""
+        """Return whether the folder contains photos and no files of a scanner app."""
         if not folder.is_dir() or any(_is_app_file(path.name) for path in folder.iterdir()):
             return False
         return bool(_photos(_colour_folder(folder)))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the photos. Raises CaptureError as ``Source.read`` does."""
+        """Read all usable photos of a folder.
+
+        Raises:
+            CaptureError: If there are too few or too many photos.
+        """
         return self.read_with(folder, ScanOptions())
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
-        """List the photos, as many as are wanted."""
+        """Read the usable photos of a folder, at most ``options.frames``.
+
+        Raises:
+            CaptureError: If there are too few or too many photos.
+        """
         colour_folder = _colour_folder(folder)
         paths = _photos(colour_folder)
         if len(paths) > MAX_PHOTOS:
             raise CaptureError(
-                folder, f"holds {len(paths):,} photos; give a part, {MAX_PHOTOS:,} at most"
+                folder,
+                f"contains {len(paths):,} photos, the limit is {MAX_PHOTOS:,}; use a part of them",
             )
         accepted, skipped = _select_photos(paths)
         if len(accepted) < MIN_FRAMES:
             why = f"; {skipped[0][0]} {skipped[0][1]}" if skipped else ""
             count = f"{len(accepted)} photo" + "s" * (len(accepted) != 1)
-            reason = f"holds {count} that can be used{why}; take 30 or more of the room"
+            reason = f"contains {count} that can be used{why}; take at least 30 photos of the room"
             raise CaptureError(folder, reason)
         accepted = evenly_thinned(accepted, options.frames)
         depths = _depth_files(folder, colour_folder)
@@ -80,7 +91,9 @@ class PhotoFolderSource:
         notes = [*_notes(colour_folder, paths), _lens_note(frames)]
         if depths:
             paired = sum(frame.depth_path is not None for frame in frames)
-            notes.append(f"{paired} of {len(frames)} photos have depth; no poses are stated")
+            notes.append(
+                f"{paired} of {len(frames)} photos have depth; the capture contains no poses"
+            )
         return Capture(
             folder, "photos", frames, notes=tuple(notes), lens="guess", scale="unknown",
             skipped=tuple(skipped),
@@ -88,25 +101,25 @@ class PhotoFolderSource:
 
 
 def _is_app_file(name: str) -> bool:
-    """Whether a name is of a broken capture of another kind, which must not pass for photos."""
+    """Return whether a file name belongs to an incomplete capture of another format."""
     return bool(_OF_AN_APP.search(name))
 
 
 def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
-    """Return what sorts IMG_2 before IMG_10."""
+    """Return a sort key that orders names by the numbers in them: IMG_2 before IMG_10."""
     parts = re.findall(r"[0-9]+|[^0-9]+", name.casefold())
     return tuple((0, int(part[:18]), part) if part[0].isdigit() else (1, 0, part) for part in parts)
 
 
 def evenly_thinned(found: Sequence, wanted: int | None) -> list:
-    """Return at most ``wanted`` of what was found, evenly spread from the first to the last."""
+    """Return at most ``wanted`` elements, evenly spaced from the first to the last."""
     if wanted is None or len(found) <= wanted:
         return list(found)
     return [found[n] for n in np.linspace(0, len(found) - 1, wanted).round().astype(int)]
 
 
 def _photos(folder: AnyPath) -> list[AnyPath]:
-    """Return the files of a folder that are named as photos, in the order of their numbers."""
+    """Return the photo files of a folder, sorted by number."""
     found = [
         path
         for path in folder.iterdir()
@@ -120,7 +133,7 @@ def _photos(folder: AnyPath) -> list[AnyPath]:
 
 
 def _colour_folder(folder: AnyPath) -> AnyPath:
-    """Return where the photos lie: there, or in a folder named for them."""
+    """Return the folder of the photos: this folder or a subfolder with a usual name."""
     if not _photos(folder):
         for name in COLOUR_FOLDERS:
             if (folder / name).is_dir() and _photos(folder / name):
@@ -129,7 +142,7 @@ def _colour_folder(folder: AnyPath) -> AnyPath:
 
 
 def _select_photos(paths: list[AnyPath]) -> tuple[list[_PhotoFile], list[tuple[str, str]]]:
-    """Return the photos of the room, and the names of the others with reasons."""
+    """Return the usable photos, and the names of the others with the reasons."""
     found = [_inspect(path) for path in paths]
     sides = [max(item.facts.width_px, item.facts.height_px) for item in found if item.facts]
     usual = float(np.median(sides)) if sides else 0.0
@@ -159,37 +172,37 @@ def _inspect(path: AnyPath) -> _PhotoFile:
 
 
 def _reject_reason(item: _PhotoFile, usual_px: float, by_phone: bool, stems: set[str]) -> str:
-    """Return why something is no photo of the room, or nothing."""
+    """Return why a file is not a photo of the room, or an empty string."""
     if item.facts is None:
         return item.problem
     sides = sorted((item.facts.width_px, item.facts.height_px))
     edited = _EDITED.fullmatch(item.path.stem)
     if edited and edited[1] + edited[2] in stems:
-        return f"is an edit of {edited[1]}{edited[2]}, which is read"
+        return f"is an edited copy of {edited[1]}{edited[2]}, which is used instead"
     strange = item.path.suffix.lower() == ".png" and by_phone and not item.facts.by_camera
     if _SCREENSHOT.search(item.path.stem) or strange:
         return "is a screenshot"
     if sides[1] < max(MIN_SIDE_PX, THUMBNAIL_SHARE * usual_px):
-        return f"is a thumbnail of {item.facts.width_px}x{item.facts.height_px}"
+        return f"is a thumbnail of {item.facts.width_px}x{item.facts.height_px} px"
     if sides[1] > MAX_ASPECT * sides[0]:
-        return f"is a panorama of {item.facts.width_px}x{item.facts.height_px}"
+        return f"is a panorama of {item.facts.width_px}x{item.facts.height_px} px"
     return ""
 
 
 def _duplicate_reason(item: _PhotoFile, sizes: Counter[int], seen: dict[str, str]) -> str:
-    """Return why a photo is there twice, or nothing; ``seen`` remembers those before it."""
+    """Return why a photo is a duplicate, or an empty string; ``seen`` collects earlier photos."""
     keys = [f"stem {item.path.stem}"]
     if sizes[item.path.stat().st_size] > 1:  # Files of different sizes need not be read.
         keys.append(hashlib.sha256(item.path.read_bytes()).hexdigest())
     for key in keys:
         if key in seen:
-            return f"is {seen[key]} again"
+            return f"is a duplicate of {seen[key]}"
     seen.update(dict.fromkeys(keys, item.path.name))
     return ""
 
 
 def _depth_files(folder: AnyPath, colour_folder: AnyPath) -> dict[str, AnyPath]:
-    """Return the depth images next to a folder of photos, by the photos' names without suffix."""
+    """Return the depth images next to a folder of photos by the stem of the photo."""
     place = folder / "depth"
     if colour_folder == folder or not place.is_dir():
         return {}
@@ -226,18 +239,23 @@ def _frames(accepted: Sequence[_PhotoFile], depths: dict[str, AnyPath]) -> tuple
 def _lens_note(frames: tuple[FrameFiles, ...]) -> str:
     focals = [frame.colour_camera.fx_px for frame in frames if frame.colour_camera]
     if not focals:
-        return "the photos say nothing of their lens; it is found with their places"
-    return f"the lens of {len(focals)} of {len(frames)} photos is a first guess from their EXIF"
+        return (
+            "the photos contain no lens data; the intrinsics are estimated together with the poses"
+        )
+    return (
+        f"the initial lens parameters of {len(focals)} of {len(frames)} photos are "
+        "estimated from EXIF data"
+    )
 
 
 def _notes(folder: AnyPath, photos: list[AnyPath]) -> list[str]:
-    """Return notes on live photos' videos and raw files."""
+    """Return notes about live-photo videos and raw files in the folder."""
     stems = {path.stem for path in photos}
     names = [path for path in folder.iterdir() if not path.name.startswith(".")]
     videos = [path for path in names if path.suffix.lower() in MOVIE_SUFFIXES]
     live = sum(path.stem in stems for path in videos)
-    notes = [f"{live} live-photo videos beside their photos are not read"] if live else []
+    notes = [f"{live} live-photo videos are ignored"] if live else []
     if len(videos) > live:
-        notes.append(f"{len(videos) - live} videos are not read; give one by its own name")
+        notes.append(f"{len(videos) - live} videos are ignored; to use a video, give its path")
     raw = sum(path.suffix.lower() in (".dng", ".cr2", ".cr3", ".nef", ".arw") for path in names)
-    return [*notes, f"{raw} raw photos are not read; export them as JPEG"] if raw else notes
+    return [*notes, f"{raw} raw photos are ignored; export them as JPEG"] if raw else notes

@@ -1,4 +1,4 @@
-"""Detection of captures that are a RoomPlan file without frames."""
+"""Detection of captures that consist of a RoomPlan file without frames."""
 
 from pathlib import Path
 
@@ -9,9 +9,9 @@ from world2minecraft.formats import roomplan
 
 
 def find_lone_roomplan(capture: Path) -> AnyPath | None:
-    """Return the RoomPlan JSON of a capture that is nothing else, None where there is none.
+    """Return the RoomPlan JSON of a capture that has no frames, or None.
 
-    A capture with frames and a plan is a capture; its plan is given by ``--plan``.
+    For a capture with frames, a RoomPlan file is given with ``--plan`` instead.
     """
     try:
         if capture.suffix.lower() == ".json":

@@ -1,7 +1,7 @@
-"""Reader of one photo, such as a phone takes or a listing shows.
+"""Reader of a single photo, for example from a phone or a property listing.
 
-Its lens is what the user states, else what EXIF states, else a usual one. It has no pose: the
-camera's place comes from depth by a network, or is that of a person's eye.
+The field of view is set by the user, or read from EXIF data, or a common default. The photo has no
+pose. The camera height is derived from estimated depth or assumed to be eye level.
 """
 
 import re
@@ -23,20 +23,28 @@ DEFAULT_FOCAL = 0.8  # Of the longer side: phones 0.7 to 0.9.
 
 
 class SinglePhotoSource:
-    """Reads one photo."""
+    """A reader of single photos."""
 
     layout = "one photo (.jpg, .png, .heic, .webp)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether it is the file of a photo, by its name."""
+        """Return whether the path is a file with the suffix of a photo."""
         return folder.is_file() and folder.suffix.lower() in PHOTO_SUFFIXES
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the photo. Raises CaptureError as ``Source.read`` does."""
+        """Read a photo with default options.
+
+        Raises:
+            InputError: If the photo cannot be read.
+        """
         return self.read_with(folder, ScanOptions())
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
-        """List the photo, its lens as the user states it."""
+        """Read a photo, with the field of view in ``options`` if it is set.
+
+        Raises:
+            InputError: If the photo cannot be read.
+        """
         camera, note = _lens(read_photo_metadata(folder), options.fov_deg)
         name = re.sub(r"[^A-Za-z0-9_.-]+", "_", folder.stem).lstrip(".-")[:80] or "photo"
         frame = FrameFiles(name, None, UprightPhoto(folder), camera)
@@ -47,10 +55,12 @@ def _lens(facts: PhotoMetadata, fov_deg: float | None) -> tuple[Camera, str]:
     wide, high = facts.width_px, facts.height_px
     if fov_deg is not None:
         focal_px = focal_px_of_fov(high, fov_deg)
-        note = f"the photo's field of view is taken as {fov_deg:g} degrees high, as told"
+        note = f"the vertical field of view is {fov_deg:g} degrees, as set"
     elif facts.camera is not None:
-        return facts.camera, "the photo's lens is as its EXIF says"
+        return facts.camera, "the intrinsics are estimated from EXIF data"
     else:
         focal_px = DEFAULT_FOCAL * max(wide, high)
-        note = "the photo says nothing of its lens; a usual one is taken: --fov tells another"
+        note = (
+            "the photo contains no lens data; using a common field of view, set --fov to change it"
+        )
     return Camera(wide, high, focal_px, focal_px, wide / 2, high / 2), note

@@ -1,9 +1,9 @@
-"""Reader of a video of a walk through a room: selects sharp, well separated frames.
+"""Reader of a video of a walk through a room, which selects sharp and well-separated frames.
 
 One pass over the video at low resolution measures motion and sharpness. Motion is the shift of
-blocks of the picture against the last reference picture, by phase correlation: it sees walking,
-turning and coming nearer alike, and a hand's shake does not add up. Sharpness is the strength of
-fine edges. Selected frames are decoded when they are read, upright, in the order of the video.
+image blocks against a reference frame, by phase correlation. It responds to walking, turning and
+approaching alike, and camera shake does not accumulate. Sharpness is the strength of fine edges.
+The selected frames are decoded on access, upright and in the order of the video.
 """
 
 from dataclasses import dataclass
@@ -47,12 +47,18 @@ _IMAGE_SUFFIXES = (".jpg", ".jpeg", ".png", ".heic", ".heif", ".webp", ".npy", "
 
 @dataclass(frozen=True, eq=False)
 class VideoAnalysis:
-    """What one pass over a video found, a value for each of its N pictures.
+    """The result of one pass over a video with N frames.
 
-    ``times`` int64 [N] in ticks of ``tick_s``, ascending; ``path`` float64 [N] is how far the view
-    has moved since the start, in shares of the longer side; ``sharpness`` float64 [N]. ``stated_s``
-    is the length that the file states, 0 where it does not; ``whole`` is false where decoding
-    broke off. ``quarter_turns`` turn its pictures upright, counter-clockwise.
+    Attributes:
+        size: Width and height in pixels.
+        times: Frame times in ticks of ``tick_s``, ascending, int64 [N].
+        tick_s: Seconds per tick.
+        path: Accumulated motion since the start as a share of the longer image side, float64 [N].
+        sharpness: Sharpness of each frame, float64 [N].
+        stated_s: Duration stated by the file in seconds; 0 if it is not stated.
+        quarter_turns: Counter-clockwise quarter turns that rotate the frames upright.
+        metadata: Metadata of the container and the stream.
+        whole: Whether the video was decoded to the end.
     """
 
     size: tuple[int, int]
@@ -67,7 +73,7 @@ class VideoAnalysis:
 
     @property
     def duration_s(self) -> float:
-        """From the first picture to the last, and one more."""
+        """The duration in seconds from the first to the last frame, plus one frame."""
         count = len(self.times)
         if count < 2:
             return 0.0
@@ -75,12 +81,13 @@ class VideoAnalysis:
 
 
 def analyse_video(path: AnyPath) -> VideoAnalysis:
-    """Decode a video once, at low resolution; what was found is kept until its file changes.
+    """Decode a video once at low resolution; the result is cached until the file changes.
 
     Raises:
-        DamagedFileError: it is no video, holds no pictures or only sound. LimitError: its pictures
-            are too large, or it is over an hour long. InputError: it is missing.
-        MissingExtraError: ``av`` is not installed.
+        DamagedFileError: If the file is not a video or contains no frames.
+        LimitError: If the frames are too large or the video is longer than an hour.
+        InputError: If the file is missing.
+        MissingExtraError: If ``av`` is not installed.
     """
     try:
         found = (path.path if isinstance(path, ArchivePath) else path).stat()
@@ -104,7 +111,9 @@ def _analyse(path: AnyPath, stamp: tuple[int, int]) -> VideoAnalysis:
         raise
     except failures as error:
         reason = reason_of(error, 80)
-        raise DamagedFileError(path, f"is no whole video ({reason}); copy it again") from error
+        raise DamagedFileError(
+            path, f"is not a complete video ({reason}); copy the file again"
+        ) from error
 
 
 def _analyse_container(
@@ -112,19 +121,22 @@ def _analyse_container(
 ) -> VideoAnalysis:
     if not container.streams.video:
         kind = "sound only" if container.streams.audio else "no video"
-        raise DamagedFileError(path, f"holds {kind}; give a video of the room")
+        raise DamagedFileError(path, f"contains {kind}; choose a video of the room")
     stream = container.streams.video[0]
     size = (stream.codec_context.width, stream.codec_context.height)
     if not 0 < size[0] * size[1] <= MAX_PIXELS:
         raise LimitError(
             path,
-            f"has pictures of {size[0]}x{size[1]}; at most 64 megapixels are read: make it smaller",
+            f"has frames of {size[0]}x{size[1]} px, the limit is 64 megapixels; reduce the "
+            "resolution",
         )
     stated_s = (container.duration or 0) / 1e6  # Some containers state it for the whole alone.
     if stream.duration:
         stated_s = float(stream.duration * stream.time_base)
     if stated_s > MAX_SECONDS:
-        raise LimitError(path, f"is {stated_s / 60:.0f} minutes long; at most 60 are read: cut it")
+        raise LimitError(
+            path, f"is {stated_s / 60:.0f} minutes long, the limit is 60; shorten the video"
+        )
     stream.thread_type = "AUTO"  # The pictures are the same on any number of threads.
     times: list[int] = []
     sharpness: list[float] = []
@@ -150,7 +162,7 @@ def _analyse_container(
 
 
 def _luma(frame: Any) -> np.ndarray:
-    """Return the brightness plane as it lies in memory, uint8 [H, W], without a copy if it can."""
+    """Return the luma plane as uint8 [H, W], without a copy if possible."""
     kind = frame.format
     if not kind.name.startswith(("yuv", "gray", "nv12", "nv21")) or kind.components[0].bits > 8:
         frame = frame.reformat(format="gray")
@@ -160,14 +172,14 @@ def _luma(frame: Any) -> np.ndarray:
 
 
 def _sharpness(light: np.ndarray) -> float:
-    """Return the mean square of the second differences along some rows."""
+    """Return the mean square of second differences along some of the rows."""
     rows = light[::SHARP_ROWS].astype(np.int16)
     bent = (rows[:, 2:] - 2 * rows[:, 1:-1] + rows[:, :-2]).astype(np.float32)
     return float((bent * bent).mean()) if bent.size else 0.0
 
 
 def _downscale(light: np.ndarray) -> np.ndarray:
-    """Return a picture of about ``SMALL_PX``: means along the rows, each n-th row."""
+    """Return an image of about ``SMALL_PX``, averaged along rows and subsampled between rows."""
     step = max(1, max(light.shape) // SMALL_PX)
     height, width = (side // step * step for side in light.shape)
     rows = light[step // 2 : height : step, :width]
@@ -175,7 +187,7 @@ def _downscale(light: np.ndarray) -> np.ndarray:
 
 
 class _MotionTracker:
-    """Adds up how far the view has moved."""
+    """An accumulator of camera motion."""
 
     def __init__(self) -> None:
         self.path: list[float] = []
@@ -183,7 +195,7 @@ class _MotionTracker:
         self._reference: np.ndarray | None = None
 
     def add(self, small: np.ndarray) -> None:
-        """Take the next picture."""
+        """Add the next frame."""
         blocks = _block_spectra(small)
         if self._reference is None:
             self._reference = blocks
@@ -199,7 +211,7 @@ class _MotionTracker:
 
 
 def _block_spectra(small: np.ndarray) -> np.ndarray:
-    """Return the spectra of B blocks of a small picture, complex [B, BLOCK, BLOCK // 2 + 1]."""
+    """Return the spectra of B blocks of a small image, complex [B, BLOCK, BLOCK // 2 + 1]."""
     high, wide = (min(BLOCK, side) for side in small.shape)
     window = np.outer(np.hanning(high), np.hanning(wide)).astype(np.float32)
     tops = np.linspace(0, small.shape[0] - high, 3).astype(int)
@@ -210,14 +222,14 @@ def _block_spectra(small: np.ndarray) -> np.ndarray:
 
 
 def block_shift(first: np.ndarray, second: np.ndarray) -> float:
-    """Return by how many pixels blocks have moved between two pictures, the mean of those sure.
+    """Return the mean shift of image blocks between two frames, in pixels.
 
     Args:
-        first: spectra of the blocks of one picture.
-        second: of the other, of the same shape.
+        first: Spectra of the blocks of one frame.
+        second: Spectra of the blocks of the other frame, with the same shape.
 
     Returns:
-        The mean length of the shifts; half a block where no block is found again.
+        The mean length over blocks with a reliable match, or half a block if there is none.
     """
     cross = second * np.conj(first)
     cross /= np.maximum(np.abs(cross), 1e-3)
@@ -235,11 +247,11 @@ def block_shift(first: np.ndarray, second: np.ndarray) -> float:
 
 
 def select_frames(analysis: VideoAnalysis, wanted: int) -> list[int]:
-    """Return which pictures to take, ascending: a steady way apart, each the sharpest near by.
+    """Select sharp frames with regular motion between them, in ascending order.
 
     Args:
-        analysis: of the video.
-        wanted: how many at most; a camera that moves little gives fewer.
+        analysis: Motion and sharpness of the video.
+        wanted: Maximum number of frames; less motion gives fewer frames.
     """
     way = float(analysis.path[-1]) if len(analysis.path) else 0.0
     count = min(wanted, int(way / FRAME_STEP) + 1, len(analysis.path))
@@ -258,25 +270,39 @@ def select_frames(analysis: VideoAnalysis, wanted: int) -> list[int]:
 
 
 class VideoSource:
-    """Reads a video, or a folder with one video and no pictures."""
+    """A reader of videos, and of folders that contain one video and no images."""
 
     layout = "a video (.mov, .mp4, .m4v, .webm, .avi, .mkv)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether it is a video or a folder with just one."""
+        """Return whether the path is a video or a folder with exactly one video."""
         return _video_in(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """Choose pictures of the video. Raises CaptureError as ``Source.read`` does."""
+        """Select frames of a video with default options.
+
+        Raises:
+            CaptureError: If the video shows too little motion.
+            DamagedFileError: If the video is damaged.
+            LimitError: If the video is too large.
+        """
         return self.read_with(folder, ScanOptions())
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
-        """Choose as many pictures as are wanted at most."""
+        """Select at most ``options.frames`` frames of a video.
+
+        Raises:
+            CaptureError: If the video shows too little motion.
+            DamagedFileError: If the video is damaged.
+            LimitError: If the video is too large.
+        """
         path = _video_in(folder)
         if path is None:
-            raise CaptureError(folder, "holds no video, or several; give one by its own name")
+            raise CaptureError(
+                folder, "contains no video or several videos; give the path of one video"
+            )
         if path.stat().st_size == 0:
-            raise DamagedFileError(path, "is empty; copy it again")
+            raise DamagedFileError(path, "is empty; copy the file again")
         analysis = analyse_video(path)
         _check_video(path, analysis)
         wanted = DEFAULT_FRAMES if options.frames is None else options.frames
@@ -285,8 +311,8 @@ class VideoSource:
             places = f"{len(chosen)} place" + "s" * (len(chosen) != 1)
             raise CaptureError(
                 path,
-                f"shows only {places}: the camera hardly moves "
-                f"in its {analysis.duration_s:.0f} s; film while walking sideways through the room",
+                f"shows the room from only {places}: the camera hardly moves in "
+                f"{analysis.duration_s:.0f} s; walk sideways through the room while filming",
             )
         frames = _frames(path, analysis, chosen)
         return Capture(
@@ -295,7 +321,7 @@ class VideoSource:
 
 
 def _video_in(place: AnyPath) -> AnyPath | None:
-    """Return the video that a place is or holds; None where there are several or photos."""
+    """Return the video at a path or in a folder; None if there are several videos, or photos."""
     if place.is_file():
         return place if place.suffix.lower() in SUFFIXES else None
     if not place.is_dir():
@@ -308,25 +334,26 @@ def _video_in(place: AnyPath) -> AnyPath | None:
 
 
 def _check_video(path: AnyPath, analysis: VideoAnalysis) -> None:
-    """Refuse a video that cannot be used.
+    """Check that a video can be used.
 
     Raises:
-        LimitError: its pictures are too large. DamagedFileError: it ends early.
+        LimitError: If the frames are too large.
+        DamagedFileError: If the video is truncated.
     """
     width, height = analysis.size
     if width * height > MAX_PIXELS:
         raise LimitError(
             path,
-            f"has pictures of {width}x{height}; at most 64 megapixels are read: make it smaller",
+            f"has frames of {width}x{height} px, the limit is 64 megapixels; reduce the resolution",
         )
     if not len(analysis.times):
-        raise DamagedFileError(path, "has no picture that can be decoded; copy it again")
+        raise DamagedFileError(path, "contains no frame that can be decoded; copy the file again")
     # A stated length of seconds more than what is there: the copy broke off.
     if analysis.stated_s > analysis.duration_s + 2.0 + 0.1 * analysis.stated_s:
         raise DamagedFileError(
             path,
-            f"is cut short: {analysis.duration_s:.1f} s of its {analysis.stated_s:.1f} s are "
-            "there; copy it again",
+            f"is truncated: expected {analysis.stated_s:.1f} s, found "
+            f"{analysis.duration_s:.1f} s; copy the file again",
         )
 
 
@@ -349,7 +376,7 @@ def _frames(path: AnyPath, analysis: VideoAnalysis, chosen: list[int]) -> tuple[
 
 
 def _camera(analysis: VideoAnalysis) -> Camera | None:
-    """Return a first guess of the lens where the phone wrote it down."""
+    """Return an initial estimate of the intrinsics from the phone's metadata, or None."""
     width, height = analysis.size if analysis.quarter_turns % 2 == 0 else analysis.size[::-1]
     focal_mm = _focal_35mm(analysis.metadata)
     if focal_mm is None:
@@ -371,11 +398,14 @@ def _focal_35mm(metadata: dict[str, Any]) -> float | None:
 
 def _notes(analysis: VideoAnalysis, frames: tuple[FrameFiles, ...]) -> tuple[str, ...]:
     notes = [
-        f"{len(frames)} of the video's {len(analysis.times):,} pictures are taken: sharp "
-        f"ones, well apart ({analysis.duration_s:.0f} s, {analysis.size[0]}x{analysis.size[1]})"
+        (
+            f"selected {len(frames)} of {len(analysis.times):,} frames that are sharp and "
+            f"well separated ({analysis.duration_s:.0f} s, "
+            f"{analysis.size[0]}x{analysis.size[1]})"
+        )
     ]
     if analysis.quarter_turns:
-        notes.append("the pictures are turned upright, as the video says")
+        notes.append("the frames are rotated upright, as stated by the video")
     if not analysis.whole:
-        notes.append("the video breaks off; what comes before is used")
+        notes.append("the video is truncated; only the part before the damage is used")
     return tuple(notes)

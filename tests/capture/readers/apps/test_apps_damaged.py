@@ -268,7 +268,7 @@ def test_polycams_lenses_of_another_shape(room):
     folder = room("polycam")
     for path in (folder / "keyframes" / "corrected_cameras").iterdir():
         change_json(path, width=120, height=160)
-    refused(folder, "speak of another image")
+    refused(folder, "does not match its intrinsics")
 
 
 # Stray Scanner
@@ -305,11 +305,11 @@ def test_stray_lacks_its_matrix_or_states_nonsense(room):
 def test_strays_video_is_damaged(room):
     folder = room("stray")
     cut(folder / "rgb.mp4")
-    refused(folder, "rgb.mp4", "no whole video")
+    refused(folder, "rgb.mp4", "not a complete video")
     (folder / "rgb.mp4").write_bytes(b"no video at all" * 100)
-    refused(folder, "rgb.mp4", "no whole video")
+    refused(folder, "rgb.mp4", "not a complete video")
     (folder / "rgb.mp4").write_bytes(b"")
-    refused(folder, "rgb.mp4", "no whole video")
+    refused(folder, "rgb.mp4", "not a complete video")
 
 
 def test_strays_video_ends_early(written, room, box_room):
@@ -317,7 +317,7 @@ def test_strays_video_ends_early(written, room, box_room):
 
     folder = room("stray")
     write_video(folder / "rgb.mp4", [box_room.render(box_room.poses(1)[0])[1]] * 7)
-    left_out(folder, "the video holds 7")
+    left_out(folder, "the video contains 7")
 
 
 def test_stray_loses_tracking_in_one_frame(room):
@@ -339,7 +339,7 @@ def test_stray_loses_tracking_in_one_frame(room):
         ("1 2 3\n", ["line 1", "7 numbers"]),
         ("a b c d e f g\n", ["line 1"]),
         ("nan 0 0 0 0 0 0\n", ["line 1"]),
-        ("9999.0 0 0 0 0 0 0\n", ["no image was taken"]),
+        ("9999.0 0 0 0 0 0 0\n", ["contains no image at a time"]),
         ("305.377 nan 0 0 0 0 0\n", ["tracking was lost"]),
     ],
 )

@@ -203,12 +203,12 @@ def test_polycams_optimised_poses_are_preferred(tmp_path, shots):
     capture = find_capture(tmp_path)
     np.testing.assert_allclose(capture.frames[0].camera_to_world, shots["polycam"][0].pose)
     assert "corrected_images" in str(capture.frames[0].colour_path)
-    assert capture.notes == ("the app's optimised poses are taken",)
+    assert capture.notes == ("using the poses optimised by the app",)
 
 
 def test_a_polycam_scan_too_large_to_optimise(tmp_path, shots):
     write_polycam(tmp_path, shots["polycam"][:2], corrected=False)
-    assert find_capture(tmp_path).notes == ("the poses are ARKit's own",)
+    assert find_capture(tmp_path).notes == ("using the poses of ARKit",)
 
 
 def test_stray_with_pictures_in_files(tmp_path, shots):
@@ -242,7 +242,7 @@ def test_arkitscenes_takes_one_image_a_pose(tmp_path, shots):
     write_arkitscenes(tmp_path / "41069021_frames", shots["arkitscenes"])
     capture = find_capture(tmp_path)
     assert len(capture.frames) == 12
-    assert capture.notes == ("24 images between the stated poses are left out",)
+    assert capture.notes == ("24 images between the poses of the trajectory are ignored",)
     np.testing.assert_array_equal(capture.world_up, [0, 0, 1])
 
 
@@ -265,7 +265,7 @@ def test_the_3d_scanner_app_keeps_pictures_of_some_frames(tmp_path, shots):
     write_scanner_app(tmp_path, shots["scanner_app"], pictured_every=3)
     capture = find_capture(tmp_path)
     assert [frame.name for frame in capture.frames] == ["00000", "00003", "00006", "00009"]
-    assert capture.notes == ("8 frames have depth but no picture; they are left out",)
+    assert capture.notes == ("8 frames without a colour image are ignored",)
 
 
 def test_notes_report_what_was_found(tmp_path, shots):

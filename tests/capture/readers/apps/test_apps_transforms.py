@@ -63,7 +63,7 @@ def test_missing_depth_files_are_reported(tmp_path, shots):
     judged = validate_capture(tmp_path, ScanOptions())
     assert judged.posed
     assert not judged.has_depth
-    assert judged.notes == ("4 depth images that the file names are not there",)
+    assert judged.notes == ("4 depth images named in the file are missing",)
     assert judged.capture.scale == "metric"
 
 

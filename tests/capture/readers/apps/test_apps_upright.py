@@ -25,7 +25,7 @@ def test_a_phone_held_upright_gives_upright_views(tmp_path, box_room, shots, app
     WRITERS[app](tmp_path / "room", shots)
     assert read_header(find_capture(tmp_path / "room").frames[0].colour_path).size == (160, 120)
     judged = validate_capture(tmp_path / "room", ScanOptions())
-    assert judged.notes[-1].startswith("the images lie on their side")
+    assert judged.notes[-1].startswith("the images are not upright")
     for frame, pose, shot in zip(judged.frames, box_room.poses(12), shots, strict=True):
         view = read_view(frame, judged.encoding, judged.capture.full_trust)
         np.testing.assert_allclose(view.camera_to_scan, ROOM_TO_ARKIT @ pose, atol=1e-5)

@@ -87,7 +87,7 @@ def test_lenses(tmp_path, views, model, parameters, lens, text):
 def test_lenses_that_are_not_read_say_what_to_do(tmp_path, views, text, refused):
     lens = ("OPENCV_FISHEYE", [130, 130, 80, 60, 0, 0, 0, 0])
     write_colmap(tmp_path, views[:2], text, lens=lens)
-    refused(tmp_path, "OPENCV_FISHEYE, which is not read; run colmap image_undistorter")
+    refused(tmp_path, "unsupported model OPENCV_FISHEYE; run colmap image_undistorter")
 
 
 def test_of_several_models_the_largest_is_read(tmp_path, views):
@@ -96,7 +96,7 @@ def test_of_several_models_the_largest_is_read(tmp_path, views):
     reconstruction(views[:3]).write_binary(tmp_path / "sparse" / "0")
     capture = find_capture(tmp_path)
     assert len(capture.frames) == 12
-    assert capture.notes == ("of 2 models the largest is read, 1",)
+    assert capture.notes == ("read 1, the largest of 2 models",)
 
 
 def test_the_folder_of_the_model_itself_and_photos_beside_it(tmp_path, views):
@@ -112,7 +112,7 @@ def test_missing_photos_are_listed(tmp_path, views):
     write_colmap(tmp_path, views)
     (tmp_path / "images" / "walk one" / "000004.jpg").unlink()
     skipped = validate_capture(tmp_path, ScanOptions()).skipped
-    assert skipped == (("walk one.000004", "000004.jpg is not there"),)
+    assert skipped == (("walk one.000004", "000004.jpg not found"),)
 
 
 def test_photos_of_another_size_than_most_are_left_out(tmp_path, views):
@@ -123,7 +123,7 @@ def test_photos_of_another_size_than_most_are_left_out(tmp_path, views):
     lines = (model / "images.txt").read_text()
     (model / "images.txt").write_text(lines.replace(" 7 walk one/000002", " 9 walk one/000002"))
     skipped = validate_capture(tmp_path, ScanOptions()).skipped
-    assert skipped == (("walk one.000002", "is 120x160; most are 160x120"),)
+    assert skipped == (("walk one.000002", "is 120x160 px; most photos are 160x120 px"),)
 
 
 def test_transforms_json_goes_first(tmp_path, views):
@@ -144,17 +144,25 @@ def images(count=1, camera=1, name=b"walk one/000000.jpg\0", points=0):
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
-        ("images", b"", "images.bin: is cut short"),
-        ("images", images()[:50], "images.bin: is cut short"),
-        ("images", images(count=1 << 63), "images.bin: is cut short"),
-        ("images", images(points=1 << 60), "images.bin: is cut short"),
-        ("images", images(name=b"x" * 3000), "has an image without a name"),
-        ("images", images(name=b"../../etc/passwd\0"), "images must lie inside the folder"),
-        ("images", images(name=b"a\nb.jpg\0"), "names 'a\\nb.jpg'; images must lie inside"),
-        ("images", images(camera=9), "image 1 is of camera 9, which is not there"),
-        ("images", struct.pack("<Q", 0), "holds no photo; run colmap mapper again"),
-        ("cameras", CAMERAS[:-5], "cameras.bin: is cut short"),
-        ("cameras", struct.pack("<QIiQQ", 1, 1, 77, 160, 120), "a camera of model 77"),
+        ("images", b"", "images.bin: is truncated"),
+        ("images", images()[:50], "images.bin: is truncated"),
+        ("images", images(count=1 << 63), "images.bin: is truncated"),
+        ("images", images(points=1 << 60), "images.bin: is truncated"),
+        ("images", images(name=b"x" * 3000), "contains an image without a name"),
+        ("images", images(name=b"../../etc/passwd\0"), "images must be inside the folder"),
+        (
+            "images",
+            images(name=b"a\nb.jpg\0"),
+            "contains the file name 'a\\nb.jpg'; images must be inside",
+        ),
+        ("images", images(camera=9), "image 1 refers to the missing camera 9"),
+        ("images", struct.pack("<Q", 0), "contains no photos; run colmap mapper again"),
+        ("cameras", CAMERAS[:-5], "cameras.bin: is truncated"),
+        (
+            "cameras",
+            struct.pack("<QIiQQ", 1, 1, 77, 160, 120),
+            "a camera of the unsupported model number 77",
+        ),
         ("cameras", struct.pack("<QIiQQ4d", 1, 1, 1, 1 << 62, 120, 1, 1, 1, 1), "width_px must be"),
         ("cameras", struct.pack("<QIiQQ4d", 1, 1, 1, 160, 120, -1, 1, 1, 1), "fx_px must be above"),
     ],
@@ -171,11 +179,11 @@ def test_binary_models_that_lie(tmp_path, views, refused, name, data, words):
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("cameras", "1 PINHOLE 160 120 130\n", "PINHOLE has 4 parameters, not 1"),
-        ("cameras", "1 PINHOLE x 120 130\n", "must hold lines of number, model, width"),
-        ("cameras", "1 PINHOLE 160 120 130 130 80 sixty\n", "holds 'sixty' where a number"),
-        ("images", "3 1 0 0 0 0 0 0 7\n", "must hold number, QW QX QY QZ"),
-        ("images", "3 1 0 0 0 0 0 zero 7 a.jpg\n\n", "holds 'zero' where a number"),
+        ("cameras", "1 PINHOLE 160 120 130\n", "PINHOLE must have 4 parameters, got 1"),
+        ("cameras", "1 PINHOLE x 120 130\n", "must contain lines of the form: id, model, width"),
+        ("cameras", "1 PINHOLE 160 120 130 130 80 sixty\n", "contains 'sixty' where a number"),
+        ("images", "3 1 0 0 0 0 0 0 7\n", "must contain lines of the form: id, QW QX QY QZ"),
+        ("images", "3 1 0 0 0 0 0 zero 7 a.jpg\n\n", "contains 'zero' where a number"),
         ("images", "3 0 0 0 0 0 0 0 7 walk one/000000.jpg\n\n", "none of 1 frames can be used"),
     ],
 )

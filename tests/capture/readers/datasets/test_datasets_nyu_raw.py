@@ -112,10 +112,10 @@ def huge(folder):
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (far_apart, "lie within 0.05 s"),
+        (far_apart, "are within 0.05 s"),
         (cut, "frames are damaged"),
         (empty, "is empty"),
-        (holes, "typical depth of 0 m"),
+        (holes, "median depth of 0 m"),
         (huge, "at most 64"),
     ],
 )

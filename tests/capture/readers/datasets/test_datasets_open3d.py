@@ -74,7 +74,7 @@ def test_of_two_trajectories_odometry_is_left_alone(tmp_path, views):
     write_open3d(tmp_path, views)
     save_text(tmp_path / "odometry.log", log_text(views[::-1]))
     capture = find_capture(tmp_path)
-    assert capture.notes == ("the poses are those of trajectory.log; odometry.log is left alone",)
+    assert capture.notes == ("using the poses of trajectory.log; ignoring odometry.log",)
     np.testing.assert_allclose(
         capture.frames[0].camera_to_world, views[0].camera_to_scan, atol=1e-8
     )
@@ -84,7 +84,9 @@ def test_without_a_camera_the_default_is_taken_and_said(tmp_path, views):
     write_open3d(tmp_path, views)
     (tmp_path / "camera.json").unlink()
     capture = find_capture(tmp_path)
-    assert capture.notes == ("no camera.json: the default of PrimeSense cameras is taken, 525 px",)
+    assert capture.notes == (
+        "no camera.json found; using the default intrinsics of PrimeSense cameras (525 px)",
+    )
     assert capture.frames[0].colour_camera.cx_px == 320.0
 
 
@@ -97,11 +99,19 @@ def test_frames_without_a_pose_are_listed(tmp_path, views):
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("trajectory.log", "0 0 1\n1 0 0 0\n", "must hold three whole numbers and 4x4"),
-        ("trajectory.log", "0 0 1\n" + "1 0 0 x\n" * 4, "holds 'x' where a number must stand"),
-        ("trajectory.log", ("0 0 1\n" + "1 0 0 0\n" * 4) * 2, "has two poses of frame 0"),
-        ("trajectory.log", "99 99 1\n" + "1 0 0 0\n" * 4, "speaks of frame 99; there are 12"),
-        ("camera.json", '{"intrinsic_matrix": [1, 2]}', '"intrinsic_matrix" must be 9 numbers'),
+        ("trajectory.log", "0 0 1\n1 0 0 0\n", "must contain three integers and a 4x4 matrix"),
+        ("trajectory.log", "0 0 1\n" + "1 0 0 x\n" * 4, "contains 'x' where a number is expected"),
+        ("trajectory.log", ("0 0 1\n" + "1 0 0 0\n" * 4) * 2, "contains two poses for frame 0"),
+        (
+            "trajectory.log",
+            "99 99 1\n" + "1 0 0 0\n" * 4,
+            "contains a pose for frame 99, but there are only 12",
+        ),
+        (
+            "camera.json",
+            '{"intrinsic_matrix": [1, 2]}',
+            '"intrinsic_matrix" must be a list of 9 numbers',
+        ),
         ("camera.json", '{"intrinsic_matrix": [1,0,0,0,1,0,0,0,1]}', '"width" and "height" must'),
         ("camera.json", "{", "is not JSON"),
     ],
@@ -118,7 +128,7 @@ def test_images_that_do_not_pair(tmp_path, views, refused):
         path.rename(path.with_name(f"d{index}.png"))
     assert find_capture(tmp_path).frames[3].depth_path.name == "d3.png"
     (tmp_path / "depth" / "d3.png").unlink()
-    refused(tmp_path, "has 12 images in color/ and 11 in depth/")
+    refused(tmp_path, "contains 12 images in color/ and 11 in depth/")
 
 
 def test_a_json_trajectory_that_says_nothing(tmp_path, views, refused):
@@ -133,7 +143,7 @@ def test_the_shared_sample(shared_data):
     folder = shared_data / "open3d_rgbd_samples" / "RGBD"
     capture = find_capture(folder)
     assert (capture.source, len(capture.frames)) == ("open3d", 5)
-    assert "trajectory.log; odometry.log is left alone" in capture.notes[0]
+    assert "trajectory.log; ignoring odometry.log" in capture.notes[0]
     camera = capture.frames[0].depth_camera
     assert (camera.fx_px, camera.cx_px, camera.cy_px) == (525.0, 320.0, 240.0)
     validated = validate_capture(folder, ScanOptions())

@@ -133,7 +133,7 @@ def test_units_stated_and_not(tmp_path, views):
         "0.00025"
     )
     capture = find_capture(write_bag(tmp_path / "b.bag", views[:2], unit=None))
-    assert capture.notes == ("the bag states no depth unit: millimetres are taken",)
+    assert capture.notes == ("the bag states no depth unit; using millimetres",)
 
 
 def test_a_large_bag_within_a_zip_is_not_held_in_memory(tmp_path, views, refused, monkeypatch):
@@ -142,7 +142,9 @@ def test_a_large_bag_within_a_zip_is_not_held_in_memory(tmp_path, views, refused
     monkeypatch.setattr(
         "world2minecraft.capture.readers.datasets.embedded_images.MAX_MEMBER_BYTES", 10_000
     )
-    refused(zipped(tmp_path / "x", tmp_path / "a.zip"), "within a zip; unpack the zip first")
+    refused(
+        zipped(tmp_path / "x", tmp_path / "a.zip"), "from a zip archive; unpack the archive first"
+    )
 
 
 def test_streams_that_are_not_locked_pair_by_time(tmp_path, views):
@@ -198,15 +200,18 @@ def test_yuyv_pictures_become_rgb(tmp_path, views):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"late_ns": 10**12}, "no colour and depth picture lie within 0.025 s"),
-        ({"infos": False}, "states no intrinsics (camera_info)"),
-        ({"transforms": False}, "does not say how its lenses stand"),
-        ({"unit": 5.0}, "states a depth unit of 5.0 m"),
-        ({"encoding": "bayer_rggb8"}, "is encoded as 'bayer_rggb8'; read are rgb8"),
+        ({"late_ns": 10**12}, "contains no colour and depth images within 0.025 s"),
+        ({"infos": False}, "contains no intrinsics (camera_info)"),
+        ({"transforms": False}, "does not contain the transform between its cameras"),
+        ({"unit": 5.0}, "has a depth unit of 5.0 m"),
+        (
+            {"encoding": "bayer_rggb8"},
+            "has the unsupported encoding 'bayer_rggb8'; supported: rgb8",
+        ),
         ({"size": (120, 100_000)}, "too few for 100000x120"),
         (
             {"model": "Kannala Brandt4", "lens": (0.3, 0, 0, 0, 0)},
-            "'kannala_brandt4', which is not",
+            "unsupported model 'kannala_brandt4'",
         ),
     ],
 )
@@ -218,7 +223,7 @@ def test_recordings_that_lack_or_lie(tmp_path, views, refused, options, words):
 def test_a_bag_without_both_streams(tmp_path, views, refused):
     with BagWriter(tmp_path / "a.bag") as bag:
         bag.image(f"{COLOUR}/image/data", START_NS, "rgb8", views[0].colour)
-    refused(tmp_path / "a.bag", "holds no colour and depth streams; record both")
+    refused(tmp_path / "a.bag", "does not contain colour and depth streams; record both")
 
 
 @pytest.mark.parametrize("keep", [14, 60, 0.3, 0.9])
@@ -226,13 +231,13 @@ def test_bags_cut_short(tmp_path, views, refused, keep):
     path = write_bag(tmp_path / "a.bag", views[:3])
     data = path.read_bytes()
     path.write_bytes(data[: int(keep * len(data)) if keep < 1 else keep])
-    refused(path, "is no whole bag (")
+    refused(path, "is not a complete ROS bag (")
 
 
 def test_a_bag_of_noise_after_its_first_line(tmp_path, refused):
     noise = np.random.default_rng(3).integers(0, 256, 5000).astype(np.uint8).tobytes()
     (tmp_path / "a.bag").write_bytes(b"#ROSBAG V2.0\n" + noise)
-    refused(tmp_path / "a.bag", "is no whole bag (")
+    refused(tmp_path / "a.bag", "is not a complete ROS bag (")
 
 
 def test_a_chunk_that_swells_is_not_unpacked_whole(tmp_path, views, monkeypatch):
@@ -252,4 +257,4 @@ def test_a_chunk_that_swells_is_not_unpacked_whole(tmp_path, views, monkeypatch)
 
 def test_a_file_that_is_only_named_a_bag(tmp_path, refused):
     (tmp_path / "a.bag").write_bytes(struct.pack("<Q", 5))
-    refused(tmp_path / "a.bag", "is a file (.bag) of another kind")
+    refused(tmp_path / "a.bag", "is a file (.bag) of an unknown format")

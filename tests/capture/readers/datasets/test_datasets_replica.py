@@ -41,7 +41,7 @@ def test_without_parameters_the_published_camera_is_taken(tmp_path, views):
     write_replica(tmp_path, views)
     (tmp_path / "cam_params.json").unlink()
     capture = find_capture(tmp_path)
-    assert "the one published for Replica" in capture.notes[0]
+    assert "the intrinsics published for Replica" in capture.notes[0]
     assert capture.frames[0].depth_camera.width_px == 1200
 
 
@@ -56,13 +56,13 @@ def test_more_images_than_poses(tmp_path, views):
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("traj.txt", "", "must hold 16 numbers a line"),
-        ("traj.txt", "1 2 3\n", "must hold 16 numbers a line"),
-        ("traj.txt", " ".join(["x"] * 16), "holds 'x' where a number must stand"),
-        ("cam_params.json", "{}", "must state w, h, fx"),
+        ("traj.txt", "", "must contain 16 numbers per line"),
+        ("traj.txt", "1 2 3\n", "must contain 16 numbers per line"),
+        ("traj.txt", " ".join(["x"] * 16), "contains 'x' where a number is expected"),
+        ("cam_params.json", "{}", "must contain w, h, fx"),
         ("cam_params.json", json.dumps({"camera": CAMERA | {"scale": 0}}), "each above 0"),
         ("cam_params.json", json.dumps({"camera": CAMERA | {"w": 1e9}}), "width_px must be 1 to"),
-        ("cam_params.json", "[1]", "must state w, h, fx"),
+        ("cam_params.json", "[1]", "must contain w, h, fx"),
     ],
 )
 def test_damaged_rooms(tmp_path, views, refused, name, text, words):

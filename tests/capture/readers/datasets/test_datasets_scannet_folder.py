@@ -46,9 +46,9 @@ def test_lost_frames_and_frames_without_pose_are_listed(tmp_path, views):
     (tmp_path / "pose" / "5.txt").unlink()
     (tmp_path / "pose" / "6.txt").write_text("1 2 3")
     skipped = dict(open_scan(tmp_path).frames_skipped)
-    assert skipped["000002"] == "tracking was lost (its pose is not finite)"
+    assert skipped["000002"] == "tracking was lost (the pose is not finite)"
     assert skipped["000005"] == "has no pose/5.txt"
-    assert skipped["000006"].startswith("6.txt: must hold 16 numbers")
+    assert skipped["000006"].startswith("6.txt: must contain 16 numbers")
 
 
 def test_smaller_images_have_the_camera_of_their_size(tmp_path, views):
@@ -106,9 +106,9 @@ def mirrored(folder):
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (remove_matrices, "must hold 16 (4x4) or 9 (3x3) numbers, not 3"),
+        (remove_matrices, "must contain 16 (4x4) or 9 (3x3) numbers, got 3"),
         (cut_depth, "12 of 12 frames are damaged"),
-        (depth_8_bit, "is 8-bit; depth needs 16-bit"),
+        (depth_8_bit, "is an 8-bit image, but depth requires 16-bit"),
         (all_lost, "none of 12 frames can be used"),
         (mirrored, "mirrors"),
     ],
@@ -122,7 +122,7 @@ def test_damaged_exports(tmp_path, views, refused, damage, words):
 def test_one_matrix_that_is_missing(tmp_path, views):
     write_folder(tmp_path, views)
     (tmp_path / "intrinsic" / "intrinsic_depth.txt").unlink()
-    with pytest.raises(CaptureError, match="has no intrinsic/intrinsic_depth.txt"):
+    with pytest.raises(CaptureError, match="does not contain intrinsic/intrinsic_depth.txt"):
         find_capture(tmp_path)
 
 

@@ -116,7 +116,10 @@ def test_of_depth_cut_short_the_whole_frames_are_kept(tmp_path, phone_views):
 
 def test_a_depth_image_that_swells_or_is_noise(tmp_path, phone_views):
     bomb = deflated(np.zeros(20_000_000, np.float32))
-    for block, words in ((bomb, "unpacks to 196,609 bytes"), (b"\xff" * 99, "cannot be unpacked")):
+    for block, words in (
+        (bomb, "decompresses to 196,609 bytes"),
+        (b"\xff" * 99, "cannot be decompressed"),
+    ):
         write_phone(tmp_path, phone_views)
         (tmp_path / "depth.bin").write_bytes(struct.pack("<I", len(block)) + block)
         with pytest.raises(DamagedFileError, match=words):
@@ -126,11 +129,11 @@ def test_a_depth_image_that_swells_or_is_noise(tmp_path, phone_views):
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
-        ("depth.bin", struct.pack("<I", 1 << 31) + bytes(99), "packed as a whole; unpack it"),
-        ("pose_intrinsic_imu.json", b"{}", 'must hold "frame_000000"'),
-        ("pose_intrinsic_imu.json", b"[1]", 'must hold "frame_000000"'),
-        ("pose_intrinsic_imu.json", b'{"a": {}}', "and so on, not 'a'"),
-        ("pose_intrinsic_imu.json", b'{"frame_000000": {}}', "must state a matrix of 3 rows of 3"),
+        ("depth.bin", struct.pack("<I", 1 << 31) + bytes(99), "compressed as a whole; unpack it"),
+        ("pose_intrinsic_imu.json", b"{}", 'must contain frames of the form "frame_000000"'),
+        ("pose_intrinsic_imu.json", b"[1]", 'must contain frames of the form "frame_000000"'),
+        ("pose_intrinsic_imu.json", b'{"a": {}}', "of the form frame_000000, got 'a'"),
+        ("pose_intrinsic_imu.json", b'{"frame_000000": {}}', "must contain a 3x3 matrix"),
         ("pose_intrinsic_imu.json", b"{", "is not JSON"),
     ],
 )
@@ -144,4 +147,4 @@ def test_a_recording_without_pictures(tmp_path, phone_views, refused):
     write_phone(tmp_path, phone_views)
     for path in (tmp_path / "rgb").iterdir():
         path.unlink()
-    refused(tmp_path, "has no picture that can be read")
+    refused(tmp_path, "contains no readable colour images")

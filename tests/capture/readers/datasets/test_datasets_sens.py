@@ -96,7 +96,10 @@ def test_a_large_file_within_a_zip_is_not_held_in_memory(tmp_path, views, refuse
     monkeypatch.setattr(
         "world2minecraft.capture.readers.datasets.embedded_images.MAX_MEMBER_BYTES", 10_000
     )
-    refused(zipped(tmp_path / "scene", tmp_path / "a.zip"), "within a zip; unpack the zip first")
+    refused(
+        zipped(tmp_path / "scene", tmp_path / "a.zip"),
+        "from a zip archive; unpack the archive first",
+    )
 
 
 def test_times_units_and_lost_frames(tmp_path, views):
@@ -105,7 +108,7 @@ def test_times_units_and_lost_frames(tmp_path, views):
     assert capture.depth_unit == "0.00025"
     assert capture.frames[2].time_s == pytest.approx(0.066666)
     scan = open_scan(path)
-    reason = "tracking was lost (its pose is not finite)"
+    reason = "tracking was lost (the pose is not finite)"
     assert scan.frames_skipped == (("000003", reason), ("000007", reason))
     view = next(iter(scan.views))
     np.testing.assert_allclose(view.depth_m, views[0].depth_m, atol=2e-4)
@@ -161,14 +164,14 @@ def test_a_broken_zip_of_labels_is_told_and_stops_nothing(tmp_path, views):
     (tmp_path / "scene0000_00_2d-label.zip").write_bytes(b"PK\x03\x04" + bytes(50))
     capture = find_capture(path)
     assert len(capture.frames) == 2
-    assert capture.notes[0].startswith("scene0000_00_2d-label.zip is left out: it is no whole zip")
+    assert capture.notes[0].startswith("ignoring scene0000_00_2d-label.zip: it is ")
 
 
 def test_a_table_without_its_columns_is_refused(tmp_path, views, refused):
     path = write_sens(tmp_path / "scene0000_00.sens", views)
     write_labels(tmp_path / "label", views, [1])
     save_text(tmp_path / "scannetv2-labels.combined.tsv", "a\tb\n1\t2\n")
-    refused(path, "has no columns id and nyu40id")
+    refused(path, "does not contain the columns id and nyu40id")
 
 
 def test_of_a_file_cut_short_the_whole_frames_are_kept(tmp_path, views):
@@ -177,20 +180,20 @@ def test_of_a_file_cut_short_the_whole_frames_are_kept(tmp_path, views):
     path.write_bytes(data[: int(0.8 * len(data))])
     scan = open_scan(path)
     assert 8 <= len(scan.frames_used) <= 10
-    assert f"a.sens is cut short: {len(scan.frames_used)} of 12 frames are whole" in scan.notes
+    assert f"a.sens is truncated; {len(scan.frames_used)} of 12 frames are complete" in scan.notes
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"version": 3}, "is no .sens of version 4 (it says 3)"),
-        ({"name_bytes": 1 << 60}, "is no .sens of version 4"),
-        ({"colour": 9}, "packs colour as 9"),
-        ({"sizes": (4_000_000_000, 5, 160, 120)}, "states impossible images"),
-        ({"sizes": (160, 120, 20_000, 20_000)}, "megapixels; at most 64"),
-        ({"count": 1 << 62}, "states 4,611,686,018,427,387,904 frames"),
-        ({"count": 0}, "states 0 frames"),
-        ({"shift": 0.0}, "states impossible images"),
+        ({"version": 3}, "is not a .sens file of version 4 (version field: 3)"),
+        ({"name_bytes": 1 << 60}, "is not a .sens file of version 4"),
+        ({"colour": 9}, "has the unsupported compression 9 for colour"),
+        ({"sizes": (4_000_000_000, 5, 160, 120)}, "has an invalid image size or depth unit"),
+        ({"sizes": (160, 120, 20_000, 20_000)}, "megapixels; the limit is 64"),
+        ({"count": 1 << 62}, "contains 4,611,686,018,427,387,904 frames"),
+        ({"count": 0}, "contains 0 frames"),
+        ({"shift": 0.0}, "has an invalid image size or depth unit"),
     ],
 )
 def test_headers_that_lie_are_refused_without_taking_memory(
@@ -230,7 +233,9 @@ def test_depth_that_unpacks_to_more_than_its_size_or_not_at_all(tmp_path, views)
     path.write_bytes(b"".join(parts))
     bomb = find_capture(path).frames[2].depth_path
     tracemalloc.start()
-    with pytest.raises(DamagedFileError, match="000002 depth: holds 38,401 bytes, not 38,400"):
+    with pytest.raises(
+        DamagedFileError, match="000002 depth: contains 38,401 bytes, expected 38,400"
+    ):
         bomb.raw()
     assert tracemalloc.get_traced_memory()[1] < 1e6
     tracemalloc.stop()

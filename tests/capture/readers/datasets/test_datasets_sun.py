@@ -51,7 +51,9 @@ def test_one_frame_is_a_capture_with_up_from_its_extrinsics(tmp_path, views):
     pitch[:3, 3] = [5, 6, 7]
     write_sun(tmp_path, views[:1], [pitch], depth="depth_bfx")
     capture = find_capture(tmp_path)
-    assert capture.notes == ("one frame alone: what it did not see stays unknown",)
+    assert capture.notes == (
+        "the capture is a single frame; everything that it does not show stays unknown",
+    )
     np.testing.assert_array_equal(capture.world_up, [0, -1, 0])
     pose = capture.frames[0].camera_to_world
     np.testing.assert_allclose(pose[:3, :3], pitch[:3, :3], atol=1e-8)
@@ -77,12 +79,16 @@ def test_pictures_and_depth_of_other_counts_pair_by_their_times(tmp_path, views)
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("intrinsics.txt", "1 2 3", "must hold 9 (3x3) or 16 (4x4) numbers, not 3"),
-        ("intrinsics.txt", "130 0 80 0 130 60 0 0 nan", "must read fx 0 cx"),
+        ("intrinsics.txt", "1 2 3", "must contain 9 (3x3) or 16 (4x4) numbers, got 3"),
+        ("intrinsics.txt", "130 0 80 0 130 60 0 0 nan", "must have the form fx 0 cx"),
         ("intrinsics.txt", "0 0 80 0 130 60 0 0 1", "fx_px must be above 0"),
-        ("extrinsics/20140808220511.txt", "1 0 0 0", "3x4 numbers for each of 12 frames, not 4"),
-        ("extrinsics/20140808220511.txt", "1 " * 143 + "x", "holds 'x' where a number"),
-        ("image/0.png", "no image", "has 13 pictures and 12 depth images; they must pair"),
+        (
+            "extrinsics/20140808220511.txt",
+            "1 0 0 0",
+            "a 3x4 matrix for each of 12 frames (144 numbers), got 4",
+        ),
+        ("extrinsics/20140808220511.txt", "1 " * 143 + "x", "contains 'x' where a number"),
+        ("image/0.png", "no image", "contains 13 colour and 12 depth images; the counts"),
     ],
 )
 def test_damaged_folders(tmp_path, views, refused, name, text, words):

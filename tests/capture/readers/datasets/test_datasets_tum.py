@@ -57,7 +57,7 @@ def test_the_camera_published_for_a_name(tmp_path, box_room):
         views.append(type(view)(view.name, view.camera_to_scan, colour, camera, depth, camera))
     write_tum(folder, views, calibration=False)
     scan = open_scan(folder)
-    assert "published for freiburg3" in scan.notes[0]
+    assert "using the intrinsics published for freiburg3" in scan.notes[0]
     np.testing.assert_allclose(sorted(scan.room_size_m), sorted(box_room.size_m), atol=0.01)
     assert next(iter(scan.views)).colour_camera.fy_px == pytest.approx(539.2 / 4)
 
@@ -136,13 +136,21 @@ def test_pairs_are_the_nearest_and_each_image_is_used_once():
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("rgb.txt", "", "rgb.txt: must hold lines of seconds and a file"),
-        ("rgb.txt", "1.0 ../../etc/passwd\n", "images must lie inside the folder"),
-        ("depth.txt", "zero depth/0.png\n", "holds 'zero' where a number must stand"),
-        ("depth.txt", "5.0 depth/0.png\n", "no time of rgb.txt lies within 0.02 s"),
-        ("groundtruth.txt", "1.0 2 3 4\n", "must hold lines of seconds tx ty tz qx qy qz qw"),
-        ("groundtruth.txt", "1.0 0 0 0 nan 0 0 1\n", "holds no pose that is finite"),
-        ("calibration.txt", "130 130\n", "must hold fx fy cx cy and a lens, not 2 words"),
+        ("rgb.txt", "", "rgb.txt: must contain lines of the form: seconds file"),
+        ("rgb.txt", "1.0 ../../etc/passwd\n", "images must be inside the folder"),
+        ("depth.txt", "zero depth/0.png\n", "contains 'zero' where a number is expected"),
+        ("depth.txt", "5.0 depth/0.png\n", "contains no colour and depth images within 0.02 s"),
+        (
+            "groundtruth.txt",
+            "1.0 2 3 4\n",
+            "must contain lines of the form: seconds tx ty tz qx qy qz qw",
+        ),
+        ("groundtruth.txt", "1.0 0 0 0 nan 0 0 1\n", "contains no finite pose"),
+        (
+            "calibration.txt",
+            "130 130\n",
+            "must contain fx fy cx cy and up to five distortion coefficients, got 2 values",
+        ),
         ("calibration.txt", "-130 130 80 60\n", "fx_px must be above 0"),
     ],
 )

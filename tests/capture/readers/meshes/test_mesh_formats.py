@@ -75,7 +75,7 @@ def test_a_cloud_of_any_format_is_the_same_room(exports, name):
 
 def test_views_of_a_cloud_are_taken_from_within(exports):
     capture = find_capture(exports / "room.laz")
-    assert "4.2 x 3.1 m and 2.6 m high; one unit is 1 m" in capture.notes[0]
+    assert "4.2 x 3.1 m and 2.6 m high; unit m" in capture.notes[0]
     frame = capture.frames[0]
     assert frame.depth_path.header().size == frame.colour_path.header().size == (480, 360)
     assert (frame.depth_path.raw() > 0).mean() > 0.9
@@ -94,9 +94,9 @@ def test_units_are_inferred_from_the_size_or_chosen(tmp_path, unit, scale):
     (tmp_path / "room.ply").write_bytes(writers.quad_ply(scaled))
     capture = find_capture(tmp_path / "room.ply")
     assert "4.2 x 3.1 m and 2.6 m high" in capture.notes[0]
-    assert f"taken to be 1 {unit} (guessed" in capture.notes[0]
+    assert f"unit {unit} (estimated" in capture.notes[0]
     told = find_capture(tmp_path / "room.ply", parse_options({"unit": unit, "up": "z"}))
-    assert f"one unit is 1 {unit}, as told; up is z, as told" in told.notes[0]
+    assert f"unit {unit}, as set; up axis z, as set" in told.notes[0]
 
 
 def test_of_one_mesh_in_several_formats_the_best_is_read(tmp_path):
@@ -105,7 +105,9 @@ def test_of_one_mesh_in_several_formats_the_best_is_read(tmp_path):
     writers.write_glb(folder / "room.glb", room_quads())
     assert find_mesh_file(folder) == folder / "room.glb"
     writers.write_stl(folder / "chair.stl", room_quads())
-    with pytest.raises(InputError, match=r"holds 2 meshes or clouds \(chair, room\); name one"):
+    with pytest.raises(
+        InputError, match=r"contains 2 meshes or point clouds \(chair, room\); give the path of one"
+    ):
         find_capture(folder)
 
 
@@ -238,7 +240,7 @@ def test_files_of_a_gltf_are_named_as_addresses(tmp_path):
     (tmp_path / "room.gltf").write_bytes(tree)
     assert len(load_geometry(tmp_path / "room.gltf").geometry.faces)
     (tmp_path / "my room 0.bin").unlink()
-    with pytest.raises(InputError, match=r"names 'my%20room%200.bin', which is not there: put it"):
+    with pytest.raises(InputError, match=r"refers to the missing file 'my%20room%200.bin'; copy"):
         load_geometry(tmp_path / "room.gltf")
 
 
@@ -246,7 +248,7 @@ def test_objects_shells_and_landscapes_are_refused_with_advice(tmp_path):
     boxes = (((0.0, 0.0, 0.0, 0.6, 0.6, 1.0), (90, 60, 30)),)
     chair = room_quads((0.6, 0.6, 1.0), boxes, without=range(6))
     (tmp_path / "chair.ply").write_bytes(writers.quad_ply(chair))
-    with pytest.raises(InputError, match=r"no room but an object .* say --set capture.unit="):
+    with pytest.raises(InputError, match=r"not the size of a room; .* set --set capture.unit="):
         find_capture(tmp_path / "chair.ply", parse_options({"unit": "m"}))
     house = room_quads(
         (8.0, 6.0, 3.0), (((0, 0, 0, 8.0, 6.0, 3.0), (9, 9, 9)),), (0, 1, 2, 3, 4, 5)
@@ -256,9 +258,9 @@ def test_objects_shells_and_landscapes_are_refused_with_advice(tmp_path):
         find_capture(tmp_path / "house.ply")
     named = find_capture(tmp_path / "house.ply", parse_options({"inside": "4,3,1.5"}))
     assert len(named.frames) >= 40
-    with pytest.raises(InputError, match="within 1 m of the point named by inside"):
+    with pytest.raises(InputError, match="within 1 m of capture.inside"):
         find_capture(tmp_path / "house.ply", parse_options({"inside": "40,3,1.5"}))
     ground = room_quads((8.0, 6.0, 3.0), (((3, 3, 0, 4, 4, 2), (9, 9, 9)),), (0, 1, 2, 3, 5))
     (tmp_path / "ground.ply").write_bytes(writers.quad_ply(ground))
-    with pytest.raises(InputError, match="shows no inside of a room"):
+    with pytest.raises(InputError, match="does not show the inside of a room"):
         find_capture(tmp_path / "ground.ply", parse_options({"unit": "m"}))

@@ -38,7 +38,7 @@ def test_scannet_labels_and_colours_are_read_together(tmp_path, quads):
             }
     capture = find_capture(tmp_path)
     assert seen_labels(capture) == {1, 2, 3, 8, 10}
-    assert "column label is read as NYU40 numbers" in capture.notes
+    assert "column label is read as NYU40 labels" in capture.notes
     header = capture.frames[0].labels_path.header()
     assert header.mode == "L" and header.size == (480, 360)
 
@@ -54,10 +54,12 @@ def test_a_class_map_next_to_the_file_is_used(tmp_path, quads):
     beside.write_text(json.dumps({"900": "ceiling", "7": "floor", "31": "wall", "77": "desk"}))
     assert set(np.unique(load_geometry(path).geometry.labels)) == {1, 2, 3, 8, 255}
     beside.write_text(json.dumps({"900": "spaceship"}))
-    with pytest.raises(CaptureError, match=r"names 'spaceship'; known are ceiling, floor"):
+    with pytest.raises(
+        CaptureError, match=r"unknown class name 'spaceship'; known names: ceiling, floor"
+    ):
         load_geometry(path)
     beside.write_text(json.dumps({"nine": "wall"}))
-    with pytest.raises(CaptureError, match="maps 'nine', which is no number"):
+    with pytest.raises(CaptureError, match="the label 'nine'; labels must be integers"):
         load_geometry(path)
 
 
@@ -68,7 +70,7 @@ def test_labels_of_faces_and_own_ids_are_read(tmp_path, quads):
     )
     loaded = load_geometry(path)
     assert set(np.unique(loaded.geometry.labels)) == {1, 2, 3, 8, 10}
-    assert loaded.notes == ("column class is read as our class ids",)
+    assert loaded.notes == ("column class is read as World2Minecraft class ids",)
 
 
 def test_what_has_classes_but_no_colours_is_tinted_by_them(tmp_path, quads):
@@ -98,7 +100,7 @@ def test_rooms_of_s3dis_have_the_classes_of_their_files(tmp_path, quads):
     assert capture.source == "solid (S3DIS)"
     assert {1, 2, 3, 8, 10} <= seen_labels(capture) <= {1, 2, 3, 8, 10, 255}
     (tmp_path / "office_1" / "Annotations" / "wall_1.txt").write_text("1 2 3 4\n1 2\n")
-    with pytest.raises(Exception, match=r"wall_1.txt: has lines of other lengths"):
+    with pytest.raises(Exception, match=r"wall_1.txt: has lines without exactly"):
         load_geometry(tmp_path / "office_1")
 
 

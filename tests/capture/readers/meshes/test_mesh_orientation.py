@@ -42,16 +42,14 @@ def test_up_is_inferred_against_the_format_axis(name, axis):
     for usual in ("z", "y") if name != "hall" else (axis.strip("-"),):
         orientation = find_orientation(samples, usual, False, None)
         np.testing.assert_allclose(orientation.turn @ AXES[axis], [0, 0, 1], atol=1e-9)
-        assert orientation.description == f"up is taken to be {axis} (guessed)"
+        assert orientation.description == f"up axis {axis} (estimated)"
 
 
 def test_up_of_a_cloud_is_inferred():
     points, _, _ = room_quads().points(apart_m=0.05, noise_m=0.005)
     turn = rotation_to_up(np.array(AXES["y"])).T
     samples = sample_surface(PointCloud((points @ turn.T).astype(np.float32)))
-    assert (
-        find_orientation(samples, "z", False, None).description == "up is taken to be y (guessed)"
-    )
+    assert find_orientation(samples, "z", False, None).description == "up axis y (estimated)"
 
 
 def test_a_world_whose_y_points_down_is_turned_over():
@@ -59,9 +57,7 @@ def test_a_world_whose_y_points_down_is_turned_over():
         np.array(AXES["-y"])
     ).T  # That of a first camera, as many trackers leave it.
     samples = sample_surface(mesh_of(room_quads(), turn))
-    assert (
-        find_orientation(samples, "z", False, None).description == "up is taken to be -y (guessed)"
-    )
+    assert find_orientation(samples, "z", False, None).description == "up axis -y (estimated)"
 
 
 def test_a_room_that_leans_is_set_upright():
@@ -70,13 +66,13 @@ def test_a_room_that_leans_is_set_upright():
     samples = sample_surface(mesh_of(room_quads(), rotation_to_up(axis).T))
     orientation = find_orientation(samples, "z", False, None)
     np.testing.assert_allclose(orientation.turn @ axis, [0, 0, 1], atol=1e-3)
-    assert "21 degrees off z" in orientation.description
+    assert "21 degrees from z" in orientation.description
 
 
 def test_stated_or_chosen_up_wins():
     samples = sample_surface(mesh_of(room_quads(), np.eye(3)))
-    assert find_orientation(samples, "y", True, None).description == "up is y, as the file says"
-    assert find_orientation(samples, "y", True, "-x").description == "up is -x, as told"
+    assert find_orientation(samples, "y", True, None).description == "up axis y, from the file"
+    assert find_orientation(samples, "y", True, "-x").description == "up axis -x, as set"
 
 
 @pytest.mark.parametrize("unit, metres", [("m", 1), ("cm", 0.01), ("mm", 0.001), ("foot", 0.3048)])

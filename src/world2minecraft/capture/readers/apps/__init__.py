@@ -1,1 +1,1 @@
-"""Readers of exports of phone apps with LiDAR or AR tracking, one module per app."""
+"""Readers of the exports of phone apps with LiDAR or AR tracking, one module per app."""

@@ -1,8 +1,8 @@
-"""Parsing of the numbers, cameras and poses in files of phone apps.
+"""Parsing of numbers, cameras and poses in the files of phone apps.
 
-ARKit's camera looks along -z with y up, in a world whose y is up; ``arkit_pose`` and
-``arkit_pose_of_quaternion`` give the pose of the same camera with OpenCV axes. Numbers that are
-not finite stay as they are in poses: tracking was lost there, and the frame is skipped later.
+ARKit cameras look along -z with y up, in a world with y up. ``arkit_pose`` and
+``arkit_pose_of_quaternion`` return the pose of the same camera with OpenCV axes. Poses may contain
+values that are not finite, which mark lost tracking; those frames are skipped later.
 """
 
 import math
@@ -25,19 +25,23 @@ MAX_TEXT_BYTES = 64 << 20  # An hour of odometry at 60 Hz takes about 30 MB.
 
 
 def parse_number(path: AnyPath, stated: Mapping[str, Any], key: str) -> float:
-    """Return a stated finite number.
+    """Return a finite number from a JSON object.
 
     Raises:
-        CaptureError: it is missing, or is no such number.
+        CaptureError: If the value is missing or is not a finite number.
     """
     value = to_float(stated.get(key))
     if not math.isfinite(value):
-        raise CaptureError(path, f'"{key}" must be a number, not {str(stated.get(key))[:40]}')
+        raise CaptureError(path, f'"{key}" must be a number, got {str(stated.get(key))[:40]}')
     return value
 
 
 def to_float(value: object) -> float:
-    """Return a number of JSON; NaN for what is none, infinity for a whole number too long."""
+    """Convert a JSON number to float.
+
+    Returns:
+        The number, NaN if the value is not a number, or infinity if an integer is too large.
+    """
     if isinstance(value, bool) or not isinstance(value, int | float):
         return math.nan
     try:
@@ -47,10 +51,16 @@ def to_float(value: object) -> float:
 
 
 def parse_numbers(path: AnyPath, key: str, values: object, count: int) -> np.ndarray:
-    """Return float64 [count] of a list, or of lists in it; NaN and infinity may stand in it.
+    """Convert a list or nested lists to float64 [count]. NaN and infinity are accepted.
+
+    Args:
+        path: File that contains the values, for error messages.
+        key: Name of the field, for error messages.
+        values: The list.
+        count: Required number of values.
 
     Raises:
-        CaptureError: it is no list of so many numbers.
+        CaptureError: If the value is not a list with that count of numbers.
     """
     found = as_floats(values).reshape(-1)
     if len(found) != count or not isinstance(values, list):
@@ -59,33 +69,33 @@ def parse_numbers(path: AnyPath, key: str, values: object, count: int) -> np.nda
 
 
 def parse_camera(path: AnyPath, size: tuple[float, float], lens: Sequence[float]) -> Camera:
-    """Return a camera of a size and fx, fy, cx, cy in pixels.
+    """Return a camera with the given size and fx, fy, cx, cy in pixels.
 
     Raises:
-        CaptureError: that is no camera.
+        CaptureError: If the values are not valid intrinsics.
     """
     try:
         return Camera(*size, *lens)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError) as error:
-        raise CaptureError(path, f"intrinsics: {error}") from error
+        raise CaptureError(path, f"has invalid intrinsics: {error}") from error
 
 
 def arkit_pose(matrix: np.ndarray) -> np.ndarray:
-    """Return the pose with OpenCV axes, float64 [4, 4], of ARKit's 4x4 camera transform.
+    """Convert ARKit's 4x4 camera transform to a pose with OpenCV axes, float64 [4, 4].
 
-    What no pose can hold becomes NaN: tracking was lost.
+    Extremely large values, which mark lost tracking, become NaN.
     """
     stated = np.asarray(matrix, np.float64)
     return opengl_to_opencv_pose(np.where(np.abs(stated) < MAX_COORDINATE_M, stated, np.nan))
 
 
 def arkit_pose_of_quaternion(quaternion: np.ndarray, place_m: np.ndarray) -> np.ndarray:
-    """Return the pose with OpenCV axes of ARKit's quaternion x, y, z, w and place in metres."""
+    """Convert ARKit's quaternion x, y, z, w and position in metres to a pose with OpenCV axes."""
     return arkit_pose(pose_from_quaternion(place_m, quaternion))
 
 
 def files_by_stem(folder: AnyPath, suffixes: Iterable[str]) -> dict[str, AnyPath]:
-    """Return the files of a folder by their names without suffix, in the order of the names."""
+    """Return the files of a folder with the given suffixes by file stem, sorted by name."""
     wanted = tuple(suffixes)
     if not folder.is_dir():
         return {}
@@ -94,5 +104,10 @@ def files_by_stem(folder: AnyPath, suffixes: Iterable[str]) -> dict[str, AnyPath
 
 
 def read_text(path: AnyPath) -> str:
-    """Read a text file of ASCII numbers. Raises what ``files.read_bytes`` raises."""
+    """Read a small text file as a string.
+
+    Raises:
+        InputError: If the file is missing.
+        LimitError: If the file is too large.
+    """
     return read_bytes(path, MAX_TEXT_BYTES).decode("utf-8", "replace")

@@ -1,9 +1,10 @@
-"""Reader of ARKitScenes, raw and 3DOD: pictures, depth and poses matched by time.
+"""Reader of ARKitScenes (raw and 3DOD): colour images, depth and poses matched by time.
 
-Images are named ``VIDEO_SECONDS.png``. ``lowres_wide.traj`` states ten poses a second: seconds,
-an axis times its angle and a translation, world to camera with OpenCV axes, in a world whose z is
-up. Images come up to sixty times a second; for each pose the depth image nearest in time is taken,
-and the pose is interpolated to its time. Confidence is 0 to 2; lenses stand in ``.pincam`` files.
+Images are named ``VIDEO_SECONDS.png``. ``lowres_wide.traj`` contains ten poses per second: the time
+in seconds, a rotation vector and a translation, world-to-camera with OpenCV axes, in a world with z
+up. There are up to sixty images per second. For each pose, the nearest depth image is used, and the
+pose is interpolated to its time. Confidence ranges from 0 to 2, and intrinsics are in ``.pincam``
+files.
 """
 
 import re
@@ -29,21 +30,27 @@ Timed = tuple[list[float], list[AnyPath]]
 
 
 class ARKitScenesSource:
-    """Reads one video of ARKitScenes."""
+    """A reader of single videos of the ARKitScenes data set."""
 
     layout = "lowres_wide.traj with lowres_wide/, lowres_depth/ (ARKitScenes)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether a trajectory lies there or in the folder of frames."""
+        """Return whether the folder, or its folder of frames, contains a trajectory."""
         return folder.is_dir() and _trajectory_folder(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of an ARKitScenes video, matched by time.
+
+        Raises:
+            CaptureError: If images or the trajectory are missing, not valid or do not match.
+        """
         inner = _trajectory_folder(folder) or folder
         times, poses = _trajectory(inner / TRAJECTORY)
         kind = next((name for name in COLOUR_FOLDERS if (inner / name).is_dir()), None)
         if kind is None:
-            raise CaptureError(inner, "has no lowres_wide/ with pictures; fetch the whole video")
+            raise CaptureError(
+                inner, "does not contain lowres_wide/ with images; download the complete video"
+            )
         colours, lenses = (
             _timed_files(inner / kind, ".png"),
             _timed_files(inner / f"{kind}_intrinsics", ".pincam"),
@@ -59,10 +66,12 @@ class ARKitScenesSource:
         )
         if not frames:
             raise CaptureError(
-                inner, f"no image was taken at a time of {TRAJECTORY}; copy both of one video"
+                inner,
+                f"contains no image at a time covered by {TRAJECTORY}; copy images and "
+                "trajectory of the same video",
             )
         left = len(chosen[0]) - len(frames)
-        notes = (f"{left} images between the stated poses are left out",) if left else ()
+        notes = (f"{left} images between the poses of the trajectory are ignored",) if left else ()
         return Capture(
             folder,
             "arkitscenes",
@@ -75,7 +84,7 @@ class ARKitScenesSource:
 
 
 def _trajectory_folder(folder: AnyPath) -> AnyPath | None:
-    """Return the folder of the trajectory: this one, or the frames of 3DOD."""
+    """Return the folder of the trajectory: this folder or the frames folder of 3DOD."""
     if (folder / TRAJECTORY).is_file():
         return folder
     parts = sorted(folder.glob("*_frames"), key=lambda path: path.name)
@@ -83,7 +92,7 @@ def _trajectory_folder(folder: AnyPath) -> AnyPath | None:
 
 
 def _trajectory(path: AnyPath) -> tuple[list[float], list[np.ndarray]]:
-    """Return the times in seconds, rising, and the cameras to world at them."""
+    """Return the sorted times in seconds, and the camera-to-world poses at those times."""
     rows: dict[float, np.ndarray] = {}
     for line, text in enumerate(read_text(path).splitlines(), 1):
         words = text.split()
@@ -94,10 +103,12 @@ def _trajectory(path: AnyPath) -> tuple[list[float], list[np.ndarray]]:
         except ValueError:
             values = np.zeros(0)
         if len(values) != 7 or not np.isfinite(values[0]):
-            raise CaptureError(path, f"line {line} must hold 7 numbers: time, rotation, place")
+            raise CaptureError(
+                path, f"line {line} must contain 7 numbers: time, rotation vector, translation"
+            )
         rows[float(values[0])] = _camera_to_world(values[1:4], values[4:7])
     if not rows:
-        raise CaptureError(path, "states no pose; copy it again")
+        raise CaptureError(path, "contains no poses; copy the file again")
     times = sorted(rows)
     return times, [rows[time] for time in times]
 
@@ -111,7 +122,7 @@ def _camera_to_world(turn: np.ndarray, place: np.ndarray) -> np.ndarray:
 
 
 def _rotation_vector(rotation: np.ndarray) -> np.ndarray:
-    """Undo ``rotation_from_vector`` for turns well under half a circle."""
+    """Return the rotation vector of a rotation well below 180 degrees."""
     twice = np.array(
         [
             rotation[2, 1] - rotation[1, 2],
@@ -125,7 +136,7 @@ def _rotation_vector(rotation: np.ndarray) -> np.ndarray:
 
 
 def _timed_files(folder: AnyPath, suffix: str) -> Timed:
-    """Return the files of a folder by their times, rising."""
+    """Return the files of a folder with their times, sorted by time."""
     found = []
     for stem, path in files_by_stem(folder, (suffix,)).items():
         match = _STEM.fullmatch(stem)
@@ -136,7 +147,7 @@ def _timed_files(folder: AnyPath, suffix: str) -> Timed:
 
 
 def _times_near_poses(image_times: Sequence[float], pose_times: Sequence[float]) -> list[float]:
-    """Return for each pose the image time nearest to it, each once, rising."""
+    """Return the image times nearest to each pose, without duplicates, sorted."""
     near = {
         image_times[index] for time in pose_times if (index := _nearest(image_times, time)) >= 0
     }
@@ -144,7 +155,7 @@ def _times_near_poses(image_times: Sequence[float], pose_times: Sequence[float])
 
 
 def _nearest(times: Sequence[float], time: float) -> int:
-    """Return the index of the nearest time, -1 where there is none."""
+    """Return the index of the nearest time, or -1 if there are no times."""
     place = bisect_left(times, time)
     around = [index for index in (place - 1, place) if 0 <= index < len(times)]
     return min(around, key=lambda index: abs(times[index] - time), default=-1)
@@ -173,8 +184,8 @@ def _frame(
     picture, depth = _file_at(colours, time, 2 * SAME_TIME_S), _file_at(depths, time)
     lens_path = _file_at(lenses, time, 2 * SAME_TIME_S)
     if picture is None or lens_path is None:
-        lacks = "picture" if picture is None else "intrinsics (.pincam)"
-        return FrameFiles(name, None, problem=f"has no {lacks} of its time")
+        lacks = "colour image" if picture is None else "intrinsics (.pincam)"
+        return FrameFiles(name, None, problem=f"has no {lacks} at its time")
     try:
         lens = _lens(lens_path)
     except InputError as error:
@@ -200,12 +211,14 @@ def _lens(path: AnyPath) -> Camera:
     except ValueError:
         values = []
     if len(values) != 6:
-        raise CaptureError(path, f"must hold width, height, fx, fy, cx, cy, not {len(words)} words")
+        raise CaptureError(
+            path, f"must contain width, height, fx, fy, cx and cy, got {len(words)} values"
+        )
     return parse_camera(path, (values[0], values[1]), values[2:])
 
 
 def _pose_at(time: float, times: Sequence[float], poses: Sequence[np.ndarray]) -> np.ndarray | None:
-    """Return the pose at a time: a stated one, or carried between the two around it."""
+    """Return the pose at a time, interpolated between the poses around it."""
     after = bisect_left(times, time)
     nearest = _nearest(times, time)
     if abs(times[nearest] - time) < 1e-3 or after in (0, len(times)):

@@ -1,11 +1,11 @@
-"""Reader of depth in OpenEXR files, as Record3D and the 3D Scanner App export it.
+"""Reader of depth in OpenEXR files, as exported by Record3D and the 3D Scanner App.
 
-Supported is what they write: one part, scan lines, uncompressed or ZIP, and channels of float or
-half. The first channel is the depth in metres. The format is described at openexr.com; nothing
-but its public description is followed here.
+Supported are single-part scan-line files, uncompressed or with ZIP compression, with float or half
+channels. The first channel is the depth in metres. The implementation follows the public format
+description at openexr.com.
 
-OpenEXR's own library is not used for untrusted files: it reports each damaged file on stderr,
-where one line of ours is due, and to check whether a file is complete it decompresses all of it.
+The OpenEXR library is not used for untrusted files, because it prints to stderr for each damaged
+file and decompresses a whole file to check that it is complete.
 """
 
 import struct
@@ -47,27 +47,27 @@ class _Layout:
 
 @dataclass(frozen=True)
 class ExrImage(NamedByFile):
-    """An ``ImageSource`` of float32 depth."""
+    """A float32 depth image in an OpenEXR file. It implements ``ImageSource``."""
 
     path: AnyPath
 
     def header(self) -> ImageHeader:
-        """Return the size."""
+        """Return the size and mode of the image."""
         with self.path.open("rb") as stream:
             layout = _read_layout(self.path, stream.read(MAX_HEADER_BYTES))
         return ImageHeader(layout.width_px, layout.height_px, "float32")
 
     def check_whole(self) -> None:
-        """Check that every chunk of scan lines lies in the file."""
+        """Check that the file contains every chunk of scan lines."""
         data = read_bytes(self.path, MAX_FILE_BYTES)
         list(_read_chunks(self.path, data, _read_layout(self.path, data)))
 
     def colour(self) -> np.ndarray:
-        """Raise: depth is no colour."""
-        raise DamagedFileError(self.path, "holds depth, not colours")
+        """Raise DamagedFileError, because a depth image has no colours."""
+        raise DamagedFileError(self.path, "contains depth, not colours")
 
     def raw(self) -> np.ndarray:
-        """Return float32 [H, W], the first channel."""
+        """Return the first channel as float32 [H, W]."""
         data = read_bytes(self.path, MAX_FILE_BYTES)
         layout = _read_layout(self.path, data)
         depth = np.zeros((layout.height_px, layout.width_px), np.float32)
@@ -81,35 +81,42 @@ class ExrImage(NamedByFile):
 
 
 def _read_layout(path: AnyPath, data: bytes) -> _Layout:
-    """Read the header; sizes are checked before anything is made of them."""
+    """Read the header and check the image size before memory is allocated."""
     if data[:4] != MAGIC:
-        raise DamagedFileError(path, "is no OpenEXR file; copy it again")
+        raise DamagedFileError(path, "is not an OpenEXR file; copy the file again")
     try:
         (version,) = struct.unpack_from("<I", data, 4)
         if version & 0xFF != 2 or version & 0x1A00:
             raise DamagedFileError(
-                path, "is a tiled, deep or many-part OpenEXR: save it as scan lines"
+                path,
+                "is a tiled, deep or multi-part OpenEXR file, which is not supported; "
+                "save it as scan lines",
             )
         held, place = _read_attributes(data)
         x0, y0, x1, y1 = struct.unpack("<4i", held[b"dataWindow"])
         compression = held[b"compression"][0]
         channels = _read_channels(held[b"channels"])
     except (struct.error, KeyError, IndexError, ValueError) as error:
-        raise DamagedFileError(path, "has no whole OpenEXR header; copy it again") from error
+        raise DamagedFileError(
+            path, "has an incomplete OpenEXR header; copy the file again"
+        ) from error
     if compression not in _LINES or not channels:
-        raise DamagedFileError(path, "is packed in a way that is not read: save it with ZIP")
+        raise DamagedFileError(
+            path, "has an unsupported OpenEXR compression; save the file with ZIP compression"
+        )
     width, height = x1 - x0 + 1, y1 - y0 + 1
     if width <= 0 or height <= 0:
-        raise DamagedFileError(path, "has no pixels; export it again")
+        raise DamagedFileError(path, "has an image size of 0 pixels; export the file again")
     if width * height * len(channels) > MAX_PIXELS:
         raise LimitError(
-            path, f"is {width}x{height}, which is too large to read: export it smaller"
+            path,
+            f"has a size of {width}x{height} pixels, which is too large; export a smaller image",
         )
     return _Layout(width, height, y0, _LINES[compression], compression > 0, channels, place)
 
 
 def _read_attributes(data: bytes) -> tuple[dict[bytes, bytes], int]:
-    """Return the values of the header by name, and where the header ends."""
+    """Return the attributes of the header by name, and the end of the header."""
     held: dict[bytes, bytes] = {}
     place = 8
     while data[place] != 0:
@@ -118,31 +125,31 @@ def _read_attributes(data: bytes) -> tuple[dict[bytes, bytes], int]:
         (size,) = struct.unpack_from("<I", data, kind_end + 1)
         start = kind_end + 5
         if start + size >= len(data):
-            raise ValueError("an attribute ends after the file")
+            raise ValueError("an attribute extends beyond the end of the file")
         held[data[place:end]] = data[start : start + size]
         place = start + size
     return held, place + 1
 
 
 def _read_channels(listed: bytes) -> tuple[np.dtype, ...]:
-    """Return the types of the channels, in the order in which they are stored."""
+    """Return the types of the channels, in the order of storage."""
     kinds = []
     place = 0
     while listed[place] != 0:
         end = listed.index(b"\0", place)
         kind, _, across, down = struct.unpack_from("<iiii", listed, end + 1)
         if (across, down) != (1, 1) or kind not in _TYPES:
-            raise ValueError("a channel is sampled")
+            raise ValueError("a channel is subsampled or has an unknown type")
         kinds.append(_TYPES[kind])
         place = end + 17
     return tuple(kinds)
 
 
 def _read_chunks(path: AnyPath, data: bytes, layout: _Layout) -> list[tuple[int, bytes]]:
-    """Return the first row and the bytes of every chunk of scan lines.
+    """Return the first row and the bytes of each chunk of scan lines.
 
     Raises:
-        DamagedFileError: one lies outside the file or the image.
+        DamagedFileError: If a chunk is outside the file or the image.
     """
     found = []
     try:
@@ -152,25 +159,31 @@ def _read_chunks(path: AnyPath, data: bytes, layout: _Layout) -> list[tuple[int,
             row -= layout.first_row
             inside = 0 <= row < layout.height_px and row % layout.lines == 0
             if not inside or size < 0 or offset + 8 + size > len(data):
-                raise DamagedFileError(path, "is cut short or damaged (OpenEXR); copy it again")
+                raise DamagedFileError(
+                    path, "is truncated or damaged (OpenEXR); copy the file again"
+                )
             found.append((row, data[offset + 8 : offset + 8 + size]))
     except (struct.error, OverflowError) as error:
-        raise DamagedFileError(path, "is cut short (OpenEXR); copy it again") from error
+        raise DamagedFileError(path, "is truncated (OpenEXR); copy the file again") from error
     return found
 
 
 def _unpack(path: AnyPath, chunk: bytes, size: int, packed: bool) -> np.ndarray:
-    """Return uint8 [size] of a chunk; one that would not shrink is stored as it is."""
+    """Decompress a chunk to uint8 [size]; incompressible chunks are stored uncompressed."""
     if not packed or len(chunk) == size:
         if len(chunk) != size:
-            raise DamagedFileError(path, "has scan lines of another length; copy it again")
+            raise DamagedFileError(
+                path, "has scan lines of an unexpected length; copy the file again"
+            )
         return np.frombuffer(chunk, np.uint8)
     try:
         raw = zlib.decompressobj().decompress(chunk, size + 1)
     except zlib.error as error:
-        raise DamagedFileError(path, f"cannot be unpacked ({error}); copy it again") from error
+        raise DamagedFileError(
+            path, f"cannot be decompressed ({error}); copy the file again"
+        ) from error
     if len(raw) != size:
-        raise DamagedFileError(path, "has scan lines of another length; copy it again")
+        raise DamagedFileError(path, "has scan lines of an unexpected length; copy the file again")
     # Bytes are kept as differences, first those at even places, then those at odd ones.
     steps = np.frombuffer(raw, np.uint8).astype(np.int64)
     steps[1:] -= 128

@@ -1,9 +1,9 @@
-"""Reader of Polycam's raw data: ``keyframes/`` by time stamp.
+"""Reader of Polycam's raw data: the ``keyframes/`` folder, with files named by time stamp.
 
-The ``corrected_`` folders, where they exist, hold undistorted pictures and poses that the app
-optimised over the whole scan: they are preferred. A camera states ``t_00`` to ``t_23``, three rows
-of camera to world with ARKit's axes, ``fx fy cx cy`` and the picture's size. Depth is 16-bit
-millimetres, confidence 0, 127 or 255, at the size of the sensor.
+The ``corrected_`` folders contain undistorted images and poses that the app optimised over the
+whole scan, and are preferred if they exist. A camera file contains ``t_00`` to ``t_23`` (three rows
+of the camera-to-world matrix with ARKit axes), ``fx fy cx cy`` and the image size. Depth is in
+16-bit millimetres and confidence is 0, 127 or 255, both at the resolution of the sensor.
 """
 
 from typing import Any
@@ -28,24 +28,28 @@ _PICTURES = (".jpg", ".jpeg", ".png")
 
 
 class PolycamSource:
-    """Reads Polycam's raw data export."""
+    """A reader of raw data exported by Polycam."""
 
     layout = "keyframes/ with images, cameras, depth (Polycam's raw data)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether keyframes with cameras are there."""
+        """Return whether the folder contains keyframes with cameras."""
         keyframes = folder / "keyframes"
         return any((keyframes / name).is_dir() for name in ("cameras", "corrected_cameras"))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of a Polycam raw data export.
+
+        Raises:
+            CaptureError: If images or cameras are missing.
+        """
         keyframes = folder / "keyframes"
         corrected = files_by_stem(keyframes / "corrected_cameras", (".json",))
         prefix = "corrected_" if corrected and (keyframes / "corrected_images").is_dir() else ""
         cameras = files_by_stem(keyframes / f"{prefix}cameras", (".json",))
         pictures = files_by_stem(keyframes / f"{prefix}images", _PICTURES)
         if not cameras or not pictures:
-            lacks = f"has no keyframes/{prefix}images with cameras beside them"
+            lacks = f"does not contain keyframes/{prefix}images with matching cameras"
             raise CaptureError(folder, f"{lacks}; export the raw data again")
         depths = files_by_stem(keyframes / "depth", (".png",))
         trusts = files_by_stem(keyframes / "confidence", (".png",))
@@ -53,7 +57,7 @@ class PolycamSource:
             _frame(stem, cameras[stem], pictures.get(stem), depths.get(stem), trusts.get(stem))
             for stem in cameras
         )
-        note = "the app's optimised poses are taken" if prefix else "the poses are ARKit's own"
+        note = "using the poses optimised by the app" if prefix else "using the poses of ARKit"
         return Capture(folder, "polycam", frames, depth_unit="mm", notes=(note,), world_up=ARKIT_UP)
 
 
@@ -67,7 +71,7 @@ def _frame(
     try:
         stated = read_json(path, MAX_CAMERA_BYTES)
         if not isinstance(stated, dict):
-            raise CaptureError(path, "must be an object with t_00 to t_23, fx, fy, cx, cy")
+            raise CaptureError(path, "must be a JSON object with t_00 to t_23, fx, fy, cx and cy")
         size = (parse_number(path, stated, "width"), parse_number(path, stated, "height"))
         lens = parse_camera(
             path, size, [parse_number(path, stated, key) for key in ("fx", "fy", "cx", "cy")]
@@ -94,6 +98,8 @@ def _pose(path: AnyPath, stated: dict[str, Any]) -> np.ndarray:
         for column in range(4):
             key = f"t_{row}{column}"
             if key not in stated:
-                raise CaptureError(path, f'lacks "{key}" of the pose; export it again')
+                raise CaptureError(
+                    path, f'does not contain "{key}" of the camera pose; export the data again'
+                )
             matrix[row, column] = to_float(stated[key])
     return arkit_pose(matrix)

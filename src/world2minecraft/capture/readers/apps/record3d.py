@@ -1,13 +1,14 @@
-"""Reader of Record3D's ``.r3d`` and its EXR + JPG export, packed or unpacked.
+"""Reader of Record3D's ``.r3d`` files and its EXR + JPG export, packed or unpacked.
 
-``metadata`` (or ``metadata.json``) holds the size ``w``, ``h`` of the pictures and ``dw``, ``dh``
-of the depth, the matrix ``K`` column by column, newer versions ``perFrameIntrinsicCoeffs`` (fx,
-fy, cx, cy), and ``poses`` (qx qy qz qw x y z, camera to world, OpenGL axes). ``rgbd/N.jpg``,
-``N.depth`` (LZFSE, float32 metres) and ``N.conf`` (LZFSE, 0 to 2) belong to one frame. The front
-camera has no tracking: all its poses are the same.
+``metadata`` (or ``metadata.json``) contains the image size ``w``, ``h``, the depth size ``dw``,
+``dh``, the intrinsic matrix ``K`` (column-major), in newer versions ``perFrameIntrinsicCoeffs``
+(fx,
+fy, cx, cy), and ``poses`` (qx qy qz qw x y z, camera-to-world, OpenGL axes). ``rgbd/N.jpg``,
+``N.depth`` (LZFSE, float32 metres) and ``N.conf`` (LZFSE, 0 to 2) form one frame. The front camera
+is not tracked, so all its poses are identical.
 
-An LZFSE file states no width or height, only a chain of blocks that state how many bytes they
-decompress to. The chain is walked and compared with the expected size before decompression.
+An LZFSE file states no image size. It is a chain of blocks, each with its decompressed size. The
+total is compared with the expected size before decompression.
 """
 
 import math
@@ -56,7 +57,14 @@ MAX_ROLL_DEG = 15.0  # Of most frames; held by hand, phones roll by about five.
 
 @dataclass(frozen=True)
 class LzfseImage(NamedByFile):
-    """An ``ImageSource``: ``mode`` is ``float32`` for depth in metres, ``L`` for confidence."""
+    """An LZFSE-compressed image. It implements ``ImageSource``.
+
+    Attributes:
+        path: The file.
+        width_px: Width in pixels.
+        height_px: Height in pixels.
+        mode: ``float32`` for depth in metres, or ``L`` for confidence.
+    """
 
     path: AnyPath
     width_px: int
@@ -65,28 +73,31 @@ class LzfseImage(NamedByFile):
 
     @property
     def expected_bytes(self) -> int:
-        """How many bytes the image unpacks to."""
+        """The size in bytes of the decompressed image."""
         return self.width_px * self.height_px * np.dtype(_MODES[self.mode]).itemsize
 
     def header(self) -> ImageHeader:
-        """Return the size that the capture states."""
+        """Return the size and mode stated by the capture."""
         return ImageHeader(self.width_px, self.height_px, self.mode)
 
     def check_whole(self) -> None:
-        """Check that the blocks are all there and unpack to this size."""
+        """Check that all blocks are present and decompress to the expected size."""
         self._checked()
 
     def colour(self) -> np.ndarray:
-        """Raise: there is no colour in it."""
-        raise DamagedFileError(self.path, "holds single values, not colours")
+        """Raise DamagedFileError, because the image has no colours."""
+        raise DamagedFileError(self.path, "contains single values, not colours")
 
     def raw(self) -> np.ndarray:
-        """Return [H, W] float32 metres, or uint8 confidence."""
+        """Return the depth in metres as float32 [H, W], or the confidence as uint8 [H, W]."""
         data = self._checked()
         if data[:3] == b"bvx":
             data = decompress_lzfse(self.path, data)
         if len(data) != self.expected_bytes:
-            reason = f"unpacks to {len(data):,} bytes, not {self.expected_bytes:,}; copy it again"
+            reason = (
+                f"decompresses to {len(data):,} bytes, expected {self.expected_bytes:,}; "
+                "copy the file again"
+            )
             raise DamagedFileError(self.path, reason)
         values = np.frombuffer(data, _MODES[self.mode])
         return values.reshape(self.height_px, self.width_px).copy()
@@ -98,21 +109,21 @@ class LzfseImage(NamedByFile):
             kind = LimitError if size > MAX_FILE_BYTES else DamagedFileError
             raise kind(
                 self.path,
-                f"unpacks to {size:,} bytes where {self.width_px}x{self.height_px} of "
-                f"{self.mode} are {self.expected_bytes:,}; copy it again",
+                f"decompresses to {size:,} bytes, expected {self.expected_bytes:,} for "
+                f"{self.width_px}x{self.height_px} of {self.mode}; copy the file again",
             )
         return data
 
 
 def lzfse_unpacked_size(path: AnyPath, data: bytes) -> int:
-    """Return how many bytes a file says it unpacks to; one that is not packed, its length.
+    """Return the decompressed size stated by an LZFSE file, or the length of an uncompressed file.
 
     Raises:
-        DamagedFileError: it is empty, its chain of blocks breaks off, or holds an unknown kind.
+        DamagedFileError: If the file is empty or truncated, or contains an unknown block type.
     """
     if data[:3] != b"bvx":
         if not data:
-            raise DamagedFileError(path, "is empty; copy it again")
+            raise DamagedFileError(path, "is empty; copy the file again")
         return len(data)
     place = total = 0
     while data[place : place + 4] != _END:
@@ -120,16 +131,16 @@ def lzfse_unpacked_size(path: AnyPath, data: bytes) -> int:
             raw, size = _block(data, place)
         except struct.error as error:
             raise DamagedFileError(
-                path, "is cut short (LZFSE without its end); copy it again"
+                path, "is truncated (LZFSE without an end marker); copy the file again"
             ) from error
         if size <= 0 or place + size > len(data):
-            raise DamagedFileError(path, "is cut short or damaged (LZFSE); copy it again")
+            raise DamagedFileError(path, "is truncated or damaged (LZFSE); copy the file again")
         total, place = total + raw, place + size
     return total
 
 
 def _block(data: bytes, place: int) -> tuple[int, int]:
-    """Return the bytes that a block unpacks to, and its own length; 0 for an unknown kind."""
+    """Return the decompressed and the compressed size of a block; 0 for an unknown block type."""
     kind, raw = struct.unpack_from("<4sI", data, place)
     if kind == _STORED:
         return raw, 8 + raw
@@ -146,10 +157,11 @@ def _block(data: bytes, place: int) -> tuple[int, int]:
 
 
 def decompress_lzfse(path: AnyPath, data: bytes) -> bytes:
-    """Unpack LZFSE whose size was checked.
+    """Decompress LZFSE data whose size has been checked.
 
     Raises:
-        DamagedFileError: the blocks are damaged. MissingExtraError: ``lzfse`` is not installed.
+        DamagedFileError: If a block is damaged.
+        MissingExtraError: If the ``lzfse`` library is not installed.
     """
     try:
         import lzfse  # noqa: PLC0415
@@ -158,16 +170,18 @@ def decompress_lzfse(path: AnyPath, data: bytes) -> bytes:
     try:
         return lzfse.decompress(data)
     except lzfse.error as error:
-        raise DamagedFileError(path, "cannot be unpacked (LZFSE); copy it again") from error
+        raise DamagedFileError(
+            path, "cannot be decompressed (LZFSE); copy the file again"
+        ) from error
 
 
 class Record3DSource:
-    """Reads what Record3D exports."""
+    """A reader of Record3D exports."""
 
     layout = "metadata with rgbd/0.jpg, .depth, .conf (Record3D, a .r3d file)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether the metadata and the folder of frames are there."""
+        """Return whether the folder contains Record3D metadata and frames."""
         if not folder.is_dir():
             return False
         packed = (folder / "metadata").is_file() and (folder / "rgbd").is_dir()
@@ -175,21 +189,33 @@ class Record3DSource:
         return packed or (exported and any((folder / "depth").glob("*.exr")))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of a Record3D export.
+
+        Raises:
+            CaptureError: If the metadata or the frames are missing or not valid.
+        """
         packed = (folder / "rgbd").is_dir()
         path = folder / ("metadata" if (folder / "metadata").is_file() else "metadata.json")
         stated = read_json(path)
         if not isinstance(stated, dict):
-            raise CaptureError(path, "must be an object with K, w, h and poses")
+            raise CaptureError(path, "must be a JSON object with K, w, h and poses")
         pictures = files_by_stem(folder / ("rgbd" if packed else "rgb"), _PICTURES)
         stems = {int(stem): stem for stem in pictures if _is_index(stem)}
         if not stems:
-            raise CaptureError(folder, "has no frames (rgbd/0.jpg); export it again")
+            raise CaptureError(folder, "contains no frames (rgbd/0.jpg); export the data again")
         lenses, poses = _lenses(path, stated), _poses(path, stated)
         size = _depth_size(folder, path, stated) if packed else None
         notes: tuple[str, ...] = ()
         if poses is not None and len(poses) > 1 and np.ptp(poses, axis=0).max() < _MIN_POSE_CHANGE:
-            poses, notes = None, ("the front camera was used, which Record3D does not track",)
+            poses, notes = (
+                None,
+                (
+                    (
+                        "the capture has no poses: it was recorded with the front camera, which "
+                        "Record3D does not track"
+                    ),
+                ),
+            )
         frames = tuple(
             _frame(folder, index, pictures[stem], lenses, poses, size)
             for index, stem in sorted(stems.items())
@@ -210,9 +236,9 @@ def _is_index(stem: str) -> bool:
 
 
 def _lenses(path: AnyPath, stated: dict[str, Any]) -> list[Camera | None]:
-    """Return the cameras of the frames; one that stands for all where no others are stated.
+    """Return the cameras of the frames, or a single camera if all frames share it.
 
-    A frame of which nothing sensible is stated has none.
+    A frame without valid intrinsics has None.
     """
     size = (parse_number(path, stated, "w"), parse_number(path, stated, "h"))
     each = stated.get("perFrameIntrinsicCoeffs")
@@ -230,7 +256,7 @@ def _lenses(path: AnyPath, stated: dict[str, Any]) -> list[Camera | None]:
 
 
 def _poses(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:
-    """Return float64 [N, 7], or None where none are stated."""
+    """Return the poses as float64 [N, 7], or None if the metadata contains none."""
     values = stated.get("poses")
     if values is None:
         return None
@@ -240,10 +266,10 @@ def _poses(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:
 
 
 def _world_up(poses: np.ndarray | None) -> np.ndarray | None:
-    """Return up where it is known: in ARKit's own world, not in that of the first frame.
+    """Return the up direction, which is known in ARKit's world but not relative to the first frame.
 
-    Some versions give poses relative to the first, which then is no turn at all; a video that was
-    trimmed may begin later. In a world that leans, cameras that look all around roll.
+    Some versions store poses relative to the first frame, whose rotation is then the identity; a
+    trimmed video may start later. In a tilted world, cameras that look in all directions show roll.
     """
     if poses is None or not np.isfinite(poses[0]).all() or abs(poses[0, 3]) > 1 - 1e-6:
         return None
@@ -257,15 +283,15 @@ def _world_up(poses: np.ndarray | None) -> np.ndarray | None:
 
 
 def _depth_size(folder: AnyPath, path: AnyPath, stated: dict[str, Any]) -> tuple[int, int] | None:
-    """Return the width and height of the depth, None where there is none.
+    """Return the width and height of the depth images, or None if there are none.
 
-    Old versions state none; then the first depth that is whole tells it, by its length and the
-    shape of the pictures.
+    Old versions do not state the size. It is then derived from the length of the first complete
+    depth image and the aspect ratio of the colour images.
     """
     if "dw" in stated and "dh" in stated:
         sides = (parse_number(path, stated, "dw"), parse_number(path, stated, "dh"))
         if not all(side == int(side) and 0 < side <= 8192 for side in sides):
-            raise CaptureError(path, f'"dw" and "dh" must be 1 to 8192, not {sides}')
+            raise CaptureError(path, f'"dw" and "dh" must be integers from 1 to 8192, got {sides}')
         return int(sides[0]), int(sides[1])
     shape = parse_number(path, stated, "w") / max(parse_number(path, stated, "h"), 1e-9)
     for depth in files_by_stem(folder / "rgbd", (".depth",)).values():
@@ -277,7 +303,7 @@ def _depth_size(folder: AnyPath, path: AnyPath, stated: dict[str, Any]) -> tuple
         wide = round(pixels / max(high, 1))
         if wide * high == pixels and 0 < max(wide, high) <= 8192:
             return wide, high
-        raise CaptureError(path, 'states no size of the depth: add "dw" and "dh" in pixels')
+        raise CaptureError(path, 'does not contain the depth size; add "dw" and "dh" in pixels')
     return None
 
 
@@ -295,9 +321,9 @@ def _frame(
     if poses is not None and index < len(poses):
         pose = arkit_pose_of_quaternion(poses[index, :4], poses[index, 4:])
     elif poses is not None:
-        problem = "has no pose in metadata"
+        problem = "has no pose in the metadata"
     if lens is None:
-        problem = "has no intrinsics in metadata"
+        problem = "has no intrinsics in the metadata"
     return FrameFiles(
         f"{index:06d}",
         pose,
@@ -313,7 +339,7 @@ def _frame(
 def _depth(
     folder: AnyPath, stem: str, size: tuple[int, int] | None
 ) -> tuple[ImagePlace | None, ImagePlace | None]:
-    """Return the depth and trust images named as a picture, each None where it is not there."""
+    """Return the depth and confidence images of a colour image, or None for missing files."""
     if not (folder / "rgbd").is_dir():
         exported = folder / "depth" / f"{stem}.exr"
         return (ExrImage(exported) if exported.is_file() else None), None

@@ -1,9 +1,9 @@
-"""Reader of the 3D Scanner App's "All Data": ``frame_00000.json`` with pictures and depth.
+"""Reader of "All Data" exports of the 3D Scanner App: ``frame_00000.json``, images and depth.
 
-A frame's JSON holds ``cameraPoseARFrame``, camera to world row by row with ARKit's axes, and
-``intrinsics``, a 3x3 matrix row by row for the picture's size. ``depth_00000.png`` is 16-bit
-millimetres (older versions: ``frame_00000.exr``, metres), ``conf_00000.png`` is 0 to 2. Only some
-of the frames have a picture, ``frame_00000.jpg``: those are taken.
+The JSON file of a frame contains ``cameraPoseARFrame`` (camera-to-world, row-major, ARKit axes) and
+``intrinsics`` (3x3, row-major, for the size of the colour image). ``depth_00000.png`` is in 16-bit
+millimetres (older versions: ``frame_00000.exr`` in metres), and ``conf_00000.png`` ranges from 0 to
+2. Only the frames with a colour image, ``frame_00000.jpg``, are used.
 """
 
 import re
@@ -27,27 +27,36 @@ _FILE = re.compile(r"(frame|depth|conf)_(\d{1,9})\.(json|jpg|png|exr)", re.ASCII
 
 
 class ScannerAppSource:
-    """Reads what the 3D Scanner App exports as "All Data"."""
+    """A reader of "All Data" exports of the 3D Scanner App."""
 
     layout = "frame_00000.json, .jpg, depth_00000.png (3D Scanner App, All Data)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether a frame's JSON of this naming lies there."""
+        """Return whether the folder contains JSON files with the app's frame names."""
         return folder.is_dir() and next(iter(folder.glob("frame_[0-9]*.json")), None) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames that have a colour image.
+
+        Raises:
+            CaptureError: If there are no frames or no colour images.
+        """
         found = _files(folder)
         stated = {index: files for index, files in found.items() if "frame.json" in files}
         pictured = {index: files for index, files in stated.items() if "frame.jpg" in files}
         if not stated:
-            raise CaptureError(folder, 'has no frame_00000.json: export "All Data"')
+            raise CaptureError(
+                folder, 'does not contain frame_00000.json; export "All Data" from the app'
+            )
         if not pictured:
-            raise CaptureError(folder, 'has no pictures (frame_00000.jpg): export "All Data"')
+            raise CaptureError(
+                folder,
+                'contains no colour images (frame_00000.jpg); export "All Data" from the app',
+            )
         metres = not any("depth.png" in files for files in pictured.values())
         frames = tuple(_frame(index, files) for index, files in sorted(pictured.items()))
         left = len(stated) - len(pictured)
-        notes = (f"{left} frames have depth but no picture; they are left out",) if left else ()
+        notes = (f"{left} frames without a colour image are ignored",) if left else ()
         return Capture(
             folder,
             "scanner_app",
@@ -60,7 +69,7 @@ class ScannerAppSource:
 
 
 def _files(folder: AnyPath) -> dict[int, dict[str, AnyPath]]:
-    """Return each frame's files by kind and suffix, such as ``depth.png``."""
+    """Return the files of each frame by kind and suffix, such as ``depth.png``."""
     found: dict[int, dict[str, AnyPath]] = {}
     for path in folder.iterdir():
         match = _FILE.fullmatch(path.name)
@@ -75,7 +84,7 @@ def _frame(index: int, files: dict[str, AnyPath]) -> FrameFiles:
     try:
         stated = read_json(path, MAX_FRAME_BYTES)
         if not isinstance(stated, dict):
-            raise CaptureError(path, "must be an object with cameraPoseARFrame and intrinsics")
+            raise CaptureError(path, "must be a JSON object with cameraPoseARFrame and intrinsics")
         pose = parse_numbers(path, "cameraPoseARFrame", stated.get("cameraPoseARFrame"), 16)
         matrix = parse_numbers(path, "intrinsics", stated.get("intrinsics"), 9).reshape(3, 3)
         lens = [matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]]

@@ -1,9 +1,9 @@
-"""Reader of Stray Scanner: ``odometry.csv``, ``camera_matrix.csv``, video, depth, confidence.
+"""Reader of Stray Scanner: ``odometry.csv``, ``camera_matrix.csv``, video, depth and confidence.
 
-A row of the odometry is timestamp, frame, x, y, z, qx, qy, qz, qw: camera to world in ARKit's
-world, but with OpenCV's camera axes, since the app rotates them. Newer versions add fx, fy, cx,
-cy. Frame N is picture N of ``rgb.mp4`` (or ``rgb/N.jpg``), ``depth/N.png`` in millimetres and
-``confidence/N.png``, 0 to 2.
+Rows of the odometry contain timestamp, frame, x, y, z, qx, qy, qz, qw. The pose is camera-to-world
+in ARKit's world but with OpenCV camera axes, because the app converts them. Newer versions add fx,
+fy, cx, cy. Frame N consists of image N of ``rgb.mp4`` (or ``rgb/N.jpg``), ``depth/N.png`` in
+millimetres and ``confidence/N.png`` with values from 0 to 2.
 """
 
 import csv
@@ -35,25 +35,31 @@ Rows = dict[int, dict[str, float]]
 
 
 class StraySource:
-    """Reads a recording of Stray Scanner."""
+    """A reader of Stray Scanner recordings."""
 
     layout = "odometry.csv with rgb.mp4, depth/, camera_matrix.csv (Stray Scanner)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether the odometry and a video, pictures or depth are there."""
+        """Return whether the folder contains an odometry file and a video, images or depth."""
         if not folder.is_dir() or not (folder / ODOMETRY).is_file():
             return False
         parts = (folder / VIDEO, folder / "rgb", folder / "depth")
         return any(part.exists() for part in parts)
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of a Stray Scanner recording.
+
+        Raises:
+            CaptureError: If the odometry, images or intrinsics are missing or not valid.
+        """
         rows = _rows(folder / ODOMETRY)
         pictures = _pictures(folder, rows)
         depths = _by_index(folder / "depth", (".png", ".npy"))
         trusts = _by_index(folder / "confidence", (".png",))
         if not pictures and not depths:
-            raise CaptureError(folder, f"has neither {VIDEO} nor rgb/ nor depth/; copy all of it")
+            raise CaptureError(
+                folder, f"contains neither {VIDEO} nor rgb/ nor depth/; copy the complete recording"
+            )
         size = _size(folder, pictures)
         matrix = _matrix(folder / MATRIX) if (folder / MATRIX).is_file() else None
         frames = []
@@ -68,7 +74,7 @@ class StraySource:
                     lens if picture else None,
                     depth,
                     lens if depth else None,
-                    problem="" if picture or depth else "has neither picture nor depth",
+                    problem="" if picture or depth else "has neither a colour nor a depth image",
                     trust_path=trusts.get(index) if depth else None,
                     time_s=row.get("timestamp"),
                 )
@@ -79,15 +85,17 @@ class StraySource:
 
 
 def _rows(path: AnyPath) -> Rows:
-    """Return what the odometry states, by the number of the frame."""
+    """Return the rows of the odometry by frame number."""
     lines = csv.reader(io.StringIO(read_text(path)))
     try:
         header = [word.strip() for word in next(lines, [])]
     except csv.Error as error:
-        raise CaptureError(path, "is no table of commas and numbers") from error
+        raise CaptureError(path, "is not a table of comma-separated numbers") from error
     missing = [name for name in ("frame", *_POSE) if name not in header]
     if missing:
-        raise CaptureError(path, f"must begin with a line of names; it lacks {missing[0]}")
+        raise CaptureError(
+            path, f"must start with a header row; the column {missing[0]} is missing"
+        )
     rows: Rows = {}
     try:
         for line in lines:
@@ -95,13 +103,13 @@ def _rows(path: AnyPath) -> Rows:
                 continue
             values = {name: float(word) for name, word in zip(header, line, strict=True)}
             if not 0 <= values["frame"] < MAX_ROWS:
-                raise ValueError(f"frame {line[header.index('frame')][:20]}")
+                raise ValueError(f"invalid frame {line[header.index('frame')][:20]}")
             rows[int(values["frame"])] = values
     except (ValueError, csv.Error) as error:
         where = f"line {lines.line_num}"
-        raise CaptureError(path, f"{where} is no row of numbers ({str(error)[:60]})") from error
+        raise CaptureError(path, f"{where} is not a row of numbers ({str(error)[:60]})") from error
     if not rows:
-        raise CaptureError(path, "states no pose; copy it again")
+        raise CaptureError(path, "contains no poses; copy the file again")
     return rows
 
 
@@ -119,7 +127,7 @@ def _by_index(folder: AnyPath, suffixes: tuple[str, ...]) -> dict[int, AnyPath]:
 
 
 def _pictures(folder: AnyPath, rows: Rows) -> dict[int, ImagePlace]:
-    """Return the pictures by their number: files, else those of the video."""
+    """Return the colour images by number, from files or else from the video."""
     files = _by_index(folder / "rgb", (".jpg", ".jpeg", ".png"))
     if files:
         return dict(files)
@@ -129,9 +137,9 @@ def _pictures(folder: AnyPath, rows: Rows) -> dict[int, ImagePlace]:
 
 
 def _size(folder: AnyPath, pictures: dict[int, ImagePlace]) -> tuple[int, int]:
-    """Return the size that the intrinsics speak of: that of the pictures.
+    """Return the image size that the intrinsics refer to.
 
-    Without pictures it is what all phones with LiDAR record.
+    Without colour images, it is the size that all phones with LiDAR record.
     """
     if not pictures:
         return 1920, 1440
@@ -140,14 +148,14 @@ def _size(folder: AnyPath, pictures: dict[int, ImagePlace]) -> tuple[int, int]:
 
 
 def _matrix(path: AnyPath) -> list[float]:
-    """Return fx, fy, cx, cy of the 3x3 matrix."""
+    """Return fx, fy, cx, cy of a 3x3 matrix file."""
     words = read_text(path).replace(",", " ").split()
     try:
         values = np.array([float(word) for word in words])
     except ValueError:
         values = np.zeros(0)
     if len(values) != 9 or not np.isfinite(values).all():
-        raise CaptureError(path, "must hold 9 numbers, a 3x3 matrix")
+        raise CaptureError(path, "must contain 9 numbers, a 3x3 matrix")
     return [values[0], values[4], values[2], values[5]]
 
 
@@ -158,5 +166,7 @@ def _lens(
     if min(stated) > 0:
         return parse_camera(folder / ODOMETRY, size, stated)
     if matrix is None:
-        raise CaptureError(folder, f"has no {MATRIX} (3x3: fx, 0, cx, 0, fy, cy, 0, 0, 1)")
+        raise CaptureError(
+            folder, f"does not contain {MATRIX} (3x3: fx, 0, cx, 0, fy, cy, 0, 0, 1)"
+        )
     return parse_camera(folder / MATRIX, size, matrix)

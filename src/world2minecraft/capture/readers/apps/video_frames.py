@@ -1,7 +1,7 @@
 """Random access to the frames of a video by index.
 
-The times of all frames are listed once, without decoding. Frames are decoded in sequence; one
-that lies elsewhere is reached from the keyframe before it.
+The times of all frames are listed once, without decoding. Frames are decoded in sequence; to reach
+another position, decoding restarts at the keyframe before it.
 """
 
 from bisect import bisect_right
@@ -26,14 +26,15 @@ MAX_FRAMES = 1_000_000  # Four hours and a half at 60 Hz.
 
 
 class VideoDecoder:
-    """An opened video: its pictures' times and size, and where decoding stands."""
+    """An open video with the times and size of its frames."""
 
     def __init__(self, path: AnyPath):
-        """Open a video and list its pictures.
+        """Open a video and list its frames.
 
         Raises:
-            DamagedFileError: it is no whole video. LimitError: its pictures are too large or too
-                many. MissingExtraError: ``av`` is not installed.
+            DamagedFileError: If the file is not a complete video.
+            LimitError: If the frames are too large or too many.
+            MissingExtraError: If ``av`` is not installed.
         """
         try:
             import av  # noqa: PLC0415
@@ -49,12 +50,14 @@ class VideoDecoder:
             self.size = (self._stream.codec_context.width, self._stream.codec_context.height)
             self.times, self.key_times = self._times()
         except self._errors as error:
-            reason = f"is no whole video ({reason_of(error, 80)}); copy it again"
+            reason = f"is not a complete video ({reason_of(error, 80)}); copy the file again"
             raise DamagedFileError(path, reason) from error
         held = len(self.times)
         if self.size[0] * self.size[1] > MAX_PIXELS or held > MAX_FRAMES:
             raise LimitError(
-                path, f"has {held:,} pictures of {self.size}; too many to read: cut it"
+                path,
+                f"contains {held:,} frames of {self.size} pixels, which is too much; "
+                "shorten the video",
             )
         self._decoded: Iterator[Any] = iter(())
         self._next = -1
@@ -69,12 +72,18 @@ class VideoDecoder:
         return sorted(every), sorted(key)
 
     def picture(self, index: int) -> np.ndarray:
-        """Return a picture, uint8 [H, W, 3]. Raises DamagedFileError where it cannot be decoded."""
+        """Return a frame as uint8 [H, W, 3].
+
+        Raises:
+            DamagedFileError: If the frame cannot be decoded.
+        """
         try:
             return self._picture(index)
         except self._errors as error:
             self._next = -1
-            reason = f"picture {index} cannot be decoded ({reason_of(error, 80)}); copy it again"
+            reason = (
+                f"frame {index} cannot be decoded ({reason_of(error, 80)}); copy the video again"
+            )
             raise DamagedFileError(self.path, reason) from error
 
     def _picture(self, index: int) -> np.ndarray:
@@ -91,10 +100,10 @@ class VideoDecoder:
             found = self._decoded_at(index)
             if found is not None:
                 return found
-        raise ValueError("it is missing")
+        raise ValueError("the frame is missing")
 
     def _decoded_at(self, index: int) -> np.ndarray | None:
-        """Decode on until a picture; None where it does not come."""
+        """Decode up to a frame and return it, or None if the frame does not occur."""
         time = self.times[index]
         for frame in self._decoded:
             if frame.pts is not None and frame.pts >= time:
@@ -105,7 +114,7 @@ class VideoDecoder:
         return None
 
     def _key_between(self, index: int) -> bool:
-        """Whether a key picture lies ahead, so that seeking spares decoding all until there."""
+        """Return whether seeking to a keyframe is faster than decoding on to ``index``."""
         here = self.times[min(self._next, len(self.times) - 1)]
         ahead = bisect_right(self.key_times, self.times[index]) > bisect_right(self.key_times, here)
         return ahead and index > self._next
@@ -117,10 +126,13 @@ def _open_cached(path: AnyPath, stamp: tuple[int, int]) -> VideoDecoder:
 
 
 def open_video(path: AnyPath) -> VideoDecoder:
-    """Open a video once for all its pictures, and again where its file has changed.
+    """Return an open video, cached until the file changes.
 
     Raises:
-        InputError: it is missing; else what ``VideoDecoder`` raises.
+        InputError: If the file is missing.
+        DamagedFileError: If the file is not a complete video.
+        LimitError: If the frames are too large or too many.
+        MissingExtraError: If ``av`` is not installed.
     """
     try:
         found = (path.path if isinstance(path, ArchivePath) else path).stat()
@@ -131,40 +143,42 @@ def open_video(path: AnyPath) -> VideoDecoder:
 
 @dataclass(frozen=True)
 class VideoFrame:
-    """An ``ImageSource``: one picture of a video."""
+    """A frame of a video. It implements ``ImageSource``."""
 
     path: AnyPath
     index: int
 
     def __str__(self) -> str:
-        """The video and the picture's number, for messages."""
-        return f"{self.path}, picture {self.index}"
+        """Return the video and the frame number, for messages."""
+        return f"{self.path}, frame {self.index}"
 
     @property
     def stem(self) -> str:
-        """The picture's number with six digits, as the files with the video are named."""
+        """The frame number with six digits, as in the names of files that accompany the video."""
         return f"{self.index:06d}"
 
     @property
     def name(self) -> str:
-        """The video's name and the picture's number."""
-        return f"{self.path.name} picture {self.index}"
+        """The name of the video and the frame number."""
+        return f"{self.path.name} frame {self.index}"
 
     def header(self) -> ImageHeader:
-        """Return the video's size."""
+        """Return the size and mode of the video."""
         return ImageHeader(*open_video(self.path).size, "RGB")
 
     def check_whole(self) -> None:
-        """Check that the video has so many pictures."""
+        """Check that the video contains this frame."""
         held = len(open_video(self.path).times)
         if self.index >= held:
-            raise DamagedFileError(self, f"is not there: the video holds {held}; copy it again")
+            raise DamagedFileError(
+                self, f"is missing: the video contains {held} frames; copy the video again"
+            )
 
     def colour(self) -> np.ndarray:
-        """Return uint8 [H, W, 3] sRGB."""
+        """Return the frame as sRGB, uint8 [H, W, 3]."""
         self.check_whole()
         return open_video(self.path).picture(self.index)
 
     def raw(self) -> np.ndarray:
-        """Raise: a video holds colours."""
-        raise DamagedFileError(self, "holds colours, not single values")
+        """Raise DamagedFileError, because a video contains colours."""
+        raise DamagedFileError(self, "contains colours, not single values")

@@ -1,1 +1,1 @@
-"""Readers of formats that RGB-D data sets, depth cameras and photogrammetry write."""
+"""Readers of the formats written by RGB-D data sets, depth cameras and photogrammetry tools."""

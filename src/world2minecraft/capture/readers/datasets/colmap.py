@@ -1,10 +1,10 @@
-"""Reader of a COLMAP project: photos with poses and cameras, without depth or scale.
+"""Reader of COLMAP projects: photos with camera poses and intrinsics, but without depth or scale.
 
-The model lies in ``sparse/0`` (or ``sparse``, or the folder itself), the photos in ``images/``.
-``cameras`` and ``images`` are text or binary. Binary files are little-endian: a uint64 count, then
-records; those of images end with the observed points, which are skipped. Text files have a line a
-camera and two lines an image, the second of which may be empty. Poses are world to camera: a
-quaternion w x y z and a translation.
+The model is in ``sparse/0``, ``sparse`` or the folder itself, and the photos are in ``images/``.
+Models may be text or binary. Binary files are little-endian: a uint64 count, followed by records.
+Image records end with the observed points, which are skipped. Text files have one line per camera
+and two lines per image, of which the second may be empty. Poses are world-to-camera: a quaternion
+w x y z and a translation.
 """
 
 import struct
@@ -44,7 +44,7 @@ MODELS = (
     ("RADIAL_FISHEYE", 5),
     ("THIN_PRISM_FISHEYE", 12),
 )
-UNDISTORT_ADVICE = "run colmap image_undistorter and give its folder"
+UNDISTORT_ADVICE = "run colmap image_undistorter and use its output folder"
 _CAMERA = struct.Struct("<IiQQ")
 _IMAGE = struct.Struct("<I7dI")
 _Image = tuple[int, np.ndarray, int, str]
@@ -55,7 +55,13 @@ _SAMPLED = 20  # Names that are looked for to tell which folder the photos lie i
 
 @dataclass(frozen=True, eq=False)
 class ModelImage:
-    """One photo of a model: its name below the images' folder, its camera and camera to world."""
+    """A photo of a COLMAP model.
+
+    Attributes:
+        name: Path of the photo below the image folder.
+        camera: Intrinsics of the photo.
+        camera_to_world: Camera pose, float64 [4, 4].
+    """
 
     name: str
     camera: Camera
@@ -63,14 +69,14 @@ class ModelImage:
 
 
 def read_model(folder: AnyPath) -> tuple[ModelImage, ...]:
-    """Return the photos of a model, by their numbers.
+    """Read the photos of a COLMAP model, in the order of their image ids.
 
     Args:
-        folder: holds ``cameras.bin`` and ``images.bin``, or both as ``.txt``.
+        folder: Folder with ``cameras.bin`` and ``images.bin``, or both as ``.txt``.
 
     Raises:
-        CaptureError: a lens is of a kind that is not read, or a camera is missing.
-        DamagedFileError: a file is cut short or is not what it says.
+        CaptureError: If a camera model is not supported or a camera is missing.
+        DamagedFileError: If a file is truncated or damaged.
     """
     suffix = ".bin" if (folder / "images.bin").is_file() else ".txt"
     cameras_path, images_path = folder / f"cameras{suffix}", folder / f"images{suffix}"
@@ -83,7 +89,8 @@ def read_model(folder: AnyPath) -> tuple[ModelImage, ...]:
         if camera not in cameras:
             raise CaptureError(
                 images_path,
-                f"image {number} is of camera {camera}, which is not there: copy both files again",
+                f"image {number} refers to the missing camera {camera}; copy the cameras and "
+                "images files again",
             )
         world_to_camera = pose_from_quaternion(values[4:7], values[[1, 2, 3, 0]])
         lost = not np.isfinite(world_to_camera).all()
@@ -93,24 +100,24 @@ def read_model(folder: AnyPath) -> tuple[ModelImage, ...]:
 
 
 def _camera(path: AnyPath, model: str, size: tuple[int, int], values: np.ndarray) -> Camera:
-    """Return the camera of a model's parameters; COLMAP's pixel centres lie at +0.5 as ours do."""
+    """Return the camera of a COLMAP model; its pixel centres are at +0.5 as in this project."""
     if model in ("SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL"):
         lens, bent = (values[0], values[0], *values[1:3]), values[3:]
     elif model in ("PINHOLE", "OPENCV", "FULL_OPENCV"):
         lens, bent = values[:4], values[4:]
     else:
         raise CaptureError(
-            path, f"has a camera of the model {model}, which is not read; {UNDISTORT_ADVICE}"
+            path, f"contains a camera of the unsupported model {model}; {UNDISTORT_ADVICE}"
         )
     if len(bent) > 5 and np.any(bent[5:]):
         raise CaptureError(
-            path, f"has a lens with terms over k3, which are not read; {UNDISTORT_ADVICE}"
+            path, f"contains a lens with unsupported terms beyond k3; {UNDISTORT_ADVICE}"
         )
     return stated_camera(path, size, lens, bent[:5], centre=0.0)
 
 
 class _Reader:
-    """Takes values from the bytes of a file, never more than there are."""
+    """A reader of binary values that checks the remaining length."""
 
     def __init__(self, path: AnyPath):
         self.path, self.data, self.position = path, read_bytes(path, MAX_MODEL_BYTES), 0
@@ -121,18 +128,20 @@ class _Reader:
         return layout.unpack_from(self.data, start)
 
     def skip(self, size: int) -> int:
-        """Go on by some bytes and return where they began."""
+        """Skip a number of bytes, and return their start."""
         start = self.position
         if size > len(self.data) - start:
-            raise DamagedFileError(self.path, "is cut short; copy it again")
+            raise DamagedFileError(self.path, "is truncated; copy the file again")
         self.position += size
         return start
 
     def take_name(self) -> str:
-        """Return the next text, which ends with a zero byte."""
+        """Return the next zero-terminated text."""
         end = self.data.find(b"\0", self.position, self.position + MAX_NAME_BYTES)
         if end < 0:
-            raise DamagedFileError(self.path, "has an image without a name; copy it again")
+            raise DamagedFileError(
+                self.path, "contains an image without a name; copy the file again"
+            )
         name = self.data[self.position : end]
         self.position = end + 1
         return name.decode("utf-8", "replace")
@@ -146,7 +155,8 @@ def _binary_cameras(path: AnyPath) -> dict[int, Camera]:
         number, model, width, height = reader.take(_CAMERA)
         if not 0 <= model < len(MODELS):
             raise CaptureError(
-                path, f"has a camera of model {model}, which is not read; {UNDISTORT_ADVICE}"
+                path,
+                f"contains a camera of the unsupported model number {model}; {UNDISTORT_ADVICE}",
             )
         name, parameters = MODELS[model]
         values = np.array(reader.take(struct.Struct(f"<{parameters}d")))
@@ -174,10 +184,13 @@ def _text_cameras(path: AnyPath) -> dict[int, Camera]:
         if len(row) < 5 or not all(
             word.isdecimal() and len(word) < 10 for word in (row[0], *row[2:4])
         ):
-            raise CaptureError(path, "must hold lines of number, model, width, height, parameters")
+            raise CaptureError(
+                path, "must contain lines of the form: id, model, width, height, parameters"
+            )
         if row[1] in counts and len(row) != 4 + counts[row[1]]:
             raise CaptureError(
-                path, f"{row[1]} has {counts[row[1]]} parameters, not {len(row) - 4}"
+                path,
+                f"camera model {row[1]} must have {counts[row[1]]} parameters, got {len(row) - 4}",
             )
         values = to_floats(path, row[4:])
         cameras[int(row[0])] = _camera(path, row[1], (int(row[2]), int(row[3])), values)
@@ -194,7 +207,8 @@ def _text_images(path: AnyPath) -> list[_Image]:
         if len(row) != 10 or not row[0].isdecimal() or not row[8].isdecimal():
             raise CaptureError(
                 path,
-                "must hold number, QW QX QY QZ, TX TY TZ, camera and name, then a line of points",
+                "must contain lines of the form: id, QW QX QY QZ, TX TY TZ, camera id, name; "
+                "each followed by a line of points",
             )
         images.append((int(row[0]), to_floats(path, row[1:8]), int(row[8]), row[9].strip()))
         next(lines, None)  # The points that this image saw; the line may be empty.
@@ -202,20 +216,24 @@ def _text_images(path: AnyPath) -> list[_Image]:
 
 
 class ColmapSource:
-    """Reads a COLMAP model with its photos."""
+    """A reader of COLMAP models with their photos."""
 
     layout = "sparse/0/cameras and images (.bin or .txt) with images/*.jpg (COLMAP)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether there is a model; where there are transforms.json too, those are read."""
+        """Return whether the folder contains a COLMAP model and no ``transforms.json``."""
         return bool(_find_models(folder)) and not (folder / "transforms.json").is_file()
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the photos. Raises CaptureError as ``Source.read`` does."""
+        """Read the photos and poses of the largest COLMAP model in a folder.
+
+        Raises:
+            CaptureError: If the model or its photos cannot be used.
+        """
         chosen, *others = _find_models(folder)
         images = read_model(chosen)
         if not images:
-            raise CaptureError(chosen, "holds no photo; run colmap mapper again")
+            raise CaptureError(chosen, "contains no photos; run colmap mapper again")
         files = [check_relative_path(chosen, image.name) for image in images]
         place = _image_folder(folder, chosen, files)
         size = _most_common_size(images)
@@ -231,12 +249,12 @@ class ColmapSource:
         )
         notes = ()
         if others:
-            notes = (f"of {1 + len(others)} models the largest is read, {chosen.name}",)
+            notes = (f"read {chosen.name}, the largest of {1 + len(others)} models",)
         return Capture(folder, "colmap", frames, notes=notes, scale="unknown")
 
 
 def _find_models(folder: AnyPath) -> list[AnyPath]:
-    """Return the folders with a model, the one of most photos first."""
+    """Return the folders that contain a model, the one with the most photos first."""
     sparse = [folder / "sparse", folder / "colmap" / "sparse"]
     places = [folder, *sparse]
     for place in sparse:
@@ -259,7 +277,7 @@ def _model_size(place: AnyPath) -> int:
 
 
 def _image_folder(folder: AnyPath, model: AnyPath, files: list[PurePosixPath]) -> AnyPath:
-    """Return the folder in which most of some named photos lie."""
+    """Return the folder that contains most of the named photos."""
     tops = list(dict.fromkeys([folder, model.parent, model.parent.parent]))
     places = [top if name == "." else top / name for top in tops for name in IMAGE_FOLDERS]
     sampled = files[:: max(1, len(files) // _SAMPLED)]
@@ -271,14 +289,14 @@ def _image_folder(folder: AnyPath, model: AnyPath, files: list[PurePosixPath]) -
     if not there(best):
         raise CaptureError(
             folder,
-            f"has a model but none of its photos, such as images/{str(files[0])[:80]}: put them "
-            "beside it",
+            f"contains a model but none of its photos, such as images/{str(files[0])[:80]}; "
+            "copy the photos next to the model",
         )
     return best
 
 
 def _names(files: list[PurePosixPath]) -> list[str]:
-    """Return a name of its own for each photo, folders told by dots."""
+    """Return a unique name for each photo, with folders separated by dots."""
     names: list[str] = []
     seen: dict[str, int] = {}
     for file in files:
@@ -289,12 +307,16 @@ def _names(files: list[PurePosixPath]) -> list[str]:
 
 
 def _most_common_size(images: tuple[ModelImage, ...]) -> tuple[int, int]:
-    """Return the size in pixels that most photos have, the first of equals."""
+    """Return the most common image size in pixels; ties are decided by the first photo."""
     counts = Counter((image.camera.width_px, image.camera.height_px) for image in images)
     return counts.most_common(1)[0][0]
 
 
 def _size_problem(image: ModelImage, size: tuple[int, int]) -> str:
-    """Return why a photo is left out: all that go into one reconstruction have one size."""
+    """Return why a photo is excluded, because all photos of a reconstruction need the same size."""
     width, height = image.camera.width_px, image.camera.height_px
-    return "" if (width, height) == size else f"is {width}x{height}; most are {size[0]}x{size[1]}"
+    return (
+        ""
+        if (width, height) == size
+        else f"is {width}x{height} px; most photos are {size[0]}x{size[1]} px"
+    )

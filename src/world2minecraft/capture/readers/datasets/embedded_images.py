@@ -1,7 +1,7 @@
-"""Images embedded in larger files, read from their offset when needed.
+"""Images embedded in larger files, which are read from their byte offset on demand.
 
-Nothing is cached between two reads but for zips, whose members cannot be sought in: there the
-last member stays decompressed.
+Nothing is cached, except that the last member of a zip archive stays decompressed because archive
+members are not seekable.
 """
 
 import io
@@ -24,7 +24,14 @@ MAX_MEMBER_BYTES = 512 << 20  # As much as is held in memory of a file that lies
 
 @dataclass(frozen=True)
 class FileSlice(NamedByFrame):
-    """Some bytes of a file, which open like a file; ``frame`` names them in messages."""
+    """A range of bytes in a file, which can be opened like a file.
+
+    Attributes:
+        path: The file.
+        offset: First byte of the range.
+        size: Number of bytes.
+        frame: Name of the image, for messages.
+    """
 
     path: AnyPath
     offset: int
@@ -33,31 +40,32 @@ class FileSlice(NamedByFrame):
 
     @property
     def suffix(self) -> str:
-        """None: the bytes tell what they are."""
+        """An empty string, because the file type is detected from its first bytes."""
         return ""
 
     def stat(self) -> SimpleNamespace:
-        """Return ``st_size`` in bytes."""
+        """Return an object with the size in bytes as ``st_size``."""
         return SimpleNamespace(st_size=self.size)
 
     def open(self, mode: str = "rb") -> io.BytesIO:
         """Open the bytes for reading."""
         if mode != "rb":
-            raise ValueError(f"a slice is opened with rb, not {mode}")
+            raise ValueError(f"a file slice can only be opened with mode 'rb', got {mode!r}")
         return io.BytesIO(self.part(0, self.size))
 
     def part(self, start: int, end: int) -> bytes:
-        """Return bytes of the slice; fewer where the file has become shorter."""
+        """Return bytes ``start`` to ``end`` of the slice; fewer if the file became shorter."""
         with open_seekable(self.path) as stream:
             stream.seek(self.offset + start)
             return stream.read(end - start)
 
 
 def open_seekable(path: AnyPath) -> IO[bytes]:
-    """Open a file that is sought in; a zip's member of at most ``MAX_MEMBER_BYTES``.
+    """Open a file for random access. Members of a zip archive are read into memory.
 
     Raises:
-        InputError: it is missing. LimitError: a member is too large: unpack the zip first.
+        InputError: If the file is missing.
+        LimitError: If an archive member is larger than ``MAX_MEMBER_BYTES``.
     """
     if isinstance(path, ArchivePath):
         check_archive_member_size(path)
@@ -70,15 +78,21 @@ def open_seekable(path: AnyPath) -> IO[bytes]:
 
 
 def check_archive_member_size(path: AnyPath) -> None:
-    """Refuse a large file within a zip, which cannot be sought in but only held in memory.
+    """Check that an archive member is small enough to be read into memory.
+
+    Members of a zip archive do not support random access.
 
     Raises:
-        LimitError: it is over ``MAX_MEMBER_BYTES``.
+        LimitError: If the member is larger than ``MAX_MEMBER_BYTES``.
     """
     if isinstance(path, ArchivePath) and path.is_file():
         size = int(path.stat().st_size)
         if size > MAX_MEMBER_BYTES:
-            raise LimitError(path, f"has {size:,} bytes within a zip; unpack the zip first")
+            raise LimitError(
+                path,
+                f"has {size:,} bytes, too many to be read from a zip archive; unpack the "
+                "archive first",
+            )
 
 
 @lru_cache(maxsize=1)
@@ -88,38 +102,48 @@ def _read_member(path: ArchivePath, stamp: tuple[int, int]) -> bytes:
 
 @dataclass(frozen=True)
 class EncodedImage(FileSlice):
-    """A JPEG or PNG within a file."""
+    """A JPEG or PNG image embedded in a file."""
 
     def header(self) -> ImageHeader:
-        """Return size and mode. Raises what ``images.read_header`` raises."""
+        """Return the size and mode of the image.
+
+        Raises:
+            InputError: If the bytes are not a valid image.
+        """
         first = min(self.size, HEADER_BYTES)
         head = FileSlice(self.path, self.offset, first, self.frame)
         with open_image(head) as image:
             return ImageHeader(*image.size, image.mode)
 
     def check_whole(self) -> None:
-        """Check the end of a JPEG; a PNG's check sums are held against it when it is decoded."""
+        """Check that a JPEG is complete. A PNG is checked when it is decoded."""
         start = self.part(0, 3)
         end = self.part(max(0, self.size - 4096), self.size)
         if start == b"\xff\xd8\xff" and b"\xff\xd9" not in end:
-            raise DamagedFileError(self, "is cut short (a JPEG without its end); copy it again")
+            raise DamagedFileError(
+                self, "is truncated (JPEG without an end marker); copy the file again"
+            )
 
     def colour(self) -> np.ndarray:
-        """Return uint8 [H, W, 3] sRGB."""
+        """Return the image as sRGB, uint8 [H, W, 3]."""
         with open_image(self) as image:
             return np.array(image.convert("RGB"), np.uint8)
 
     def raw(self) -> np.ndarray:
-        """Return [H, W] values as stored."""
+        """Return the stored pixel values, [H, W]."""
         with open_image(self) as image:
             return np.array(image)
 
 
 @dataclass(frozen=True)
 class RawImage(FileSlice):
-    """Rows of numbers within a file, packed by zlib or not, of a size that is stated elsewhere.
+    """An uncompressed or zlib-compressed array of pixels embedded in a file.
 
-    ``mode`` is RGB (three bytes a pixel) or I;16 (little-endian).
+    Attributes:
+        width_px: Width in pixels.
+        height_px: Height in pixels.
+        mode: ``RGB`` for three bytes per pixel, or ``I;16`` for little-endian uint16.
+        packed: Whether the pixels are compressed with zlib.
     """
 
     width_px: int
@@ -128,19 +152,24 @@ class RawImage(FileSlice):
     packed: bool = False
 
     def header(self) -> ImageHeader:
-        """Return the stated size and mode."""
+        """Return the size and mode of the image."""
         return ImageHeader(self.width_px, self.height_px, self.mode)
 
     def check_whole(self) -> None:
-        """Check the length of plain pixels; packed ones tell when they are unpacked."""
+        """Check the length of the stored pixels.
+
+        Compressed pixels are checked when they are decompressed.
+        """
         if not self.packed and self.size != self._unpacked_size:
             raise DamagedFileError(
                 self,
-                f"has {self.size:,} bytes, not {self._unpacked_size:,}; copy it again",
+                f"has {self.size:,} bytes, expected {self._unpacked_size:,}; copy the file again",
             )
         if self.packed and not 0 < self.size <= self._unpacked_size + 4096:
             raise DamagedFileError(
-                self, f"has {self.size:,} packed bytes, more than its pixels: copy it again"
+                self,
+                f"has {self.size:,} compressed bytes, more than its uncompressed pixels; "
+                "copy the file again",
             )
 
     @property
@@ -148,29 +177,36 @@ class RawImage(FileSlice):
         return self.width_px * self.height_px * (3 if self.mode == "RGB" else 2)
 
     def colour(self) -> np.ndarray:
-        """Return uint8 [H, W, 3] sRGB."""
+        """Return the image as sRGB, uint8 [H, W, 3]."""
         return self._pixels(np.dtype(np.uint8)).reshape(self.height_px, self.width_px, 3)
 
     def raw(self) -> np.ndarray:
-        """Return uint16 [H, W] as stored."""
+        """Return the stored pixel values as uint16 [H, W]."""
         return self._pixels(np.dtype("<u2")).reshape(self.height_px, self.width_px)
 
     def _pixels(self, dtype: np.dtype) -> np.ndarray:
         if self.width_px * self.height_px > MAX_PIXELS:
-            raise DamagedFileError(self, f"states {self.width_px}x{self.height_px} pixels")
+            raise DamagedFileError(
+                self,
+                f"has a size of {self.width_px}x{self.height_px} pixels, the limit is "
+                f"{MAX_PIXELS:,} pixels",
+            )
         data = self.part(0, self.size)
         if self.packed:
             data = self._unpacked(data)
         if len(data) != self._unpacked_size:
             raise DamagedFileError(
                 self,
-                f"holds {len(data):,} bytes, not {self._unpacked_size:,}; copy it again",
+                f"contains {len(data):,} bytes, expected {self._unpacked_size:,}; copy the file "
+                "again",
             )
         return np.frombuffer(data, dtype).astype(dtype.newbyteorder("="))
 
     def _unpacked(self, data: bytes) -> bytes:
-        """Unpack no more than the stated size, one byte over to see that there is more."""
+        """Decompress at most the stated size plus one byte, to detect longer data."""
         try:
             return zlib.decompressobj().decompress(data, self._unpacked_size + 1)
         except zlib.error as error:
-            raise DamagedFileError(self, f"cannot be unpacked ({error}); copy it again") from error
+            raise DamagedFileError(
+                self, f"cannot be decompressed ({error}); copy the file again"
+            ) from error

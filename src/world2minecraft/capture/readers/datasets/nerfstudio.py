@@ -1,9 +1,9 @@
-"""Reader of ``transforms.json``, as nerfstudio, instant-ngp and many phone apps write it.
+"""Reader of ``transforms.json``, as written by nerfstudio, instant-ngp and many phone apps.
 
-Cameras have OpenGL axes. Intrinsics stand once or in each frame; depth images are optional and
-share the colour image's camera at their own size. ``applied_scale`` states by what the poses were
-multiplied: it is divided out, so that they are in the unit of the depth again. Poses that COLMAP
-found have no unit: ``ns-process-data`` leaves its traces in the file, by which that is detected.
+Cameras have OpenGL axes. Intrinsics are stated once or per frame. Depth images are optional and
+share the camera of the colour image at their own resolution. Poses are divided by
+``applied_scale``, so that their unit matches the depth again. Poses computed by COLMAP have no
+metric scale; they are recognised by fields that ``ns-process-data`` leaves in the file.
 """
 
 import math
@@ -25,34 +25,41 @@ _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "PERSPECTIVE", "SIMPLE_RADIAL"
 
 
 class NerfstudioSource:
-    """Reads a folder with a ``transforms.json``."""
+    """A reader of folders with a ``transforms.json``."""
 
     layout = "transforms.json with the images it names (nerfstudio, instant-ngp)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether there is a ``transforms.json``."""
+        """Return whether the folder contains a ``transforms.json``."""
         return (folder / "transforms.json").is_file()
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames listed in ``transforms.json``.
+
+        Raises:
+            CaptureError: If the file lacks required data or contains invalid values.
+        """
         path = folder / "transforms.json"
         stated = read_json(path)
         entries = stated.get("frames") if isinstance(stated, dict) else None
         if not isinstance(entries, list) or not entries:
-            raise CaptureError(path, 'must hold "frames", a list of {file_path, transform_matrix}')
+            raise CaptureError(
+                path, 'must contain "frames", a list of objects with file_path and transform_matrix'
+            )
         if not any(isinstance(entry, dict) and "transform_matrix" in entry for entry in entries):
             raise CaptureError(
-                path, 'no frame has a pose ("transform_matrix"); give the pictures alone'
+                path,
+                'contains no camera poses ("transform_matrix"); use the folder of images instead',
             )
         scale = _number(path, stated, "applied_scale", 1.0)
         if scale <= 0:
-            raise CaptureError(path, f'"applied_scale" must be above 0, not {scale}')
+            raise CaptureError(path, f'"applied_scale" must be above 0, got {scale}')
         frames = [_frame(path, stated, entry, scale) for entry in entries]
-        notes = [] if scale == 1 else [f"the poses are divided by applied_scale, {scale:g}"]
+        notes = [] if scale == 1 else [f"camera positions are divided by applied_scale, {scale:g}"]
         lost = sum(_depth_name(entry) is not None for entry in entries)
         lost -= sum(frame.depth_path is not None for frame in frames)
         if lost:
-            notes.append(f"{lost} depth images that the file names are not there")
+            notes.append(f"{lost} depth images named in the file are missing")
         return Capture(
             folder,
             "nerfstudio",
@@ -65,7 +72,7 @@ class NerfstudioSource:
 
 
 def _depth_unit(path: AnyPath, stated: dict[str, Any]) -> str | None:
-    """Return metres per unit of the depth, by nerfstudio's name of it or instant-ngp's."""
+    """Return metres per depth unit, from the field of nerfstudio or of instant-ngp."""
     for key in ("depth_unit_scale_factor", "integer_depth_scale"):
         if stated.get(key) is not None:
             return f"{_number(path, stated, key):.17g}"
@@ -73,10 +80,10 @@ def _depth_unit(path: AnyPath, stated: dict[str, Any]) -> str | None:
 
 
 def _is_from_colmap(stated: dict[str, Any], entries: list[Any]) -> bool:
-    """Return whether the poses were found by COLMAP, which knows no metres.
+    """Return whether the poses were computed by COLMAP and thus have no metric scale.
 
-    Each frame then has ``colmap_im_id``; older versions leave ``applied_transform`` alone, which
-    says the same where no depth gives a unit.
+    Each frame then has a ``colmap_im_id``. Older versions only leave ``applied_transform``, which
+    means the same if no depth images provide a scale.
     """
     if any(isinstance(entry, dict) and "colmap_im_id" in entry for entry in entries):
         return True
@@ -111,23 +118,24 @@ def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> F
 
 
 def _depth_name(entry: Any) -> str | None:
-    """Return the depth image that a frame names, as nerfstudio or as NeRFCapture calls it."""
+    """Return the name of a frame's depth image, from the field of nerfstudio or of NeRFCapture."""
     named = [entry.get(key) for key in ("depth_file_path", "depth_path")] if entry else []
     return next((name for name in named if isinstance(name, str) and name), None)
 
 
 def _existing_file(path: AnyPath, named: Any) -> AnyPath | None:
-    """Return the file that a frame names, None where it is not there: NeRFCapture leaves it out."""
+    """Return the file that a frame refers to, or None if it is missing, as with NeRFCapture."""
     found = _file_in_folder(path, named) if isinstance(named, str) and named else None
     return found if found is not None and found.is_file() else None
 
 
 def _file_in_folder(path: AnyPath, named: str) -> AnyPath:
-    """Return the file that a frame names, which must lie in the capture's folder."""
+    """Return the file that a frame refers to, which must be inside the capture's folder."""
     pure = PurePosixPath(named.replace("\\", "/"))
     if pure.is_absolute() or ".." in pure.parts or "\0" in named or not pure.name:
         raise CaptureError(
-            path, f"names {named[:80]!r}; file paths must be relative and stay inside the folder"
+            path,
+            f"contains the file path {named[:80]!r}; paths must be relative and inside the folder",
         )
     found = path.parent / str(pure)
     if not pure.suffix and not found.is_file():  # Blender's export leaves the suffix out.
@@ -141,10 +149,14 @@ def _camera(path: AnyPath, stated: dict[str, Any], image: AnyPath) -> Camera:
     model = stated.get("camera_model", "OPENCV")
     if model not in _MODELS:
         raise CaptureError(
-            path, f"camera_model {model!r} is not read; undistort to one of {', '.join(_MODELS)}"
+            path,
+            f"camera_model {model!r} is not supported; undistort the images to one "
+            f"of {', '.join(_MODELS)}",
         )
     if stated.get("is_fisheye") is True:  # How instant-ngp says it.
-        raise CaptureError(path, "is of a fisheye lens, which is not read; undistort first")
+        raise CaptureError(
+            path, "uses a fisheye lens, which is not supported; undistort the images first"
+        )
     if "w" in stated and "h" in stated:
         width, height = _number(path, stated, "w"), _number(path, stated, "h")
     else:
@@ -152,7 +164,11 @@ def _camera(path: AnyPath, stated: dict[str, Any], image: AnyPath) -> Camera:
     focal = _focal(path, stated, width)
     lens = tuple(_number(path, stated, key, 0.0) for key in ("k1", "k2", "p1", "p2", "k3"))
     if _number(path, stated, "k4", 0.0) != 0:
-        raise CaptureError(path, "has a fourth radial term k4, which is not read; undistort first")
+        raise CaptureError(
+            path,
+            "uses the distortion coefficient k4, which is not supported; undistort "
+            "the images first",
+        )
     try:
         return Camera(
             int(width),
@@ -164,17 +180,19 @@ def _camera(path: AnyPath, stated: dict[str, Any], image: AnyPath) -> Camera:
             lens,
         )
     except ValueError as error:
-        raise CaptureError(path, f"intrinsics: {error}") from error
+        raise CaptureError(path, f"has invalid intrinsics: {error}") from error
 
 
 def _focal(path: AnyPath, stated: dict[str, Any], width: float) -> float:
     if "fl_x" in stated:
         return _number(path, stated, "fl_x")
     if "camera_angle_x" not in stated:
-        raise CaptureError(path, "has no intrinsics (fl_x, fl_y, cx, cy, w, h or camera_angle_x)")
+        raise CaptureError(
+            path, "contains no intrinsics; expected fl_x, fl_y, cx, cy, w and h, or camera_angle_x"
+        )
     angle = _number(path, stated, "camera_angle_x")
     if not 0 < angle < math.pi:
-        raise CaptureError(path, f"camera_angle_x must lie between 0 and pi, not {angle}")
+        raise CaptureError(path, f"camera_angle_x must be between 0 and pi, got {angle}")
     return width / (2 * math.tan(angle / 2))
 
 
@@ -182,7 +200,7 @@ def _number(path: AnyPath, stated: dict[str, Any], key: str, default: float | No
     value = stated.get(key, default)
     right = isinstance(value, int | float) and not isinstance(value, bool)
     if not right or not abs(value) < 1e300:  # A whole number of JSON may be of any length.
-        raise CaptureError(path, f'"{key}" must be a number, not {str(value)[:40]}')
+        raise CaptureError(path, f'"{key}" must be a number, got {str(value)[:40]}')
     return float(value)
 
 
@@ -194,7 +212,7 @@ def _pose(path: AnyPath, entry: dict[str, Any], scale: float) -> np.ndarray | No
         pose = np.vstack([pose, [0, 0, 0, 1]])
     if pose.shape != (4, 4):
         raise CaptureError(
-            path, f"transform_matrix of {entry['file_path'][:80]!r} must be four rows of four"
+            path, f"transform_matrix of {entry['file_path'][:80]!r} must be a 4x4 matrix"
         )
     pose = opengl_to_opencv_pose(pose)
     pose[:3, 3] /= scale
@@ -202,7 +220,7 @@ def _pose(path: AnyPath, entry: dict[str, Any], scale: float) -> np.ndarray | No
 
 
 def _with_unique_names(frames: list[FrameFiles]) -> list[FrameFiles]:
-    """Number the frames whose files share a stem, as ``left/0001`` and ``right/0001`` do."""
+    """Number the frames whose files have the same stem, as ``left/0001`` and ``right/0001`` do."""
     seen: dict[str, int] = {}
     named = []
     for frame in frames:

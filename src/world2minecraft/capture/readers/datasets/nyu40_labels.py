@@ -1,6 +1,7 @@
-"""Label images of data sets as our classes: NYU40 ids, or ScanNet's raw ids by its table.
+"""Conversion of label images of data sets to World2Minecraft classes.
 
-``data/nyu40.json`` maps the 40 to the 12 classes.
+Labels are NYU40 ids, or raw ScanNet ids that a table maps to NYU40. ``data/nyu40.json`` maps the
+40 NYU40 classes to the project's classes.
 """
 
 from collections.abc import Sequence
@@ -29,7 +30,7 @@ MAX_TABLE_BYTES = 16 << 20  # The published one has 100 kB.
 
 @lru_cache(maxsize=1)
 def nyu40_classes() -> np.ndarray:
-    """Return uint8 [65536]: the class of each NYU40 number, 255 where it is none."""
+    """Return the class id for each NYU40 label as uint8 [65536], 255 if unknown."""
     classes = np.full(65536, UNKNOWN, np.uint8)
     for number, (_, name) in read_json(CLASS_MAP)["classes"].items():
         classes[int(number)] = class_id(name)
@@ -37,18 +38,22 @@ def nyu40_classes() -> np.ndarray:
 
 
 def raw_id_classes(table: AnyPath) -> np.ndarray:
-    """Return uint8 [65536]: the class of each of ScanNet's own ids, by its published table.
+    """Return the class id for each raw ScanNet label as uint8 [65536], 255 if unknown.
 
     Args:
-        table: tab-separated, with the columns ``id`` and ``nyu40id``.
+        table: ScanNet's tab-separated table with the columns ``id`` and ``nyu40id``.
 
     Raises:
-        CaptureError: it lacks the columns. InputError: it is missing.
+        CaptureError: If the table lacks those columns.
+        InputError: If the table is missing.
     """
     lines = read_bytes(table, MAX_TABLE_BYTES).decode("utf-8", "replace").splitlines()
     rows = [line.split("\t") for line in lines]
     if not rows or not {"id", "nyu40id"} <= set(rows[0]):
-        raise CaptureError(table, "has no columns id and nyu40id; take the one of the data set")
+        raise CaptureError(
+            table,
+            "does not contain the columns id and nyu40id; use the table of the ScanNet data set",
+        )
     own, nyu40 = rows[0].index("id"), rows[0].index("nyu40id")
     known, classes = nyu40_classes(), np.full(65536, UNKNOWN, np.uint8)
     for row in rows[1:]:
@@ -60,47 +65,50 @@ def raw_id_classes(table: AnyPath) -> np.ndarray:
 
 
 def find_label_table(places: Sequence[AnyPath]) -> AnyPath | None:
-    """Return the first of ScanNet's tables that lies in one of some folders."""
+    """Return the first ScanNet label table found in the given folders, or None."""
     return next((place / LABEL_TABLE for place in places if (place / LABEL_TABLE).is_file()), None)
 
 
 @dataclass(frozen=True)
 class MappedLabels(NamedByFile):
-    """A label image of a data set, read as our classes.
+    """A label image of a data set, converted to World2Minecraft class ids.
 
-    ``table`` is that of ScanNet's raw ids, which are stored with 16 bits; images of 8 bits hold
-    NYU40 numbers, as ScanNet's benchmark frames do.
+    Attributes:
+        path: The label image. 16-bit images contain raw ScanNet ids, 8-bit images contain NYU40
+            labels.
+        table: ScanNet's table of raw ids, or None.
     """
 
     path: AnyPath
     table: AnyPath | None
 
     def header(self) -> ImageHeader:
-        """Return size and the mode of our labels."""
+        """Return the size of the image and the mode of class labels."""
         return ImageHeader(*read_header(self.path).size, "L")
 
     def check_whole(self) -> None:
-        """Check that the image file is whole."""
+        """Check that the image file is complete."""
         check_whole(self.path)
 
     def colour(self) -> np.ndarray:
-        """Refuse: labels are no colours."""
-        raise CaptureError(self.path, "holds labels, not colours")
+        """Raise CaptureError, because a label image has no colours."""
+        raise CaptureError(self.path, "contains labels, not colours")
 
     def raw(self) -> np.ndarray:
-        """Return uint8 [H, W] class ids.
+        """Return the class ids as uint8 [H, W].
 
         Raises:
-            CaptureError: it holds raw ids and there is no table, or is no image of numbers.
+            CaptureError: If the image contains raw ids without a table, or is not a single-channel
+                image.
         """
         stored = read_raw(self.path)
         if stored.ndim != 2 or stored.dtype.kind not in "ui":
-            raise CaptureError(self.path, "must hold one number a pixel")
+            raise CaptureError(self.path, "must be a single-channel image of integers")
         if stored.dtype == np.uint8:
             return nyu40_classes()[stored]
         if self.table is None:
             raise CaptureError(
-                self.path, f"holds ScanNet's raw ids; put {LABEL_TABLE} beside the scene"
+                self.path, f"contains raw ScanNet ids; put {LABEL_TABLE} next to the scene"
             )
         return _cached_table_classes(str(self.table), self.table)[np.clip(stored, 0, 65535)]
 

@@ -1,10 +1,11 @@
-"""Reader of NYU Depth v2's raw dumps: ``r-*.ppm``, ``d-*.pgm`` and ``a-*.dump``, no poses.
+"""Reader of NYU Depth v2 raw data: ``r-*.ppm``, ``d-*.pgm`` and ``a-*.dump`` files without poses.
 
-A name is ``r-SECONDS-TICKS.ppm``. Depth images are the Kinect's own disparities with swapped bytes,
-neither registered nor undistorted: the two cameras and the transform between them are the ones
-published with the data set's toolbox. Its rotation is written with all signs turned, which its
-projection undoes; here the signs are right, and the colour lens is 2.5 cm to the right of the
-depth lens.
+File names have the form ``r-SECONDS-TICKS.ppm``. Depth images contain Kinect disparities with
+swapped bytes, neither registered nor undistorted. The intrinsics and the transform between the two
+cameras are those of the data set's toolbox. The toolbox stores the rotation with all signs
+inverted,
+which its projection code corrects; here, the signs are correct, and the colour lens is 2.5 cm to
+the right of the depth lens.
 """
 
 import re
@@ -39,25 +40,31 @@ _NAME = re.compile(r"[rd]-(\d{1,12}(?:\.\d{1,9})?)(?:-\d{1,12})?\.(?:ppm|pgm)", 
 
 
 class NyuRawSource:
-    """Reads a scene of NYU depth v2's raw dumps."""
+    """A reader of scenes in the raw data of NYU Depth v2."""
 
     layout = "r-*.ppm and d-*.pgm (NYU depth v2, raw)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether both streams of images are there."""
+        """Return whether the folder contains both colour and depth images with NYU names."""
         return all(
             any(_NAME.fullmatch(path.name) for path in folder.glob(pattern))
             for pattern in ("r-*.ppm", "d-*.pgm")
         )
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the pairs of images. Raises CaptureError as ``Source.read`` does."""
+        """Read the pairs of colour and depth images, matched by time.
+
+        Raises:
+            CaptureError: If no colour and depth images match in time.
+        """
         colour_s, colours = _stream(folder, "r-*.ppm")
         depth_s, depths = _stream(folder, "d-*.pgm")
         pairs = pair_times(colour_s, depth_s, WITHIN_S)
         if not pairs:
             raise CaptureError(
-                folder, f"no r-*.ppm and d-*.pgm lie within {WITHIN_S} s: copy all of one scene"
+                folder,
+                f"no r-*.ppm and d-*.pgm images are within {WITHIN_S} s of each other; "
+                "copy all files of one scene",
             )
         colour_camera = stated_camera(folder, VGA, *COLOUR)
         depth_camera = stated_camera(folder, VGA, *DEPTH)
@@ -75,12 +82,12 @@ class NyuRawSource:
             )
             for index, other in pairs
         )
-        note = "the two lenses published with NYU depth v2 are taken"
+        note = "using the intrinsics published with NYU Depth v2"
         return Capture(folder, "nyu_raw", frames, depth_unit="nyu_raw", notes=(note,))
 
 
 def _stream(folder: AnyPath, pattern: str) -> tuple[np.ndarray, list[AnyPath]]:
-    """Return the times and the files of one stream, in the order of time."""
+    """Return the times and files of one stream, sorted by time."""
     found = [
         (float(match[1]), path)
         for path in folder.glob(pattern)
@@ -91,7 +98,7 @@ def _stream(folder: AnyPath, pattern: str) -> tuple[np.ndarray, list[AnyPath]]:
 
 
 def _depth_to_colour() -> np.ndarray:
-    """Return the 4x4 transform, its rotation exactly orthonormal."""
+    """Return the 4x4 transform from depth to colour camera, with an orthonormal rotation."""
     left, _, right = np.linalg.svd(np.array(ROTATION))
     transform = np.eye(4)
     transform[:3, :3] = left @ right

@@ -1,9 +1,9 @@
-"""Reader of Open3D's folders: images in order, with one trajectory file.
+"""Reader of Open3D folders: numbered images with one trajectory file.
 
-``color``, ``rgb`` or ``image`` and ``depth`` hold the images. The trajectory is a ``.log``, five
-lines a frame (its number twice and once more, then camera to world as 4x4), or a ``.json``
-PinholeCameraTrajectory with world to camera. ``camera*.json`` here or one folder up is a
-PinholeCameraIntrinsic; matrices in JSON are column-major. Depth is registered to colour.
+Images are in ``color``, ``rgb`` or ``image``, and in ``depth``. The trajectory is a ``.log`` file
+with five lines per frame (three integers, then the 4x4 camera-to-world matrix), or a ``.json``
+PinholeCameraTrajectory with world-to-camera matrices. ``camera*.json`` in the folder or its parent
+is a PinholeCameraIntrinsic. Matrices in JSON files are column-major. Depth is registered to colour.
 """
 
 from typing import Any
@@ -34,29 +34,34 @@ Trajectory = dict[int, np.ndarray]
 
 
 class Open3dSource:
-    """Reads images with an Open3D trajectory."""
+    """A reader of images with an Open3D trajectory."""
 
     layout = "color/*.jpg, depth/*.png with trajectory.log or .json (Open3D, Redwood)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether both folders of images and a trajectory are there."""
+        """Return whether the folder contains colour images, depth images and a trajectory."""
         both = _colour_folder(folder) is not None and (folder / "depth").is_dir()
         return both and bool(_trajectories(folder))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the pairs of images. Raises CaptureError as ``Source.read`` does."""
+        """Read the pairs of colour and depth images with their poses.
+
+        Raises:
+            CaptureError: If images and trajectory do not match, or a file is not valid.
+        """
         chosen, *others = _trajectories(folder)
         poses, cameras = _read_trajectory(chosen)
         pairs = _pairs(folder)
         if min(poses) < 0 or max(poses) >= len(pairs):
             raise CaptureError(
                 chosen,
-                f"speaks of frame {max(poses)}; there are {len(pairs)} pairs of images: copy all",
+                f"contains a pose for frame {max(poses)}, but there are only {len(pairs)} pairs "
+                "of images; copy all images",
             )
         camera, notes = _camera(folder)
         if others:
             left = ", ".join(path.name for path in others)
-            notes += (f"the poses are those of {chosen.name}; {left} is left alone",)
+            notes += (f"using the poses of {chosen.name}; ignoring {left}",)
         frames = tuple(
             FrameFiles(
                 colour.stem,
@@ -77,9 +82,9 @@ def _colour_folder(folder: AnyPath) -> AnyPath | None:
 
 
 def _trajectories(folder: AnyPath) -> list[AnyPath]:
-    """Return the trajectories of a folder, best first.
+    """Return the trajectory files of a folder, the best first.
 
-    What is named a trajectory goes before the rest, and odometry, which drifts, comes last.
+    Files named as trajectories come first, and odometry, which drifts, comes last.
     """
     found = [path for path in folder.glob("*.log") if path.is_file() and _is_log(path)]
     found += [path for path in folder.glob("*.json") if _is_class(path, "PinholeCameraTrajectory")]
@@ -92,7 +97,7 @@ def _trajectories(folder: AnyPath) -> list[AnyPath]:
 
 
 def _is_log(path: AnyPath) -> bool:
-    """Return whether a text file begins as trajectories do: three whole numbers, then four rows."""
+    """Return whether a text file starts like a trajectory: three integers, then four rows."""
     try:
         with path.open("rb") as stream:
             head = stream.read(400).decode("ascii", "replace").splitlines()
@@ -122,11 +127,12 @@ def _read_log(path: AnyPath) -> Trajectory:
         right = len(block) == 5 and len(block[0]) == 3 and all(len(row) == 4 for row in block[1:])
         if not right or not block[0][0].lstrip("-").isdecimal() or len(block[0][0]) > 9:
             raise CaptureError(
-                path, f"must hold three whole numbers and 4x4 for each frame (row {start + 1})"
+                path,
+                f"must contain three integers and a 4x4 matrix for each frame (row {start + 1})",
             )
         number = int(block[0][0])
         if number in poses:
-            raise CaptureError(path, f"has two poses of frame {number}: keep one")
+            raise CaptureError(path, f"contains two poses for frame {number}; remove one")
         words = [word for row in block[1:] for word in row]
         poses[number] = to_floats(path, words).reshape(4, 4)
     return poses
@@ -149,11 +155,11 @@ def _read_json(path: AnyPath) -> tuple[Trajectory, dict[int, Camera]]:
 
 
 def _columns(path: AnyPath, stated: Any, key: str, side: int) -> np.ndarray:
-    """Return a matrix that JSON keeps as one list, column after column."""
+    """Return a matrix that JSON stores as one column-major list."""
     values = stated.get(key) if isinstance(stated, dict) else None
     matrix = as_floats(values)
     if matrix.shape != (side * side,):
-        raise CaptureError(path, f'"{key}" must be {side * side} numbers')
+        raise CaptureError(path, f'"{key}" must be a list of {side * side} numbers')
     return matrix.reshape(side, side).T
 
 
@@ -161,24 +167,24 @@ def _intrinsic(path: AnyPath, stated: Any) -> Camera:
     matrix = _columns(path, stated, "intrinsic_matrix", 3)
     width, height = stated.get("width"), stated.get("height")
     if not isinstance(width, int) or not isinstance(height, int):
-        raise CaptureError(path, '"width" and "height" must be whole numbers')
+        raise CaptureError(path, '"width" and "height" must be integers')
     return matrix_camera(path, (width, height), matrix)
 
 
 def _camera(folder: AnyPath) -> tuple[Camera, tuple[str, ...]]:
-    """Return the camera of a JSON with the images or one folder up, or the usual default."""
+    """Return the camera from a JSON file in the folder or its parent, or the default camera."""
     for place in (folder, folder.parent):
         for pattern in ("camera*.json", "*intrinsic*.json"):
             for path in sorted(place.glob(pattern), key=str):
                 stated = read_json(path, 1 << 20)
                 if isinstance(stated, dict) and "intrinsic_matrix" in stated:
                     return _intrinsic(path, stated), ()
-    note = "no camera.json: the default of PrimeSense cameras is taken, 525 px"
+    note = "no camera.json found; using the default intrinsics of PrimeSense cameras (525 px)"
     return stated_camera(folder, VGA, PRIMESENSE), (note,)
 
 
 def _pairs(folder: AnyPath) -> list[tuple[AnyPath, AnyPath]]:
-    """Pair images by name, or in order where names tell nothing and both are as many."""
+    """Pair images by name, or by order if the names differ and the counts match."""
     colour_folder = _colour_folder(folder) or folder
     colours, depths = (_images(place) for place in (colour_folder, folder / "depth"))
     by_stem = {path.stem: path for path in depths}
@@ -188,8 +194,8 @@ def _pairs(folder: AnyPath) -> list[tuple[AnyPath, AnyPath]]:
     if len(colours) != len(depths) or not colours:
         raise CaptureError(
             folder,
-            f"has {len(colours)} images in {colour_folder.name}/ and {len(depths)} in depth/; "
-            "they must be as many, or of the same names",
+            f"contains {len(colours)} images in {colour_folder.name}/ and {len(depths)} in "
+            "depth/; the counts or the file names must match",
         )
     return list(zip(colours, depths, strict=True))
 

@@ -1,12 +1,12 @@
-"""Reader of RealSense recordings: ROS 1 bags with colour and depth images, no poses.
+"""Reader of RealSense recordings: ROS 1 bags with colour and depth images, without poses.
 
-The topics are those of the camera's own recorder (``/device_0/sensor_1/Color_0/image/data``) or of
-its ROS driver where depth was aligned (``/camera/aligned_depth_to_color/image_raw``). With each
-stream stand its intrinsics, its transform to the others and the unit of depth.
+Topics are those of the camera's own recorder (``/device_0/sensor_1/Color_0/image/data``) or, if
+depth was aligned to colour, of its ROS driver (``/camera/aligned_depth_to_color/image_raw``). Each
+stream comes with its intrinsics, its transform to other streams and the depth unit.
 
-A bag is read message by message, never as a whole, and is untrusted until checked. Its index
-states where each message lies. One chunk of a few images is decompressed at a time, within
-limits. Everything that the library may raise for a damaged bag becomes one of our errors.
+Bags are untrusted input. Messages are read individually by the bag's index, and one chunk at a
+time is decompressed, with a size limit. All exceptions of the bag library are converted to
+exceptions of this project.
 """
 
 import bz2
@@ -66,21 +66,27 @@ _PINHOLES = ("", "none", "plumb_bob", "brown_conrady", "rational_polynomial")
 
 @dataclass(frozen=True)
 class ImageStream:
-    """One topic of pictures: its name and the time of each message in nanoseconds."""
+    """An image topic of a bag.
+
+    Attributes:
+        topic: Name of the topic.
+        times_ns: Time of each message in nanoseconds, sorted.
+    """
 
     topic: str
     times_ns: tuple[int, ...]
 
 
 class Bag:
-    """An opened bag."""
+    """An open ROS 1 bag."""
 
     def __init__(self, path: AnyPath):
-        """Read the index.
+        """Open a bag and read its index.
 
         Raises:
-            DamagedFileError: it is no bag that is whole. LimitError: a chunk is too large.
-            MissingExtraError: the reading library is not installed.
+            DamagedFileError: If the file is not a complete bag.
+            LimitError: If a chunk is too large.
+            MissingExtraError: If the rosbags library is not installed.
         """
         try:
             from rosbags.rosbag1 import Reader  # noqa: PLC0415
@@ -101,17 +107,18 @@ class Bag:
             if chunk.datasize > MAX_CHUNK_BYTES:
                 raise LimitError(
                     self.path,
-                    f"has a chunk of {chunk.datasize:,} bytes; {MAX_CHUNK_BYTES:,} are the most",
+                    f"contains a chunk of {chunk.datasize:,} bytes, the limit is "
+                    f"{MAX_CHUNK_BYTES:,}",
                 )
             unpack = _bounded_decompressor(chunk.decompressor)
             self._reader.chunks[position] = chunk._replace(decompressor=unpack)
 
     def topics(self) -> tuple[str, ...]:
-        """Return the names of all topics."""
+        """Return the sorted names of all topics."""
         return tuple(sorted({connection.topic for connection in self._reader.connections}))
 
     def streams(self) -> dict[str, ImageStream]:
-        """Return the topics of pictures."""
+        """Return the image topics by name."""
         found: dict[str, list[int]] = {}
         for connection in self._reader.connections:
             if connection.msgtype == IMAGE:
@@ -124,15 +131,17 @@ class Bag:
         return next(self._messages(topic, None), None)
 
     def message(self, topic: str, time_ns: int) -> Any:
-        """Return the message of a topic at a time of its stream.
+        """Return the message of a topic at a given time.
 
         Raises:
-            DamagedFileError: it is not there or cannot be unpacked.
+            DamagedFileError: If the message is missing or cannot be decoded.
         """
         if self._latest is None or self._latest[:2] != (topic, time_ns):
             found = next(self._messages(topic, time_ns), None)
             if found is None:
-                raise DamagedFileError(self.path, f"lacks a message of {topic}; copy it again")
+                raise DamagedFileError(
+                    self.path, f"lacks a message of topic {topic}; copy the file again"
+                )
             self._latest = (topic, time_ns, found)  # Its header and its pixels are asked in turn.
         return self._latest[2]
 
@@ -147,18 +156,20 @@ class Bag:
 
 @contextmanager
 def _reading_errors(path: AnyPath) -> Iterator[None]:
-    """Turn whatever goes wrong within the reading library into one line."""
+    """Convert any exception of the bag library to a one-line DamagedFileError."""
     try:
         yield
     except InputError:
         raise
     except Exception as error:
         reason = reason_of(error)
-        raise DamagedFileError(path, f"is no whole bag ({reason}); copy it again") from error
+        raise DamagedFileError(
+            path, f"is not a complete ROS bag ({reason}); copy the file again"
+        ) from error
 
 
 def _bounded_decompressor(unpack: Any) -> Any:
-    """Return the same way to unpack a chunk, which stops at ``MAX_CHUNK_BYTES``."""
+    """Return an equivalent decompressor that stops at ``MAX_CHUNK_BYTES``."""
     name = f"{getattr(unpack, '__module__', '')}.{getattr(unpack, '__name__', '')}"
     if "bz2" in name:
         return lambda data: bz2.BZ2Decompressor().decompress(data, MAX_CHUNK_BYTES)
@@ -174,10 +185,13 @@ def _unpack_lz4(data: bytes) -> bytes:
 
 
 def open_bag(path: AnyPath) -> Bag:
-    """Return an opened bag; it stays open, each process having its own.
+    """Return an open bag, cached per process.
 
     Raises:
-        InputError: it is missing. Others as ``Bag`` raises them.
+        InputError: If the file is missing.
+        DamagedFileError: If the file is not a complete bag.
+        LimitError: If a chunk is too large.
+        MissingExtraError: If the rosbags library is not installed.
     """
     try:
         file = path.path if isinstance(path, ArchivePath) else path
@@ -199,7 +213,14 @@ def _times(path: AnyPath, topic: str, stamp: Bag) -> tuple[int, ...]:
 
 @dataclass(frozen=True)
 class BagImage(NamedByFrame):
-    """One picture of a bag: the ``index``-th of its topic by time."""
+    """An image of a bag.
+
+    Attributes:
+        path: The bag.
+        topic: Name of the image topic.
+        index: Position of the image in the topic, by time.
+        frame: Name of the image, for messages.
+    """
 
     path: AnyPath
     topic: str
@@ -207,33 +228,37 @@ class BagImage(NamedByFrame):
     frame: str
 
     def header(self) -> ImageHeader:
-        """Return size and mode; the message is unpacked for it."""
+        """Return the size and mode of the image, which requires reading the message."""
         message = self._message()
         kind, _, order = self._encoding(message)
         mode = "RGB" if order or kind == "u1" else "float32" if kind == "f4" else "uint16"
         return ImageHeader(int(message.width), int(message.height), mode)
 
     def check_whole(self) -> None:
-        """Check that the pixels are as many as the size says."""
+        """Check that the number of pixels matches the image size."""
         self._rows()
 
     def colour(self) -> np.ndarray:
-        """Return uint8 [H, W, 3] sRGB."""
+        """Return the image as sRGB, uint8 [H, W, 3]."""
         rows, message = self._rows()
         kind, channels, order = self._encoding(message)
         if kind != "u1":
-            raise DamagedFileError(self, f"holds {message.encoding}, no colours")
+            raise DamagedFileError(
+                self, f"is encoded as {message.encoding}, which is not a colour format"
+            )
         pixels = rows.reshape(rows.shape[0], -1, channels)
         if not order:
             return _yuyv_to_rgb(pixels)
         return np.ascontiguousarray(pixels[..., list(order)])
 
     def raw(self) -> np.ndarray:
-        """Return [H, W] values as stored."""
+        """Return the stored pixel values, [H, W]."""
         rows, message = self._rows()
         kind, _, _ = self._encoding(message)
         if kind == "u1":
-            raise DamagedFileError(self, f"holds {message.encoding}, no depth")
+            raise DamagedFileError(
+                self, f"is encoded as {message.encoding}, which is not a depth format"
+            )
         order = ">" if message.is_bigendian else "<"
         values = rows.view(np.dtype(order + kind))
         return values.astype(values.dtype.newbyteorder("="))
@@ -246,27 +271,30 @@ class BagImage(NamedByFrame):
         name = str(message.encoding).lower()
         if name not in ENCODINGS:
             raise DamagedFileError(
-                self, f"is encoded as {name[:20]!r}; read are {', '.join(ENCODINGS)}"
+                self,
+                f"has the unsupported encoding {name[:20]!r}; supported: {', '.join(ENCODINGS)}",
             )
         return ENCODINGS[name]
 
     def _rows(self) -> tuple[np.ndarray, Any]:
-        """Return the bytes of the pixels, uint8 [H, bytes a row without padding]."""
+        """Return the pixel bytes as uint8 [H, bytes per row without padding], and the message."""
         message = self._message()
         kind, channels, _ = self._encoding(message)
         width, height, step = int(message.width), int(message.height), int(message.step)
         used = width * channels * np.dtype(kind).itemsize
         data = np.frombuffer(memoryview(message.data), np.uint8)
         if not 0 < width * height <= MAX_PIXELS or step < used or len(data) < step * height:
-            raise DamagedFileError(self, f"holds {len(data):,} bytes, too few for {width}x{height}")
+            raise DamagedFileError(
+                self, f"contains {len(data):,} bytes, too few for {width}x{height} pixels"
+            )
         rows = data[: step * height].reshape(height, step)[:, :used]
         return np.ascontiguousarray(rows), message
 
 
 def _yuyv_to_rgb(pixels: np.ndarray) -> np.ndarray:
-    """Return RGB of pictures that keep brightness for each pixel and hue for each second one."""
+    """Convert YUYV pixels, with brightness per pixel and hue per pair of pixels, to RGB."""
     if pixels.shape[1] % 2:
-        raise ValueError("a YUYV picture must be of even width")
+        raise ValueError("a YUYV image must have an even width")
     bright = pixels[..., 0].astype(np.float32)
     blue = np.repeat(pixels[:, 0::2, 1], 2, axis=1).astype(np.float32) - 128
     red = np.repeat(pixels[:, 1::2, 1], 2, axis=1).astype(np.float32) - 128
@@ -276,7 +304,7 @@ def _yuyv_to_rgb(pixels: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _StreamPair:
-    """The two streams that are read, and where their intrinsics stand."""
+    """The colour and depth streams to read, with the topics of their intrinsics."""
 
     colour: ImageStream
     depth: ImageStream
@@ -286,26 +314,33 @@ class _StreamPair:
 
 
 class RealSenseSource:
-    """Reads a ``.bag``, or a folder that holds one."""
+    """A reader of ``.bag`` files and of folders that contain one."""
 
     layout = "a RealSense recording (.bag)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether it is a bag or a folder with just one."""
+        """Return whether the path is a bag or a folder with exactly one bag."""
         return _bag_file(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the pairs of pictures. Raises CaptureError as ``Source.read`` does."""
+        """Read the pairs of colour and depth images, matched by time.
+
+        Raises:
+            CaptureError: If the bag lacks streams or calibration.
+            DamagedFileError: If the bag is damaged.
+        """
         path = _bag_file(folder)
         if path is None:
-            raise CaptureError(folder, "holds no .bag")
+            raise CaptureError(folder, "does not contain a .bag file")
         bag = open_bag(path)
         pair = _choose_streams(path, bag.streams())
         matches = pair_times(
             np.array(pair.colour.times_ns) / 1e9, np.array(pair.depth.times_ns) / 1e9, WITHIN_S
         )
         if not matches:
-            raise CaptureError(path, f"no colour and depth picture lie within {WITHIN_S} s")
+            raise CaptureError(
+                path, f"contains no colour and depth images within {WITHIN_S} s of each other"
+            )
         colour_camera = _camera(path, bag.first(pair.colour_info))
         depth_camera = _camera(path, bag.first(pair.depth_info))
         depth_to_colour = _depth_to_colour(path, bag, pair)
@@ -342,7 +377,7 @@ def _has_bag_magic(path: AnyPath) -> bool:
 
 
 def _choose_streams(path: AnyPath, streams: dict[str, ImageStream]) -> _StreamPair:
-    """Return the colour and depth streams of the recorder, or of the driver."""
+    """Return the colour and depth streams of the camera's recorder or of its ROS driver."""
     recorded = {
         match[2]: topic for topic in sorted(streams) if (match := _RECORDED.fullmatch(topic))
     }
@@ -361,33 +396,37 @@ def _choose_streams(path: AnyPath, streams: dict[str, ImageStream]) -> _StreamPa
                 return _StreamPair(streams[topic], streams[depth], infos[0], infos[1], False)
     raise CaptureError(
         path,
-        "holds no colour and depth streams; record both (with the ROS driver: "
+        "does not contain colour and depth streams; record both (ROS driver: "
         "aligned_depth_to_color)",
     )
 
 
 def _camera(path: AnyPath, info: Any) -> Camera:
-    """Return the camera of a ``sensor_msgs/CameraInfo``."""
+    """Return the camera of a ``sensor_msgs/CameraInfo`` message."""
     if info is None:
-        raise CaptureError(path, "states no intrinsics (camera_info) of a stream: record them too")
+        raise CaptureError(
+            path, "contains no intrinsics (camera_info) for a stream; record that topic too"
+        )
     matrix = np.asarray(info.K, np.float64).reshape(-1)
     model = str(info.distortion_model).lower().replace(" ", "_")
     lens = np.asarray(info.D, np.float64).reshape(-1)
     if len(matrix) != 9 or not np.isfinite(lens).all():
-        raise CaptureError(path, "its intrinsics must be nine numbers and a lens")
+        raise CaptureError(
+            path, "has invalid intrinsics: expected nine numbers and finite distortion coefficients"
+        )
     if np.any(lens) and (model not in _PINHOLES or np.any(lens[5:])):
         # The recorder's inverse model undoes what ours does; its terms are near zero in fact.
         if "inverse" not in model or np.abs(lens[:5]).max() > 0.2:
-            raise CaptureError(path, f"has a lens of the model {model[:30]!r}, which is not read")
+            raise CaptureError(path, f"contains a lens of the unsupported model {model[:30]!r}")
         lens = np.zeros(5)
     size = (int(info.width), int(info.height))
     return stated_camera(path, size, matrix[[0, 4, 2, 5]], lens[:5])
 
 
 def _depth_to_colour(path: AnyPath, bag: Any, pair: _StreamPair) -> np.ndarray:
-    """Return how the depth lens stands to the colour lens.
+    """Return the transform from the depth camera to the colour camera.
 
-    The recorder writes for each stream the transform from one reference stream to it.
+    The recorder writes for each stream the transform from a reference stream to it.
     """
     if not pair.recorded:
         return np.eye(4)
@@ -396,7 +435,9 @@ def _depth_to_colour(path: AnyPath, bag: Any, pair: _StreamPair) -> np.ndarray:
     known = set(bag.topics())
     groups = [n for n in range(MAX_GROUPS) if all(f"{p}/tf/{n}" in known for p in prefixes)]
     if not groups:
-        raise CaptureError(path, "does not say how its lenses stand to each other: record tf/0")
+        raise CaptureError(
+            path, "does not contain the transform between its cameras; record the topic tf/0"
+        )
     for prefix in prefixes:
         message = bag.first(f"{prefix}/tf/{groups[0]}")
         t, q = message.translation, message.rotation
@@ -404,18 +445,16 @@ def _depth_to_colour(path: AnyPath, bag: Any, pair: _StreamPair) -> np.ndarray:
             pose_from_quaternion(np.array([t.x, t.y, t.z]), np.array([q.x, q.y, q.z, q.w]))
         )
     if not all(np.isfinite(transform).all() for transform in to_stream):
-        raise CaptureError(path, "says that its lenses stand nowhere (tf is not finite)")
+        raise CaptureError(path, "contains a transform between its cameras that is not finite")
     return to_stream[0] @ invert_rigid(to_stream[1])
 
 
 def _unit(path: AnyPath, bag: Any) -> tuple[float, tuple[str, ...]]:
-    """Return metres per unit of depth."""
+    """Return metres per depth unit, and notes."""
     for topic in bag.topics():
         if _UNITS.fullmatch(topic):
             unit_m = float(np.float32(bag.first(topic).data))
             if not 1e-6 < unit_m < 0.1:
-                raise CaptureError(
-                    path, f"states a depth unit of {unit_m} m; 1e-06 to 0.1 are read"
-                )
+                raise CaptureError(path, f"has a depth unit of {unit_m} m; expected 1e-06 to 0.1 m")
             return float(f"{unit_m:.6g}"), ()
-    return DEFAULT_UNIT_M, ("the bag states no depth unit: millimetres are taken",)
+    return DEFAULT_UNIT_M, ("the bag states no depth unit; using millimetres",)

@@ -1,8 +1,8 @@
-"""Reader of Replica as NICE-SLAM rendered it: ``results/`` with images, ``traj.txt``.
+"""Reader of Replica sequences as rendered for NICE-SLAM: ``results/`` and ``traj.txt``.
 
-Images are ``frame000000.jpg`` and ``depth000000.png``. A line of ``traj.txt`` is 4x4 camera to
-world, OpenCV axes. ``cam_params.json`` here or one folder up has w, h, fx, fy, cx, cy and scale,
-the depth units a metre.
+Images are named ``frame000000.jpg`` and ``depth000000.png``. Each line of ``traj.txt`` is a 4x4
+camera-to-world matrix with OpenCV axes. ``cam_params.json`` in the folder or its parent contains w,
+h, fx, fy, cx, cy and scale, the number of depth units per metre.
 """
 
 import math
@@ -23,22 +23,26 @@ PUBLISHED = (1200, 680, 600.0, 600.0, 599.5, 339.5, 6553.5)
 
 
 class ReplicaSource:
-    """Reads a room of Replica's rendered sequences."""
+    """A reader of rooms in Replica's rendered sequences."""
 
     layout = "results/frame000000.jpg, depth000000.png and traj.txt (Replica of NICE-SLAM)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether the trajectory and such images are there."""
+        """Return whether the folder contains a trajectory and images with Replica names."""
         results = folder / "results"
         named = (folder / "traj.txt").is_file() and results.is_dir()
         return named and next(iter(results.glob("frame*.*")), None) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of a Replica sequence.
+
+        Raises:
+            CaptureError: If the trajectory or the camera parameters are not valid.
+        """
         path = folder / "traj.txt"
         rows = read_rows(path)
         if not rows or any(len(row) != 16 for row in rows):
-            raise CaptureError(path, "must hold 16 numbers a line, a 4x4 pose")
+            raise CaptureError(path, "must contain 16 numbers per line, a 4x4 pose")
         words = [word for row in rows for word in row]
         poses = to_floats(path, words).reshape(len(rows), 4, 4)
         images = _numbered(folder / "results", "frame")
@@ -88,9 +92,9 @@ def _camera(folder: AnyPath) -> tuple[Camera, float, tuple[str, ...]]:
             if isinstance(value, int | float) and math.isfinite(value) and value > 0
         ]
         if len(numbers) != len(keys):
-            raise CaptureError(path, f"must state {', '.join(keys)}, each above 0")
+            raise CaptureError(path, f"must contain {', '.join(keys)}, each above 0")
         return _stated(path, numbers), numbers[-1], ()
-    note = f"no {PARAMETERS}: the one published for Replica is taken (1200x680, 600 px)"
+    note = f"no {PARAMETERS} found; using the intrinsics published for Replica (1200x680, 600 px)"
     return _stated(folder, list(PUBLISHED)), PUBLISHED[-1], (note,)
 
 

@@ -1,8 +1,8 @@
-"""Reader of an exported ScanNet scene: numbered files in ``color/``, ``depth/``, ``pose/``.
+"""Reader of exported ScanNet scenes: numbered files in ``color/``, ``depth/`` and ``pose/``.
 
-``intrinsic/intrinsic_color.txt`` and ``intrinsic_depth.txt`` (4x4) speak of the images as they
-were recorded; many people make the exported ones smaller. Depth is in millimetres. Poses of
--inf mean lost tracking.
+``intrinsic/intrinsic_color.txt`` and ``intrinsic_depth.txt`` (4x4) refer to the images as recorded,
+which are often exported at a smaller size. Depth is in millimetres. Poses with -inf mark lost
+tracking.
 """
 
 import numpy as np
@@ -31,24 +31,28 @@ RECORDED = (1296, 968)  # The iPad's colour images; the depth images are VGA.
 
 
 class ScanNetFolderSource:
-    """Reads an exported ScanNet scene."""
+    """A reader of exported ScanNet scenes."""
 
     layout = "color/0.jpg, depth/0.png, pose/0.txt, intrinsic/intrinsic_depth.txt (ScanNet export)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether poses and images lie in folders so named, with a matrix next to them."""
+        """Return whether the folder contains image and pose folders and an intrinsic matrix."""
         images = (folder / "color").is_dir() or (folder / "depth").is_dir()
         return images and (folder / "pose").is_dir() and bool(_matrix_files(folder))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of an exported ScanNet scene.
+
+        Raises:
+            CaptureError: If images, poses or intrinsics are missing or not valid.
+        """
         colours, depths = _images(folder / "color"), _images(folder / "depth")
         poses = {
             int(path.stem): path for path in (folder / "pose").glob("*.txt") if _numbered(path)
         }
         numbers = sorted(colours.keys() | depths.keys())
         if not numbers or not poses:
-            raise CaptureError(folder, "has no numbered images and poses, such as pose/0.txt")
+            raise CaptureError(folder, "contains no numbered images and poses, such as pose/0.txt")
         cameras = _cameras(folder, list(colours.values()), list(depths.values()))
         facts_path = folder / f"{folder.name}.txt"
         labels, notes = find_labels(folder, folder.name)
@@ -61,7 +65,7 @@ class ScanNetFolderSource:
 
 
 def _matrix_files(folder: AnyPath) -> dict[str, AnyPath]:
-    """Return the files of the matrices by kind; exporters name them in two ways."""
+    """Return the matrix files by kind; exporters use different names."""
     found = {}
     for kind in ("color", "depth"):
         for name in (
@@ -89,7 +93,7 @@ def _images(folder: AnyPath) -> dict[int, AnyPath]:
 
 
 def _cameras(folder: AnyPath, colours: list[AnyPath], depths: list[AnyPath]) -> dict[str, Camera]:
-    """Return the cameras by kind, at the size that each matrix speaks of."""
+    """Return the cameras by kind, with the image size that each matrix refers to."""
     files = _matrix_files(folder)
     cameras = {}
     for kind, images, recorded in (("color", colours, RECORDED), ("depth", depths, VGA)):
@@ -97,7 +101,9 @@ def _cameras(folder: AnyPath, colours: list[AnyPath], depths: list[AnyPath]) -> 
             continue
         path = files.get(kind)
         if path is None:
-            raise CaptureError(folder, f"has no intrinsic/intrinsic_{kind}.txt (4x4)")
+            raise CaptureError(
+                folder, f"does not contain intrinsic/intrinsic_{kind}.txt (4x4 matrix)"
+            )
         matrix = read_matrix(path, [(4, 4), (3, 3)])
         size = intrinsics_size(
             (matrix[0, 2], matrix[1, 2]), [first_image_size(images), recorded, VGA]

@@ -1,4 +1,4 @@
-"""Metadata of a ScanNet scene: ``SCENE.txt``, label images, the table of the raw ids."""
+"""Metadata of ScanNet scenes: ``SCENE.txt``, label images and the table of raw label ids."""
 
 from pathlib import Path
 
@@ -16,17 +16,11 @@ from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import read_bytes
 
 LABEL_KINDS = ("label-filt", "label")  # The filtered ones have fewer slips at edges.
-NO_TABLE_NOTE = (
-    f"the label images are left out: put {LABEL_TABLE} (from the data set) beside the scene"
-)
+NO_TABLE_NOTE = f"label images are ignored; put {LABEL_TABLE} (from the data set) next to the scene"
 
 
 def read_scene_info(path: AnyPath) -> dict[str, np.ndarray]:
-    """Return the numbers of a ``SCENE.txt`` by name; lines of words are left out.
-
-    Raises:
-        CaptureError: ``axisAlignment`` is no matrix of 16 numbers.
-    """
+    """Return the numeric fields of a ``SCENE.txt`` by name."""
     if not path.is_file():
         return {}
     facts = {}
@@ -40,12 +34,13 @@ def read_scene_info(path: AnyPath) -> dict[str, np.ndarray]:
 
 
 def axis_alignment(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
-    """Return the rigid float64 [4, 4] from the poses' world to one whose z is up, where stated.
+    """Return the transform from the world frame of the poses to one with z up.
 
-    Test scenes have none.
+    Returns:
+        The rigid transform as float64 [4, 4], or None if it is not stated, as in test scenes.
 
     Raises:
-        CaptureError: it is no rotation and shift.
+        CaptureError: If the stated matrix is not a rigid transform.
     """
     if "axisAlignment" not in facts:
         return None
@@ -54,7 +49,7 @@ def axis_alignment(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | 
     rotation = stated[:3, :3]
     is_turn = np.abs(rotation @ rotation.T - np.eye(3)).max() < 1e-3
     if not is_turn or np.linalg.det(rotation) < 0 or not np.isfinite(stated).all():
-        raise CaptureError(path, "axisAlignment must be 16 numbers, a 4x4 rotation and shift")
+        raise CaptureError(path, "axisAlignment must contain 16 numbers, a 4x4 rigid transform")
     left, _, right = np.linalg.svd(rotation)  # It is stated with six digits.
     aligned = np.eye(4)
     aligned[:3, :3], aligned[:3, 3] = left @ right, stated[:3, 3]
@@ -62,13 +57,13 @@ def axis_alignment(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | 
 
 
 def up_vector(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
-    """Return the unit vector of the poses' world that points up, where the scene states it."""
+    """Return the stated up direction in the world frame of the poses as a unit vector, or None."""
     aligned = axis_alignment(path, facts)
     return None if aligned is None else aligned[2, :3].copy()
 
 
 def stated_lens(facts: dict[str, np.ndarray], kind: str) -> tuple[float, ...] | None:
-    """Return fx, fy, cx, cy of ``color`` or ``depth`` where the scene's text states them."""
+    """Return fx, fy, cx and cy of the ``color`` or ``depth`` camera, or None if not stated."""
     keys = [f"{name}_{kind}" for name in ("fx", "fy", "mx", "my")]
     if not all(len(facts.get(key, ())) == 1 for key in keys):
         return None
@@ -76,11 +71,11 @@ def stated_lens(facts: dict[str, np.ndarray], kind: str) -> tuple[float, ...] | 
 
 
 def find_labels(scene: AnyPath, name: str) -> tuple[dict[int, MappedLabels], tuple[str, ...]]:
-    """Return label images by the frame's number, and a note where they cannot be used.
+    """Return label images by frame number, and notes about label images that cannot be used.
 
     Args:
-        scene: the folder of the scene.
-        name: the scene's name, such as ``scene0000_00``, by which its zips are named.
+        scene: Folder of the scene.
+        name: Name of the scene, such as ``scene0000_00``, which its zip archives start with.
     """
     notes: list[str] = []
     for place in [place for kind in LABEL_KINDS for place in _label_places(scene, name, kind)]:
@@ -88,7 +83,7 @@ def find_labels(scene: AnyPath, name: str) -> tuple[dict[int, MappedLabels], tup
             images = _numbered(place)
         except InputError as error:  # A broken zip of labels must not stop a scan.
             broken = place.path if isinstance(place, ArchivePath) else place
-            notes.append(f"{broken.name} is left out: it {error.reason}")
+            notes.append(f"ignoring {broken.name}: it {error.reason}")
             continue
         if images:
             mapped, more = _map_labels(scene, images)
@@ -97,7 +92,7 @@ def find_labels(scene: AnyPath, name: str) -> tuple[dict[int, MappedLabels], tup
 
 
 def _label_places(scene: AnyPath, name: str, kind: str) -> list[AnyPath]:
-    """Return where label images of a kind may lie: a folder, or the published zip of it."""
+    """Return possible places of label images of a kind: a folder or the published zip archive."""
     places: list[AnyPath] = [scene / kind]
     zipped = scene / f"{name}_2d-{kind}.zip"
     if isinstance(zipped, Path) and is_zip(zipped):
@@ -106,7 +101,7 @@ def _label_places(scene: AnyPath, name: str, kind: str) -> list[AnyPath]:
 
 
 def _numbered(folder: AnyPath) -> dict[int, AnyPath]:
-    """Return the images of a folder by their number; none where it is missing."""
+    """Return the numbered images of a folder by number; the result is empty if it is missing."""
     found = folder.glob("*.png") if folder.is_dir() else ()
     return {int(path.stem): path for path in found if path.stem.isdecimal() and len(path.stem) <= 9}
 

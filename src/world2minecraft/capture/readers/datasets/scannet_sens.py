@@ -1,15 +1,15 @@
-"""Reader of ScanNet's ``.sens``: one file with the cameras and all frames of a scan.
+"""Reader of ScanNet's ``.sens`` files, which contain the cameras and all frames of a scan.
 
-The layout, little-endian, of version 4::
+The layout of version 4, little-endian, is::
 
     uint32 4; uint64 n; n bytes of the sensor's name
-    float32 [4, 4] four times: colour intrinsics, colour extrinsics, depth's, depth's
-    int32 how colour is packed (0 plain, 1 PNG, 2 JPEG), int32 depth (0 plain, 1 zlib)
-    uint32 colour width, height, depth width, height; float32 depth units a metre
-    uint64 frames; each: float32 [4, 4] camera to world, uint64 colour and depth time in
-    microseconds, uint64 bytes of colour, of depth, then these bytes
+    four float32 [4, 4]: colour intrinsics and extrinsics, depth intrinsics and extrinsics
+    int32 colour compression (0 none, 1 PNG, 2 JPEG), int32 depth compression (0 none, 1 zlib)
+    uint32 colour width, height, depth width, height; float32 depth units per metre
+    uint64 number of frames; each: float32 [4, 4] camera to world, uint64 time of colour and of
+    depth in microseconds, uint64 bytes of colour and of depth, then those bytes
 
-Nothing but the headers is read here. Frames whose tracking was lost have poses of -inf.
+Only headers are read here. Frames with lost tracking have poses of -inf.
 """
 
 import struct
@@ -49,7 +49,7 @@ _DEPTHS = {0: "plain", 1: "zlib"}
 
 @dataclass(frozen=True, eq=False)
 class SensHeader:
-    """What a ``.sens`` says before its frames; matrices are float64 [4, 4]."""
+    """The header of a ``.sens`` file; matrices are float64 [4, 4]."""
 
     colour_intrinsics: np.ndarray
     colour_to_base: np.ndarray
@@ -64,19 +64,24 @@ class SensHeader:
 
 
 class ScanNetSensSource:
-    """Reads a ``.sens``, or a folder that holds one."""
+    """A reader of ``.sens`` files and of folders that contain one."""
 
     layout = "scene0000_00.sens (ScanNet)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether it is a ``.sens`` or a folder with just one."""
+        """Return whether the path is a ``.sens`` file or a folder with exactly one."""
         return _sens_file(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of a ``.sens`` file.
+
+        Raises:
+            CaptureError: If the metadata of the scene is not valid.
+            DamagedFileError: If the file is damaged.
+        """
         path = _sens_file(folder)
         if path is None:
-            raise DamagedFileError(folder, "holds no .sens")
+            raise DamagedFileError(folder, "does not contain a .sens file")
         size = int(path.stat().st_size)
         with open_seekable(path) as stream:
             header = read_sens_header(path, stream)
@@ -106,19 +111,21 @@ def _sens_file(place: AnyPath) -> AnyPath | None:
 
 
 def read_sens_header(path: AnyPath, stream: IO[bytes]) -> SensHeader:
-    """Read what stands before the frames, every size checked before it is used.
+    """Read the header of a ``.sens`` file and check all sizes in it.
 
     Raises:
-        DamagedFileError: it is no ``.sens`` of version 4, or cut short.
+        DamagedFileError: If the file is truncated or is not a ``.sens`` file of version 4.
     """
     start = stream.read(12)
     version, length = struct.unpack("<IQ", start) if len(start) == 12 else (0, 0)
     if version != VERSION or length > MAX_NAME_BYTES:
-        raise DamagedFileError(path, f"is no .sens of version {VERSION} (it says {version})")
+        raise DamagedFileError(
+            path, f"is not a .sens file of version {VERSION} (version field: {version})"
+        )
     stream.seek(length, 1)
     data = stream.read(_CALIBRATION.size)
     if len(data) != _CALIBRATION.size:
-        raise DamagedFileError(path, "is cut short within its header; copy it again")
+        raise DamagedFileError(path, "is truncated in its header; copy the file again")
     values = _CALIBRATION.unpack(data)
     matrices = np.array(values[:64], np.float64).reshape(4, 4, 4)
     colour_packing, depth_packing, *sizes = values[64:70]
@@ -126,13 +133,16 @@ def read_sens_header(path: AnyPath, stream: IO[bytes]) -> SensHeader:
     if colour_packing not in _COLOURS or depth_packing not in _DEPTHS:
         raise DamagedFileError(
             path,
-            f"packs colour as {colour_packing} and depth as {depth_packing}; read are colour "
-            "0 (plain), 1 (PNG), 2 (JPEG) and depth 0 (plain), 1 (zlib)",
+            f"has the unsupported compression {colour_packing} for colour or {depth_packing} "
+            "for depth; supported: colour 0 (none), 1 (PNG), 2 (JPEG) and depth 0 (none), 1 "
+            "(zlib)",
         )
     if not all(size <= MAX_SIDE_PX for size in sizes) or not 0 < units < 1e7:
-        raise DamagedFileError(path, f"states impossible images: {sizes} px, {units} units a metre")
+        raise DamagedFileError(
+            path, f"has an invalid image size or depth unit: {sizes} px, {units} units per metre"
+        )
     if not 0 < frames <= MAX_FRAMES:
-        raise DamagedFileError(path, f"states {frames:,} frames; 1 to {MAX_FRAMES:,} are read")
+        raise DamagedFileError(path, f"contains {frames:,} frames; expected 1 to {MAX_FRAMES:,}")
     width, height, depth_width, depth_height = sizes
     return SensHeader(
         matrices[0],
@@ -150,7 +160,7 @@ def read_sens_header(path: AnyPath, stream: IO[bytes]) -> SensHeader:
 
 @dataclass(frozen=True, eq=False)
 class _FrameRecord:
-    """Where one frame's images lie: offsets and sizes in bytes, and what is stated of it."""
+    """The byte offsets, sizes and metadata of one frame's images."""
 
     number: int
     pose: np.ndarray
@@ -162,7 +172,7 @@ class _FrameRecord:
 def _read_frame_records(
     path: AnyPath, stream: IO[bytes], size: int, count: int
 ) -> tuple[list[_FrameRecord], tuple[str, ...]]:
-    """Walk from frame to frame; of a file cut short the whole frames are kept."""
+    """Read the frame headers one after the other; in a truncated file, keep the complete frames."""
     places: list[_FrameRecord] = []
     position = stream.tell()
     for number in range(count):
@@ -185,16 +195,18 @@ def _read_frame_records(
         position += colour_bytes + depth_bytes
         stream.seek(position)
     if not places:
-        raise DamagedFileError(path, "is cut short: no frame is whole; copy it again")
+        raise DamagedFileError(
+            path, "is truncated and contains no complete frame; copy the file again"
+        )
     if len(places) == count:
         return places, ()
-    return places, (f"{path.name} is cut short: {len(places):,} of {count:,} frames are whole",)
+    return places, (f"{path.name} is truncated; {len(places):,} of {count:,} frames are complete",)
 
 
 def _cameras(
     path: AnyPath, header: SensHeader, facts: dict[str, np.ndarray]
 ) -> tuple[Camera | None, Camera | None]:
-    """Return the colour and the depth camera; the scene's text helps out where a matrix is void."""
+    """Return the colour and depth cameras; ``SCENE.txt`` provides values missing in the header."""
     cameras: list[Camera | None] = []
     for kind, size, matrix in (
         ("color", header.colour_size, header.colour_intrinsics),

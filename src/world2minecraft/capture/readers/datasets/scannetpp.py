@@ -1,9 +1,10 @@
-"""Reader of ScanNet++'s iPhone data: ``pose_intrinsic_imu.json``, video, ``depth.bin``.
+"""Reader of ScanNet++ iPhone data: ``pose_intrinsic_imu.json``, a video and ``depth.bin``.
 
-The JSON has an entry a frame, ``frame_000012``: ``aligned_pose`` (4x4, camera to world, OpenCV
-axes, z up) or ``pose``, and ``intrinsic`` (3x3, of the video's size). Pictures are those of
-``rgb.mkv`` or ``rgb.mp4``, or files in ``rgb/``. ``depth.bin`` has 256x192 pixels a frame: uint32
-its size in bytes, then millimetres as LZ4 or float metres as deflate; ``depth/`` may hold files.
+The JSON file has an entry per frame, such as ``frame_000012``, with ``aligned_pose`` (4x4,
+camera-to-world, OpenCV axes, z up) or ``pose``, and ``intrinsic`` (3x3, at the size of the video).
+Colour images are in ``rgb.mkv`` or ``rgb.mp4``, or are files in ``rgb/``. ``depth.bin`` contains
+256x192 pixels per frame: the size in bytes as uint32, then millimetres compressed with LZ4 or float
+metres compressed with deflate. Alternatively, ``depth/`` contains image files.
 """
 
 import struct
@@ -33,22 +34,27 @@ _SIZE = struct.Struct("<I")
 
 
 class ScanNetPpSource:
-    """Reads the iPhone's recording of a ScanNet++ scene."""
+    """A reader of the iPhone recordings of ScanNet++ scenes."""
 
     layout = "iphone/pose_intrinsic_imu.json with rgb.mkv and depth.bin (ScanNet++)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether the poses lie there, or in ``iphone``."""
+        """Return whether the folder or its ``iphone`` subfolder contains the file of poses."""
         return _iphone_folder(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of a ScanNet++ iPhone recording.
+
+        Raises:
+            CaptureError: If poses, intrinsics or images are missing or not valid.
+            DamagedFileError: If the depth file is damaged.
+        """
         place = _iphone_folder(folder) or folder
         entries = _entries(place / POSES)
         pictures, depths = _pictures(place, entries), _depths(place)
         size = first_image_size([pictures[min(pictures)]] if pictures else [])
         if size is None:
-            raise CaptureError(place, f"has no picture that can be read ({VIDEOS[0]} or rgb/)")
+            raise CaptureError(place, f"contains no readable colour images ({VIDEOS[0]} or rgb/)")
         frames = tuple(
             _frame(place / POSES, number, entry, size, pictures.get(number), depths.get(number))
             for number, entry in sorted(entries.items())
@@ -63,21 +69,25 @@ def _iphone_folder(folder: AnyPath) -> AnyPath | None:
 
 
 def _entries(path: AnyPath) -> dict[int, dict[str, Any]]:
-    """Return what is stated of each frame, by its number."""
+    """Return the JSON entry of each frame by number."""
     stated = read_json(path)
     entries = {}
     for key, entry in stated.items() if isinstance(stated, dict) else ():
         digits = key.removeprefix("frame_")
         if not digits.isdecimal() or len(digits) > 9 or not isinstance(entry, dict):
-            raise CaptureError(path, f"must hold frame_000000 and so on, not {key[:40]!r}")
+            raise CaptureError(
+                path, f"must contain keys of the form frame_000000, got {key[:40]!r}"
+            )
         entries[int(digits)] = entry
     if not entries:
-        raise CaptureError(path, 'must hold "frame_000000": {aligned_pose, intrinsic} and so on')
+        raise CaptureError(
+            path, 'must contain frames of the form "frame_000000": {aligned_pose, intrinsic}'
+        )
     return entries
 
 
 def _files(folder: AnyPath) -> dict[int, ImagePlace]:
-    """Return the images ``frame_000012.jpg`` of a folder by number."""
+    """Return the images of a folder, such as ``frame_000012.jpg``, by number."""
     found: dict[int, ImagePlace] = {}
     for path in sorted(folder.glob("frame_*"), key=str) if folder.is_dir() else ():
         digits = path.stem.removeprefix("frame_")
@@ -103,7 +113,7 @@ def _depths(place: AnyPath) -> dict[int, ImagePlace]:
 
 
 def _packed_depth_images(path: AnyPath) -> list[ImagePlace]:
-    """Return where each frame of a ``depth.bin`` lies; the whole ones of a file cut short."""
+    """Return the position of each frame in a ``depth.bin``; incomplete frames are skipped."""
     found: list[ImagePlace] = []
     size = int(path.stat().st_size)
     position = 0
@@ -114,8 +124,9 @@ def _packed_depth_images(path: AnyPath) -> list[ImagePlace]:
             if not 0 < length <= MAX_FRAME_BYTES:
                 raise DamagedFileError(
                     path,
-                    f"frame {len(found)} has {length:,} bytes: it is damaged, or packed as a "
-                    "whole; unpack it with the data set's prepare_iphone_data.py",
+                    f"frame {len(found)} has {length:,} bytes: the file is damaged or "
+                    "compressed as a whole; unpack it with prepare_iphone_data.py of the "
+                    "data set",
                 )
             position += _SIZE.size
             if length > size - position:
@@ -127,21 +138,25 @@ def _packed_depth_images(path: AnyPath) -> list[ImagePlace]:
 
 @dataclass(frozen=True)
 class PackedDepth(FileSlice):
-    """One depth image of a ``depth.bin``."""
+    """A depth image in a ``depth.bin``."""
 
     def header(self) -> ImageHeader:
-        """Return the size that all of them have."""
+        """Return the size and mode shared by all depth images."""
         return ImageHeader(*DEPTH_SIZE, "uint16")
 
     def check_whole(self) -> None:
-        """Check nothing: the list of frames holds whole ones alone."""
+        """Do nothing, because incomplete frames have already been skipped."""
 
     def colour(self) -> np.ndarray:
-        """Refuse: depth is no colour."""
-        raise DamagedFileError(self, "holds depth, no colours")
+        """Raise DamagedFileError, because a depth image has no colours."""
+        raise DamagedFileError(self, "contains depth, not colours")
 
     def raw(self) -> np.ndarray:
-        """Return uint16 [192, 256] millimetres. Raises DamagedFileError."""
+        """Return the depth in millimetres as uint16 [192, 256].
+
+        Raises:
+            DamagedFileError: If the image cannot be decompressed.
+        """
         from lz4.block import LZ4BlockError, decompress  # noqa: PLC0415
 
         data = self.part(0, self.size)
@@ -154,13 +169,17 @@ class PackedDepth(FileSlice):
         return np.frombuffer(plain, "<u2").reshape(DEPTH_SIZE[::-1]).astype(np.uint16)
 
     def _inflated(self, data: bytes) -> np.ndarray:
-        """Unpack float metres, never more than a frame has."""
+        """Decompress float metres, at most the size of a frame."""
         try:
             plain = zlib.decompressobj(-zlib.MAX_WBITS).decompress(data, 4 * PIXELS + 1)
         except zlib.error as error:
-            raise DamagedFileError(self, f"cannot be unpacked ({error}); copy it again") from error
+            raise DamagedFileError(
+                self, f"cannot be decompressed ({error}); copy the file again"
+            ) from error
         if len(plain) != 4 * PIXELS:
-            raise DamagedFileError(self, f"unpacks to {len(plain):,} bytes, not {4 * PIXELS:,}")
+            raise DamagedFileError(
+                self, f"decompresses to {len(plain):,} bytes, expected {4 * PIXELS:,}"
+            )
         metres = np.frombuffer(plain, "<f4").reshape(DEPTH_SIZE[::-1]).astype(np.float64)
         millimetres = np.round(np.nan_to_num(metres, nan=0, posinf=0, neginf=0) * 1000)
         return np.clip(millimetres, 0, 65535).astype(np.uint16)
@@ -186,12 +205,12 @@ def _frame(
         camera if picture else None,
         depth,
         camera if depth else None,
-        problem=problem if picture or depth else "has neither picture nor depth",
+        problem=problem if picture or depth else "has neither a colour nor a depth image",
     )
 
 
 def _matrix(path: AnyPath, name: str, stated: Any, side: int) -> np.ndarray:
     matrix = as_floats(stated)
     if matrix.size != side * side:
-        raise CaptureError(path, f"{name} must state a matrix of {side} rows of {side}")
+        raise CaptureError(path, f"{name} must contain a {side}x{side} matrix")
     return matrix.reshape(side, side)

@@ -1,9 +1,11 @@
-"""Reader of 7-Scenes: ``frame-000000.color.png``, ``.depth.png`` and ``.pose.txt``.
+"""Reader of 7-Scenes: ``frame-000000.color.png``, ``.depth.png`` and ``.pose.txt`` files.
 
-The frames lie in the folder itself, in ``frames/`` or in ``seq-01/``, ``seq-02/`` ... (one world
-frame for all). ``camera-intrinsics.txt`` (3x3) in or above their folder states the matrix. The
-original data set has none and names its colour images ``.png``: for it alone the published Kinect
-matrix is taken. The one matrix is the depth camera's; colour is another camera next to it.
+Frames are in the folder itself, in ``frames/`` or in ``seq-01/``, ``seq-02/`` and so on, which
+share
+one world frame. ``camera-intrinsics.txt`` (3x3) in that folder or its parent contains the intrinsic
+matrix. The original data set has no such file and names its colour images ``.png``; in that case,
+the published Kinect matrix is used. The matrix is that of the depth camera; the colour camera is a
+separate camera next to it.
 """
 
 import re
@@ -24,12 +26,12 @@ _FRAME = re.compile(r"(frame-\d{1,9})\.(color|depth|pose)\.(png|jpg|jpeg|txt|npy
 
 
 class SevenScenesSource:
-    """Reads a 7-Scenes scene or sequence."""
+    """A reader of 7-Scenes scenes and sequences."""
 
     layout = "frame-000000.color.png, .depth.png, .pose.txt (7-Scenes)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether frames of this naming lie in the folder or its sequence folders."""
+        """Return whether the folder or its sequence folders contain frames with 7-Scenes names."""
         return any(
             _FRAME.fullmatch(path.name)
             for part in _parts(folder)
@@ -37,12 +39,16 @@ class SevenScenesSource:
         )
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames of all sequences. Raises CaptureError as ``Source.read`` does."""
+        """Read the frames of all sequences of a scene.
+
+        Raises:
+            CaptureError: If poses or intrinsics are missing or not valid.
+        """
         parts = _parts(folder)
         listed = [(part, stem, found) for part in parts for stem, found in _frames(part)]
         if not any("pose" in found for _, _, found in listed):
             raise CaptureError(
-                folder, "no frame has a pose (frame-000000.pose.txt beside its images)"
+                folder, "contains no camera poses (frame-000000.pose.txt next to the images)"
             )
         every = [found for _, _, found in listed]
         matrix, notes = _intrinsics(folder, parts, every)
@@ -56,13 +62,13 @@ class SevenScenesSource:
 
 
 def _parts(folder: AnyPath) -> list[AnyPath]:
-    """Return the folders that may hold frames: this one, ``frames/`` and the sequences."""
+    """Return the folders that may contain frames: this folder, ``frames/`` and the sequences."""
     inner = [folder / "frames", *sorted(folder.glob("seq-*"))]
     return [folder, *(part for part in inner if part.is_dir())]
 
 
 def _frames(part: AnyPath) -> list[tuple[str, dict[str, AnyPath]]]:
-    """Return each frame's files by kind, in the order of the names."""
+    """Return the files of each frame by kind, sorted by name."""
     frames: dict[str, dict[str, AnyPath]] = {}
     for path in sorted(part.glob("frame-*.*.*")):
         match = _FRAME.fullmatch(path.name)
@@ -74,17 +80,22 @@ def _frames(part: AnyPath) -> list[tuple[str, dict[str, AnyPath]]]:
 def _intrinsics(
     folder: AnyPath, parts: list[AnyPath], frames: list[dict[str, AnyPath]]
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Return the 3x3 matrix and a note where it is not the capture's own."""
+    """Return the 3x3 intrinsic matrix, and a note if it is not part of the capture."""
     for place in (*parts, folder.parent):
         if (place / INTRINSICS).is_file():
             return _read_matrix(place / INTRINSICS), ()
     true_names = all(found["color"].suffix == ".png" for found in frames if "color" in found)
     if not true_names:
         raise CaptureError(
-            folder, f"has no {INTRINSICS} (3x3: fx 0 cx, 0 fy cy, 0 0 1); write one beside frames"
+            folder,
+            f"does not contain {INTRINSICS} (3x3: fx 0 cx, 0 fy cy, 0 0 1); create "
+            "it next to the frames",
         )
     fx, fy, cx, cy = PUBLISHED
-    note = "no camera-intrinsics.txt: the matrix published for 7-Scenes is taken (585, 320, 240)"
+    note = (
+        "no camera-intrinsics.txt found; using the intrinsics published for 7-Scenes "
+        "(585, 320, 240)"
+    )
     return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]), (note,)
 
 
@@ -93,27 +104,29 @@ def _read_matrix(path: AnyPath) -> np.ndarray:
     try:
         values = np.array([float(word) for word in words])
     except ValueError as error:
-        raise CaptureError(path, f"holds what is no number ({error})") from error
+        raise CaptureError(path, f"contains text where a number is expected ({error})") from error
     if len(values) not in (9, 16):
-        raise CaptureError(path, f"must hold 9 numbers, a 3x3 matrix, not {len(values)}")
+        raise CaptureError(path, f"must contain 9 numbers (a 3x3 matrix), got {len(values)}")
     side = 3 if len(values) == 9 else 4
     matrix = values.reshape(side, side)[:3, :3]
     right_form = np.allclose(matrix[2], [0, 0, 1]) and np.allclose(matrix[[0, 1], [1, 0]], 0)
     if not np.isfinite(matrix).all() or not right_form or min(matrix[0, 0], matrix[1, 1]) <= 0:
-        raise CaptureError(path, f"must read fx 0 cx, 0 fy cy, 0 0 1, not {matrix.tolist()}")
+        raise CaptureError(
+            path, f"must have the form fx 0 cx, 0 fy cy, 0 0 1, got {matrix.tolist()}"
+        )
     return matrix
 
 
 def _camera(folder: AnyPath, frames: list[dict[str, AnyPath]], matrix: np.ndarray) -> Camera:
-    """Return the stated camera: the matrix and the image size that it speaks of.
+    """Return the camera for the matrix, with the image size that the matrix refers to.
 
-    The file states no size, so it is that of the stream whose middle the principal point meets
-    best; depth first, since the matrix is the depth camera's.
+    The file states no size. The size is that of the stream whose centre is closest to the principal
+    point; ties go to depth, because the matrix is that of the depth camera.
     """
     sizes = [size for kind in ("depth", "color") if (size := _first_size(frames, kind)) is not None]
     if not sizes:
         raise CaptureError(
-            folder, "has poses but no image that can be read (frame-000000.color.png, .depth.png)"
+            folder, "contains poses but no readable image (frame-000000.color.png, .depth.png)"
         )
     cx, cy = matrix[0, 2], matrix[1, 2]
     width, height = min(sizes, key=lambda size: abs(cx / size[0] - 0.5) + abs(cy / size[1] - 0.5))

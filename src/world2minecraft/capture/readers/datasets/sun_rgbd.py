@@ -1,8 +1,8 @@
-"""Reader of SUN3D and SUN RGB-D: ``image/``, ``depth/``, ``extrinsics/``, ``intrinsics.txt``.
+"""Reader of SUN3D and SUN RGB-D: ``image/``, ``depth/``, ``extrinsics/`` and ``intrinsics.txt``.
 
-Both store depth in millimetres with its 16 bits rotated by three. SUN RGB-D is one frame a folder;
-its extrinsics rotate the camera's axes level, so that -y is up. SUN3D is a sequence: its extrinsics
-are three rows a frame, camera to world. Axes are OpenCV's.
+Both data sets store depth in millimetres with the 16 bits rotated by three. SUN RGB-D has one frame
+per folder, and its extrinsics rotate the camera axes so that -y is up. SUN3D is a sequence with
+three rows of extrinsics per frame, camera to world. Axes are those of OpenCV.
 """
 
 import re
@@ -24,30 +24,34 @@ from world2minecraft.core.errors import CaptureError
 
 DEPTH_UNIT = "rotated"
 WITHIN_S = 0.033  # SUN3D's recorder pairs each picture with a depth of the same thirtieth.
-ONE_FRAME_NOTE = "one frame alone: what it did not see stays unknown"
+ONE_FRAME_NOTE = "the capture is a single frame; everything that it does not show stays unknown"
 _STAMPED = re.compile(r"(\d{1,9})-(\d{1,15})")
 
 
 class SunSource:
-    """Reads a frame of SUN RGB-D or a sequence of SUN3D."""
+    """A reader of SUN RGB-D frames and SUN3D sequences."""
 
     layout = "image/*.jpg, depth_bfx/*.png, extrinsics/*.txt, intrinsics.txt (SUN RGB-D, SUN3D)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether the images' folders and the intrinsics are there."""
+        """Return whether the folder contains the image folders and the intrinsics."""
         depth = _depth_folder(folder)
         return (
             depth is not None and (folder / "image").is_dir() and _intrinsics_file(folder).is_file()
         )
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` does."""
+        """Read a SUN RGB-D frame or the frames of a SUN3D sequence.
+
+        Raises:
+            CaptureError: If images cannot be paired, or intrinsics or poses are not valid.
+        """
         depth_folder = _depth_folder(folder) or folder
         pairs = _pairs(folder, _images(folder / "image"), _images(depth_folder))
         matrix = read_matrix(_intrinsics_file(folder), [(3, 3), (4, 4)])
         size = first_image_size([colour for colour, _ in pairs])
         if size is None:
-            raise CaptureError(folder, "has no image that can be read; copy it again")
+            raise CaptureError(folder, "contains no readable image; copy the folder again")
         camera = matrix_camera(_intrinsics_file(folder), size, matrix)
         poses = _poses(folder, len(pairs))
         frames = tuple(
@@ -70,7 +74,7 @@ def _intrinsics_file(folder: AnyPath) -> AnyPath:
 
 
 def _depth_folder(folder: AnyPath) -> AnyPath | None:
-    """Return where depth lies; ``depth_bfx`` has its holes filled by guesses: it comes last."""
+    """Return the depth folder. ``depth_bfx`` is the second choice: its holes are inpainted."""
     return next(
         (folder / name for name in ("depth", "depth_bfx") if (folder / name).is_dir()), None
     )
@@ -84,7 +88,7 @@ def _images(folder: AnyPath) -> list[AnyPath]:
 
 
 def _seconds(path: AnyPath) -> float | None:
-    """Return the time in a SUN3D name, ``0000001-000000033369.jpg``, in seconds."""
+    """Return the time in seconds in a SUN3D file name such as ``0000001-000000033369.jpg``."""
     match = _STAMPED.fullmatch(path.stem)
     return int(match[2]) / 1e6 if match else None
 
@@ -92,23 +96,25 @@ def _seconds(path: AnyPath) -> float | None:
 def _pairs(
     folder: AnyPath, colours: list[AnyPath], depths: list[AnyPath]
 ) -> list[tuple[AnyPath, AnyPath]]:
-    """Pair images: in order where they are as many, else by the times in their names."""
+    """Pair images in order if the counts match, or else by the times in their names."""
     if colours and len(colours) == len(depths):
         return list(zip(colours, depths, strict=True))
     times = [[_seconds(path) for path in paths] for paths in (colours, depths)]
     if not colours or not depths or any(None in stamps for stamps in times):
         raise CaptureError(
-            folder, f"has {len(colours)} pictures and {len(depths)} depth images; they must pair"
+            folder,
+            f"contains {len(colours)} colour and {len(depths)} depth images; the "
+            "counts or the times must match",
         )
     colour_s, depth_s = (np.array(stamps, np.float64) for stamps in times)
     pairs = pair_times(colour_s, depth_s, WITHIN_S)
     if not pairs:
-        raise CaptureError(folder, "no picture and depth image are of the same time")
+        raise CaptureError(folder, "contains no colour and depth images of the same time")
     return [(colours[first], depths[second]) for first, second in pairs]
 
 
 def _poses(folder: AnyPath, count: int) -> list[np.ndarray | None]:
-    """Return camera to world of each frame; of the files in ``extrinsics`` the newest counts."""
+    """Return the camera-to-world pose of each frame, from the newest file in ``extrinsics``."""
     files = sorted((folder / "extrinsics").glob("*.txt"), key=str)
     if not files:
         return [np.eye(4)] if count == 1 else [None] * count
@@ -116,7 +122,9 @@ def _poses(folder: AnyPath, count: int) -> list[np.ndarray | None]:
     words = [word for row in read_rows(path) for word in row]
     if len(words) != 12 * count:
         raise CaptureError(
-            path, f"must hold 3x4 numbers for each of {count} frames, not {len(words)}"
+            path,
+            f"must contain a 3x4 matrix for each of {count} frames ({12 * count} "
+            f"numbers), got {len(words)} numbers",
         )
     stated = to_floats(path, words).reshape(count, 3, 4)
     poses = []

@@ -1,4 +1,4 @@
-"""Parsing of numbers in text files of data sets, within limits and with precise errors."""
+"""Parsing of numbers in the text files of data sets, with size limits and precise errors."""
 
 import re
 from collections.abc import Sequence
@@ -15,10 +15,11 @@ MAX_TEXT_BYTES = 64 << 20  # An hour of motion capture at 300 Hz takes 60 MB.
 
 
 def read_rows(path: AnyPath, limit_bytes: int = MAX_TEXT_BYTES) -> list[list[str]]:
-    """Return the words of each line; empty lines and those that begin with # are left out.
+    """Return the words of each line, without empty lines and lines that start with #.
 
     Raises:
-        InputError: the file is missing. LimitError: it is too large.
+        InputError: If the file is missing.
+        LimitError: If the file is too large.
     """
     text = read_bytes(path, limit_bytes).decode("utf-8", "replace")
     lines = (line.strip() for line in text.splitlines())
@@ -26,47 +27,52 @@ def read_rows(path: AnyPath, limit_bytes: int = MAX_TEXT_BYTES) -> list[list[str
 
 
 def to_floats(path: AnyPath, words: Sequence[str]) -> np.ndarray:
-    """Return words as float64; nan and inf are numbers here.
+    """Convert words to float64; nan and inf are accepted.
 
     Raises:
-        CaptureError: a word is no number.
+        CaptureError: If a word is not a number.
     """
     numbers = []
     for word in words:
         try:
             numbers.append(float(word))
         except ValueError as error:
-            raise CaptureError(path, f"holds {word[:20]!r} where a number must stand") from error
+            raise CaptureError(
+                path, f"contains {word[:20]!r} where a number is expected"
+            ) from error
     return np.array(numbers, np.float64)
 
 
 def read_matrix(path: AnyPath, shapes: Sequence[tuple[int, int]]) -> np.ndarray:
-    """Return all numbers of a file as a float64 matrix of one of some shapes.
+    """Read a file as a float64 matrix of one of the given shapes.
 
     Raises:
-        CaptureError: it holds another count of numbers. InputError: it is missing.
+        CaptureError: If the file contains a different count of numbers.
+        InputError: If the file is missing.
     """
     words = [word for row in read_rows(path, 1 << 20) for word in row]
     for rows, columns in shapes:
         if len(words) == rows * columns:
             return to_floats(path, words).reshape(rows, columns)
     counts = " or ".join(f"{rows * columns} ({rows}x{columns})" for rows, columns in shapes)
-    raise CaptureError(path, f"must hold {counts} numbers, not {len(words)}")
+    raise CaptureError(path, f"must contain {counts} numbers, got {len(words)}")
 
 
 def natural_sort_key(path: AnyPath) -> list[tuple[int, str]]:
-    """Return a key that sorts file names by the numbers in them: 9.png before 10.png."""
+    """Return a sort key that orders file names by the numbers in them: 9.png before 10.png."""
     parts = _DIGITS.split(path.name)
     return [(int(part[:18]), "") if part.isdecimal() else (-1, part) for part in parts]
 
 
 def check_relative_path(stated_by: AnyPath, name: str) -> PurePosixPath:
-    """Return a file's name that a data set states, which must lie inside its folder.
+    """Return the relative path of a file named by a data set, if it is inside the folder.
 
     Raises:
-        CaptureError: it leaves the folder, or is no name that can be printed.
+        CaptureError: If the path leaves the folder or contains unprintable characters.
     """
     pure = PurePosixPath(name.replace("\\", "/"))
     if pure.is_absolute() or ".." in pure.parts or not pure.name or not name.isprintable():
-        raise CaptureError(stated_by, f"names {name[:80]!r}; images must lie inside the folder")
+        raise CaptureError(
+            stated_by, f"contains the file name {name[:80]!r}; images must be inside the folder"
+        )
     return pure

@@ -1,4 +1,4 @@
-"""Synchronisation of streams with their own clocks: images with images, images with poses."""
+"""Synchronisation of data streams by time: colour with depth, and images with poses."""
 
 import numpy as np
 
@@ -6,15 +6,16 @@ from world2minecraft.geometry.rotations import pose_from_quaternion
 
 
 def pair_times(first_s: np.ndarray, second_s: np.ndarray, within_s: float) -> list[tuple[int, int]]:
-    """Pair each moment of one stream with the nearest of another, each used once at most.
+    """Pair each time of one stream with the nearest of another. Each time is used at most once.
 
     Args:
-        first_s: float64 [N], seconds, in any order.
-        second_s: float64 [M], seconds.
-        within_s: pairs further apart are none.
+        first_s: Times of the first stream in seconds, float64 [N], in any order.
+        second_s: Times of the second stream in seconds, float64 [M].
+        within_s: Largest allowed time difference in seconds.
 
     Returns:
-        Indices into both, in the order of the first stream. Of rivals the nearer pair wins.
+        Pairs of indices into both streams, in the order of the first. If several pairs compete for
+        the same index, the closest pair is kept.
     """
     if not len(first_s) or not len(second_s):
         return []
@@ -37,12 +38,15 @@ def pair_times(first_s: np.ndarray, second_s: np.ndarray, within_s: float) -> li
 
 
 def interpolate_pose(before: np.ndarray, after: np.ndarray, share: float) -> np.ndarray:
-    """Return the pose part of the way from one to another, the turn at an even rate (slerp).
+    """Interpolate between two poses, linearly in position and by slerp in rotation.
 
     Args:
-        before: float64 [7]: x y z in metres and a quaternion x y z w.
-        after: the same, a moment later.
-        share: 0 is the first, 1 the second.
+        before: First pose, float64 [7]: x y z in metres and a quaternion x y z w.
+        after: Second pose, float64 [7].
+        share: Position between the poses, from 0 for the first to 1 for the second.
+
+    Returns:
+        The interpolated pose as float64 [4, 4].
     """
     start = before[3:] / np.linalg.norm(before[3:])
     end = after[3:] / np.linalg.norm(after[3:])

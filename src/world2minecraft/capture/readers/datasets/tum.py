@@ -1,10 +1,10 @@
-"""Reader of TUM RGB-D: ``rgb.txt``, ``depth.txt`` and ``groundtruth.txt``.
+"""Reader of TUM RGB-D sequences: ``rgb.txt``, ``depth.txt`` and ``groundtruth.txt``.
 
-A line is ``seconds file`` or ``seconds tx ty tz qx qy qz qw``, camera to world. Images are paired
-by time; poses are measured more often than pictures are taken and are interpolated.
-Depth was registered to colour, so both share one camera with its distortion. The intrinsics are
-those published for the sequence's name (freiburg1 to 3), those of a ``calibration.txt`` (fx fy cx
-cy and up to five of k1 k2 p1 p2 k3, as ETH3D has it), or the default of such cameras.
+Lines have the form ``seconds file`` or ``seconds tx ty tz qx qy qz qw`` (camera to world). Images
+are paired by time. Poses are measured more often than images are taken, and are interpolated. Depth
+is registered to colour, so both share one camera with its distortion. The intrinsics are those in
+``calibration.txt`` (fx fy cx cy and up to five of k1 k2 p1 p2 k3, as in ETH3D), those published for
+the sequence (freiburg1 to 3), or the default of such cameras.
 """
 
 import re
@@ -42,22 +42,28 @@ _SEQUENCE = re.compile(r"(?:freiburg|(?<![a-z])fr)([123])(?!\d)", re.IGNORECASE)
 
 
 class TumSource:
-    """Reads a sequence in the layout of TUM's RGB-D benchmark."""
+    """A reader of sequences in the layout of the TUM RGB-D benchmark."""
 
     layout = "rgb.txt, depth.txt and groundtruth.txt (TUM RGB-D)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether both lists of images are there."""
+        """Return whether the folder contains ``rgb.txt`` and ``depth.txt``."""
         return (folder / "rgb.txt").is_file() and (folder / "depth.txt").is_file()
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the pairs of images. Raises CaptureError as ``Source.read`` does."""
+        """Read the pairs of colour and depth images with their interpolated poses.
+
+        Raises:
+            CaptureError: If images do not match in time, or a file is not valid.
+        """
         colour_s, colours = _read_image_list(folder / "rgb.txt")
         depth_s, depths = _read_image_list(folder / "depth.txt")
         pairs = pair_times(colour_s, depth_s, WITHIN_S)
         if not pairs:
             raise CaptureError(
-                folder, f"no time of rgb.txt lies within {WITHIN_S} s of one of depth.txt"
+                folder,
+                f"contains no colour and depth images within {WITHIN_S} s of each other "
+                "(rgb.txt, depth.txt)",
             )
         camera, notes = _camera(folder, [colours[index] for index, _ in pairs])
         poses = _Trajectory(folder / "groundtruth.txt")
@@ -84,42 +90,51 @@ class TumSource:
 
 
 def _read_image_list(path: AnyPath) -> tuple[np.ndarray, list[AnyPath]]:
-    """Return the times and the files that a list names, which must stay inside the folder."""
+    """Return the times and files in a list; all files must be inside the folder."""
     rows = read_rows(path)
     if not rows or any(len(row) < 2 for row in rows):
-        raise CaptureError(path, "must hold lines of seconds and a file, such as 1.5 rgb/1.5.png")
+        raise CaptureError(
+            path, "must contain lines of the form: seconds file, such as 1.5 rgb/1.5.png"
+        )
     seconds = to_floats(path, [row[0] for row in rows])
     if not np.isfinite(seconds).all():
-        raise CaptureError(path, "must begin each line with seconds")
+        raise CaptureError(path, "must contain a finite time in seconds at the start of each line")
     files = [path.parent / str(check_relative_path(path, row[1])) for row in rows]
     stems = [file.stem for file in files]
     if len(set(stems)) != len(stems):
         twice = next(stem for stem in stems if stems.count(stem) > 1)
-        raise CaptureError(path, f"names a file twice, {twice[:80]!r}: keep one of its lines")
+        raise CaptureError(path, f"contains the file {twice[:80]!r} twice; remove one of the lines")
     return seconds, files
 
 
 def _camera(folder: AnyPath, images: list[AnyPath]) -> tuple[Camera, tuple[str, ...]]:
-    """Return the camera of both streams, and a note where it is not the sequence's own."""
+    """Return the camera of both streams, and a note if it is not specified by the sequence."""
     stated = folder / "calibration.txt"
     if stated.is_file():
         words = [word for row in read_rows(stated, 1 << 20) for word in row]
         if not 4 <= len(words) <= 9:
-            raise CaptureError(stated, f"must hold fx fy cx cy and a lens, not {len(words)} words")
+            raise CaptureError(
+                stated,
+                "must contain fx fy cx cy and up to five distortion coefficients, got "
+                f"{len(words)} values",
+            )
         values = to_floats(stated, words)
         size = intrinsics_size((values[2], values[3]), [first_image_size(images), VGA]) or VGA
         return stated_camera(stated, size, values[:4], values[4:]), ()
     match = _SEQUENCE.search(folder.name) or _SEQUENCE.search(folder.parent.name)
     if match:
         lens, distortion = PUBLISHED[match[1]]
-        note = f"the intrinsics published for freiburg{match[1]} are taken"
+        note = f"using the intrinsics published for freiburg{match[1]}"
         return stated_camera(folder, VGA, lens, distortion), (note,)
-    note = "no calibration.txt (fx fy cx cy): the default of Kinect-like cameras is taken, 525 px"
+    note = (
+        "no calibration.txt (fx fy cx cy) found; using the default intrinsics of "
+        "Kinect-like cameras (525 px)"
+    )
     return stated_camera(folder, VGA, PRIMESENSE), (note,)
 
 
 class _Trajectory:
-    """Measured poses, asked for at any moment; without their file there are none at all."""
+    """Measured poses that can be interpolated at any time; empty if the file is missing."""
 
     def __init__(self, path: AnyPath):
         self.seconds = np.zeros(0)
@@ -128,20 +143,22 @@ class _Trajectory:
             return
         rows = read_rows(path)
         if not rows or any(len(row) != 8 for row in rows):
-            raise CaptureError(path, "must hold lines of seconds tx ty tz qx qy qz qw")
+            raise CaptureError(path, "must contain lines of the form: seconds tx ty tz qx qy qz qw")
         words = [word for row in rows for word in row]
         table = to_floats(path, words).reshape(len(rows), 8)
         table = table[np.isfinite(table).all(axis=1)]
         table = table[np.linalg.norm(table[:, 4:], axis=1) > 1e-6]
         if not len(table):
             raise CaptureError(
-                path, "holds no pose that is finite; without this file they are found"
+                path,
+                "contains no finite pose; correct the file, or delete it to have the "
+                "poses estimated",
             )
         table = table[np.argsort(table[:, 0], kind="stable")]
         self.seconds, self.poses = table[:, 0], table[:, 1:]
 
     def at(self, seconds: float) -> tuple[np.ndarray | None, str]:
-        """Return camera to world at a moment, or None and why it is not known."""
+        """Return the camera-to-world pose at a time, or None and the reason."""
         if not self.stated:
             return None, ""
         after = int(np.searchsorted(self.seconds, seconds))

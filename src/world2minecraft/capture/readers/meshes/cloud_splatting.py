@@ -1,10 +1,9 @@
-"""Splatting of point clouds: a pinhole view of each point as a small disc (surfel).
+"""Splatting of point clouds: renders each point of a cloud as a small disc (surfel).
 
-Discs are as large as the points lie apart (``surfels``), so that walls are closed. First the
-nearest disc of each pixel is found, then the discs within ``BLEND_M`` of it are blended, the
-nearer to the pixel's ray the more: that takes the noise out, and what lies behind does not show. A
-pixel that still looks through a gap is one that most pixels around it stand before; it becomes a
-hole.
+The disc radius follows the spacing of the points (``surfels``), so that walls have no holes. The
+renderer first finds the nearest disc at each pixel. It then blends all discs within ``BLEND_M`` of
+that depth, weighted by their distance from the pixel's ray, which reduces noise and excludes hidden
+surfaces. Pixels that see the background through a gap between discs are set to 0.
 """
 
 from dataclasses import dataclass
@@ -24,7 +23,13 @@ GAP_SHARE, GAP_M = 0.08, 0.06  # A pixel this much farther than most around it l
 
 @dataclass(frozen=True, eq=False)
 class Surfels:
-    """The discs of a cloud: unit ``normals`` float32 [N, 3] (0 where unknown), ``radius_m`` [N]."""
+    """The discs (surfels) of a point cloud.
+
+    Attributes:
+        cloud: Point at the centre of each disc.
+        normals: Unit normals, float32 [N, 3]; 0 if unknown.
+        radius_m: Disc radii in metres, float32 [N].
+    """
 
     cloud: PointCloud
     normals: np.ndarray
@@ -34,7 +39,18 @@ class Surfels:
 def render_surfels(
     surfels: Surfels, camera: Camera, world_to_camera: np.ndarray, runs: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return z-depth, colour and labels as ``see_triangles`` does, for a cloud."""
+    """Render depth, colour and labels of a point cloud for one camera pose.
+
+    Args:
+        surfels: The discs to render, in metres of the world frame.
+        camera: Camera intrinsics without distortion.
+        world_to_camera: Rigid transform, float64 [4, 4].
+        runs: Ranges of points to render, int64 [R, 2] with exclusive ends; None for all points.
+
+    Returns:
+        The z-depth in metres as float32 [H, W] (0 for empty pixels), the colour as uint8 [H, W, 3]
+        and the class ids as uint8 [H, W] (255 if unknown).
+    """
     cloud = surfels.cloud
     runs = np.array([[0, len(cloud.points)]], np.int64) if runs is None else runs
     shape = (camera.height_px, camera.width_px)
@@ -66,9 +82,10 @@ def render_surfels(
 
 @njit
 def _transform_surfels(points, normals, radii, pose, pinhole, shape, runs):
-    """Return the discs that a camera may see, in its frame, and which point each is of.
+    """Return the discs that may be visible to a camera, in its frame, with their point indices.
 
-    float64 [D, 8]: place, normal, radius (grown where it is smaller than a pixel), and radius.
+    The discs are float32 [D, 8]: position, normal, radius (at least ``MIN_RADIUS_PX``) and true
+    radius.
     """
     capacity = 0
     for r in range(len(runs)):
@@ -98,7 +115,7 @@ def _transform_surfels(points, normals, radii, pose, pinhole, shape, runs):
 
 @njit
 def _window(disc, pinhole, shape):
-    """Return the pixels u0, u1, v0, v1 (ends not included) around a disc."""
+    """Return the pixel bounds u0, u1, v0, v1 of a disc, with exclusive ends."""
     z, radius = disc[2], disc[6]
     u, v = disc[0] / z * pinhole.fx + pinhole.cx, disc[1] / z * pinhole.fy + pinhole.cy
     u0, u1 = _span(u, radius / z * pinhole.fx, shape[1])
@@ -115,9 +132,9 @@ def _span(middle, half, size):
 
 @njit
 def _intersect_disc(disc, x, y):
-    """Return how far along the ray (x, y, 1) it meets a disc, and the share of the radius there.
+    """Return the depth at which the ray (x, y, 1) meets a disc, and the squared relative radius.
 
-    A disc seen so obliquely that its plane runs off is met near its middle's depth.
+    The depth is clipped to one radius around the centre of the disc, for discs seen edge-on.
     """
     level, radius = disc[2], disc[6]
     facing = disc[3] * x + disc[4] * y + disc[5]
@@ -131,7 +148,7 @@ def _intersect_disc(disc, x, y):
 
 @njit
 def _depth_pass(discs, pinhole, nearest):
-    """Find the least depth of the discs at each pixel."""
+    """Compute the smallest disc depth at each pixel."""
     for i in range(len(discs)):
         u0, u1, v0, v1 = _window(discs[i], pinhole, nearest.shape)
         for v in range(v0, v1):
@@ -146,9 +163,9 @@ def _depth_pass(discs, pinhole, nearest):
 
 @njit
 def _blend_pass(discs, owner, pinhole, nearest, colour, labels, sums, picture_labels):
-    """Add up depth, colour and weight of the discs near each pixel's nearest one.
+    """Accumulate depth, colour and weight of the discs close to each pixel's nearest disc.
 
-    The label is that of the disc whose middle the ray meets best; its weight is in ``sums[4]``.
+    A pixel gets the label of the disc with the largest weight, which is stored in ``sums[4]``.
     """
     for i in range(len(discs)):
         u0, u1, v0, v1 = _window(discs[i], pinhole, nearest.shape)
@@ -175,10 +192,10 @@ def _blend_pass(discs, owner, pinhole, nearest, colour, labels, sums, picture_la
 
 @njit
 def _remove_gaps(depth, rim):
-    """Return the depth without pixels in gaps, and without the outermost ones of things.
+    """Remove pixels that see through gaps, and silhouette pixels covered only by disc rims.
 
-    In a gap are those that most of the 24 around them stand clearly before. Outermost are those
-    that only the rims of discs meet (``rim``), with something clearly farther next to them.
+    A pixel sees through a gap if most of the 24 pixels around it are clearly nearer. ``rim`` marks
+    the pixels that only the rims of discs cover; they are removed beside clearly farther pixels.
     """
     height, width = depth.shape
     result = depth.copy()

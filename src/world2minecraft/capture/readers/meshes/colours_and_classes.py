@@ -1,8 +1,9 @@
-"""Colours and classes of a mesh or point cloud, from the columns and names in its file.
+"""Colours and semantic classes of a mesh or point cloud, from columns and names in its file.
 
-``NAME.classes.json`` beside ``NAME.ply`` maps label numbers to names:
-``{"5": "chair", "7": "table"}``. Without one, ``label`` is taken to be of NYU40, as ScanNet's is;
-other columns to be our own ids where none is over 11, else of NYU40.
+A file ``NAME.classes.json`` next to ``NAME.ply`` maps label numbers to class names:
+``{"5": "chair", "7": "table"}``. Without that file, a column ``label`` is read as NYU40 labels, as
+in ScanNet. Other label columns are read as World2Minecraft class ids if no value exceeds 11, and as
+NYU40 labels otherwise.
 """
 
 import re
@@ -36,7 +37,9 @@ def _tables() -> dict[str, dict[str, str]]:
 
 
 def class_of_name(name: str) -> int:
-    """Return the class of a thing's name, such as ``Wall0``, ``office_chair.001``, or 255.
+    """Return the class id for an object name such as ``Wall0`` or ``office_chair.001``.
+
+    The class id is 255 if the name contains no known word.
 
     Example:
         >>> [class_of_name(name) for name in ("Wall_3", "armchair.002", "Mesh 7", "ceiling_1.txt")]
@@ -54,7 +57,7 @@ def class_of_name(name: str) -> int:
 
 
 def identity_classes() -> np.ndarray:
-    """Return uint8 [256]: our own ids as they are, 255 beyond."""
+    """Return a uint8 [256] table that maps class ids to themselves and other values to 255."""
     classes = np.full(256, UNKNOWN, np.uint8)
     classes[: len(CLASS_NAMES)] = np.arange(len(CLASS_NAMES))
     return classes
@@ -63,15 +66,18 @@ def identity_classes() -> np.ndarray:
 def classes_of_label_ids(
     path: AnyPath, column: str, values: np.ndarray
 ) -> tuple[np.ndarray | None, str]:
-    """Return uint8 classes of a file's label numbers, and a note on how.
+    """Convert the label numbers of a file to class ids.
 
     Args:
-        path: the file.
-        column: what the file calls them.
-        values: [N] numbers.
+        path: The mesh or point cloud file; its class map is searched for next to it.
+        column: Name of the label column in the file.
+        values: Label numbers, shape [N].
+
+    Returns:
+        The class ids as uint8 [N], or None if the labels are unknown, and a note about the mapping.
 
     Raises:
-        CaptureError: the map next to the file cannot be used.
+        CaptureError: If the class map next to the file is not valid.
     """
     numbers = np.nan_to_num(
         np.asarray(values, np.float64), nan=MAX_LABEL_ID, posinf=MAX_LABEL_ID, neginf=MAX_LABEL_ID
@@ -81,7 +87,7 @@ def classes_of_label_ids(
     )
     map_path = path.parent / f"{path.stem}.classes.json"
     if map_path.is_file():
-        return _classes_from_map(map_path)[numbers], f"classes are told by {map_path.name}"
+        return _classes_from_map(map_path)[numbers], f"classes are mapped by {map_path.name}"
     known = numbers[(numbers != MAX_LABEL_ID) & (numbers != UNKNOWN)]
     if not len(known):
         return None, ""
@@ -89,38 +95,44 @@ def classes_of_label_ids(
     if largest < len(CLASS_NAMES) and (column not in ("label",) or has_unknown):
         return identity_classes()[
             np.minimum(numbers, 255)
-        ], f"column {column} is read as our class ids"
+        ], f"column {column} is read as World2Minecraft class ids"
     if largest <= 40:
-        note = f"column {column} is read as NYU40 numbers"
+        note = f"column {column} is read as NYU40 labels"
         return nyu40_classes()[numbers], note
-    note = f"column {column} holds numbers up to {largest}, which are not known"
-    return None, f"{note}: map them in {map_path.name}"
+    note = f"column {column} contains unknown label numbers up to {largest}"
+    return None, f"{note}; map them in {map_path.name}"
 
 
 def _classes_from_map(map_path: AnyPath) -> np.ndarray:
     table = read_json(map_path, MAX_MAP_BYTES)
     classes = np.full(MAX_LABEL_ID + 1, UNKNOWN, np.uint8)
     if not isinstance(table, dict):
-        raise CaptureError(map_path, 'must map numbers to names, such as {"5": "chair"}')
+        raise CaptureError(
+            map_path,
+            'must be a JSON object that maps label numbers to class names, such as {"5": "chair"}',
+        )
     for number, name in table.items():
         found = class_of_name(str(name))
         if not number.isascii() or not number.isdecimal() or int(number) > MAX_LABEL_ID:
             raise CaptureError(
-                map_path, f"maps {number[:20]!r}, which is no number up to {MAX_LABEL_ID}"
+                map_path,
+                f"contains the label {number[:20]!r}; labels must be integers from 0 to "
+                f"{MAX_LABEL_ID}",
             )
         if found == UNKNOWN and str(name) != "unknown":
             raise CaptureError(
-                map_path, f"names {str(name)[:40]!r}; known are {', '.join(CLASS_NAMES[1:])}"
+                map_path,
+                f"contains the unknown class name {str(name)[:40]!r}; known names: "
+                f"{', '.join(CLASS_NAMES[1:])}",
             )
         classes[int(number)] = found
     return classes
 
 
 def colours_of_columns(columns: Mapping[str, np.ndarray]) -> np.ndarray | None:
-    """Return uint8 [N, 3] of columns that hold colours, or None.
+    """Return the colours in a file's columns as uint8 [N, 3], or None if it has no colour columns.
 
-    Whole numbers up to 255, or up to 65535 (LAS, PTS of some scanners), and shares up to 1 are
-    distinguished by their maximum.
+    The value range (0 to 1, 0 to 255 or 0 to 65535) is inferred from the maximum.
     """
     for names in COLOUR_COLUMNS:
         if all(name in columns for name in names):
@@ -132,7 +144,11 @@ def colours_of_columns(columns: Mapping[str, np.ndarray]) -> np.ndarray | None:
 
 
 def to_uint8_colours(values: np.ndarray) -> np.ndarray | None:
-    """Return uint8 [N, 3] of colours in any of the usual ranges; None where all is black."""
+    """Convert colours of any common value range to uint8 [N, 3].
+
+    Returns:
+        The colours, or None if all values are 0.
+    """
     if values.dtype == np.uint8:
         return np.ascontiguousarray(values)
     finite = np.nan_to_num(values.astype(np.float32))

@@ -1,4 +1,4 @@
-"""Frustum culling: a mesh or surfels sorted into blocks with bounding spheres."""
+"""Frustum culling: divides meshes and surfels into blocks with bounding spheres."""
 
 from dataclasses import dataclass, replace
 
@@ -13,10 +13,12 @@ BLOCK_M = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Blocks:
-    """Runs of triangles or points, block after block, and the ball around each block.
+    """Spatial blocks of triangles or points, each with a bounding sphere.
 
-    Block b holds those from ``starts[b]`` to ``starts[b + 1]`` (int64 [B + 1]); ``middles_m``
-    float64 [B, 3], ``radii_m`` float64 [B].
+    Attributes:
+        starts: First element of each block, int64 [B + 1]; block b ends before ``starts[b + 1]``.
+        middles_m: Centres of the bounding spheres in metres, float64 [B, 3].
+        radii_m: Radii of the bounding spheres in metres, float64 [B].
     """
 
     starts: np.ndarray
@@ -24,7 +26,7 @@ class Blocks:
     radii_m: np.ndarray
 
     def runs(self, camera: Camera, world_to_camera: np.ndarray) -> np.ndarray:
-        """Return int64 [R, 2]: the runs of the blocks that a camera may see."""
+        """Return the index ranges of the blocks that a camera may see, as int64 [R, 2]."""
         middles = self.middles_m @ world_to_camera[:3, :3].T + world_to_camera[:3, 3]
         seen = middles[:, 2] > -self.radii_m
         left, right = camera.cx_px / camera.fx_px, (camera.width_px - camera.cx_px) / camera.fx_px
@@ -36,12 +38,12 @@ class Blocks:
 
 
 def whole(count: int) -> np.ndarray:
-    """Return the one run of all elements."""
+    """Return a single index range that covers all elements, as int64 [1, 2]."""
     return np.array([[0, count]], np.int64)
 
 
 def sort_mesh_into_blocks(mesh: Mesh) -> tuple[Mesh, Blocks]:
-    """Return a mesh in metres with its triangles in the order of blocks, and these."""
+    """Sort the triangles of a mesh in metres by block. Return the new mesh and its blocks."""
     middles = mesh.vertices[mesh.faces].mean(axis=1)
     order, starts = _block_order(middles)
     faces = mesh.faces[order]
@@ -57,7 +59,7 @@ def sort_mesh_into_blocks(mesh: Mesh) -> tuple[Mesh, Blocks]:
 
 
 def sort_surfels_into_blocks(surfels: Surfels) -> tuple[Surfels, Blocks]:
-    """Return the discs of a cloud in the order of blocks, and these."""
+    """Sort the discs of a cloud by block, and return the sorted discs and their blocks."""
     order, starts = _block_order(surfels.cloud.points)
     cloud = surfels.cloud
     points = cloud.points[order]
@@ -75,7 +77,7 @@ def sort_surfels_into_blocks(surfels: Surfels) -> tuple[Surfels, Blocks]:
 
 
 def _block_order(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the order that puts places of one block together, and where each block starts."""
+    """Return the order that groups positions by block, and the start of each block."""
     own, count = assign_cells(places, BLOCK_M)
     order = np.argsort(own, kind="stable")
     starts = np.concatenate([[0], np.cumsum(np.bincount(own, minlength=count))])

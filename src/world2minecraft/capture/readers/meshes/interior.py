@@ -1,9 +1,9 @@
-"""Detection of the free space inside: cells of a voxel grid where a person could stand.
+"""Detection of the free space inside a building: grid cells in which a person could stand.
 
-Each free cell looks along the 26 directions to its neighbours, through the grid to its end. A cell
-is inside where it has a floor below and surface at most sides; a ceiling helps but is not needed,
-and neither is one wall. What is too narrow for a person (inside cupboards, between the two faces
-of a wall) is dropped. ``backface_share`` tells whether the faces seen from inside are back faces.
+From each free cell, the 26 directions to its neighbours are followed to the end of the voxel grid.
+A cell is inside if there is a floor below it and surface in most other directions; the ceiling or
+one wall may be missing. Spaces too small for a person, such as the inside of a cupboard or of a
+wall, are discarded. ``backface_share`` measures how often the back of a face is seen from inside.
 """
 
 from dataclasses import dataclass
@@ -36,22 +36,33 @@ MAX_HINT_DISTANCE_M = 1.0  # So far may the named place be from the space that i
 
 @dataclass(frozen=True, eq=False)
 class SurfaceGrid:
-    """Voxels that hold surface: ``occupied`` bool [X, Y, Z], ``cell_m`` wide from ``origin_m``."""
+    """A voxel grid of the surface of a mesh or point cloud.
+
+    Attributes:
+        occupied: Cells that contain surface, bool [X, Y, Z].
+        origin_m: Corner of the grid with the smallest coordinates, in metres, float64 [3].
+        cell_m: Edge length of a cell in metres.
+    """
 
     occupied: np.ndarray
     origin_m: np.ndarray
     cell_m: float
 
     def centers_m(self, cells: np.ndarray) -> np.ndarray:
-        """Return the middles of cells int [N, 3], float64 [N, 3]."""
+        """Return the centres of cells, given as int [N, 3], in metres as float64 [N, 3]."""
         return self.origin_m + (cells + 0.5) * self.cell_m
 
 
 def voxelise_surface(geometry: Geometry, low_m: np.ndarray, high_m: np.ndarray) -> SurfaceGrid:
-    """Return which cells of a box hold surface of a mesh or point cloud in metres.
+    """Mark the grid cells of a bounding box that contain surface of a mesh or point cloud.
+
+    Args:
+        geometry: The mesh or point cloud in metres.
+        low_m: Minimum corner of the bounding box in metres.
+        high_m: Maximum corner of the bounding box in metres.
 
     Raises:
-        ValueError: its triangles have far more surface than a building.
+        ValueError: If the triangles have far more surface than a building.
     """
     size = high_m - low_m
     cell_m = max(CELL_M, float((np.prod(size + 2 * PADDING_CELLS * CELL_M) / MAX_CELLS) ** (1 / 3)))
@@ -60,7 +71,10 @@ def voxelise_surface(geometry: Geometry, low_m: np.ndarray, high_m: np.ndarray) 
     occupied = np.zeros(tuple(shape), np.bool_)
     if isinstance(geometry, Mesh):
         if _sample_count(geometry.vertices, geometry.faces, cell_m) > MAX_SAMPLES:
-            raise ValueError("its triangles have far more surface than a building")
+            raise ValueError(
+                "the total triangle area is far larger than that of a building; check "
+                "the unit of the file"
+            )
         _mark_triangles(geometry.vertices, geometry.faces, origin, cell_m, occupied)
     else:
         _mark_points(geometry.points, origin, cell_m, occupied)
@@ -69,7 +83,7 @@ def voxelise_surface(geometry: Geometry, low_m: np.ndarray, high_m: np.ndarray) 
 
 @njit
 def _subdivisions(vertices, face, cell_m):
-    """Return into how many parts a triangle's sides are cut, so that no cell is missed."""
+    """Return the number of parts to divide a triangle's edges into, so that no cell is missed."""
     longest = 0.0
     for k in range(3):
         one, other = vertices[face[k]], vertices[face[(k + 1) % 3]]
@@ -119,7 +133,7 @@ def _mark_points(points, origin, cell_m, occupied):
 
 
 def backface_share(mesh: Mesh, camera: Camera, camera_to_world: np.ndarray) -> float:
-    """Return the share of pixels of the first views that see the back of a triangle."""
+    """Return the share of pixels in the first camera views that see the back of a triangle."""
     small = camera.resized(camera.width_px // DOWNSCALE, camera.height_px // DOWNSCALE)
     backs, total = 0, 0
     for pose in camera_to_world[:CHECKED_VIEWS]:
@@ -134,7 +148,13 @@ def backface_share(mesh: Mesh, camera: Camera, camera_to_world: np.ndarray) -> f
 
 @dataclass(frozen=True, eq=False)
 class Interior:
-    """``clear`` bool [X, Y, Z]: cells to look from; ``drop`` int16: cells down to the floor."""
+    """The free space inside a building.
+
+    Attributes:
+        clear: Cells suitable as camera positions, bool [X, Y, Z].
+        drop: Number of cells down to the floor, int16 [X, Y, Z].
+        spaces: Number of separate spaces.
+    """
 
     clear: np.ndarray
     drop: np.ndarray
@@ -142,11 +162,11 @@ class Interior:
 
 
 def find_interior(grid: SurfaceGrid, inside_m: np.ndarray | None = None) -> Interior | None:
-    """Return the space inside, or None where there is none.
+    """Return the free space inside a building, or None if there is none.
 
     Args:
-        grid: z up.
-        inside_m: a place inside that the user names; only the space around it is taken.
+        grid: Surface grid with z up.
+        inside_m: Optional point inside the room, in metres; only the space around it is returned.
     """
     down, side, up, drop = enclosure_votes(grid.occupied)
     min_side_votes, min_both_votes = SIDE_VOTES, BOTH_VOTES
@@ -167,7 +187,7 @@ def find_interior(grid: SurfaceGrid, inside_m: np.ndarray | None = None) -> Inte
 
 
 def _standing_spaces(parts: np.ndarray, count: int, cell_m: float) -> list[int]:
-    """Return the numbers of the spaces in which one can stand, the largest at least."""
+    """Return the numbers of the spaces in which a person can stand."""
     volumes = np.bincount(parts.ravel(), minlength=count + 1) * cell_m**3
     boxes = ndimage.find_objects(parts)
     high = [
@@ -183,7 +203,7 @@ def _standing_spaces(parts: np.ndarray, count: int, cell_m: float) -> list[int]:
 
 
 def _space_around(parts: np.ndarray, grid: SurfaceGrid, inside_m: np.ndarray) -> list[int]:
-    """Return the number of the space that is nearest to a named place, if it is near."""
+    """Return the number of the space nearest to the given point, if that space is close enough."""
     cells = np.argwhere(parts > 0)
     if not len(cells):
         return []
@@ -194,9 +214,9 @@ def _space_around(parts: np.ndarray, grid: SurfaceGrid, inside_m: np.ndarray) ->
 
 @njit
 def _sweep_direction(occupied, dx, dy, dz, hit):
-    """Fill ``hit`` with whether a walk by (dx, dy, dz) from each cell meets a held one.
+    """Fill ``hit`` with whether a walk by (dx, dy, dz) from each cell meets an occupied cell.
 
-    A step aslant in one plane does not slip between two held cells that meet at their edges.
+    A diagonal step does not pass between two occupied cells that touch at their edges.
     """
     nx, ny, nz = occupied.shape
     for step_x in range(nx):
@@ -222,11 +242,12 @@ def _sweep_direction(occupied, dx, dy, dz, hit):
 
 @njit
 def enclosure_votes(occupied):
-    """Return how many of the 9, 8 and 9 directions down, level and up meet surface, and the drop.
+    """Count for each cell the directions that meet surface, and measure the distance to the floor.
 
     Returns:
-        uint8 [X, Y, Z] each; int16 [X, Y, Z], how many cells below the next surface lies, 0 where
-        there is none.
+        The counts of downward (of 9), level (of 8) and upward (of 9) directions as uint8 [X, Y, Z]
+        each, and the number of cells down to the next surface as int16 [X, Y, Z] (0 if there is
+        none).
     """
     down, side = np.zeros(occupied.shape, np.uint8), np.zeros(occupied.shape, np.uint8)
     up, hit = np.zeros(occupied.shape, np.uint8), np.zeros(occupied.shape, np.bool_)

@@ -1,4 +1,4 @@
-"""Reader of LAS, LAZ and E57: surveyed clouds, in metres and upright by their formats' rules."""
+"""Reader of LAS, LAZ and E57 point clouds, which are in metres with z up by specification."""
 
 import tempfile
 from collections.abc import Iterator
@@ -20,10 +20,12 @@ MAX_SCAN_POINTS = 80_000_000  # An E57 scan lies in memory whole, 27 bytes a poi
 
 
 def load_las(place: AnyPath) -> LoadedGeometry:
-    """Read a LAS or LAZ file chunk by chunk.
+    """Read a LAS or LAZ file in chunks.
 
     Raises:
-        DamagedFileError: it cannot be read. LimitError: it is too large. MissingExtraError.
+        DamagedFileError: If the file cannot be read.
+        LimitError: If the file has too many points.
+        MissingExtraError: If laspy is not installed.
     """
     laspy = import_optional("laspy", "reading LAS clouds")
     thinner = VoxelDownsampler(unit_m=1.0)
@@ -38,8 +40,8 @@ def load_las(place: AnyPath) -> LoadedGeometry:
             if thinner.read < reader.header.point_count:
                 raise DamagedFileError(
                     place,
-                    f"is cut short: {reader.header.point_count:,} points are due, "
-                    f"{thinner.read:,} there; copy it again",
+                    f"is truncated: expected {reader.header.point_count:,} points, found "
+                    f"{thinner.read:,}; copy the file again",
                 )
     except (DamagedFileError, LimitError):
         raise
@@ -47,15 +49,16 @@ def load_las(place: AnyPath) -> LoadedGeometry:
         raise
     except BaseException as error:  # laspy and lazrs share no root; lazrs even panics.
         raise DamagedFileError(
-            place, f"cannot be read as LAS ({reason_of(error)}); export it again"
+            place, f"cannot be read as LAS ({reason_of(error)}); export the file again"
         ) from error
     return _to_geometry(thinner, "LAS")
 
 
 def _check_chunks(place: AnyPath, header: Any) -> None:
-    """Hold a LAZ file's table of chunks against its size: lazrs trusts it, and dies of it.
+    """Check the chunk table of a LAZ file against the file size; lazrs crashes on bad tables.
 
-    The points begin with the table's place; the table with a version and how many chunks there are.
+    The point data starts with the offset of the table; the table starts with a version and its
+    length.
     """
     size, start = place.stat().st_size, int(header.offset_to_point_data)
     with place.open("rb") as stream:
@@ -66,13 +69,15 @@ def _check_chunks(place: AnyPath, header: Any) -> None:
             at = int.from_bytes(stream.read(8), "little", signed=True)
         if not start + 8 <= at <= size - 8:
             raise DamagedFileError(
-                place, "is cut short: its table of chunks is not there; copy it again"
+                place, "is truncated: the LAZ chunk table is missing; copy the file again"
             )
         stream.seek(at + 4)
         chunks = int.from_bytes(stream.read(4), "little")
     if chunks > min(header.point_count, 8 * (size - at)):
         raise DamagedFileError(
-            place, f"says that it has {chunks:,} chunks, more than it holds; copy it again"
+            place,
+            f"is damaged: its header declares {chunks:,} chunks, more than the file "
+            "contains; copy the file again",
         )
 
 
@@ -86,7 +91,13 @@ def _las_colour(chunk: Any) -> np.ndarray | None:
 
 
 def load_e57(place: AnyPath) -> LoadedGeometry:
-    """Read an E57 file scan by scan, each placed by its own pose. Raises as ``load_las``."""
+    """Read an E57 file scan by scan, applying the pose of each scan.
+
+    Raises:
+        DamagedFileError: If the file cannot be read.
+        LimitError: If the file or one of its scans has too many points.
+        MissingExtraError: If pye57 is not installed.
+    """
     pye57 = import_optional("pye57", "reading E57 clouds")
     thinner = VoxelDownsampler(unit_m=1.0)
     try:
@@ -94,14 +105,18 @@ def load_e57(place: AnyPath) -> LoadedGeometry:
             counts = [file.get_header(scan).point_count for scan in range(file.scan_count)]
             _check_count(place, sum(counts))
             if max(counts, default=0) > MAX_SCAN_POINTS:
-                raise LimitError(place, f"has a scan of {max(counts):,} points; export it thinned")
+                raise LimitError(
+                    place,
+                    f"contains a scan of {max(counts):,} points, the limit is "
+                    f"{MAX_SCAN_POINTS:,}; export fewer points",
+                )
             for scan in range(file.scan_count):
                 _add_scan(thinner, file, scan)
     except (DamagedFileError, LimitError):
         raise
     except Exception as error:  # What the library's C++ raises has no root.
         raise DamagedFileError(
-            place, f"cannot be read as E57 ({reason_of(error)}); export it again"
+            place, f"cannot be read as E57 ({reason_of(error)}); export the file again"
         ) from error
     return _to_geometry(thinner, "E57")
 
@@ -123,7 +138,7 @@ def _add_scan(thinner: VoxelDownsampler, file: Any, scan: int) -> None:
 
 @contextmanager
 def file_on_disk(place: AnyPath) -> Iterator[Path]:
-    """Give a file's path, unpacked for a while where it lies in a zip."""
+    """Yield the path of a file on disk; files in a zip archive are extracted temporarily."""
     if isinstance(place, Path):
         yield place
         return
@@ -135,7 +150,10 @@ def file_on_disk(place: AnyPath) -> Iterator[Path]:
 
 def _check_count(place: AnyPath, count: int) -> None:
     if count > MAX_POINTS:
-        raise LimitError(place, f"has {count:,} points; at most {MAX_POINTS:,} are read: thin it")
+        raise LimitError(
+            place,
+            f"contains {count:,} points, the limit is {MAX_POINTS:,}; reduce the number of points",
+        )
 
 
 def _to_geometry(thinner: VoxelDownsampler, kind: str) -> LoadedGeometry:

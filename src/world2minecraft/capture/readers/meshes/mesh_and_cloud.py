@@ -1,4 +1,4 @@
-"""``Mesh`` and ``PointCloud`` in the units and axes of their file, but near the origin."""
+"""Meshes and point clouds in the unit and axes of their file, moved close to the origin."""
 
 from dataclasses import dataclass, field, replace
 
@@ -14,14 +14,20 @@ MAX_POINTS = 200_000_000  # A building scanned from forty places; points are thi
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles that may have colours, pictures and classes.
+    """A triangle mesh with optional colours, textures and class labels.
 
-    ``vertices`` float32 [V, 3], ``faces`` int32 [F, 3]. ``colour`` uint8 [V, 3] sRGB, or none.
-    Pictures may lie on the faces: ``pixels`` uint8 [T, 3] holds one after the other, row by row,
-    ``image_sizes`` int64 [M, 2] their widths and heights, ``face_image`` int16 [F] which one a
-    face has (-1: none), ``uv`` float32 [V, 2] where on it (0, 0 is its upper left corner; pictures
-    repeat).
-    ``labels`` uint8 [F] are class ids, 255 unknown, or none.
+    Texture images are stored one after the other, row by row, in ``pixels``, and repeat outside the
+    range 0 to 1 of ``uv``.
+
+    Attributes:
+        vertices: Vertex positions, float32 [V, 3].
+        faces: Vertex indices of the triangles, int32 [F, 3].
+        colour: sRGB colours of the vertices, uint8 [V, 3], or None.
+        uv: Texture coordinates of the vertices, float32 [V, 2]; (0, 0) is the upper left corner.
+        face_image: Index of each triangle's texture image, int16 [F]; -1 for none.
+        pixels: Pixels of all texture images, uint8 [T, 3].
+        image_sizes: Widths and heights of the texture images, int64 [M, 2].
+        labels: Class ids of the triangles, uint8 [F] (255 if unknown), or None.
     """
 
     vertices: np.ndarray
@@ -39,44 +45,50 @@ class Mesh:
         put(self, "faces", checks.array("faces", self.faces, np.int32, (None, 3)))
         count, faces = len(self.vertices), len(self.faces)
         if faces and not (self.faces.min() >= 0 and self.faces.max() < count):
-            raise ValueError(f"faces must name vertices 0 to {count - 1}")
+            raise ValueError(f"faces must contain vertex indices from 0 to {count - 1}")
         if self.colour is not None:
             put(self, "colour", checks.array("colour", self.colour, np.uint8, (count, 3)))
         if self.uv is not None:
             put(self, "uv", checks.array("uv", self.uv, np.float32, (count, 2)))
         if self.face_image is not None:
             if self.uv is None:
-                raise ValueError("pictures on faces need uv")
+                raise ValueError("face_image requires uv")
             image = checks.array("face_image", self.face_image, np.int16, (faces,))
             if faces and image.max() >= len(self.image_sizes):
-                raise ValueError(f"face_image must be -1 to {len(self.image_sizes) - 1}")
+                raise ValueError(
+                    f"face_image must contain indices from -1 to {len(self.image_sizes) - 1}"
+                )
             if int(self.image_sizes.prod(axis=1).sum()) != len(self.pixels):
-                raise ValueError("pixels must be those of image_sizes")
+                raise ValueError(
+                    "the length of pixels must equal the total number of pixels in image_sizes"
+                )
             put(self, "face_image", image)
         if self.labels is not None:
             put(self, "labels", checks.array("labels", self.labels, np.uint8, (faces,)))
 
     @property
     def positions(self) -> np.ndarray:
-        """The vertices, float32 [V, 3]."""
+        """The vertices as float32 [V, 3]."""
         return self.vertices
 
     @property
     def coloured(self) -> bool:
-        """Whether any of it has a colour of its own."""
+        """Whether the mesh has vertex colours or textures."""
         return self.colour is not None or self.face_image is not None
 
     def moved(self, transform: np.ndarray) -> "Mesh":
-        """Return it carried by a 4x4 transform, which may scale."""
+        """Return the mesh transformed by a 4x4 matrix, which may include scale."""
         return replace(self, vertices=_transform_points(self.vertices, transform))
 
 
 @dataclass(frozen=True, eq=False)
 class PointCloud:
-    """Points that may have colours and classes.
+    """A point cloud with optional colours and class labels.
 
-    ``points`` float32 [N, 3], ``colour`` uint8 [N, 3] sRGB or none, ``labels`` uint8 [N] class ids
-    (255 unknown) or none.
+    Attributes:
+        points: Point positions, float32 [N, 3].
+        colour: sRGB colours, uint8 [N, 3], or None.
+        labels: Class ids, uint8 [N] (255 if unknown), or None.
     """
 
     points: np.ndarray
@@ -94,16 +106,16 @@ class PointCloud:
 
     @property
     def positions(self) -> np.ndarray:
-        """The points, float32 [N, 3]."""
+        """The points as float32 [N, 3]."""
         return self.points
 
     @property
     def coloured(self) -> bool:
-        """Whether it has colours."""
+        """Whether the points have colours."""
         return self.colour is not None
 
     def moved(self, transform: np.ndarray) -> "PointCloud":
-        """Return it carried by a 4x4 transform, which may scale."""
+        """Return the point cloud transformed by a 4x4 matrix, which may include scale."""
         return replace(self, points=_transform_points(self.points, transform))
 
 
@@ -112,12 +124,20 @@ Geometry = Mesh | PointCloud
 
 @dataclass(frozen=True, eq=False)
 class LoadedGeometry:
-    """A mesh or point cloud as read, and what its file or format states of it.
+    """A mesh or point cloud as read from a file, with the metadata that the file states.
 
-    A place in the file is one of ``geometry`` plus ``offset`` (float64 [3]), so that surveyed
-    coordinates of millions of metres keep their millimetres. ``unit_m`` is metres per unit where
-    that is stated; ``usual_up`` is the axis that the format takes for up, ``up_stated`` says that
-    it is more than a habit.
+    Positions in the file are those of ``geometry`` plus ``offset``, so that large survey
+    coordinates keep millimetre precision in float32.
+
+    Attributes:
+        geometry: The mesh or point cloud, near the origin.
+        kind: Name of the file format, for notes.
+        offset: Vector subtracted from all positions, float64 [3].
+        unit_m: Metres per unit, or None if the file does not state it.
+        usual_up: The up axis by convention of the format: ``x``, ``y`` or ``z``.
+        up_stated: Whether the file or its specification states the up axis.
+        notes: Remarks about the file for the user.
+        read: Number of points in the file before downsampling.
     """
 
     geometry: Geometry
@@ -131,7 +151,7 @@ class LoadedGeometry:
 
 
 def _transform_points(positions: np.ndarray, transform: np.ndarray) -> np.ndarray:
-    """Return float32 places carried in float64, in blocks that need little memory."""
+    """Transform points in float64 and return them as float32, in blocks to limit memory use."""
     result = np.empty_like(positions)
     turn, shift = transform[:3, :3].T, transform[:3, 3]
     for start in range(0, len(positions), 1 << 18):

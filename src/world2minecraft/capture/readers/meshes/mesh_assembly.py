@@ -18,11 +18,16 @@ MAX_TEXTURE_PIXELS = 48_000_000
 
 @dataclass(frozen=True, eq=False)
 class MeshPart:
-    """One mesh of a scene in its frame.
+    """One mesh of a scene, in the frame of the scene.
 
-    ``vertices`` float64 [V, 3], ``faces`` int [F, 3], ``colour`` uint8 [V, 3] or none; ``picture``
-    is a Pillow image with ``uv`` float [V, 2] (0, 0 upper left), or none; ``tint`` uint8 [3] is
-    multiplied on the picture. ``label`` is its class id, or uint8 [F] one for each face.
+    Attributes:
+        vertices: Vertex positions, float64 [V, 3].
+        faces: Vertex indices of the triangles, int [F, 3].
+        colour: sRGB colours of the vertices, uint8 [V, 3], or None.
+        picture: Texture image, or None.
+        uv: Texture coordinates, float [V, 2] with (0, 0) at the upper left corner, or None.
+        tint: RGB factor from 0 to 255 by which the texture is multiplied.
+        label: Class id of all triangles, or uint8 [F] with one class id per triangle.
     """
 
     vertices: np.ndarray
@@ -35,28 +40,38 @@ class MeshPart:
 
 
 def check_sizes(path: AnyPath, vertices: int, faces: int) -> None:
-    """Refuse what is too large. Raises LimitError."""
+    """Check that a mesh is small enough to be read.
+
+    Raises:
+        LimitError: If the mesh has too many vertices or triangles.
+    """
     for name, count, maximum in (
         ("vertices", vertices, MAX_VERTICES),
         ("triangles", faces, MAX_FACES),
     ):
         if count > maximum:
             raise LimitError(
-                path, f"has {count:,} {name}; at most {maximum:,} are read: export it coarser"
+                path, f"contains {count:,} {name}, the limit is {maximum:,}; export a coarser mesh"
             )
 
 
 def join_parts(path: AnyPath, parts: Sequence[MeshPart]) -> tuple[Mesh, np.ndarray]:
-    """Return one mesh near the origin, and the float64 [3] that was taken off its places.
+    """Merge mesh parts into one mesh near the origin.
+
+    Returns:
+        The mesh, and the offset that was subtracted from its vertices as float64 [3].
 
     Raises:
-        DamagedFileError: a place is not finite, a face names no vertex or a picture is damaged.
-        LimitError: it is too large.
+        DamagedFileError: If most vertices are not finite, a face index is invalid or a texture
+            image is damaged.
+        LimitError: If the mesh or one of its textures is too large.
     """
     check_sizes(path, sum(len(p.vertices) for p in parts), sum(len(p.faces) for p in parts))
     for part in parts:
         if len(part.faces) and not 0 <= part.faces.min() <= part.faces.max() < len(part.vertices):
-            raise DamagedFileError(path, "has faces of vertices that it lacks; export it again")
+            raise DamagedFileError(
+                path, "contains faces that refer to missing vertices; export the file again"
+            )
     vertices = np.concatenate([np.zeros((0, 3)), *(part.vertices for part in parts)])
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     faces = np.concatenate(
@@ -65,7 +80,7 @@ def join_parts(path: AnyPath, parts: Sequence[MeshPart]) -> tuple[Mesh, np.ndarr
     good: np.ndarray = np.all(np.isfinite(vertices), axis=1)
     if len(good) and good.mean() < 0.5:
         raise DamagedFileError(
-            path, "has places that are no numbers (NaN, infinity): export it again"
+            path, "contains vertex positions that are NaN or infinite; export the file again"
         )
     whole = good[faces].all(axis=1) if len(faces) else np.zeros(0, bool)
     offset = np.floor(np.median(vertices[good], axis=0)) if good.any() else np.zeros(3)
@@ -104,7 +119,7 @@ def _uv(parts: Sequence[MeshPart]) -> np.ndarray:
 
 
 def _pictures(path: AnyPath, parts: Sequence[MeshPart]) -> tuple[np.ndarray, np.ndarray, list[int]]:
-    """Return the pixels and the sizes of the distinct pictures, and which one each part has."""
+    """Return the pixels and sizes of the distinct textures, and the texture index of each part."""
     numbers: list[int] = []
     known: dict[tuple, int] = {}
     chosen: list[tuple[Image.Image, tuple[int, int, int]]] = []
@@ -113,7 +128,9 @@ def _pictures(path: AnyPath, parts: Sequence[MeshPart]) -> tuple[np.ndarray, np.
             numbers.append(-1)
             continue
         if part.picture.width * part.picture.height > MAX_PIXELS:
-            raise LimitError(path, "has a picture of over 64 megapixels: make it smaller")
+            raise LimitError(
+                path, "contains a texture image of more than 64 megapixels; reduce its size"
+            )
         key = (id(part.picture), part.tint)
         if key not in known:
             known[key] = len(chosen)
@@ -133,7 +150,9 @@ def _decode_picture(
     try:
         image = picture.convert("RGB")
     except (OSError, SyntaxError, ValueError, EOFError) as error:
-        raise DamagedFileError(path, "has a picture that is damaged; export it again") from error
+        raise DamagedFileError(
+            path, "contains a damaged texture image; export the file again"
+        ) from error
     array = np.asarray(image.reduce(shrink) if shrink > 1 else image, np.uint8)
     if tint == (255, 255, 255):
         return array

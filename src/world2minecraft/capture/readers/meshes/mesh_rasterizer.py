@@ -1,9 +1,9 @@
-"""Rasterizer of triangle meshes: face, depth and colour of each pixel of a pinhole camera.
+"""Rasterizer of triangle meshes: the face, depth and colour at each pixel of a pinhole camera.
 
-Each pixel's ray is intersected with each triangle exactly, by the inverse of the 3x3 matrix of its
-corners (Olano and Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997): so
-nothing is clipped, corners behind the camera do no harm, and neighbours leave no gap. Both sides
-of a triangle are visible.
+The ray of each pixel is intersected with each triangle by the inverse of the 3x3 matrix of the
+triangle's corners (Olano and Greer, "Triangle scan conversion using 2D homogeneous coordinates",
+1997). Triangles therefore need no clipping, corners may be behind the camera, and adjacent
+triangles have no gaps between them. Triangles are visible from both sides.
 """
 
 from typing import NamedTuple
@@ -20,7 +20,7 @@ GREY = 178  # What has no colour of its own.
 
 
 class Pinhole(NamedTuple):
-    """Focal lengths and principal point in pixels, as the kernels take them."""
+    """The focal lengths and principal point of a camera in pixels, as used by the kernels."""
 
     fx: float
     fy: float
@@ -29,9 +29,12 @@ class Pinhole(NamedTuple):
 
 
 class FaceColours(NamedTuple):
-    """Colours of a mesh; arrays are empty where it has none.
+    """The colours of a mesh. Arrays are empty if the mesh lacks that kind of colour.
 
-    ``vertex`` uint8 [V, 3], ``uv`` float32 [V, 2], ``image`` int16 [F], the texture of each face.
+    Attributes:
+        vertex: Vertex colours, uint8 [V, 3].
+        uv: Texture coordinates of the vertices, float32 [V, 2].
+        image: Texture index of each face, int16 [F].
     """
 
     vertex: np.ndarray
@@ -40,7 +43,13 @@ class FaceColours(NamedTuple):
 
 
 class Textures(NamedTuple):
-    """``pixels`` uint8 [T, 3] of all textures, where each one starts, and its width and height."""
+    """The textures of a mesh in one array of pixels.
+
+    Attributes:
+        pixels: Pixels of all textures, uint8 [T, 3].
+        starts: Index of the first pixel of each texture.
+        sizes: Width and height of each texture.
+    """
 
     pixels: np.ndarray
     starts: np.ndarray
@@ -50,17 +59,18 @@ class Textures(NamedTuple):
 def render_mesh(
     mesh: Mesh, camera: Camera, world_to_camera: np.ndarray, runs: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return what a camera sees of a mesh.
+    """Render depth, colour and labels of a mesh for one camera pose.
 
     Args:
-        mesh: in metres of the world frame.
-        camera: without distortion.
-        world_to_camera: rigid float64 [4, 4].
-        runs: int64 [R, 2], from which to which triangle to look; None for all.
+        mesh: The mesh, in metres of the world frame.
+        camera: Camera intrinsics without distortion.
+        world_to_camera: Rigid transform, float64 [4, 4].
+        runs: Ranges of triangles to render, int64 [R, 2] with exclusive ends; None for all
+            triangles.
 
     Returns:
-        z-depth float32 [H, W] in metres, 0 where nothing is; colour uint8 [H, W, 3], black there;
-        labels uint8 [H, W], 255 where the mesh says nothing.
+        The z-depth in metres as float32 [H, W] (0 for empty pixels), the colour as uint8 [H, W, 3]
+        (black for empty pixels) and the class ids as uint8 [H, W] (255 if unknown).
     """
     depth, face = _draw_mesh(mesh, camera, world_to_camera, runs)
     colour = np.zeros((*depth.shape, 3), np.uint8)
@@ -74,12 +84,12 @@ def render_mesh(
 
 
 def render_face_ids(mesh: Mesh, camera: Camera, world_to_camera: np.ndarray) -> np.ndarray:
-    """Return int32 [H, W]: the face that each pixel sees, -1 for none."""
+    """Return the index of the face visible at each pixel as int32 [H, W], or -1 for no face."""
     return _draw_mesh(mesh, camera, world_to_camera, None)[1]
 
 
 def pinhole_of(camera: Camera) -> Pinhole:
-    """Return focal lengths and principal point of a camera without distortion."""
+    """Return the focal lengths and principal point of a camera without distortion."""
     return Pinhole(camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px)
 
 
@@ -96,7 +106,7 @@ def _draw_mesh(
 
 
 def _mesh_colours(mesh: Mesh) -> tuple[FaceColours, Textures]:
-    """Return the colours and textures of a mesh as the kernels take them."""
+    """Return the colours and textures of a mesh in the form that the kernels require."""
     colour = np.zeros((0, 3), np.uint8) if mesh.colour is None else mesh.colour
     uv = np.zeros((0, 2), np.float32) if mesh.uv is None else mesh.uv
     image = np.zeros(0, np.int16) if mesh.face_image is None else mesh.face_image
@@ -106,7 +116,7 @@ def _mesh_colours(mesh: Mesh) -> tuple[FaceColours, Textures]:
 
 @njit
 def _transform_corners(vertices, face, pose, triangle):
-    """Carry a triangle's corners to the camera's frame; return the largest z."""
+    """Transform a triangle's corners to the camera frame, and return the largest z."""
     max_z = -np.inf
     for k in range(3):
         place = vertices[face[k]]
@@ -119,7 +129,7 @@ def _transform_corners(vertices, face, pose, triangle):
 
 @njit
 def _pixel_bounds(triangle, pinhole, width, height):
-    """Return the pixels u0, u1, v0, v1 (ends not included) that a triangle may cover."""
+    """Return the pixel bounds u0, u1, v0, v1 of a triangle, with exclusive ends."""
     low_u, high_u, low_v, high_v = np.inf, -np.inf, np.inf, -np.inf
     for k in range(3):
         one, other = triangle[k], triangle[(k + 1) % 3]
@@ -147,7 +157,7 @@ def _pixel_bounds(triangle, pinhole, width, height):
 
 @njit
 def _edge(edges, k, one, other):
-    """Store the cross product of two corners; swapped corners give exactly its opposite."""
+    """Store the cross product of two corners; swapped corners give exactly the negated result."""
     edges[k, 0] = one[1] * other[2] - one[2] * other[1]
     edges[k, 1] = one[2] * other[0] - one[0] * other[2]
     edges[k, 2] = one[0] * other[1] - one[1] * other[0]
@@ -167,7 +177,7 @@ def _edge_functions(triangle, edges):
 
 @njit
 def _draw(vertices, faces, pose, pinhole, runs, depth, face_ids):
-    """Put each triangle of the runs into ``depth`` and ``face_ids`` where it is the nearest."""
+    """Render each triangle of the runs into ``depth`` and ``face_ids`` where it is the nearest."""
     edges, triangle = np.empty((3, 3)), np.empty((3, 3))
     for r in range(len(runs)):
         for f in range(runs[r, 0], runs[r, 1]):
@@ -203,7 +213,7 @@ def _draw_triangle(f, triangle, edges, pinhole, depth, face_ids):
 
 @njit
 def _shade(vertices, faces, pose, pinhole, face_ids, colours, textures, picture):
-    """Give each pixel the colour of its place on the face that it sees."""
+    """Set each pixel to the colour of the visible face at that point."""
     colour, uv, face_image = colours.vertex, colours.uv, colours.image
     pixels, starts, sizes = textures.pixels, textures.starts, textures.sizes
     edges, triangle = np.empty((3, 3)), np.empty((3, 3))

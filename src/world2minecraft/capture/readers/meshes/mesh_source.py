@@ -1,7 +1,7 @@
-"""``MeshSource``: reads a mesh or point cloud as posed RGB-D frames rendered from within.
+"""Reader of meshes and point clouds as posed RGB-D frames rendered from inside the room.
 
-The file is read by the reader of its suffix, set upright, and its interior found. Frames are
-rendered when they are first read, and cached for the next stage.
+The file is loaded by the reader for its suffix and rotated upright, and the interior is found.
+Frames are rendered on first access and cached for the next stage.
 """
 
 import threading
@@ -77,14 +77,17 @@ MARGIN_M = 0.3
 MIN_SIDES_M = (1.0, 1.0, 1.2)
 MAX_SIDE_M = 200.0
 MAX_BACKFACE_SHARE = 0.9  # Of what is seen from inside; a room of any export has far less.
-UNIT_ADVICE = "if the unit is wrong say --set capture.unit=m|cm|mm|inch|foot"
+UNIT_ADVICE = "if the unit is wrong, set --set capture.unit=m|cm|mm|inch|foot"
 
 
 def find_mesh_file(path: AnyPath) -> AnyPath | None:
-    """Return the file of a place that is a mesh or a cloud, the folder of an S3DIS room, or None.
+    """Find the mesh or point cloud at a path.
+
+    Returns:
+        The file, the folder of an S3DIS room, or None if there is no mesh or point cloud.
 
     Raises:
-        CaptureError: a folder holds several different ones.
+        CaptureError: If a folder contains several different meshes or point clouds.
     """
     if path.is_file():
         return path if path.suffix.lower() in READERS else None
@@ -99,20 +102,26 @@ def find_mesh_file(path: AnyPath) -> AnyPath | None:
     stems = {entry.stem for entry in plain}
     if len(stems) > 1:
         raise CaptureError(
-            path, f"holds {len(stems)} meshes or clouds ({', '.join(sorted(stems)[:4])}); name one"
+            path,
+            f"contains {len(stems)} meshes or point clouds "
+            f"({', '.join(sorted(stems)[:4])}); give the path of one file",
         )
     return min(plain, key=lambda e: (order.index(e.suffix.lower()), e.name), default=None)
 
 
 def load_geometry(path: AnyPath) -> LoadedGeometry:
-    """Read a file that ``find_mesh_file`` found. Raises what its reader raises."""
+    """Load a file found by ``find_mesh_file`` with the reader for its format.
+
+    Raises:
+        InputError: If the file cannot be read.
+    """
     if path.is_dir():
         return load_s3dis(path)
     return MESH_READERS.load(path.suffix.lower())(path)
 
 
 def file_stamp(path: AnyPath) -> tuple[int, ...]:
-    """Return what changes when a file does: its size and time."""
+    """Return the size and modification time of a file, to detect changes."""
     file = Path(path.path) if isinstance(path, ArchivePath) else path
     found = file.stat()
     return found.st_size, found.st_mtime_ns
@@ -120,7 +129,16 @@ def file_stamp(path: AnyPath) -> tuple[int, ...]:
 
 @dataclass(eq=False)
 class ViewRenderer:
-    """Renders views of a mesh or point cloud and caches the last ones; ``name`` is its file's."""
+    """A renderer of the views of a mesh or point cloud, with a cache of recent views.
+
+    Attributes:
+        name: Name of the file, for messages.
+        geometry: The mesh or surfels to render.
+        camera: Intrinsics shared by all views.
+        camera_to_world: Camera poses of the views, float64 [F, 4, 4].
+        blocks: Blocks of the geometry for frustum culling.
+        by_class: Whether to use class colours because the geometry has labels but no colours.
+    """
 
     name: str
     geometry: Mesh | Surfels
@@ -132,7 +150,7 @@ class ViewRenderer:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def render(self, view: int) -> RenderedView:
-        """Return depth, colour and labels of a view, all [H, W]."""
+        """Render the depth, colour and labels of a view, each with shape [H, W] or [H, W, 3]."""
         with self._lock:
             if view in self._cache:
                 self._cache.move_to_end(view)
@@ -158,46 +176,46 @@ class ViewRenderer:
 
 @dataclass(frozen=True, eq=False)
 class RenderedImage:
-    """One image of one view: ``kind`` is colour, depth or labels. An ``ImageSource``."""
+    """A colour, depth or label image of a rendered view. It implements ``ImageSource``."""
 
     renderer: ViewRenderer
     view: int
     kind: str
 
     def __str__(self) -> str:
-        """The file's name and the view, for messages."""
+        """Return the file name, the view and the kind of image, for messages."""
         return f"{self.renderer.name}/view {self.view} ({self.kind})"
 
     @property
     def stem(self) -> str:
-        """The frame's name."""
+        """The name of the frame."""
         return view_name(self.view)
 
     @property
     def name(self) -> str:
-        """The frame's name."""
+        """The name of the frame."""
         return view_name(self.view)
 
     def header(self) -> ImageHeader:
-        """Return size and mode; nothing is rendered."""
+        """Return the size and mode of the image without rendering it."""
         camera = self.renderer.camera
         return ImageHeader(camera.width_px, camera.height_px, MODES[self.kind])
 
     def check_whole(self) -> None:
-        """Do nothing: the file was read whole before."""
+        """Do nothing, because the file has already been read completely."""
 
     def colour(self) -> np.ndarray:
-        """Return uint8 [H, W, 3]."""
+        """Return the colour image as uint8 [H, W, 3]."""
         return self.renderer.render(self.view)[1]
 
     def raw(self) -> np.ndarray:
-        """Return float32 metres, or uint8 class ids."""
+        """Return the depth in metres as float32 [H, W], or the class ids as uint8 [H, W]."""
         depth, _, labels = self.renderer.render(self.view)
         return depth if self.kind == "depth" else labels
 
 
 def view_name(view: int) -> str:
-    """Return the name of a frame.
+    """Return the frame name of a view.
 
     Example:
         >>> view_name(7)
@@ -207,39 +225,45 @@ def view_name(view: int) -> str:
 
 
 class MeshSource:
-    """Reads one mesh or point cloud of a room, alone or with its textures."""
+    """A reader of a single mesh or point cloud of a room, with its textures if there are any."""
 
     layout = "a mesh or a point cloud (.glb .gltf .obj .ply .stl .usdz .las .laz .e57 .xyz .pts ..)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether the place is such a file, or a folder with one and no frames."""
+        """Return whether the path is a mesh or point cloud, or a folder that contains one."""
         return find_mesh_file(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List virtual views of it. Raises what ``read_with`` raises."""
+        """Read a mesh or point cloud with default options. See ``read_with`` for the exceptions."""
         return self.read_with(folder, ScanOptions())
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
-        """List virtual views of it, placed with what the user says of unit, up and inside.
+        """Read a mesh or point cloud as a capture of rendered views.
+
+        Args:
+            folder: The file, or a folder that contains it.
+            options: Unit, up axis and interior point given by the user.
 
         Raises:
-            CaptureError: it shows no inside of a room. DamagedFileError: it is not what its
-                format says. LimitError: it is too large. MissingExtraError: its library is absent.
+            CaptureError: If the file does not show the inside of a room.
+            DamagedFileError: If the file is not valid in its format.
+            LimitError: If the file is too large.
+            MissingExtraError: If the library for the format is not installed.
         """
         path = find_mesh_file(folder)
         if path is None:
-            raise CaptureError(folder, "holds no mesh and no point cloud")
+            raise CaptureError(folder, "does not contain a mesh or point cloud")
         return _read_once(path, file_stamp(path), options)
 
 
 @lru_cache(maxsize=1)
 def _read_once(path: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> Capture:
-    """Read a file; the same file is asked for twice, to be summarised and to be opened."""
+    """Read a file and cache the result: captures are read for the summary and again to open."""
     loaded = load_geometry(path)
     if not len(loaded.geometry.positions) or (
         isinstance(loaded.geometry, Mesh) and not len(loaded.geometry.faces)
     ):
-        raise CaptureError(path, "holds no surface at all: no triangles and no points")
+        raise CaptureError(path, "contains no triangles and no points; export the file again")
     file_to_world, frame_note = estimate_world_frame(path, loaded, options)
     inside_m = None
     if options.inside is not None:
@@ -254,7 +278,7 @@ def _read_once(path: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> C
     renderer = ViewRenderer(path.name, sorted_geometry, CAMERA, poses, blocks, by_class)
     notes = (
         f"{_size_note(loaded)}; {frame_note}",
-        f"looked at from {len(poses)} places in {spaces} closed space{'s' * (spaces > 1)}",
+        f"rendered {len(poses)} views of {spaces} closed space{'s' * (spaces > 1)}",
         *loaded.notes,
     )
     return Capture(
@@ -271,10 +295,17 @@ def _read_once(path: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> C
 def estimate_world_frame(
     path: AnyPath, loaded: LoadedGeometry, options: ScanOptions
 ) -> tuple[np.ndarray, str]:
-    """Return the 4x4 from the file's frame to metres with z up, and a note on size and unit."""
+    """Estimate the transform from the frame of a file to metres with z up.
+
+    Returns:
+        The transform as float64 [4, 4], and a note about size, unit and up axis.
+
+    Raises:
+        CaptureError: If the geometry has no surface or does not have the size of a room.
+    """
     samples = sample_surface(loaded.geometry)
     if not len(samples.points):
-        raise CaptureError(path, "holds no surface at all: its triangles have no area")
+        raise CaptureError(path, "contains no surface: all triangles have zero area")
     orientation = find_orientation(samples, loaded.usual_up, loaded.up_stated, options.up)
     upright = samples.points @ orientation.turn.T
     low, high = np.quantile(upright, [0.002, 0.998], axis=0)
@@ -283,9 +314,8 @@ def estimate_world_frame(
     if (size < MIN_SIDES_M).any() or (size > MAX_SIDE_M).any():
         raise CaptureError(
             path,
-            f"is {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m "
-            f"({unit_note}; {orientation.description}), "
-            f"which is no room but an object or a landscape; {UNIT_ADVICE}",
+            f"is {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m ({unit_note}; "
+            f"{orientation.description}), which is not the size of a room; {UNIT_ADVICE}",
         )
     file_to_world = np.eye(4)
     file_to_world[:3, :3] = orientation.turn * unit_m
@@ -298,7 +328,7 @@ def estimate_world_frame(
 def _choose_poses(
     path: AnyPath, geometry: Geometry, inside_m: np.ndarray | None
 ) -> tuple[np.ndarray, int]:
-    """Return the poses of the views and how many spaces they look at."""
+    """Return the camera poses of the views, and the number of spaces that they show."""
     low, high = sample_surface(geometry).box()
     try:
         grid = voxelise_surface(geometry, low - MARGIN_M, high + MARGIN_M)
@@ -313,8 +343,9 @@ def _choose_poses(
         if share > MAX_BACKFACE_SHARE:
             raise CaptureError(
                 path,
-                "is seen from outside: all its faces look outward, as those of an object or of a "
-                "house's shell; if it is a room, name a point in it: --set capture.inside=x,y,z",
+                "has only outward-facing surfaces, like an object or a building seen from "
+                "outside; if it is a room, give a point inside it with --set "
+                "capture.inside=x,y,z",
             )
     return poses, interior.spaces
 
@@ -322,13 +353,13 @@ def _choose_poses(
 def _no_interior_reason(inside_m: np.ndarray | None) -> str:
     if inside_m is not None:
         return (
-            "has no free space that surface surrounds within 1 m of the point named by inside; "
-            "name one in the middle of the room, in the file's own units and axes"
+            "has no enclosed free space within 1 m of capture.inside; give a point in the "
+            "middle of the room, in the units and axes of the file"
         )
     return (
-        "shows no inside of a room: nowhere could one stand with a floor below and walls at most "
-        "sides; it looks like an object, or a place seen from outside. If it is a room, name a "
-        "point in it (--set capture.inside=x,y,z) or its upward axis (--set capture.up=y)"
+        "does not show the inside of a room: no free space has a floor and walls on "
+        "most sides; if it is a room, set a point inside it (--set "
+        "capture.inside=x,y,z) or the up axis (--set capture.up=y)"
     )
 
 
@@ -349,12 +380,13 @@ def _frame(renderer: ViewRenderer, view: int, geometry: Geometry) -> FrameFiles:
 
 def _size_note(loaded: LoadedGeometry) -> str:
     if isinstance(loaded.geometry, Mesh):
-        return f"{loaded.kind} mesh of {len(loaded.geometry.faces):,} triangles"
+        return f"{loaded.kind} mesh with {len(loaded.geometry.faces):,} triangles"
     thinned = (
-        f", thinned to {len(loaded.geometry.points):,}"
+        f", downsampled to {len(loaded.geometry.points):,}"
         if loaded.read > len(loaded.geometry.points)
         else ""
     )
     return (
-        f"{loaded.kind} cloud of {max(loaded.read, len(loaded.geometry.points)):,} points{thinned}"
+        f"{loaded.kind} point cloud with "
+        f"{max(loaded.read, len(loaded.geometry.points)):,} points{thinned}"
     )

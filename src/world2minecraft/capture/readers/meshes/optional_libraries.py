@@ -1,4 +1,4 @@
-"""Import of libraries that only some formats need."""
+"""Import of libraries that only some file formats require."""
 
 from importlib import import_module
 from typing import Any
@@ -7,15 +7,15 @@ from world2minecraft.core.errors import MissingExtraError
 
 
 def import_optional(name: str, doing: str, extra: str = "capture") -> Any:
-    """Return a module of an optional library.
+    """Import a module of an optional library.
 
     Args:
-        name: of the module.
-        doing: what needs it, such as ``reading E57 clouds``.
-        extra: the extra that installs it.
+        name: Name of the module.
+        doing: The task that requires the module, such as ``reading E57 clouds``.
+        extra: The extra of this package that installs the library.
 
     Raises:
-        MissingExtraError: it is not installed.
+        MissingExtraError: If the library is not installed.
     """
     try:
         return import_module(name)

@@ -1,11 +1,12 @@
 """Estimation of the up axis and the unit of a mesh or point cloud.
 
-Up: rooms are built of three directions at right angles; one of them is up. It is the one that
-more surface faces (floor, ceiling, tables) and along which the room is least long, and things
-stand on its lower end: between the outermost faces there is more below than above. The axis that
-the file's format is used to breaks what that leaves open.
+A room has three dominant directions at right angles. The up axis is the direction that the most
+surface faces (floor, ceiling, tables) and along which the room is shortest. Its sign follows from
+the
+distribution of surface: between floor and ceiling, there is more surface in the lower half. The
+usual up axis of the file format decides ambiguous cases.
 
-Unit: the one in which the room's height is that of rooms.
+The unit is the one that gives the room a plausible height.
 """
 
 from dataclasses import dataclass
@@ -40,7 +41,12 @@ STATED_MARGIN = 3.0  # A format's unit is doubted only where another fits so muc
 
 @dataclass(frozen=True, eq=False)
 class Orientation:
-    """``turn`` float64 [3, 3] rotates the file's axes to z up; ``description`` names that axis."""
+    """The up axis of a mesh or point cloud.
+
+    Attributes:
+        turn: Rotation from the file's axes to z up, float64 [3, 3].
+        description: A note that names the up axis and how it was found.
+    """
 
     turn: np.ndarray
     description: str
@@ -49,19 +55,19 @@ class Orientation:
 def find_orientation(
     samples: SurfaceSamples, usual_up: str, stated: bool, chosen: str | None
 ) -> Orientation:
-    """Return the orientation of a mesh or point cloud.
+    """Determine the orientation of a mesh or point cloud.
 
     Args:
-        samples: of the surface, in its file's axes.
-        usual_up: the axis that the format takes for up.
-        stated: whether the file itself says so.
-        chosen: the axis that the user says, or None.
+        samples: Samples of the surface, in the axes of the file.
+        usual_up: The up axis by convention of the file format.
+        stated: Whether the file itself states the up axis.
+        chosen: The up axis given by the user, or None.
     """
     if chosen is not None:
-        return Orientation(rotation_to_up(np.array(AXES[chosen])), f"up is {chosen}, as told")
+        return Orientation(rotation_to_up(np.array(AXES[chosen])), f"up axis {chosen}, as set")
     if stated:
         return Orientation(
-            rotation_to_up(np.array(AXES[usual_up])), f"up is {usual_up}, as the file says"
+            rotation_to_up(np.array(AXES[usual_up])), f"up axis {usual_up}, from the file"
         )
     frame = _dominant_frame(samples.normals)
     ups = [sign * axis for axis in frame for sign in (1.0, -1.0)]
@@ -69,17 +75,13 @@ def find_orientation(
     best = ups[int(np.argmax(scores))]
     name = max(AXES, key=lambda axis: float(best @ AXES[axis]))
     if best @ AXES[name] > ALIGNED:
-        return Orientation(
-            rotation_to_up(np.array(AXES[name])), f"up is taken to be {name} (guessed)"
-        )
+        return Orientation(rotation_to_up(np.array(AXES[name])), f"up axis {name} (estimated)")
     tilt = np.degrees(np.arccos(np.clip(best @ AXES[name], -1, 1)))
-    return Orientation(
-        rotation_to_up(best), f"up is taken to be {tilt:.0f} degrees off {name} (guessed)"
-    )
+    return Orientation(rotation_to_up(best), f"up axis {tilt:.0f} degrees from {name} (estimated)")
 
 
 def rotation_to_up(up: np.ndarray) -> np.ndarray:
-    """Return the rotation [3, 3] that carries ``up`` to +z along the shortest way.
+    """Return the shortest rotation, float64 [3, 3], that maps ``up`` to +z.
 
     Example:
         >>> (rotation_to_up(np.array([0.0, 1.0, 0.0])) @ [0, 0, 1]).tolist()
@@ -98,7 +100,7 @@ def rotation_to_up(up: np.ndarray) -> np.ndarray:
 
 
 def _dominant_frame(normals: np.ndarray) -> np.ndarray:
-    """Return three directions at right angles that most surface faces, float64 [3, 3] rows."""
+    """Return the three orthogonal directions that most surface faces, as rows of float64 [3, 3]."""
     known = normals[np.abs(normals).sum(axis=1) > 0]
     known = known[:: max(1, len(known) // MAX_VOTERS)]
     if len(known) < 20:
@@ -118,7 +120,7 @@ def _dominant_frame(normals: np.ndarray) -> np.ndarray:
 
 
 def _refine_direction(normals: np.ndarray, way: np.ndarray) -> np.ndarray:
-    """Move a direction to the middle of the normals around it."""
+    """Move a direction to the mean of the normals around it."""
     for within_deg in (8.0, 5.0, 4.0):
         near = normals[np.abs(normals @ way) > np.cos(np.radians(within_deg))]
         if len(near) < 5:
@@ -129,7 +131,7 @@ def _refine_direction(normals: np.ndarray, way: np.ndarray) -> np.ndarray:
 
 
 def _up_score(samples: SurfaceSamples, up: np.ndarray, usual_up: str) -> float:
-    """Return how likely a direction is up."""
+    """Return a score for how likely a direction is up."""
     score = 0.0
     if up @ AXES[usual_up] > FACING:
         score += FORMAT_AXIS
@@ -153,15 +155,18 @@ def _up_score(samples: SurfaceSamples, up: np.ndarray, usual_up: str) -> float:
 
 
 def find_unit(size: np.ndarray, stated_m: float | None, chosen: str | None) -> tuple[float, str]:
-    """Return metres per unit and a note on it.
+    """Determine the unit of a mesh or point cloud.
 
     Args:
-        size: float64 [3] of the upright box around it, in its own units.
-        stated_m: what the format or the file states.
-        chosen: the unit that the user says, or None.
+        size: Size of the upright bounding box in file units, float64 [3].
+        stated_m: Metres per unit as stated by the format or the file, or None.
+        chosen: The unit given by the user, or None.
+
+    Returns:
+        The number of metres per unit, and a note on how it was determined.
     """
     if chosen is not None:
-        return MESH_UNITS_M[chosen], f"one unit is 1 {chosen}, as told"
+        return MESH_UNITS_M[chosen], f"unit {chosen}, as set"
     scores = {
         name: _size_log_likelihood(size * MESH_UNITS_M[name]) - RARITY[name] for name in RARITY
     }
@@ -171,12 +176,12 @@ def find_unit(size: np.ndarray, stated_m: float | None, chosen: str | None) -> t
         and _size_log_likelihood(size * stated_m) > scores[best] - STATED_MARGIN
     ):
         name = next((n for n in RARITY if MESH_UNITS_M[n] == stated_m), f"{stated_m:g} m")
-        return stated_m, f"one unit is 1 {name}, as its format says"
-    return MESH_UNITS_M[best], f"one unit is taken to be 1 {best} (guessed from the size)"
+        return stated_m, f"unit {name}, from the file format"
+    return MESH_UNITS_M[best], f"unit {best} (estimated from the size)"
 
 
 def _size_log_likelihood(size_m: np.ndarray) -> float:
-    """Return the logarithm of how likely a room has this size."""
+    """Return the log likelihood that a room has this size."""
     off = (np.log(max(float(size_m[2]), 1e-9)) - np.log(HEIGHT_M)) / HEIGHT_SPREAD
     score = -off * off / 2
     for length, (least, most) in zip(size_m, (SIDES_M, SIDES_M, HEIGHTS_M), strict=True):

@@ -1,7 +1,7 @@
-"""Reader of PLY files, ASCII and binary of either byte order: a mesh or a point cloud.
+"""Reader of PLY files in ASCII and binary form, as meshes or point clouds.
 
-A file with faces is a mesh, else a cloud. Everything is checked against the header before memory
-is taken. Properties other than position and colour are read by name, so that labels are found.
+A file with faces is read as a mesh, other files as point clouds. Sizes are checked against the
+header before memory is allocated. Vertex properties are looked up by name, including class labels.
 """
 
 import io
@@ -75,16 +75,18 @@ CHUNK = 1 << 20
 
 @njit
 def locate_binary_lists(raw, rows, steps, big):
-    """Find where the values of each property of each row lie among bytes.
+    """Find the byte offset of each property value in a sequence of rows with lists.
 
     Args:
-        raw: uint8 [B].
-        rows: how many.
-        steps: int64 [P, 2]: bytes of a list's count (0 where it is a single value) and of a value.
-        big: whether counts have their high byte first.
+        raw: The data, uint8 [B].
+        rows: Number of rows.
+        steps: Byte widths of each property, int64 [P, 2]: of the list count (0 for a single value)
+            and of one value.
+        big: Whether list counts are big-endian.
 
     Returns:
-        Starts and counts int64 [rows, P], and how many bytes were used, -1 where they end early.
+        The offsets and lengths as int64 [rows, P], and the number of bytes used, or -1 if the data
+        is truncated.
     """
     starts = np.zeros((rows, len(steps)), np.int64)
     counts = np.ones((rows, len(steps)), np.int64)
@@ -112,7 +114,17 @@ def locate_binary_lists(raw, rows, steps, big):
 
 @njit
 def locate_text_lists(numbers, rows, listed):
-    """Do what ``locate_binary_lists`` does among numbers, float64 [N]; ``listed`` bool [P]."""
+    """Find the index of each property value among the numbers of an ASCII file.
+
+    Args:
+        numbers: All numbers of the file, float64 [N].
+        rows: Number of rows.
+        listed: Whether each property is a list, bool [P].
+
+    Returns:
+        The indices and lengths as int64 [rows, P], and the count of numbers used, or -1 if the data
+        is truncated.
+    """
     starts = np.zeros((rows, len(listed)), np.int64)
     counts = np.ones((rows, len(listed)), np.int64)
     offset = 0
@@ -134,7 +146,7 @@ def locate_text_lists(numbers, rows, listed):
 
 @njit
 def gather_bytes(raw, starts, counts, width):
-    """Return the bytes of values that lie in runs: ``counts[i]`` of them from ``starts[i]``."""
+    """Concatenate the bytes of value runs: ``counts[i]`` values from byte ``starts[i]`` on."""
     result = np.empty(counts.sum() * width, np.uint8)
     offset = 0
     for row in range(len(starts)):
@@ -145,14 +157,14 @@ def gather_bytes(raw, starts, counts, width):
 
 
 def triangulate_fans(counts: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cut polygons into triangles around their first corners.
+    """Divide polygons into triangles that share the first corner of the polygon.
 
     Args:
-        counts: int64 [N], corners of each.
-        values: int64 [sum of counts], their vertices.
+        counts: Number of corners of each polygon, int64 [N].
+        values: Vertex indices of all polygons, one polygon after the other, int64.
 
     Returns:
-        int64 [T, 3], and the polygon of each triangle, int64 [T].
+        The triangles as int64 [T, 3], and the polygon index of each triangle as int64 [T].
     """
     if len(counts) and (counts == 3).all():
         return values.reshape(-1, 3), np.arange(len(counts))
@@ -176,7 +188,13 @@ def _fans(counts, values, total):
 
 @dataclass(frozen=True)
 class Property:
-    """A property: numpy's name of its type, and that of its count where it is a list."""
+    """A property of a PLY element.
+
+    Attributes:
+        name: Name of the property.
+        kind: numpy type of its values.
+        count_kind: numpy type of its list count, or an empty string for a single value.
+    """
 
     name: str
     kind: str
@@ -185,7 +203,7 @@ class Property:
 
 @dataclass(frozen=True)
 class Element:
-    """A table of the file: ``count`` rows of properties."""
+    """An element of a PLY file: a table of ``count`` rows with the same properties."""
 
     name: str
     count: int
@@ -198,16 +216,20 @@ class Element:
 
     @property
     def least_bytes(self) -> int:
-        """The bytes of a binary row whose lists are all empty."""
+        """The size in bytes of a binary row in which all lists are empty."""
         return sum(np.dtype(p.count_kind or p.kind).itemsize for p in self.properties)
 
 
 @dataclass(frozen=True, eq=False)
 class PlyFile:
-    """What a file holds.
+    """The content of a PLY file.
 
-    ``vertex`` and ``face`` are columns of single values by name; ``triangles`` int64 [T, 3] are
-    cut from the faces that ``triangle_face`` int64 [T] names; ``comments`` are the header's.
+    Attributes:
+        vertex: Columns of the vertex element by property name.
+        triangles: Vertex indices of the triangles, int64 [T, 3].
+        triangle_face: Index of the face that each triangle is part of, int64 [T].
+        face: Columns of the face element by property name, without lists.
+        comments: Comments in the header.
     """
 
     vertex: dict[str, np.ndarray]
@@ -218,10 +240,11 @@ class PlyFile:
 
 
 def read_ply(path: AnyPath) -> PlyFile:
-    """Read a file whole.
+    """Read the vertices and faces of a PLY file.
 
     Raises:
-        DamagedFileError: it is not what its header says. LimitError: it is too large.
+        DamagedFileError: If the file does not match its header.
+        LimitError: If the file has too many vertices or faces.
     """
     data = memoryview(read_bytes(path, MAX_BYTES))
     order, elements, comments, start = _header(path, bytes(data[:MAX_HEADER]))
@@ -230,7 +253,8 @@ def read_ply(path: AnyPath) -> PlyFile:
     for name, most in (("vertex", most_vertices), ("face", MAX_FACES)):
         if counts.get(name, 0) > most:
             raise LimitError(
-                path, f"has {counts[name]:,} {name} rows; at most {most:,} are read: thin it"
+                path,
+                f"contains {counts[name]:,} {name} rows, the limit is {most:,}; simplify the file",
             )
     reader = _Ascii(path, data[start:]) if order == "" else _Binary(path, data[start:], order)
     vertex: dict[str, np.ndarray] = {}
@@ -245,22 +269,28 @@ def read_ply(path: AnyPath) -> PlyFile:
         else:
             reader.read(element)
     if not {"x", "y", "z"} <= set(vertex):
-        raise DamagedFileError(path, "has no vertices with x, y and z: export it uncompressed")
+        raise DamagedFileError(
+            path,
+            "contains no vertices with x, y and z properties; export the file without compression",
+        )
     triangles, owner = triangulate_fans(*lists)
     held = len(vertex["x"])
     if len(triangles) and not (triangles.min() >= 0 and triangles.max() < held):
         raise DamagedFileError(
-            path, f"has faces of vertices that it lacks; it holds {held:,}: export it again"
+            path,
+            f"contains faces that refer to missing vertices; only {held:,} exist; "
+            "export the file again",
         )
     return PlyFile(vertex, triangles, owner, face, comments)
 
 
 def _header(path: AnyPath, data: bytes) -> tuple[str, list[Element], tuple[str, ...], int]:
-    """Return byte order, elements, comments and where the data begin."""
+    """Return the byte order, elements, comments and start of the data."""
     end = re.search(rb"\nend_header[ \t]*\r?\n", data)
     if not data.startswith(b"ply") or end is None:
         raise DamagedFileError(
-            path, "is no PLY file (no ply ... end_header at its start): copy it again"
+            path,
+            "is not a PLY file (no ply ... end_header block at its start); copy the file again",
         )
     lines = data[: end.start()].decode("latin-1").splitlines()
     order, comments = None, []
@@ -279,10 +309,12 @@ def _header(path: AnyPath, data: bytes) -> tuple[str, list[Element], tuple[str, 
             tables[-1][2].append(_with_unique_name(_property(path, words), tables[-1][2]))
         elif words[0] != "obj_info":
             raise DamagedFileError(
-                path, f"has a header line that is not read: {line[:60]!r}; copy it again"
+                path, f"contains an unknown header line: {line[:60]!r}; copy the file again"
             )
     if order is None:
-        raise DamagedFileError(path, f"has no format line; known are {', '.join(FORMATS)}")
+        raise DamagedFileError(
+            path, f"contains no supported format line; supported formats: {', '.join(FORMATS)}"
+        )
     elements = [Element(name, count, tuple(own)) for name, count, own in tables]
     return order, elements, tuple(comments), end.end()
 
@@ -294,12 +326,12 @@ def _property(path: AnyPath, words: list[str]) -> Property:
     if len(words) == 5 and words[1] == "list" and kinds[1] and kinds[2] and kinds[1][0] != "f":
         return Property(words[4], kinds[2], kinds[1])
     raise DamagedFileError(
-        path, f"has a property that is not read: {' '.join(words)[:60]!r}; export it again"
+        path, f"contains an unsupported property: {' '.join(words)[:60]!r}; export the file again"
     )
 
 
 def _with_unique_name(new: Property, others: list[Property]) -> Property:
-    """Return a property under a name of its own: some tools write two scalar fields of one name."""
+    """Return a property with a unique name; some tools write two properties with one name."""
     names = {other.name for other in others}
     name, count = new.name, 1
     while name in names:
@@ -309,13 +341,13 @@ def _with_unique_name(new: Property, others: list[Property]) -> Property:
 
 
 class _Binary:
-    """Reads one table after the other; ``data`` is what is left."""
+    """A reader of binary elements, one after the other; ``data`` is the unread remainder."""
 
     def __init__(self, path: AnyPath, data: memoryview, order: str):
         self.path, self.data, self.order = path, data, order
 
     def read(self, element: Element) -> Table:
-        """Return the columns of single values, and the counts and the values of the index list."""
+        """Return the columns of single values, and the counts and values of the index list."""
         if not element.count or not element.properties:
             return {}, NO_LISTS
         if element.least_bytes * element.count > len(self.data):
@@ -333,7 +365,7 @@ class _Binary:
         return self._walked(element)
 
     def _first_lengths(self, element: Element) -> dict[str, int]:
-        """Return the lengths of the first row's lists; all rows may have the same."""
+        """Return the list lengths of the first row; often all rows have the same lengths."""
         lengths: dict[str, int] = {}
         for own in element.properties:
             if own.count_kind:
@@ -348,7 +380,7 @@ class _Binary:
         return lengths
 
     def _row_kind(self, element: Element, lengths: dict[str, int], until: str = "") -> np.dtype:
-        """Return the type of a row whose lists have some lengths, up to a property."""
+        """Return the numpy type of a row with the given list lengths, up to a property."""
         parts: list[tuple] = []
         for own in element.properties:
             if own.name == until:
@@ -369,7 +401,7 @@ class _Binary:
         return columns, NO_LISTS
 
     def _walked(self, element: Element) -> Table:
-        """Read rows whose lists differ in length."""
+        """Read rows whose lists have different lengths."""
         raw = np.frombuffer(self.data, np.uint8)
         steps = [
             (np.dtype(p.count_kind).itemsize if p.count_kind else 0, np.dtype(p.kind).itemsize)
@@ -397,20 +429,20 @@ class _Binary:
     def _refuse(self, element: Element) -> NoReturn:
         raise DamagedFileError(
             self.path,
-            f"is cut short or wrong: {element.count:,} {element.name} rows are due and "
-            f"{len(self.data):,} bytes are there: copy it again",
+            f"is truncated or damaged: expected {element.count:,} {element.name} rows, found "
+            f"only {len(self.data):,} bytes; copy the file again",
         )
 
 
 class _Ascii:
-    """The same for text: all numbers are read at once."""
+    """A reader of ASCII elements, which parses all numbers of the file at once."""
 
     def __init__(self, path: AnyPath, data: memoryview):
         self.path = path
         self.data = parse_numbers(path, bytes(data))
 
     def read(self, element: Element) -> Table:
-        """Return the columns of single values, and the counts and the values of the index list."""
+        """Return the columns of single values, and the counts and values of the index list."""
         width = len(element.properties)
         if width * element.count > len(self.data):
             self._refuse(element)
@@ -439,13 +471,20 @@ class _Ascii:
     def _refuse(self, element: Element) -> NoReturn:
         raise DamagedFileError(
             self.path,
-            f"is cut short or wrong: {element.count:,} {element.name} rows are due and "
-            f"{len(self.data):,} numbers are there: copy it again",
+            f"is truncated or damaged: expected {element.count:,} {element.name} rows, found "
+            f"only {len(self.data):,} numbers; copy the file again",
         )
 
 
 def load_ply(path: AnyPath) -> LoadedGeometry:
-    """Read a mesh or a cloud. Raises what ``read_ply`` raises."""
+    """Load a PLY file as a mesh or point cloud.
+
+    A second file of the same mesh with ScanNet's ``.labels`` suffix is read too, if it exists.
+
+    Raises:
+        DamagedFileError: If the file does not match its header.
+        LimitError: If the file has too many vertices or faces.
+    """
     file = read_ply(path)
     twin = _labels_twin(path, file)
     if len(file.triangles):
@@ -454,7 +493,7 @@ def load_ply(path: AnyPath) -> LoadedGeometry:
 
 
 def _labels_twin(path: AnyPath, file: PlyFile) -> PlyFile | None:
-    """Return ScanNet's other file of the same mesh: the labels of colours, or the other way."""
+    """Return ScanNet's second file of the same mesh, which has the labels or the colours."""
     stem = path.stem
     name = stem.removesuffix(".labels") if stem.endswith(".labels") else f"{stem}.labels"
     other = path.parent / f"{name}.ply"
@@ -465,7 +504,7 @@ def _labels_twin(path: AnyPath, file: PlyFile) -> PlyFile | None:
 
 
 def _labels(path: AnyPath, columns: Mapping[str, np.ndarray]) -> tuple[np.ndarray | None, str]:
-    """Return uint8 classes of the column that holds labels, and a note; None for none."""
+    """Return the class ids of the label column and a note, or None without a label column."""
     by_name = {name.lower(): values for name, values in columns.items()}
     for name in LABEL_NAMES:
         if name in by_name:
@@ -480,7 +519,7 @@ def _vertex_positions(file: PlyFile) -> np.ndarray:
 def _vertex_attributes(
     path: AnyPath, file: PlyFile, twin: PlyFile | None
 ) -> tuple[np.ndarray | None, np.ndarray | None, str]:
-    """Return colours and labels of the vertices, and a note."""
+    """Return the colours and labels of the vertices, and a note."""
     labels, note = _labels(path, file.vertex)
     colour = colours_of_columns(file.vertex)
     if twin is not None:
@@ -516,13 +555,13 @@ def _load_mesh(path: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeom
 
 
 def _majority_label(corners: np.ndarray) -> np.ndarray:
-    """Return the label that two corners of a triangle share, else the first one's."""
+    """Return the label shared by two corners of a triangle, or else that of the first corner."""
     first, second, third = corners.T
     return np.where(second == third, second, first).astype(np.uint8)
 
 
 def _picture(path: AnyPath, file: PlyFile) -> tuple[Image.Image | None, np.ndarray | None]:
-    """Return the picture that a comment names, and where on it each vertex lies."""
+    """Return the texture image named in a comment, and the texture coordinates of the vertices."""
     names = [c.split(None, 1)[1] for c in file.comments if c.lower().startswith("texturefile ")]
     axes = next((pair for pair in PICTURE_AXES if set(pair) <= set(file.vertex)), None)
     if not names or axes is None:
@@ -553,7 +592,9 @@ def _load_cloud(path: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeo
         )
     if count and thinner.offset is None:
         raise DamagedFileError(
-            path, "has places that are no numbers (NaN, infinity): export it again"
+            path,
+            "contains no point with finite coordinates (NaN or infinite values); "
+            "export the file again",
         )
     offset = np.zeros(3) if thinner.offset is None else thinner.offset
     notes = (note,) if note else ()

@@ -1,4 +1,4 @@
-"""Points sampled evenly over the surface of a mesh or point cloud, with the normals there."""
+"""Uniform sampling of points and normals on the surface of a mesh or point cloud."""
 
 from dataclasses import dataclass
 
@@ -14,24 +14,29 @@ OUTER_SHARE = 0.002  # Of the samples at each end of an axis: stray points and t
 
 @dataclass(frozen=True, eq=False)
 class SurfaceSamples:
-    """``points`` and unit ``normals`` (either way round; 0 where unknown) float64 [N, 3]."""
+    """Sampled surface points with their normals.
+
+    Attributes:
+        points: Positions, float64 [N, 3].
+        normals: Unit normals of arbitrary sign, float64 [N, 3]; 0 if unknown.
+    """
 
     points: np.ndarray
     normals: np.ndarray
 
     def box(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the least and the most of each axis, stray samples left out."""
+        """Return the minimum and maximum corner of the bounding box, without outliers."""
         low, high = np.quantile(self.points, [OUTER_SHARE, 1 - OUTER_SHARE], axis=0)
         return low, high
 
 
 def sample_surface(geometry: Geometry) -> SurfaceSamples:
-    """Return at most ``MAX_SAMPLES`` samples of a mesh or point cloud, deterministic."""
+    """Return at most ``MAX_SAMPLES`` deterministic samples of a mesh or point cloud."""
     return _sample_mesh(geometry) if isinstance(geometry, Mesh) else _sample_cloud(geometry)
 
 
 def _sample_mesh(mesh: Mesh) -> SurfaceSamples:
-    """Sample triangles by their area, at places that a sequence without clumps gives."""
+    """Sample triangles in proportion to their area, at low-discrepancy positions."""
     corners = mesh.vertices[mesh.faces].astype(np.float64)
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     twice = np.linalg.norm(cross, axis=1)
@@ -49,7 +54,7 @@ def _sample_mesh(mesh: Mesh) -> SurfaceSamples:
 
 
 def _sample_cloud(cloud: PointCloud) -> SurfaceSamples:
-    """Sample a cloud by the cells that it touches, so that dense places weigh no more."""
+    """Sample a cloud by occupied grid cells, so that dense regions have no larger weight."""
     points = cloud.points
     if not len(points):
         return SurfaceSamples(np.zeros((0, 3)), np.zeros((0, 3)))

@@ -1,7 +1,9 @@
-"""Estimation of surfels of a point cloud: radius by the points' spacing, and normals.
+"""Estimation of surfels for a point cloud: disc radii from the point spacing, and normals.
 
-Both come from the points that share a cell of a grid: a flat patch of n points in a cell of side s
-has them ``s / sqrt(n)`` apart, and its plane is that of the points' principal axes.
+Radius and normal are computed from the points in the same grid cell. A flat patch of n points in
+a cell of side s has a point spacing of ``s / sqrt(n)``. The normal is the principal axis along
+which
+the points vary least.
 """
 
 from dataclasses import replace
@@ -19,7 +21,7 @@ MAX_FLATNESS = 0.25  # Of the second largest spread: what is thicker is an edge 
 
 
 def estimate_surfels(cloud: PointCloud) -> Surfels:
-    """Return the discs of a cloud in metres."""
+    """Return the surfels (discs) of a point cloud in metres."""
     count = len(cloud.points)
     radius = np.full(count, RADII_M[1], np.float32)
     normals = np.zeros((count, 3), np.float32)
@@ -38,10 +40,10 @@ def estimate_surfels(cloud: PointCloud) -> Surfels:
 
 
 def _in_cells(points: np.ndarray, cell_m: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return of each point its place on the plane of its cell, its normal and its cell's count.
+    """Return each point projected to the plane of its cell, its normal and its cell's count.
 
-    Of two grids, half a cell apart along each axis, each point takes the one whose cell holds more
-    points: the side of a cell may cut a noisy wall in two.
+    Two grids are used, half a cell apart along each axis; each point is assigned to the cell with
+    more points, because a cell boundary may divide a noisy wall.
     """
     half = np.float32(cell_m / 2)
     first, second = (_in_grid(points, shift, cell_m) for shift in (np.float32(0), half))
@@ -64,9 +66,9 @@ def _in_grid(
 def _project_to_planes(
     points: np.ndarray, own: np.ndarray, means: np.ndarray, facing: np.ndarray
 ) -> np.ndarray:
-    """Return points moved onto the planes of their cells, where these are flat.
+    """Return points projected onto the planes of their cells, if those are flat.
 
-    The same noise is seen by all views, so that fusing many does not take it out.
+    All views see the same noise, so fusing many views would not remove it.
     """
     normals = facing[own].astype(np.float64)
     off = np.einsum("na,na->n", points - means[own], normals)
@@ -74,7 +76,7 @@ def _project_to_planes(
 
 
 def assign_cells(points: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
-    """Return the number of each point's cell, int64 [N], and how many cells hold any."""
+    """Return the cell number of each point as int64 [N], and the number of occupied cells."""
     if not len(points):
         return np.zeros(0, np.int64), 0
     cells = np.floor(points / np.float32(cell_m)).astype(np.int64)
@@ -88,9 +90,11 @@ def assign_cells(points: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
 def cell_normals(
     points: np.ndarray, own: np.ndarray, cells: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return of the points of each cell their mean, the unit normal of their plane, their count.
+    """Compute the mean, unit normal and number of the points in each cell.
 
-    float64 [C, 3], float32 [C, 3] (0 where they lie in no plane) and float64 [C].
+    Returns:
+        The means as float64 [C, 3], the normals as float32 [C, 3] (0 if the points are not in a
+        plane) and the counts as float64 [C].
     """
     held = np.bincount(own, minlength=cells).astype(np.float64)
     means = np.stack([np.bincount(own, points[:, a], cells) / held for a in range(3)], axis=1)

@@ -1,9 +1,10 @@
-"""Reader of point clouds as text: ``.xyz .pts .txt .csv .asc``, and rooms of S3DIS.
+"""Reader of point clouds in text form (``.xyz .pts .txt .csv .asc``) and of S3DIS rooms.
 
-A line is a point, XYZ first. Columns are separated by white space, commas or semicolons. A first
-line with letters names them; a first line with one number is PTS's count. Without names, three
-columns of whole numbers up to 255 are the colour, else three from 0 to 1 that are no normal.
-S3DIS keeps one such file for each object: ``Annotations/chair_1.txt``.
+Each line is a point that starts with x, y and z. Columns are separated by white space, commas or
+semicolons. A first line with letters names the columns; a first line with a single number is the
+point count of a PTS file. Without column names, colour is the first group of three columns with
+integers up to 255, or else with values from 0 to 1 that are not normals. S3DIS stores one file per
+object, such as ``Annotations/chair_1.txt``.
 """
 
 import re
@@ -33,10 +34,10 @@ MAX_FILES = 5000
 
 
 def parse_numbers(place: AnyPath, text: bytes) -> np.ndarray:
-    """Return all numbers of a text, float64 [N], that white space parts.
+    """Parse all whitespace-separated numbers of a text as float64 [N].
 
     Raises:
-        DamagedFileError: something in it is no number.
+        DamagedFileError: If the text contains anything that is not a number.
     """
     if not text.strip():
         return np.zeros(0)
@@ -46,28 +47,39 @@ def parse_numbers(place: AnyPath, text: bytes) -> np.ndarray:
             return np.fromstring(text.decode("ascii"), np.float64, sep=" ")
     except (DeprecationWarning, UnicodeDecodeError, ValueError) as error:
         raise DamagedFileError(
-            place, "holds what is no number where numbers are due; export it again"
+            place, "contains text where numbers are expected; export the file again"
         ) from error
 
 
 def load_text(place: AnyPath) -> LoadedGeometry:
-    """Read a cloud of lines.
+    """Load a point cloud from a text file.
 
     Raises:
-        DamagedFileError: it holds no rows of numbers. LimitError: it is too large.
+        DamagedFileError: If the file does not contain rows of numbers.
+        LimitError: If the file is too large.
     """
     thinner = VoxelDownsampler()
     note = add_text(place, thinner)
     if thinner.offset is None:
-        raise DamagedFileError(place, "holds no points: a line must begin with x, y and z")
+        raise DamagedFileError(place, "contains no points; each line must start with x, y and z")
     notes = (note,) if note else ()
     return LoadedGeometry(thinner.cloud(), "text", thinner.offset, notes=notes, read=thinner.read)
 
 
 def add_text(place: AnyPath, thinner: VoxelDownsampler, label: int | None = None) -> str:
-    """Add a file's points to others, all of one class where ``label`` says it.
+    """Add the points of a text file to a downsampler.
 
-    Returns a note on its labels. Raises as ``load_text``.
+    Args:
+        place: The text file.
+        thinner: The downsampler that collects the points.
+        label: Class id of all points, or None to read a label column.
+
+    Returns:
+        A note about the labels, or an empty string.
+
+    Raises:
+        DamagedFileError: If the file does not contain rows of numbers.
+        LimitError: If the file is too large.
     """
     names: list[str] | None = None
     colour_at: int | None = None
@@ -93,20 +105,24 @@ def add_text(place: AnyPath, thinner: VoxelDownsampler, label: int | None = None
             colour = None if colour_at is None else _to_colours(rows[:, colour_at : colour_at + 3])
         thinner.add(points, colour, labels)
         if thinner.read > MAX_POINTS:
-            raise LimitError(place, f"has over {MAX_POINTS:,} points; thin it")
+            raise LimitError(
+                place, f"contains more than {MAX_POINTS:,} points; reduce the number of points"
+            )
     return note
 
 
 def class_of_file(name: str) -> int:
-    """Return the class that a file's name says, 255 for none."""
+    """Return the class id for a file name such as ``chair_1``, or 255 if it names no class."""
     return class_of_name(name)
 
 
 def _blocks(place: AnyPath) -> Iterator[bytes]:
-    """Yield the file in blocks of whole lines."""
+    """Yield the file in blocks of complete lines."""
     if place.stat().st_size > MAX_BYTES:
         raise LimitError(
-            place, f"has {place.stat().st_size:,} bytes; at most {MAX_BYTES:,}: thin it"
+            place,
+            f"has {place.stat().st_size:,} bytes, the limit is {MAX_BYTES:,}; reduce "
+            "the number of points",
         )
     with place.open("rb") as stream:
         rest = b""
@@ -114,14 +130,14 @@ def _blocks(place: AnyPath) -> Iterator[bytes]:
             piece = rest + piece
             end = piece.rfind(b"\n") + 1
             if not end and len(piece) > BLOCK:
-                raise DamagedFileError(place, "is no text of lines, a point each")
+                raise DamagedFileError(place, "is not a text file with one point per line")
             yield piece[:end]
             rest = piece[end:]
         yield rest
 
 
 def _column_names(place: AnyPath, block: bytes) -> tuple[list[str] | None, bytes]:
-    """Return the names of the columns, if the first lines say them, and the lines after those."""
+    """Return the column names if the first lines contain them, and the remaining lines."""
     names = None
     while block:
         line, _, rest = block.partition(b"\n")
@@ -134,7 +150,9 @@ def _column_names(place: AnyPath, block: bytes) -> tuple[list[str] | None, bytes
             if {"x", "y", "z"} <= set(found):
                 names = found
             elif not line.lstrip().startswith((b"#", b"//")):
-                raise DamagedFileError(place, f"begins with no x, y and z: {line[:40]!r}")
+                raise DamagedFileError(
+                    place, f"has a first line that does not name x, y and z: {line[:40]!r}"
+                )
         block = rest
     return names, block
 
@@ -151,7 +169,7 @@ def _width(place: AnyPath, block: bytes) -> int:
     line = block.partition(b"\n")[0]
     width = len(re.findall(rb"[^\s,;]+", line))
     if block.strip() and not 3 <= width <= MAX_COLUMNS:
-        raise DamagedFileError(place, f"has {width} columns; a point needs x, y and z")
+        raise DamagedFileError(place, f"has {width} columns; a point requires x, y and z")
     return max(width, 3)
 
 
@@ -160,13 +178,13 @@ def _parse_rows(place: AnyPath, block: bytes, width: int) -> np.ndarray:
     if len(numbers) % width:
         raise DamagedFileError(
             place,
-            f"has lines of other lengths than {width} columns, or is cut short: export it again",
+            f"has lines without exactly {width} columns or is truncated; export the file again",
         )
     return numbers.reshape(-1, width)
 
 
 def _colour_column(rows: np.ndarray) -> int | None:
-    """Return where three columns of colour begin, inferred from their values."""
+    """Return the index of the first of three colour columns, inferred from their values."""
     some = rows[:: max(1, len(rows) // 5000)]
     starts = range(3, rows.shape[1] - 2)
     for start in starts:
@@ -188,17 +206,18 @@ def _to_colours(values: np.ndarray) -> np.ndarray:
 
 
 def load_s3dis(place: AnyPath) -> LoadedGeometry:
-    """Read a room's folder.
+    """Load the folder of an S3DIS room.
 
     Raises:
-        CaptureError: it has no points. DamagedFileError: a file is no cloud.
+        CaptureError: If the folder contains no points.
+        DamagedFileError: If a file is not a point cloud.
     """
     thinner = VoxelDownsampler(unit_m=1.0)
     files = sorted((place / S3DIS_FOLDER).glob("*.txt"), key=lambda path: path.name)[:MAX_FILES]
     for path in files:
         add_text(path, thinner, class_of_file(path.stem))
     if thinner.offset is None:
-        raise CaptureError(place, f"has no points in {S3DIS_FOLDER}/*.txt")
-    note = f"classes are told by the names of {len(files)} files in {S3DIS_FOLDER}"
+        raise CaptureError(place, f"contains no points in {S3DIS_FOLDER}/*.txt")
+    note = f"classes are taken from the names of {len(files)} files in {S3DIS_FOLDER}"
     cloud = thinner.cloud()
     return LoadedGeometry(cloud, "S3DIS", thinner.offset, 1.0, "z", True, (note,), thinner.read)

@@ -1,4 +1,4 @@
-"""Reader of glTF, OBJ, STL and OFF by trimesh; no file outside the mesh's folder is opened."""
+"""Reader of glTF, OBJ, STL and OFF meshes by trimesh, restricted to files in the mesh's folder."""
 
 import io
 import json
@@ -35,11 +35,13 @@ KINDS = {".glb": "glTF", ".gltf": "glTF", ".obj": "OBJ", ".stl": "STL", ".off": 
 
 
 def load_scene(path: AnyPath) -> LoadedGeometry:
-    """Read a mesh file with all that its scene places.
+    """Load a mesh file with all meshes of its scene.
 
     Raises:
-        DamagedFileError: it cannot be read. LimitError: it is too large. InputError: a file that it
-            needs is not there. MissingExtraError.
+        DamagedFileError: If the file cannot be read.
+        LimitError: If the file is too large.
+        InputError: If a file that the mesh refers to is missing.
+        MissingExtraError: If trimesh is not installed.
     """
     trimesh = import_optional("trimesh", "reading meshes")
     data = read_bytes(path, MAX_BYTES)
@@ -61,10 +63,16 @@ def load_scene(path: AnyPath) -> LoadedGeometry:
         raise
     except Exception as error:  # What a hostile file makes trimesh raise has no common root.
         reason_text = reason_of(error)
-        reason = f"cannot be read as {KINDS.get(suffix, suffix)} ({reason_text}); export it again"
+        reason = (
+            f"cannot be read as {KINDS.get(suffix, suffix)} ({reason_text}); export the file again"
+        )
         raise DamagedFileError(path, reason) from error
     mesh, offset = join_parts(path, parts)
-    notes = () if mesh.coloured else ("it has no colours: export it with its textures beside it",)
+    notes = (
+        ()
+        if mesh.coloured
+        else (("the mesh has no colours; export it with its textures in the same folder"),)
+    )
     gltf = bool(tree)
     return LoadedGeometry(
         mesh,
@@ -77,20 +85,21 @@ def load_scene(path: AnyPath) -> LoadedGeometry:
 
 
 class _FolderResolver:
-    """Gives trimesh the files that a mesh names, from its own folder and below alone."""
+    """A trimesh resolver that only opens files in the folder of the mesh or below."""
 
     def __init__(self, path: AnyPath):
         self.path = path
 
     def get(self, key: str) -> bytes:
-        """Return a file's bytes.
+        """Return the bytes of a file that the mesh refers to.
 
-        It is sought as it is named, and by its last part next to the mesh: exporters leave paths of
-        their own machine before the name. glTF's names are escaped as addresses are, and options
-        stand before those of an MTL file.
+        The file is searched for under its stated path and, because exporters often write absolute
+        paths, under its base name next to the mesh. glTF names may be percent-encoded, and MTL
+        names may follow options.
 
         Raises:
-            DamagedFileError: the name leaves the folder, and no such file lies next to the mesh.
+            DamagedFileError: If the name refers to a file outside the folder.
+            InputError: If the file is not found.
         """
         name = key.strip().replace("\\", "/")
         names = [name, unquote(name), *(name.split()[-1:] if name.startswith("-") else [])]
@@ -105,14 +114,18 @@ class _FolderResolver:
                 return read_bytes(found, 1 << 30)
         if not inside:
             raise DamagedFileError(
-                self.path, f"names a file outside its folder, {key[:80]!r}: put it beside"
+                self.path,
+                f"refers to a file outside its folder: {key[:80]!r}; copy that file next "
+                "to the mesh",
             )
-        raise InputError(self.path, f"names {key[:80]!r}, which is not there: put it beside")
+        raise InputError(
+            self.path, f"refers to the missing file {key[:80]!r}; copy that file next to the mesh"
+        )
 
     __getitem__ = get
 
     def namespaced(self, namespace: str) -> "_FolderResolver":
-        """Return itself: names are checked one by one."""
+        """Return this resolver, because each name is checked separately."""
         return self
 
     def keys(self) -> list[str]:
@@ -124,25 +137,27 @@ class _FolderResolver:
 
 
 def _stays_in_folder(name: str, parts: list[str]) -> bool:
-    """Return whether a file's name cannot leave the folder that it is sought in."""
+    """Return whether a file name cannot refer to a file outside its folder."""
     return not name.startswith("/") and ".." not in parts and ":" not in parts[0]
 
 
 def _checked_gltf(path: AnyPath, data: bytes) -> dict[str, Any]:
-    """Return glTF's tree, its counts and extensions checked before anything is unpacked."""
+    """Return the JSON tree of a glTF file after checking its counts and extensions."""
     text = data
     if data[:4] == b"glTF":
         if len(data) < 20 or struct.unpack("<I", data[8:12])[0] > len(data):
-            raise DamagedFileError(path, "is cut short; copy it again")
+            raise DamagedFileError(path, "is truncated; copy the file again")
         length = struct.unpack("<I", data[12:16])[0]
         text = data[20 : 20 + length]
     elif path.suffix.lower() == ".glb":
         raise DamagedFileError(
-            path, "is no binary glTF (it does not begin with glTF): export it again"
+            path, "is not a binary glTF file (it does not start with glTF); export the file again"
         )
     if len(text) > MAX_JSON_BYTES:
         raise LimitError(
-            path, f"has a tree of {len(text):,} bytes; at most {MAX_JSON_BYTES:,}: join it"
+            path,
+            f"has a JSON part of {len(text):,} bytes, the limit is "
+            f"{MAX_JSON_BYTES:,}; export a simpler mesh",
         )
     try:
         tree = json.loads(text)
@@ -151,33 +166,38 @@ def _checked_gltf(path: AnyPath, data: bytes) -> dict[str, Any]:
         nodes = len(tree.get("nodes", []))
     except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
         raise DamagedFileError(
-            path, "is no glTF: its tree cannot be read; export it again"
+            path, "is not a valid glTF file: its JSON part cannot be read; export the file again"
         ) from error
     for name in UNSUPPORTED_EXTENSIONS:
         if name in extensions:
             raise DamagedFileError(
-                path, f"is packed with {name}, which is not read; export it uncompressed"
+                path,
+                f"uses the unsupported compression {name}; export the file without compression",
             )
     most = 3 * max(MAX_FACES, MAX_VERTICES)
     if any(not 0 <= count <= most for count in counts) or nodes > MAX_NODES:
         raise LimitError(
-            path, f"says that it has {max([nodes, *counts]):,} values; that is no room"
+            path,
+            f"declares {max([nodes, *counts]):,} values, too many for a room; check "
+            "or simplify the file",
         )
     return tree
 
 
 def _check_stl(path: AnyPath, data: bytes) -> None:
     if len(data) < 15:
-        raise DamagedFileError(path, "is cut short; copy it again")
+        raise DamagedFileError(path, "is truncated; copy the file again")
     if data[:5].lower() == b"solid" and b"facet" in data[:2000]:
         return
     count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else -1
     if count < 0 or 84 + 50 * count > len(data):
-        raise DamagedFileError(path, f"is no whole STL: {count:,} triangles are due; copy it again")
+        raise DamagedFileError(
+            path, f"is a truncated STL file: expected {count:,} triangles; copy the file again"
+        )
 
 
 def _parts(path: AnyPath, scene: Any, generator: str) -> list[MeshPart]:
-    """Return the parts of a trimesh scene, each placed as its nodes say."""
+    """Return the parts of a trimesh scene, transformed by their nodes."""
     nodes = list(scene.graph.nodes_geometry)
     shapes = [(node, *scene.graph[node]) for node in nodes]
     sizes = {name: _mesh_size(mesh) for name, mesh in scene.geometry.items()}

@@ -1,4 +1,4 @@
-"""Reader of USD and USDZ, as iPhone apps write them, by Pixar's library (the extra ``usd``)."""
+"""Reader of USD and USDZ files by Pixar's library, which the extra ``usd`` installs."""
 
 import io
 from pathlib import Path
@@ -23,30 +23,35 @@ MAX_PICTURE_BYTES = 256 << 20
 
 
 def load_usd(place: AnyPath) -> LoadedGeometry:
-    """Read all meshes of a stage.
+    """Load all meshes of a USD stage.
 
     Raises:
-        DamagedFileError: it cannot be read, or refers to files elsewhere. LimitError: it is too
-            large. MissingExtraError: the library is absent.
+        DamagedFileError: If the file cannot be read or refers to files outside its folder.
+        LimitError: If the file is too large.
+        MissingExtraError: If the USD library is not installed.
     """
     import_optional("pxr", "reading USD files", "usd")
     tf, usd, geom = _import_pxr("Tf"), _import_pxr("Usd"), _import_pxr("UsdGeom")
     if place.stat().st_size > MAX_BYTES:
         raise LimitError(
-            place, f"has {place.stat().st_size:,} bytes; at most {MAX_BYTES:,}: make it smaller"
+            place,
+            f"has {place.stat().st_size:,} bytes, the limit is {MAX_BYTES:,}; export "
+            "a smaller file",
         )
     with file_on_disk(place) as path:
         try:
             stage = usd.Stage.Open(str(path))
         except tf.ErrorException as error:
-            raise DamagedFileError(place, "cannot be read as USD; export it again") from error
+            raise DamagedFileError(place, "cannot be read as USD; export the file again") from error
         if stage is None:
-            raise DamagedFileError(place, "cannot be read as USD; export it again")
+            raise DamagedFileError(place, "cannot be read as USD; export the file again")
         folder = str(path.resolve().parent)
         for layer in stage.GetUsedLayers():
             if layer.realPath and not Path(layer.realPath).is_relative_to(folder):
                 raise DamagedFileError(
-                    place, f"refers to a file elsewhere: {layer.identifier[:80]}; export it as USDZ"
+                    place,
+                    f"refers to a file outside its folder: {layer.identifier[:80]}; export "
+                    "the scene as USDZ",
                 )
         try:
             parts = _parts(place, stage, folder)
@@ -56,7 +61,7 @@ def load_usd(place: AnyPath) -> LoadedGeometry:
             up = str(geom.GetStageUpAxis(stage)).lower()
             up_stated = bool(stage.HasAuthoredMetadata("upAxis"))
         except (tf.ErrorException, RuntimeError) as error:
-            raise DamagedFileError(place, "cannot be read as USD; export it again") from error
+            raise DamagedFileError(place, "cannot be read as USD; export the file again") from error
     # Without a stated unit USD means centimetres, yet files are often in metres: it is inferred.
     return LoadedGeometry(mesh, "USD", offset, unit_m if stated else None, up, up_stated)
 
@@ -72,7 +77,10 @@ def _parts(place: AnyPath, stage: Any, folder: str) -> list[MeshPart]:
     predicate = _import_pxr("Usd").TraverseInstanceProxies(_import_pxr("Usd").PrimDefaultPredicate)
     for number, prim in enumerate(_import_pxr("Usd").PrimRange(stage.GetPseudoRoot(), predicate)):
         if number > MAX_PRIMS:
-            raise LimitError(place, f"has over {MAX_PRIMS:,} prims; that is no room")
+            raise LimitError(
+                place,
+                f"has more than {MAX_PRIMS:,} prims, too many for a room; export a smaller scene",
+            )
         if not prim.IsA(_import_pxr("UsdGeom").Mesh):
             continue
         part = _part(place, prim, np.array(places.GetLocalToWorldTransform(prim)), pictures, folder)
@@ -98,11 +106,11 @@ def _part(
         return None
     if counts.min() < 0 or counts.sum() != len(corners) or corners.max() >= len(points):
         raise DamagedFileError(
-            place, f"has a mesh whose faces are wrong: {prim.GetPath()}; export it again"
+            place, f"contains a mesh with invalid faces: {prim.GetPath()}; export the file again"
         )
     if corners.min() < 0:
         raise DamagedFileError(
-            place, f"has a mesh whose faces are wrong: {prim.GetPath()}; export it again"
+            place, f"contains a mesh with invalid faces: {prim.GetPath()}; export the file again"
         )
     moved = points @ transform[:3, :3] + transform[3, :3]  # USD's vectors are rows.
     # Every corner becomes a vertex of its own: colours and uv may differ from face to face.
@@ -145,7 +153,7 @@ def _corner_values(
     own: np.ndarray,
     width: int,
 ) -> np.ndarray | None:
-    """Return a primvar's value at each corner of each triangle, float64 [3 T, width], or None."""
+    """Return a primvar at each corner of each triangle as float64 [3 T, width], or None."""
     for name in names:
         found = primvars.FindPrimvarWithInheritance(name)
         if not found or not found.HasValue():
@@ -167,7 +175,7 @@ def _corner_values(
 def _material(
     prim: Any, pictures: dict[str, Image.Image | None], folder: str
 ) -> tuple[Image.Image | None, np.ndarray | None]:
-    """Return the picture and the plain colour (linear float64 [3]) of a prim's material."""
+    """Return the texture and the uniform colour (linear float64 [3]) of a prim's material."""
     material = _import_pxr("UsdShade").MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
     surface = material.ComputeSurfaceSource()[0] if material else None
     slot = surface.GetInput("diffuseColor") if surface else None
@@ -189,7 +197,7 @@ def _material(
 
 
 def _open_picture(where: str, folder: str) -> Image.Image | None:
-    """Return the picture of a stage's asset; None where it is absent, elsewhere or no picture."""
+    """Return the texture image of an asset, or None if it is missing, outside or not an image."""
     if not Path(where).is_relative_to(folder):
         return None
     asset = _import_pxr("Ar").GetResolver().OpenAsset(_import_pxr("Ar").ResolvedPath(where))

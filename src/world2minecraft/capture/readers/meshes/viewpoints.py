@@ -1,8 +1,9 @@
-"""Selection of camera poses that together see all surface, the most informative first.
+"""Selection of camera poses that together see all surfaces, with the most informative first.
 
-Positions lie in the clear space at the heights of eyes, and some lower and higher. From each, rays
-of 24 upright cameras run through the voxel grid to the sides of cells they hit. Then the camera
-that adds most is taken, greedily: a side seen once more counts half, a third time a quarter.
+Candidate positions are in free space at eye height and at some lower and higher levels. From each
+position, rays of 24 cameras without roll are cast through the voxel grid to the cell faces that
+they hit. Cameras are then selected greedily by the number of newly seen faces; a face seen for the
+second time counts half, and for the third time a quarter.
 """
 
 import numpy as np
@@ -26,7 +27,11 @@ VIEW_GAINS = (1.0, 0.5, 0.25)  # Of the first, second and third look at a place.
 
 
 def choose_views(grid: SurfaceGrid, interior: Interior) -> np.ndarray:
-    """Return camera_to_world float64 [F, 4, 4] of the views, best first; z is up."""
+    """Select camera poses that see the surface of an interior, with z up.
+
+    Returns:
+        The camera_to_world matrices as float64 [F, 4, 4], the most informative first.
+    """
     places = _candidate_positions(grid, interior)
     turns = _camera_rotations()
     poses = np.tile(np.eye(4), (len(places) * len(turns), 1, 1))
@@ -37,7 +42,7 @@ def choose_views(grid: SurfaceGrid, interior: Interior) -> np.ndarray:
 
 
 def _candidate_positions(grid: SurfaceGrid, interior: Interior) -> np.ndarray:
-    """Return places to look from, float64 [N, 3], evenly spread over the clear space."""
+    """Return candidate camera positions, evenly spread over the free space, as float64 [N, 3]."""
     cells = np.argwhere(interior.clear)
     drop = interior.drop[tuple(cells.T)]
     levels = np.unique([max(1, round(high / grid.cell_m)) for high in HEIGHTS_M])
@@ -57,7 +62,7 @@ def _candidate_positions(grid: SurfaceGrid, interior: Interior) -> np.ndarray:
 
 
 def _camera_rotations() -> np.ndarray:
-    """Return the axes of upright cameras that look all around, float64 [24, 3, 3]."""
+    """Return the axes of cameras without roll in all directions, float64 [24, 3, 3]."""
     turns = []
     for pitch_deg in PITCHES_DEG:
         for turn in range(YAWS):
@@ -68,7 +73,7 @@ def _camera_rotations() -> np.ndarray:
 
 
 def _visible_sides(grid: SurfaceGrid, poses: np.ndarray) -> np.ndarray:
-    """Return int32 [views, rays]: which side of which cell each ray meets, -1 for none."""
+    """Return the cell face that each ray hits as int32 [views, rays], or -1 for none."""
     across = (np.arange(RAYS_WIDE) + 0.5) / RAYS_WIDE * CAMERA.width_px
     down = (np.arange(RAYS_HIGH) + 0.5) / RAYS_HIGH * CAMERA.height_px
     x, y = np.meshgrid((across - CAMERA.cx_px) / CAMERA.fx_px, (down - CAMERA.cy_px) / CAMERA.fy_px)
@@ -85,7 +90,7 @@ def _visible_sides(grid: SurfaceGrid, poses: np.ndarray) -> np.ndarray:
 
 @njit
 def _cast_rays(occupied, starts, turns, rays, reach, found):
-    """Walk each ray cell by cell to the first held one; all lengths are in cells."""
+    """Follow each ray cell by cell to the first occupied cell; all lengths are in cells."""
     cell, step = np.empty(3, np.int64), np.empty(3, np.int64)
     due, every = np.empty(3), np.empty(3)
     for n in range(len(starts)):
@@ -119,7 +124,7 @@ def _cast_rays(occupied, starts, turns, rays, reach, found):
 
 
 def _select_greedily(sides: np.ndarray, count: int) -> np.ndarray:
-    """Return the rows of the views that are taken, in order."""
+    """Return the indices of the selected views, in order of selection."""
     seen = np.zeros(count, np.uint8)
     worth = np.array([*VIEW_GAINS, 0.0])
     chosen: list[int] = []

@@ -1,6 +1,6 @@
-"""Voxel downsampling of clouds as they are read: the mean point of each small cell.
+"""Voxel downsampling of point clouds during reading, which keeps the mean point of each small cell.
 
-Memory never grows much beyond ``MAX_POINTS`` points, however long the file is.
+Memory use stays close to ``MAX_POINTS`` points for files of any length.
 """
 
 import numpy as np
@@ -13,12 +13,16 @@ UNIT_BY_LENGTH = ((120.0, 1.0), (6000.0, 0.01))  # So many units at most, of so 
 
 
 class VoxelDownsampler:
-    """Takes chunks of points in any frame and gives one thinned cloud.
+    """A collector that merges chunks of points into one downsampled cloud.
 
-    The first point's neighbourhood becomes the origin, so that float32 keeps millimetres of
-    surveyed coordinates: ``offset`` float64 [3] is what was taken off. ``unit_m`` is metres per
-    unit where the format states it; else it is inferred from how long the cloud is. ``cell`` is the
-    side of the cells that points were merged in, 0 before.
+    An offset near the first points is subtracted, so that large survey coordinates keep millimetre
+    precision in float32.
+
+    Attributes:
+        offset: Vector subtracted from all points, float64 [3]; None before the first point.
+        unit_m: Metres per unit, or None to infer the unit from the extent of the cloud.
+        cell: Edge length of the merging cells in file units; 0 before the first merge.
+        read: Number of points added so far.
     """
 
     def __init__(self, unit_m: float | None = None) -> None:
@@ -37,7 +41,7 @@ class VoxelDownsampler:
         colour: np.ndarray | None = None,
         labels: np.ndarray | None = None,
     ) -> None:
-        """Take points float64 [N, 3] with colours uint8 [N, 3] and labels uint8 [N], if any."""
+        """Add points float64 [N, 3] with optional colours uint8 [N, 3] and labels uint8 [N]."""
         good = np.isfinite(points).all(axis=1)
         if not good.any():
             return
@@ -55,7 +59,7 @@ class VoxelDownsampler:
             self._merge(self._fitting_cell())
 
     def cloud(self) -> PointCloud:
-        """Return all that came, one point a cell where there were too many."""
+        """Return the downsampled cloud, with one point per cell if there were too many points."""
         if not self._points:
             return PointCloud(np.zeros((0, 3), np.float32))
         if self._held > MAX_POINTS // 8:
@@ -70,10 +74,10 @@ class VoxelDownsampler:
         )
 
     def _fitting_cell(self) -> float:
-        """Return the cell's side in the file's unit, whatever that is: 1.5 cm of a room.
+        """Return the edge length of a cell in file units, equal to 1.5 cm in a room.
 
-        What is up to 120 units long is no room in centimetres, so that these are metres (or feet);
-        up to 6,000 they are centimetres, beyond millimetres.
+        An extent of at most 120 units is read as metres (or feet), up to 6,000 as centimetres, and
+        beyond as millimetres.
         """
         if self._unit_m is not None:
             return max(self.cell, CELL_M / self._unit_m)
@@ -85,7 +89,7 @@ class VoxelDownsampler:
         return max(self.cell, CELL_M / unit_m)
 
     def _merge(self, cell: float) -> None:
-        """Join what is held into one point a cell; coarser cells where that is still too many."""
+        """Merge the points to one per cell, and use larger cells if there are still too many."""
         points = np.concatenate(self._points)
         colours = np.concatenate(self._colours) if self._colours else None
         labels = np.concatenate(self._labels) if self._labels else None
@@ -105,7 +109,7 @@ class VoxelDownsampler:
 
 
 def _cells(points: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the first point of each cell, each point's cell and how many points each has."""
+    """Return the first point of each cell, the cell of each point, and the cells' point counts."""
     cells = np.floor(points / np.float32(cell)).astype(np.int64)
     cells -= cells.min(axis=0)
     spans = cells.max(axis=0) + 1
