@@ -69,7 +69,7 @@ def test_damaged_photos_are_left_out_and_listed(tmp_path):
     assert [photo.name for photo in photos] == ["0", "2"]
     assert all(photo.camera_guessed and photo.camera_to_scan is None for photo in photos)
     assert list(photos.damaged) == ["1", "odd"]
-    assert "copy it again" in photos.damaged["1"]
+    assert "copy the file again" in photos.damaged["1"]
     assert "no uniform scale" in photos.damaged["odd"]
 
 

@@ -85,7 +85,7 @@ def test_heic_photos_are_read_and_found_when_cut_short(tmp_path):
     assert np.abs(photos[0].colour.astype(int) - _picture(0)).mean() < 12
     path = tmp_path / "IMG_1.heic"
     path.write_bytes(path.read_bytes()[:-200])
-    with pytest.raises(InputError, match="copy it again"):
+    with pytest.raises(InputError, match="copy the file again"):
         check_whole(path)
 
 
@@ -143,11 +143,11 @@ def test_what_is_no_photo_of_the_room_is_left_out_with_reasons(tmp_path):
     capture = find_capture(tmp_path)
     assert [f.name for f in capture.frames] == ["copy_of_2", "IMG_1", "IMG_3", "IMG_4", "IMG_5"]
     reasons = dict(capture.skipped)
-    assert reasons["IMG_2.jpg"] == "is copy of 2.jpg again"
+    assert reasons["IMG_2.jpg"] == "is a duplicate of copy of 2.jpg"
     assert reasons["IMG_E3.jpg"] == "is an edited copy of IMG_3, which is used instead"
     assert "thumbnail" in reasons["small.jpg"] and "panorama" in reasons["wide.jpg"]
     assert reasons["Screenshot_20.png"] == reasons["paint.png"] == "is a screenshot"
-    assert "copy it again" in reasons["broken.jpg"]
+    assert "copy the file again" in reasons["broken.jpg"]
     assert any("1 live-photo videos" in note for note in capture.notes)
     assert (
         validate_capture(tmp_path, ScanOptions()).skipped[: len(capture.skipped)] == capture.skipped
@@ -212,7 +212,7 @@ def test_five_ways_of_damage_are_refused_in_one_line(tmp_path, damage):
 
 def test_too_few_photos_are_refused(tmp_path):
     _photos(tmp_path, 2)
-    _refused(tmp_path, "contains 2 photos that can be used", "take 30 or more", kind=CaptureError)
+    _refused(tmp_path, "contains 2 photos that can be used", "take at least 30", kind=CaptureError)
 
 
 def test_heic_photos_that_are_called_jpg(tmp_path):
@@ -223,7 +223,7 @@ def test_heic_photos_that_are_called_jpg(tmp_path):
     assert len(validate_capture(tmp_path, ScanOptions()).frames) == 3
     cut = tmp_path / "1.jpg"
     cut.write_bytes(cut.read_bytes()[:-50])
-    with pytest.raises(InputError, match="is cut short"):
+    with pytest.raises(InputError, match="is truncated"):
         check_whole(cut)
 
 
@@ -234,7 +234,7 @@ def test_what_phones_append_to_a_jpeg_is_no_damage(tmp_path):
     path.write_bytes(whole + b"\0" * 9000)
     check_whole(path)
     path.write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(InputError, match="is cut short .* copy it again"):
+    with pytest.raises(InputError, match="is truncated .* copy the file again"):
         check_whole(path)
 
 

@@ -80,7 +80,7 @@ def test_a_side_that_no_frame_saw_lies_behind_the_cameras(box_room):
     views = [view for view in box_room.views(12) if view.camera_to_scan[0, 2] > 0.3]
     aligned = align(views)
     side = "(west|east|south|north)"
-    told = rf"no wall was seen at the {side}( and {side})* sides?; the room ends where its"
+    told = rf"no wall was seen at the {side}( and {side})* sides?; the room extends to the"
     assert any(re.match(told, note) for note in aligned.notes)
     eyes = np.array([(aligned.scan_to_room @ view.camera_to_scan)[:3, 3] for view in views])
     assert (eyes > 0).all()
@@ -92,7 +92,7 @@ def test_a_room_of_an_impossible_size_is_refused_with_its_size(surfaces, factor,
     surface = surfaces[0][None]
     cameras = surface.cameras.copy()
     cameras[:, :3, 3] *= factor
-    with pytest.raises(ImplausibleRoomError, match=f"would be .*{size}.* plausible: check the"):
+    with pytest.raises(ImplausibleRoomError, match=f"would be .*{size}.* check the depth unit"):
         align_surface(replace(surface, points_m=surface.points_m * factor, cameras=cameras))
 
 

@@ -77,7 +77,7 @@ def test_a_stop_is_told_and_is_no_failure(capture, capsys, monkeypatch):
         "world2minecraft.capture.quality.diagnostics.is_installed", lambda module: False
     )
     assert w2m(["scan", str(capture), "--no-picture"]) == 0
-    assert "  stop      finding poses needs an extra" in capsys.readouterr().out
+    assert "  stop      pose estimation needs an extra" in capsys.readouterr().out
 
 
 def test_a_room_plan(tmp_path, capsys, monkeypatch):

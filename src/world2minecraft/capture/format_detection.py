@@ -133,7 +133,7 @@ def _describe_contents(place: Path) -> str:
         for entry in entries
     )
     most = sorted(kinds.items(), key=lambda item: (-item[1], item[0]))[:4]
-    return ", which contains" + ", ".join(_count_phrase(count, kind) for kind, count in most)
+    return ", which contains " + ", ".join(_count_phrase(count, kind) for kind, count in most)
 
 
 def _count_phrase(count: int, kind: str) -> str:

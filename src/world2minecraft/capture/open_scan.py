@@ -134,6 +134,6 @@ def check_cell_count(alignment: Alignment, voxel_m: float) -> None:
         min_voxel_m = (volume_m3 / MAX_CELLS) ** (1 / 3)
         raise UsageError(
             f"--voxel {voxel_m:g} divides this room into {volume_m3 / voxel_m**3:,.0f} "
-            f"cells, the limit is {MAX_CELLS:,}; use --voxel "
-            f"{math.ceil(1000 * min_voxel_m) / 1000:.3f} or more"
+            f"cells, the limit is {MAX_CELLS:,}; use at least --voxel "
+            f"{math.ceil(1000 * min_voxel_m) / 1000:.3f}"
         )

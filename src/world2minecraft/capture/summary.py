@@ -126,7 +126,7 @@ def roomplan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
     )
     return [
         f"{capture}: a RoomPlan capture with {held}",
-        "route     walls and furniture are built as measured: about 10 s",
+        "  route     walls and furniture are built as measured: about 10 s",
         *(f"  note      {note}" for note in plan.notes),
         "  hint      with a scan of the same room: w2m reconstruct SCAN --plan "
         f"{shell_command([str(capture)])} --out OUT",

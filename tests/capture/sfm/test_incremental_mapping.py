@@ -82,7 +82,8 @@ def test_a_photo_of_elsewhere_is_left_out_with_a_reason(found):
     assert len(scene.names) == 7
     assert dict(scene.left_out) == {
         "elsewhere": (
-            "shares nothing with the other photos; take more pictures between elsewhere and 003"
+            "has no details in common with the other photos; take more photos between elsewhere "
+            "and 003"
         )
     }
 
@@ -98,26 +99,26 @@ def of_different_places() -> list[Photo]:
     ]
 
 
-HABIT = "walk sideways around the room, with most of each picture in the next"
+HABIT = "move sideways around the room so that each photo overlaps the next by more than half"
 
 
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: [], f"photos: there is no photo; take 20 to 60 of the room: {HABIT}"),
+        (lambda: [], f"photos: there are no photos; take 20 to 60 photos of the room: {HABIT}"),
         (
             lambda: photos(poses()[:2]),
-            f"photos: only 2 were given; take 20 to 60 of the room: {HABIT}",
+            f"photos: there are only 2 photos; take 20 to 60 photos of the room: {HABIT}",
         ),
         (
             lambda: blank(5),
-            "photos: 5 of 5 show too few details to be placed (blank, blurred or dark); turn on "
-            "the lights, step back so that furniture and corners are seen",
+            "photos: 5 of 5 photos show too few details (blank, blurred or dark); switch on "
+            "the lights, and step back to show furniture and corners",
         ),
-        (of_different_places, f"photos: no three of the 3 show the same things; {HABIT}"),
+        (of_different_places, f"photos: no three of the 3 photos show the same objects; {HABIT}"),
         (
             lambda: [*photos(poses()[:2]), photos(poses()[:1])[0]],
-            "photos: two are named '000'; give each a name of its own",
+            "photos: two photos have the name '000'; give each photo a unique name",
         ),
     ],
 )
@@ -133,8 +134,8 @@ def test_a_camera_that_only_rotated_is_reported():
     with pytest.raises(CaptureError) as caught:
         find_poses(photos(places), SMALL)
     assert str(caught.value) == (
-        "photos: the camera turned on one spot, which shows no depth; take steps of 20 to 40 cm "
-        "sideways between pictures"
+        "photos: the camera only rotated, which gives no depth; move 20 to 40 cm sideways "
+        "between photos"
     )
 
 

@@ -37,7 +37,9 @@ def test_jittered_poses_are_refined_in_their_frame():
     # The frame is that of the stated poses: as near the truth as ten of them together tell.
     assert turned_deg(scene.camera_to_scan, poses()).max() < 0.8
     assert np.linalg.norm(scene.camera_to_scan[:, :3, 3] - poses()[:, :3, 3], axis=1).max() < 0.02
-    assert scene.notes[0].startswith("stated poses were off by 2.8 px (median); refined to 0.06 px")
+    assert scene.notes[0].startswith(
+        "the median error of the stated poses was 2.8 px; after refinement it is 0.06 px"
+    )
 
 
 def test_another_cameras_focal_length_is_found():
@@ -53,7 +55,7 @@ def test_a_wrong_pose_among_good_ones_is_registered_again(jitter):
     stated[4] = poses()[4] @ LOOK_ASIDE
     scene = check_poses(photos(poses(), CAMERA, stated), SMALL)
     assert scene.names == tuple(f"{i:03d}" for i in range(10))
-    assert "the stated pose of 004 contradicts the pictures: found anew" in scene.notes
+    assert "the stated pose of 004 contradicts the images and was estimated again" in scene.notes
     off = np.linalg.norm(scene.camera_to_scan[4, :3, 3] - poses()[4, :3, 3])
     assert off < 0.002 + 0.02 * jitter
     if not jitter:
@@ -64,7 +66,7 @@ def test_useless_poses_are_mapped_from_scratch():
     stated = jittered(poses(), 40.0, 0.1, seed=2)
     scene = check_poses(photos(poses(), CAMERA, stated), SMALL)
     assert scene.notes[0] == (
-        "the stated poses are too far off to start from: places were found anew"
+        "the stated poses are too inaccurate to refine; new poses were estimated"
     )
     assert align_similarity(scene.camera_to_scan, poses()).off_m.max() < 0.005
 
@@ -75,8 +77,8 @@ def test_photos_that_cannot_be_measured():
     with pytest.raises(CaptureError) as caught:
         check_poses(grey, SMALL)
     assert str(caught.value) == (
-        "photos: 4 of 4 show too few details to be placed (blank, blurred or dark); turn on the "
-        "lights, step back so that furniture and corners are seen"
+        "photos: 4 of 4 photos show too few details (blank, blurred or dark); switch on the "
+        "lights, and step back to show furniture and corners"
     )
     apart = [
         Photo(f"{i}", photos(poses()[i : i + 1], seed=20 + i)[0].colour, CAMERA, False, pose)
@@ -85,8 +87,8 @@ def test_photos_that_cannot_be_measured():
     with pytest.raises(CaptureError) as caught:
         check_poses(apart, SMALL)
     assert str(caught.value) == (
-        "photos: share too few details to check their poses (0 points); take pictures that "
-        "overlap, with the lights on"
+        "photos: the photos have too few common details to check their poses (0 points); "
+        "take overlapping photos in good light"
     )
 
 

@@ -163,7 +163,7 @@ def test_pycolmap_is_optional(monkeypatch):
     with pytest.raises(MissingExtraError) as caught:
         find_poses([])
     assert str(caught.value) == (
-        "finding the places of photos needs an extra: pip install 'world2minecraft[capture]'"
+        "pose estimation needs an extra: pip install 'world2minecraft[capture]'"
     )
 
 
@@ -171,16 +171,16 @@ def test_failures_of_colmap_are_one_line():
     with pytest.raises(CaptureError) as caught, pycolmap_session.pycolmap_session():
         raise RuntimeError("[x.cc:1] Check failed\nand more")
     assert str(caught.value) == (
-        "photos: their places could not be found ([x.cc:1] Check failed); "
-        "leave out odd photos and try again"
+        "photos: pose estimation failed ([x.cc:1] Check failed); "
+        "remove unusual photos and try again"
     )
 
 
 def test_a_few_placed_photos_are_no_room():
     assert str(results.too_few_error(6, 40)) == (
-        "photos: only 6 of 40 could be placed, too few to trust; walk sideways around the room, "
-        "with most of each picture in the next, and stand back so that furniture and corners are "
-        "seen"
+        "photos: poses were found for only 6 of 40 photos, which is not reliable; move sideways "
+        "around the room so that each photo overlaps the next by more than half, and step back "
+        "to show furniture and corners"
     )
 
 

@@ -86,11 +86,11 @@ def test_the_mount_of_another_sensor_is_found(seed):
 @pytest.mark.parametrize(
     ("given_poses", "wanted", "message"),
     [
-        (np.eye(4)[None], np.eye(4)[None], "a similarity needs 2 poses or more, not 1"),
+        (np.eye(4)[None], np.eye(4)[None], "a similarity requires 2 or more poses, got 1"),
         (
             np.tile(np.eye(4), (3, 1, 1)),
             random_poses(np.random.default_rng(0), 3),
-            "all cameras stand in one place: no scale can be found",
+            "all camera positions are identical, so the scale cannot be estimated",
         ),
         (
             random_poses(np.random.default_rng(0), 3),

@@ -92,7 +92,7 @@ def test_progress_ends_with_all_done():
 
 def test_a_missing_photo_is_named():
     photos, _ = row_of_photos(0.0, 3)
-    with pytest.raises(CaptureError, match="p1: the scene has this photo, but the photos do not"):
+    with pytest.raises(CaptureError, match="p1: is part of the scene but missing in the photos"):
         list(compute_depth_maps([photos[0], photos[2]], scene_of(photos, 0.0), FEW))
 
 
@@ -101,7 +101,9 @@ def test_a_photo_of_another_size_is_named():
     scene = scene_of(photos, 0.0)
     small = Camera(80, 60, 75.0, 75.0, 40.0, 30.0)
     wrong = replace(scene, cameras=(small, *scene.cameras[1:]))
-    with pytest.raises(CaptureError, match="p0: the photo is 160x120, but its camera is 80x60"):
+    with pytest.raises(
+        CaptureError, match="p0: the photo is 160x120 px, but its camera is 80x60 px"
+    ):
         list(compute_depth_maps(photos, wrong, FEW))
 
 
@@ -109,7 +111,9 @@ def test_photos_from_one_place_give_no_depth():
     photos, _ = row_of_photos(0.0, 3)
     scene = scene_of(photos, 0.0)
     still = replace(scene, camera_to_scan=np.tile(np.eye(4), (3, 1, 1)))
-    with pytest.raises(CaptureError, match="no two see the same from places far enough apart"):
+    with pytest.raises(
+        CaptureError, match="no two photos show the same surface from different positions"
+    ):
         list(compute_depth_maps(photos, still, FEW))
 
 

@@ -146,7 +146,9 @@ def test_without_any_point_there_is_no_scale(views):
         track_point=scene.track_point[:0],
         track_px=scene.track_px[:0],
     )
-    with pytest.raises(CaptureError, match="share too few points to tell how large fake:jittery"):
+    with pytest.raises(
+        CaptureError, match="too few common points to determine the scale of fake:jittery"
+    ):
         list(network_maps(photos_of(views), none, Jittery(views)))
 
 

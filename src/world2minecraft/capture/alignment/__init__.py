@@ -1,1 +1,1 @@
-"""Alignment of a scan to its room: gravity, yaw, floor and the inner box of the walls."""
+"""Alignment of a scan to its room: gravity, yaw, floor and the inner bounding box of the walls."""

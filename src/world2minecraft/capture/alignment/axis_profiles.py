@@ -1,7 +1,7 @@
-"""Profiles of surface area along an axis, and the exact position of a face.
+"""Profiles of surface area along an axis, and precise positions of faces.
 
-Near a wall's own face stand others a few centimetres away: a door's leaf and a window's pane
-behind it, a picture or a wardrobe's back before it. The one with the most surface is the wall.
+Other faces lie within centimetres of a wall, such as a door leaf or a window pane behind it, or a
+picture or the back of a wardrobe in front of it. The face with the most surface is the wall.
 """
 
 from dataclasses import dataclass
@@ -19,10 +19,14 @@ MIN_SIGMA_M = 0.003  # What a face is off for other reasons than noise; no patch
 
 @dataclass(frozen=True)
 class AxisProfile:
-    """How much surface lies at each place along an axis, counted in distinct patches.
+    """The surface area at each position along an axis, counted in distinct patches.
 
-    ``area_m2`` float64 [bins] counts each bin with its two neighbours, since noise of consumer
-    depth at 3 m is about 2 cm; ``bin_area_m2`` counts each alone.
+    Attributes:
+        start_m: Position of the start of the first bin in metres.
+        bin_m: Width of the bins in metres.
+        area_m2: Area of each bin with its two neighbours, float64 [bins]; the noise of consumer
+            depth sensors at 3 m is about 2 cm.
+        bin_area_m2: Area of each bin alone, float64 [bins].
     """
 
     start_m: float
@@ -31,11 +35,11 @@ class AxisProfile:
     bin_area_m2: np.ndarray
 
     def centers_m(self) -> np.ndarray:
-        """The middles of the bins."""
+        """Return the centres of the bins in metres."""
         return self.start_m + (np.arange(len(self.area_m2)) + 0.5) * self.bin_m
 
     def peaks(self, min_area_m2: float) -> np.ndarray:
-        """Return the places of the local maxima of at least an area, rising."""
+        """Return the positions of local maxima with at least the given area, in ascending order."""
         bins = np.concatenate([[0.0], self.bin_area_m2, [0.0]])
         height = bins[1:-1] + (bins[:-2] + bins[2:]) / 2
         padded = np.concatenate([[0.0], height, [0.0]])
@@ -43,18 +47,18 @@ class AxisProfile:
         return self.centers_m()[top]
 
     def area_at(self, place_m: float) -> float:
-        """Return the area in the bin at a place, 0 outside."""
+        """Return the area in the bin at a position, or 0 outside the profile."""
         index = int(np.floor((place_m - self.start_m) / self.bin_m))
         return float(self.area_m2[index]) if 0 <= index < len(self.area_m2) else 0.0
 
 
 def axis_profile(points_m: np.ndarray, axis: int, bin_m: float = 0.03) -> AxisProfile:
-    """Count distinct patches along an axis.
+    """Compute the surface profile of points along an axis.
 
     Args:
-        points_m: float64 [N, 3], already chosen to face along the axis.
-        axis: 0, 1 or 2.
-        bin_m: width of the bins.
+        points_m: Points on surfaces that face along the axis, in metres, float64 [N, 3].
+        axis: Axis 0, 1 or 2.
+        bin_m: Width of the bins in metres.
     """
     if not len(points_m):
         return AxisProfile(0.0, bin_m, np.zeros(1), np.zeros(1))
@@ -75,12 +79,12 @@ def _area_per_bin(codes: np.ndarray, count: int) -> np.ndarray:
 
 
 def face_position_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
-    """Return where the largest face near a place lies along an axis.
+    """Return the position of the largest face near a given position along an axis.
 
     Args:
-        facing: the surface that looks along the axis, one way.
-        axis: 0, 1 or 2.
-        place_m: where the face is about; returned where nothing is within 8 cm of it.
+        facing: Surface points that face in one direction along the axis.
+        axis: Axis 0, 1 or 2.
+        place_m: Approximate position, which is returned if there are no points within 8 cm.
     """
     near = facing.subset(np.abs(facing.points_m[:, axis] - place_m) < SEARCH_RADIUS_M)
     if not len(near.points_m):
@@ -97,7 +101,7 @@ def face_position_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
 
 
 def points_per_cell(points_m: np.ndarray, axis: int) -> np.ndarray:
-    """Return how many points share each one's 10 cm of a face: many looks are one surface."""
+    """Return for each point the number of points in the same 10 cm cell of a face."""
     others = [other for other in range(3) if other != axis]
     cells = np.floor(points_m[:, others] / CELL_M).astype(np.int64)
     cells -= cells.min(axis=0, initial=0)

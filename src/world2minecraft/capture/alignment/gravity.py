@@ -25,7 +25,14 @@ MAX_BELOW_SHARE = 0.02  # Points that reflections and noise put under a true flo
 
 @dataclass(frozen=True)
 class Ground:
-    """``up`` is a unit vector of the scan's frame; the floor is where ``up . p = height_m``."""
+    """The up direction and the floor plane ``up . p = height_m``.
+
+    Attributes:
+        up: Unit vector in the frame of the scan.
+        height_m: Height of the floor along ``up`` in metres.
+        floor_area_m2: Area of the floor; 0 if no floor was found and the lowest points are used
+            instead.
+    """
 
     up: np.ndarray
     height_m: float
@@ -33,12 +40,12 @@ class Ground:
 
 
 def find_ground(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> Ground:
-    """Return up and the floor's plane; see the module's text.
+    """Estimate the up direction and the floor plane of a scan.
 
     Args:
-        surface: oriented points of the scan's frame.
-        up_hint: unit vector float64 [3] where the capture knows up, as a phone does by its sense
-            of gravity; then up lies within 10 degrees of it, and is it where no surface says more.
+        surface: Oriented points in the frame of the scan.
+        up_hint: Up direction stated by the capture, such as from a phone's gravity sensor, as a
+            unit vector float64 [3]. The result is within 10 degrees of it.
     """
     voted = _vote_up(surface) if up_hint is None else up_hint
     refined = _refine_up(surface.normals, voted)
@@ -52,7 +59,7 @@ def _is_near(up: np.ndarray, up_hint: np.ndarray | None) -> bool:
 
 
 def _vote_up(surface: OrientedPoints) -> np.ndarray:
-    """Return the best of many directions by support, level image rows and upright images."""
+    """Return the best of many directions by facing surface, level image rows and upright images."""
     directions = _fibonacci_sphere(DIRECTIONS)
     every = max(1, len(surface.normals) // MAX_VOTERS)
     voters = surface.normals[::every]
@@ -66,7 +73,7 @@ def _vote_up(surface: OrientedPoints) -> np.ndarray:
 
 
 def _fibonacci_sphere(count: int) -> np.ndarray:
-    """Return float64 [count, 3] unit vectors, evenly spread (Fibonacci's spiral)."""
+    """Return evenly distributed unit vectors, float64 [count, 3] (Fibonacci spiral)."""
     index = np.arange(count) + 0.5
     z = 1 - 2 * index / count
     angle = index * np.pi * (1 + 5**0.5)
@@ -75,7 +82,7 @@ def _fibonacci_sphere(count: int) -> np.ndarray:
 
 
 def _refine_up(normals: np.ndarray, up: np.ndarray) -> np.ndarray:
-    """Move a direction to the middle of the normals around it, in narrowing cones."""
+    """Move a direction to the mean of the normals around it, in narrowing cones."""
     for within_deg in (10.0, 7.0, 5.0, 4.0, 4.0):
         near = normals[np.abs(normals @ up) > np.cos(np.radians(within_deg))]
         if len(near) < 10:
@@ -86,7 +93,7 @@ def _refine_up(normals: np.ndarray, up: np.ndarray) -> np.ndarray:
 
 
 def _floor_height(surface: OrientedPoints, up: np.ndarray) -> tuple[float, float]:
-    """Return the height of the lowest large surface that faces up, and its area in m2."""
+    """Return the height and the area in m2 of the lowest large surface that faces up."""
     frame = rotation_to_z(up)
     points = surface.points_m @ frame.T
     facing = points[surface.normals @ up > np.cos(np.radians(MAX_FACING_DEG))]
@@ -99,7 +106,7 @@ def _floor_height(surface: OrientedPoints, up: np.ndarray) -> tuple[float, float
 
 
 def rotation_to_z(up: np.ndarray) -> np.ndarray:
-    """Return a rotation [3, 3] that carries ``up`` to +z; the turn about it is arbitrary."""
+    """Return a rotation [3, 3] that maps ``up`` to +z, with an arbitrary rotation about z."""
     other = np.eye(3)[int(np.argmin(np.abs(up)))]
     x = np.cross(other, up)
     x /= np.linalg.norm(x)

@@ -1,9 +1,9 @@
-"""Rotation of captures whose images lie on their side.
+"""Upright rotation of captures whose images are rotated by quarter turns.
 
-A phone held upright stores its pictures as its sensor lies: sideways. Where the capture states
-which way is up in its world, the poses tell by how many quarter turns most of its images are off.
-All images, cameras and poses are then rotated together: each pixel's ray in the world stays the
-same.
+A phone held upright stores its images in the orientation of the sensor, that is, sideways. If the
+capture states the up direction of its world, the poses show the number of quarter turns by which
+most images are rotated. All images, cameras and poses are then rotated together, which does not
+change the ray of any pixel.
 """
 
 from collections.abc import Sequence
@@ -36,55 +36,54 @@ _TURNED_TO_CAMERA = np.array(
 
 @dataclass(frozen=True)
 class RotatedImage:
-    """An ``ImageSource``: another image, turned counter-clockwise by quarter turns."""
+    """An image rotated counter-clockwise by quarter turns. It implements ``ImageSource``."""
 
     image: ImagePlace
     quarter_turns: int
 
     def __str__(self) -> str:
-        """The name of the image that is turned."""
+        """Return the name of the original image, for messages."""
         return str(self.image)
 
     @property
     def stem(self) -> str:
-        """The name without suffix of the image that is turned."""
+        """The name of the original image without suffix."""
         return self.image.stem
 
     @property
     def name(self) -> str:
-        """The name of the image that is turned."""
+        """The name of the original image."""
         return self.image.name
 
     def header(self) -> ImageHeader:
-        """Return the size after the turn."""
+        """Return the size after rotation, and the mode."""
         header = read_header(self.image)
         if self.quarter_turns % 2 == 0:
             return header
         return ImageHeader(header.height_px, header.width_px, header.mode)
 
     def check_whole(self) -> None:
-        """Check the image that is turned."""
+        """Check that the original image is complete."""
         check_whole(self.image)
 
     def colour(self) -> np.ndarray:
-        """Return uint8 [H, W, 3] sRGB."""
+        """Return the rotated image as sRGB, uint8 [H, W, 3]."""
         return np.ascontiguousarray(np.rot90(read_colour(self.image), self.quarter_turns))
 
     def raw(self) -> np.ndarray:
-        """Return [H, W] values as stored."""
+        """Return the rotated stored values, [H, W]."""
         return np.ascontiguousarray(np.rot90(read_raw(self.image), self.quarter_turns))
 
 
 def find_quarter_turns(frames: Sequence[FrameFiles], world_up: np.ndarray) -> int:
-    """Return by how many quarter turns, counter-clockwise, most images must be turned.
+    """Return the number of counter-clockwise quarter turns that make most images upright.
 
     Args:
-        frames: with rigid poses.
-        world_up: float64 [3], a unit vector of the poses' world.
+        frames: Frames with rigid poses.
+        world_up: Up direction in the world of the poses, unit vector float64 [3].
 
     Returns:
-        0 to 3; 0 where no more than half of the images that tell it agree: turning all of them
-        would harm as many as it helps.
+        A number from 0 to 3. The result is 0 if no rotation suits more than half of the images.
     """
     poses = [frame.camera_to_world for frame in frames if frame.camera_to_world is not None]
     if not poses:
@@ -100,7 +99,7 @@ def find_quarter_turns(frames: Sequence[FrameFiles], world_up: np.ndarray) -> in
 
 
 def rotate_frame(frame: FrameFiles, quarter_turns: int) -> FrameFiles:
-    """Return a frame whose images, lenses and pose are turned; its geometry stays the same."""
+    """Return a frame with rotated images, intrinsics and pose, and unchanged geometry."""
     if quarter_turns % 4 == 0:
         return frame
     turned_to_camera = np.linalg.matrix_power(_TURNED_TO_CAMERA, quarter_turns % 4)
@@ -119,7 +118,7 @@ def rotate_frame(frame: FrameFiles, quarter_turns: int) -> FrameFiles:
 
 
 def rotate_camera(camera: Camera, quarter_turns: int) -> Camera:
-    """Return the camera of an image that is turned counter-clockwise by quarter turns."""
+    """Return the camera of an image that is rotated counter-clockwise by quarter turns."""
     for _ in range(quarter_turns % 4):
         k1, k2, p1, p2, k3 = camera.distortion
         camera = Camera(

@@ -1,13 +1,13 @@
-"""The room's frame in the scan: gravity, floor, walls, and a check of the room's size.
+"""Estimation of the room frame of a scan from gravity, floor and walls, with a plausibility check.
 
-In: views in the scan's frame, any tilt and turn. Out: ``scan_to_room``, which puts the floor at
-z = 0, the walls along x and y and the inner corner of the room at (0, 0, 0). Of the four quarter
-turns that this leaves open, the one is taken in which the first camera looks towards +y (north
-in the game), so that the result does not depend on the frame that the capture chose.
+The input is a set of views in an arbitrary frame. The result is ``scan_to_room``, which moves the
+floor to z = 0, aligns the walls with x and y, and moves the inner corner of the room to (0, 0, 0).
+Of the four remaining quarter turns, the one in which the first camera looks towards +y (north in
+the game) is used, so that the result does not depend on the frame of the capture.
 
-Gravity and walls are found one after the other, each from its own few surfaces. The last tenths of
-a degree come from floor, ceilings, walls and large fronts together: each face across an axis is a
-plane at a position of its own, and one small rotation must fit them all.
+Gravity and walls are first estimated separately, each from a few surfaces. A joint refinement then
+uses the floor, ceilings, walls and large furniture fronts: each face orthogonal to an axis is a
+plane at its own position, and one small rotation must fit all of them.
 """
 
 from collections.abc import Iterable
@@ -39,7 +39,14 @@ CAMERA_CLEARANCE_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a ha
 
 @dataclass(frozen=True)
 class Alignment:
-    """The room's place: ``scan_to_room`` 4x4, ``room_size_m`` float64 [3], notes for the report."""
+    """The frame of a room.
+
+    Attributes:
+        scan_to_room: Rigid transform, float64 [4, 4].
+        room_size_m: Size of the room in metres, float64 [3].
+        notes: Remarks for the report.
+        sigmas: Uncertainty of the frame; None if the capture states the frame.
+    """
 
     scan_to_room: np.ndarray
     room_size_m: np.ndarray
@@ -48,30 +55,40 @@ class Alignment:
 
 
 class ImplausibleRoomError(ValueError):
-    """The surface cannot be a room; the message states why and what to do."""
+    """The surface is not a plausible room; the message states the reason and what to do."""
 
 
 def align(views: Iterable[View], up_hint: np.ndarray | None = None) -> Alignment:
-    """Find the room in some views of a scan, read once and one at a time.
+    """Estimate the room frame from views, which are read once and one at a time.
 
     Args:
-        views: of one scan's frame, in any tilt and turn.
-        up_hint: as ``find_ground`` takes it.
+        views: Views in the frame of the scan, which may have any orientation.
+        up_hint: Up direction as for ``find_ground``, or None.
 
     Raises:
-        ImplausibleRoomError: too little surface was seen, or the size is no room's.
+        ImplausibleRoomError: If there is too little surface, or the size is not plausible for a
+            room.
     """
     surface = collect_oriented_points(views)
     if len(surface.points_m) < MIN_POINTS:
         raise ImplausibleRoomError(
-            f"only {len(surface.points_m)} places of the depth images are smooth surface; "
-            f"at least {MIN_POINTS} are needed: is this depth of a room?"
+            f"the depth images contain only {len(surface.points_m)} patches of smooth "
+            f"surface, at least {MIN_POINTS} are required; check that the capture shows a "
+            "room"
         )
     return align_surface(surface, up_hint)
 
 
 def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> Alignment:
-    """Find the room in oriented points of the scan's frame; ``find_ground`` takes the hint."""
+    """Estimate the room frame from oriented points in the frame of the scan.
+
+    Args:
+        surface: Oriented points in the frame of the scan.
+        up_hint: Up direction as for ``find_ground``, or None.
+
+    Raises:
+        ImplausibleRoomError: If the size is not plausible for a room.
+    """
     ground = find_ground(surface, up_hint)
     scan_to_level = np.eye(4)
     scan_to_level[:3, :3] = rotation_to_z(ground.up)
@@ -97,9 +114,9 @@ def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) ->
 
 
 def realign(scan: Scan, surface: OrientedPoints) -> Scan:
-    """Return a scan whose room is found again in a better surface of its frame.
+    """Return a scan whose room frame is estimated again from a better surface.
 
-    Where that is no plausible room, or nothing was seen by depth, the scan stays as it is.
+    The scan is returned unchanged if the surface is empty or not a plausible room.
     """
     if not len(surface.points_m):
         return scan
@@ -118,7 +135,7 @@ def realign(scan: Scan, surface: OrientedPoints) -> Scan:
 
 
 def _rotation_to_walls(level: OrientedPoints) -> np.ndarray:
-    """Return the turn about z that puts walls along the axes and the first camera's look to +y."""
+    """Return the rotation about z that aligns walls with the axes and the first view with +y."""
     yaw_deg = find_yaw(level)
     view_direction = rotation_about_z(-yaw_deg)[:2, :2] @ level.cameras[0, :2, 2]
     heading_deg = np.degrees(np.arctan2(view_direction[1], view_direction[0]))
@@ -155,9 +172,9 @@ def _frame_sigmas(level: OrientedPoints, planes: PlaneAlignment, has_floor: bool
 
 
 def _extend_to_cameras(box: RoomBox, level: OrientedPoints) -> tuple[np.ndarray, np.ndarray]:
-    """Return the box's corners, moved out behind the cameras at the sides where none was seen.
+    """Return the corners of the box, extended behind the cameras at sides without a detected wall.
 
-    Whoever held the camera stood in the room, even where no frame looks at the wall behind.
+    The person with the camera was inside the room, even if no frame shows the wall behind.
     """
     low, high = box.low_m.copy(), box.high_m.copy()
     places = level.cameras[:, :3, 3]
@@ -178,20 +195,20 @@ def _check_size(size: np.ndarray) -> None:
     for word, length, (least, maximum) in sides:
         if not least <= length <= maximum:
             raise ImplausibleRoomError(
-                f"the room would be {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m; {least:g} to "
-                f"{maximum:g} m {word} is plausible: check the depth unit and that poses are in "
-                "metres"
+                f"the room size would be {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m, but a "
+                f"room should be {least:g} to {maximum:g} m {word}; check the depth unit and "
+                "that poses are in metres"
             )
 
 
 def _notes(ground: Ground, box: RoomBox, size: np.ndarray) -> tuple[str, ...]:
     notes = []
     if ground.floor_area_m2 == 0:
-        notes.append("no floor was seen; the lowest points stand for it")
+        notes.append("no floor was seen; the lowest points are used as floor height")
     sides = [name for side, name in COMPASS_OF_SIDE.items() if side not in box.seen]
     if sides:
         names = f"the {' and '.join(sides)} side{'s' * (len(sides) > 1)}"
-        notes.append(f"no wall was seen at {names}; the room ends where its points end")
+        notes.append(f"no wall was seen at {names}; the room extends to the outermost points there")
     if "z+" not in box.seen:
-        notes.append(f"no ceiling was seen; the room is taken to be {size[2]:.2f} m high")
+        notes.append(f"no ceiling was seen; the room height is set to {size[2]:.2f} m")
     return tuple(notes)

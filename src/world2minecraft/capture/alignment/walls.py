@@ -1,7 +1,4 @@
-"""Walls: the room's yaw about the vertical, and its inner box.
-
-Everything here is in a level frame: z up, the floor at 0.
-"""
+"""Estimation of a room's yaw and inner bounding box in a level frame (z up, floor at 0)."""
 
 from dataclasses import dataclass
 
@@ -22,10 +19,13 @@ EDGE_QUANTILE = 0.005
 
 @dataclass(frozen=True)
 class RoomBox:
-    """The room's inner box in the level frame, float64 [3] each, and which sides were seen.
+    """The inner bounding box of a room in the level frame.
 
-    ``seen`` names of x-, x+, y-, y+, z+ the sides that a surface holds; the others end where
-    the points end.
+    Attributes:
+        low_m: Minimum corner in metres, float64 [3].
+        high_m: Maximum corner in metres, float64 [3].
+        seen: Sides with a detected surface, of x-, x+, y-, y+ and z+; other sides end at the
+            outermost points.
     """
 
     low_m: np.ndarray
@@ -34,10 +34,10 @@ class RoomBox:
 
 
 def find_yaw(surface: OrientedPoints) -> float:
-    """Return the degrees, -45 up to 45, by which walls are turned from the axes.
+    """Return the rotation of the walls against the axes in degrees, from -45 to 45.
 
-    The normals of upright surfaces vote modulo a quarter turn; the large walls' own lines then
-    say it finely.
+    The normals of vertical surfaces vote modulo 90 degrees; lines fitted to the large walls refine
+    the result.
     """
     upright = surface.normals[np.abs(surface.normals[:, 2]) < MAX_WALL_LEAN]
     if len(upright) < 50:
@@ -57,7 +57,7 @@ def find_yaw(surface: OrientedPoints) -> float:
 
 
 def _wall_slope(surface: OrientedPoints) -> float:
-    """Return the mean turn in degrees that is left in the large walls, by fitting their lines."""
+    """Return the mean remaining rotation of the large walls in degrees, by fitting lines."""
     total, weights = 0.0, 0.0
     for axis in (0, 1):
         for sign in (-1, 1):
@@ -71,7 +71,7 @@ def _wall_slope(surface: OrientedPoints) -> float:
 
 
 def _line_slope(points: np.ndarray, axis: int, place_m: float) -> tuple[float, float]:
-    """Fit ``p[axis] = place + slope * p[other]`` near a place (Tukey); weight by its certainty."""
+    """Fit ``p[axis] = place + slope * p[other]`` near a position (Tukey), and return its weight."""
     along, across = points[:, 1 - axis], points[:, axis]
     slope, level, middle = 0.0, place_m, 0.0
     weight = np.zeros(0)
@@ -90,7 +90,7 @@ def _line_slope(points: np.ndarray, axis: int, place_m: float) -> tuple[float, f
 
 
 def find_room_box(surface: OrientedPoints) -> RoomBox:
-    """Return the inner box of a room whose walls lie along x and y and whose floor is z = 0."""
+    """Return the inner box of a room whose walls are along x and y and whose floor is at z = 0."""
     low, high, seen = np.zeros(3), np.zeros(3), []
     for axis, name in ((0, "x"), (1, "y")):
         for sign, ends, side in ((1, low, "-"), (-1, high, "+")):
@@ -105,10 +105,10 @@ def find_room_box(surface: OrientedPoints) -> RoomBox:
 
 
 def _find_side(surface: OrientedPoints, axis: int, sign: int) -> tuple[float, bool]:
-    """Return where the room ends at one side, and whether a wall holds it.
+    """Return the position of the room's boundary on one side, and whether there is a wall.
 
-    ``sign`` is that of the inward normal: +1 at the low side. The outermost large surface is the
-    wall, unless too much of the scan lies beyond it.
+    ``sign`` is the sign of the inward normal: +1 on the low side. The outermost large surface is
+    the wall, unless too much of the scan is beyond it.
     """
     outward = -sign * surface.points_m[:, axis]
     patches = _one_value_per_cell(surface.points_m, outward)
@@ -127,7 +127,7 @@ def _other_axes(points: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _one_value_per_cell(points: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return one of the values for each 10 cm cell that holds a point."""
+    """Return one of the values for each occupied 10 cm cell."""
     cells = np.floor(points / 0.1).astype(np.int64)
     cells -= cells.min(axis=0)
     code = (cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1]) * (cells[:, 2].max() + 1)
@@ -135,7 +135,7 @@ def _one_value_per_cell(points: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def _find_ceiling(surface: OrientedPoints) -> tuple[float, bool]:
-    """Return the height of the highest large surface that faces down, or where points end."""
+    """Return the height of the highest large surface that faces down, or of the highest points."""
     points = surface.points_m
     facing = surface.subset(surface.normals[:, 2] < -MIN_FACING_COSINE)
     found = axis_profile(facing.points_m, 2)

@@ -1,4 +1,4 @@
-"""``Sheet``: the canvas of a poster, drawn at twice its size and reduced."""
+"""The canvas of a poster, drawn at twice its size and downscaled."""
 
 import unicodedata
 
@@ -16,13 +16,13 @@ Point = tuple[float, float]
 
 
 def blend_colours(one: Colour, other: Colour, share: float) -> Colour:
-    """Return the colour that lies a share of the way from one to another."""
+    """Interpolate linearly between two colours."""
     mixed = [round(a + (b - a) * share) for a, b in zip(one, other, strict=True)]
     return mixed[0], mixed[1], mixed[2]
 
 
 class Sheet:
-    """A page in final pixels; whatever is drawn may lie between them."""
+    """A page with coordinates in final pixels, which may be fractional."""
 
     def __init__(self, width_px: int, height_px: int):
         self.image = Image.new("RGB", (width_px * SUPERSAMPLING, height_px * SUPERSAMPLING), PAPER)
@@ -32,7 +32,7 @@ class Sheet:
         self, at: Point, words: str, size: float, colour: Colour = INK, *,
         bold: bool = False, anchor: str = "la",
     ) -> None:  # fmt: skip
-        """Write one line; ``anchor`` is Pillow's, such as ``mm`` for the middle."""
+        """Draw one line of text; ``anchor`` is a Pillow anchor, such as ``mm`` for the middle."""
         font = ImageFont.load_default(size * SUPERSAMPLING)
         self.draw.text(
             (at[0] * SUPERSAMPLING, at[1] * SUPERSAMPLING), to_ascii(words), colour, font, anchor,
@@ -40,14 +40,14 @@ class Sheet:
         )  # fmt: skip
 
     def width(self, words: str, size: float) -> float:
-        """Return how wide a line is, in final pixels."""
+        """Return the width of a line of text in final pixels."""
         return (
             self.draw.textlength(to_ascii(words), ImageFont.load_default(size * SUPERSAMPLING))
             / SUPERSAMPLING
         )
 
     def wrapped(self, words: str, size: float, width: float) -> list[str]:
-        """Cut a text into lines of at most a width."""
+        """Wrap a text into lines of limited width."""
         lines, line = [], ""
         for word in words.split():
             tried = f"{line} {word}".strip()
@@ -58,7 +58,7 @@ class Sheet:
         return [*lines, line] if line else lines
 
     def clipped(self, words: str, size: float, width: float) -> str:
-        """Return a text cut in its middle where it is wider than ``width``."""
+        """Return a text, shortened in the middle if it is wider than ``width``."""
         if self.width(words, size) <= width:
             return words
         keep = len(words)
@@ -70,7 +70,7 @@ class Sheet:
         self, corner: Point, size: Point, fill: Colour | None = None,
         outline: Colour | None = None, radius: float = 0, line: float = 1,
     ) -> None:  # fmt: skip
-        """Draw a rectangle with round corners."""
+        """Draw a rectangle with rounded corners."""
         ends = (*corner, corner[0] + size[0], corner[1] + size[1])
         self.draw.rounded_rectangle(
             [value * SUPERSAMPLING for value in ends],
@@ -81,12 +81,12 @@ class Sheet:
         )
 
     def line(self, points: list[Point], colour: Colour, width: float = 1) -> None:
-        """Draw a line through points."""
+        """Draw a polyline."""
         flat = [(x * SUPERSAMPLING, y * SUPERSAMPLING) for x, y in points]
         self.draw.line(flat, colour, max(1, round(width * SUPERSAMPLING)), joint="curve")
 
     def shape(self, points: list[Point], fill: Colour, alpha: float = 1.0) -> None:
-        """Fill a polygon, through which one sees where ``alpha`` is under 1."""
+        """Fill a polygon, which is transparent for ``alpha`` below 1."""
         flat = np.array(points) * SUPERSAMPLING
         low = np.floor(flat.min(axis=0)).astype(int)
         high = np.ceil(flat.max(axis=0)).astype(int) + 1
@@ -96,25 +96,25 @@ class Sheet:
         self.image.paste(fill, (int(low[0]), int(low[1])), mask)
 
     def dot(self, at: Point, radius: float, fill: Colour, outline: Colour | None = None) -> None:
-        """Draw a disc."""
+        """Draw a filled circle."""
         ends = (at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius)
         width = 2 if outline else 0
         self.draw.ellipse([value * SUPERSAMPLING for value in ends], fill, outline, width)
 
     def picture(self, pixels: np.ndarray, corner: Point, size: Point, smooth: bool = True) -> None:
-        """Put uint8 [H, W, 3] into a box, stretched to it."""
+        """Draw an image, uint8 [H, W, 3], stretched to a box."""
         target = (round(size[0] * SUPERSAMPLING), round(size[1] * SUPERSAMPLING))
         resampling = Image.Resampling.BICUBIC if smooth else Image.Resampling.NEAREST
         at = (round(corner[0] * SUPERSAMPLING), round(corner[1] * SUPERSAMPLING))
         self.image.paste(Image.fromarray(pixels).resize(target, resampling), at)
 
     def finished(self) -> np.ndarray:
-        """Return the page, uint8 [H, W, 3]."""
+        """Return the page as uint8 [H, W, 3]."""
         return np.asarray(self.image.reduce(SUPERSAMPLING))
 
 
 def to_ascii(words: str) -> str:
-    """Return a text in letters that the font has: those of ASCII, accents left out."""
+    """Convert a text to ASCII, which the font supports, by removing accents."""
     split = unicodedata.normalize("NFKD", words)
     letters = "".join(letter for letter in split if not unicodedata.combining(letter))
     return letters.encode("ascii", "replace").decode()

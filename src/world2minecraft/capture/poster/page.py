@@ -1,7 +1,8 @@
-"""``draw_poster``: the page of a capture, and its PNG.
+"""The poster of a capture, and its PNG file.
 
-With poses: a plan at the left; photos, view directions and diagnostics at the right. Without: a
-large contact sheet at the left; sharpness, overlap and diagnostics at the right.
+For captures with poses, there is a plan on the left, and photos, view directions and diagnostics on
+the right. For other captures, there is a large contact sheet on the left, and sharpness, overlap
+and diagnostics on the right.
 """
 
 import io
@@ -49,7 +50,7 @@ BODY_PX = 19
 
 
 def draw_poster(summary: "CaptureSummary") -> np.ndarray:
-    """Draw the page of a described capture, uint8 [1040, 1600, 3]."""
+    """Draw the poster of a capture as uint8 [1040, 1600, 3]."""
     sheet = Sheet(WIDTH_PX, HEIGHT_PX)
     _head(sheet, summary)
     tall = HEIGHT_PX - TOP_PX - FOOT_PX - EDGE_PX / 2
@@ -84,7 +85,7 @@ def _contact_sheet_grid(count: int) -> tuple[int, int]:
 
 
 def picture_marks(summary: "CaptureSummary") -> dict[int, str]:
-    """Return the doubtful pictures' indices among the usable frames, each with its word."""
+    """Return a word, ``dark`` or ``blurred``, for each doubtful image by frame index."""
     if summary.route.kind == "solid":
         return {}
     pictures = summary.survey.pictures
@@ -116,10 +117,10 @@ def _verdict(diagnostics: tuple[Diagnostic, ...]) -> str:
     stops = sum(diagnostic.level == "stop" for diagnostic in diagnostics)
     warns = sum(diagnostic.level == "warn" for diagnostic in diagnostics)
     if stops:
-        return "cannot become a room yet"
+        return "cannot be reconstructed yet"
     if warns:
-        return f"usable, {warns} {'doubt' if warns == 1 else 'doubts'}"
-    return "all is well"
+        return f"usable, {warns} {'warning' if warns == 1 else 'warnings'}"
+    return "no problems found"
 
 
 def _charts(sheet: Sheet, summary: "CaptureSummary", corner: Point) -> None:
@@ -131,23 +132,23 @@ def _charts(sheet: Sheet, summary: "CaptureSummary", corner: Point) -> None:
     ends = (pictures[0].name, pictures[-1].name) if pictures else ("", "")
     ends = (sheet.clipped(ends[0], 15, 300), sheet.clipped(ends[1], 15, 300))
     capped = np.minimum(sharp, 3 * np.median(sharp)) if len(sharp) else sharp
-    title = f"Sharpness of {len(sharp)} pictures; under the line they are blurred"
+    title = f"Sharpness of {len(sharp)} images; those below the line are blurred"
     draw_bars(sheet, title, capped, limit, corner, (RIGHT_PX, 180), ends)
     below = (corner[0], corner[1] + 198)
-    title = "Share of each picture that the next one shows too"
+    title = "Overlap of each image with the next"
     shares = summary.survey.shares
     if np.isfinite(shares).any():
         draw_bars(sheet, title, shares, ISOLATED_SHARE, below, (RIGHT_PX, 180), ends, 1.0)
     else:
         sheet.text(below, title, 18)
-        text = "not looked at: there are too many pictures to take every one"
+        text = "not computed: too few neighbouring images were sampled"
         sheet.text((below[0], below[1] + 32), text, 17, FAINT)
 
 
 def _write_diagnostics(
     sheet: Sheet, diagnostics: tuple[Diagnostic, ...], corner: Point, bottom: float
 ) -> None:
-    """Write the diagnostics from the worst to the best, as many as there is room for."""
+    """Draw the diagnostics in order of severity, as far as there is space."""
     top, step = corner[1], BODY_PX + 6
     for place, diagnostic in enumerate(diagnostics):
         width = RIGHT_PX - 34
@@ -158,7 +159,7 @@ def _write_diagnostics(
             ]
         left_over = len(diagnostics) - place
         if top + len(lines) * step > bottom - (step if left_over > 1 else 0) + 4:
-            words = f"and {left_over} more: w2m scan prints them"
+            words = f"and {left_over} more, printed by w2m scan"
             sheet.text((corner[0] + 34, top + 2), words, BODY_PX, FAINT)
             return
         _icon(sheet, diagnostic.level, (corner[0] + 12, top + step / 2 - 1))
@@ -169,7 +170,7 @@ def _write_diagnostics(
 
 
 def _icon(sheet: Sheet, level: str, at: Point) -> None:
-    """Draw a tick, an exclamation mark or a cross in a disc."""
+    """Draw a tick, an exclamation mark or a cross in a circle."""
     x, y = at
     sheet.dot(at, 10, LEVELS[level])
     if level == "ok":
@@ -191,7 +192,7 @@ def _foot(sheet: Sheet, command: str) -> None:
 
 
 def poster_png(summary: "CaptureSummary") -> bytes:
-    """Return the page as a PNG marked as a poster; the same capture gives the same bytes."""
+    """Return the poster as a deterministic PNG with a marker that identifies it as a poster."""
     stream = io.BytesIO()
     info = PngInfo()
     info.add_text("Software", SOFTWARE_TAG)

@@ -37,11 +37,11 @@ LENGTHS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 def draw_view_directions(
     sheet: Sheet, directions: ViewDirections, corner: Point, size: Point
 ) -> None:
-    """Draw the chart into a box: headings across, north at both ends; up at the top."""
-    sheet.text(corner, "Looked at: heading and tilt", 18)
+    """Draw the chart of view directions: headings from north to north, with up at the top."""
+    sheet.text(corner, "View directions: heading and pitch", 18)
     maximum = int(directions.seen.max())
     sheet.text(
-        (corner[0] + size[0], corner[1]), f"darkest: {maximum} pictures", 15, FAINT, anchor="ra"
+        (corner[0] + size[0], corner[1]), f"darkest: {maximum} images", 15, FAINT, anchor="ra"
     )
     left, top = corner[0] + 62, corner[1] + 28
     wide, tall = size[0] - 62, size[1] - 28 - 22
@@ -58,7 +58,7 @@ def draw_view_directions(
 
 
 def direction_heatmap(directions: ViewDirections) -> np.ndarray:
-    """Return the counts as colours, uint8 [18, 36, 3], up at the top; none is the panel's."""
+    """Return the counts as colours, uint8 [18, 36, 3], with up at the top."""
     seen = directions.seen[::-1]
     share = np.sqrt(seen / max(1, int(seen.max())))[..., None]
     low, high = np.array(blend_colours(PANEL, FIRST, 0.25)), np.array(DEEP)
@@ -70,16 +70,16 @@ def draw_photos(
     sheet: Sheet, pictures: Sequence[Picture], marks: Mapping[int, str], corner: Point,
     size: Point, columns: int, rows: int,
 ) -> None:  # fmt: skip
-    """Draw at most ``columns`` x ``rows`` pictures into a box.
+    """Draw a grid of at most ``columns`` x ``rows`` images into a box.
 
     Args:
-        sheet: the page.
-        pictures: upright; spread evenly where there are more.
-        marks: index of a picture to the word that is written on it, such as ``blurred``.
-        corner: of the box, in pixels.
-        size: of the box.
-        columns: of tiles.
-        rows: of tiles.
+        sheet: The page.
+        pictures: Upright images; a selection is drawn if there are more than tiles.
+        marks: Word to write on an image, such as ``blurred``, by frame index.
+        corner: Upper left corner of the box in pixels.
+        size: Size of the box in pixels.
+        columns: Number of columns.
+        rows: Number of rows.
     """
     width = (size[0] - GAP_PX * (columns - 1)) / columns
     height = (size[1] - GAP_PX * (rows - 1)) / rows
@@ -92,7 +92,7 @@ def draw_photos(
 def select_pictures(
     pictures: Sequence[Picture], marks: Mapping[int, str], count: int
 ) -> list[Picture]:
-    """Return evenly spread pictures; up to a quarter of the places go to doubtful ones."""
+    """Select evenly spaced images; up to a quarter of them are doubtful ones."""
     doubtful = [picture for picture in pictures if picture.index in marks]
     marked = evenly_spaced(doubtful, min(len(doubtful), count // 4)) if doubtful else []
     names = {picture.index for picture in marked}
@@ -102,7 +102,7 @@ def select_pictures(
 
 
 def _draw_tile(sheet: Sheet, picture: Picture, mark: str, at: Point, size: Point) -> None:
-    """Draw a picture cut to its tile, or whole within it where it stands upright."""
+    """Draw an image cropped to its tile, or complete if it is in portrait orientation."""
     sheet.box(at, size, PANEL)
     height, width = picture.thumb.shape[:2]
     if width >= height:
@@ -126,17 +126,17 @@ def draw_bars(
     sheet: Sheet, title: str, values: np.ndarray, limit: float, corner: Point, size: Point,
     words: tuple[str, str], maximum: float = 0.0,
 ) -> None:  # fmt: skip
-    """Draw one bar a picture; those under ``limit`` in orange, with a line at the limit.
+    """Draw a bar chart with one bar per image; bars below the limit are orange.
 
     Args:
-        sheet: the page.
-        title: above the chart.
-        values: float64 [N], NaN where there is none.
-        limit: below which a bar is doubtful.
-        corner: of the box.
-        size: of the box.
-        words: what stands under the left and the right end.
-        maximum: what fills the chart's height; 0 for the largest value.
+        sheet: The page.
+        title: Title above the chart.
+        values: Values, float64 [N]; NaN for no bar.
+        limit: Value below which a bar is doubtful; drawn as a line.
+        corner: Upper left corner of the box in pixels.
+        size: Size of the box in pixels.
+        words: Labels below the left and the right end.
+        maximum: Value at full height; 0 for the largest value.
     """
     sheet.text(corner, title, 18)
     top, low = corner[1] + 28, corner[1] + size[1] - CAPTION_PX
@@ -161,17 +161,17 @@ def draw_plan(
     sheet: Sheet, plan: TopView, directions: ViewDirections | None, corner: Point, size: Point,
     doubtful: frozenset[int], has_unit: bool, walked: bool = True,
 ) -> None:  # fmt: skip
-    """Draw the panel into a box of the sheet.
+    """Draw the plan panel into a box of the page.
 
     Args:
-        sheet: the page.
-        plan: with or without depth.
-        directions: for the rose.
-        corner: of the box, in pixels.
-        size: of the box.
-        doubtful: indices of cameras whose pictures are blurred or dark.
-        has_unit: whether the poses are in metres.
-        walked: whether somebody walked from camera to camera.
+        sheet: The page.
+        plan: Top view, with or without depth.
+        directions: Covered view directions for the rose, or None.
+        corner: Upper left corner of the box in pixels.
+        size: Size of the box in pixels.
+        doubtful: Indices of the frames with blurred or dark images.
+        has_unit: Whether the poses are in metres.
+        walked: Whether to connect the cameras by a path.
     """
     sheet.box(corner, size, PANEL, radius=10)
     place = PanelTransform(plan, corner, size)
@@ -188,7 +188,7 @@ def draw_plan(
 
 
 class PanelTransform:
-    """Where a plan lies in its panel; it keeps 54 px free below for the scale bar."""
+    """The transform from a top view to its panel, which leaves 54 px below for the scale bar."""
 
     def __init__(self, plan: TopView, corner: Point, size: Point):
         free = (size[0] - 32, size[1] - 32 - 54)
@@ -202,7 +202,7 @@ class PanelTransform:
         self._low = plan.corner_m
 
     def at(self, x_m: float, y_m: float) -> Point:
-        """Return the pixel of a place of the plan."""
+        """Return the pixel of a position in the top view."""
         return (
             self.corner[0] + (x_m - float(self._low[0])) * self.px_per_m,
             self.corner[1] + self.size[1] - (y_m - float(self._low[1])) * self.px_per_m,
@@ -210,7 +210,7 @@ class PanelTransform:
 
 
 def shade_top_view(plan: TopView) -> np.ndarray:
-    """Return the plan's raster as it is printed: relief from heights, walls in ink, uint8."""
+    """Return the raster of a top view for the page as uint8: shaded by height, with dark walls."""
     height = np.where(plan.seen, plan.height_m, 0.0)
     for axis in (0, 1):
         height = (np.roll(height, 1, axis) + height + np.roll(height, -1, axis)) / 3
@@ -226,7 +226,7 @@ def shade_top_view(plan: TopView) -> np.ndarray:
 
 
 def _outside(plan: TopView) -> np.ndarray:
-    """Return float [H, W]: 1 beyond the room's walls, where noise and views out of windows lie."""
+    """Return a mask, float [H, W], that is 1 outside the room's walls."""
     if plan.room_size_m is None:
         return np.zeros(plan.seen.shape)
     rows, columns = plan.seen.shape
@@ -240,7 +240,7 @@ def _outside(plan: TopView) -> np.ndarray:
 
 
 def _draw_room_size(sheet: Sheet, plan: TopView, place: PanelTransform) -> None:
-    """Write the room's measures at its sides."""
+    """Draw the room's dimensions at its sides."""
     if plan.room_size_m is None:
         return
     x, y, z = (float(side) for side in plan.room_size_m)
@@ -275,7 +275,7 @@ def _draw_dashed_line(sheet: Sheet, start: Point, end: Point) -> None:
 def _draw_cameras(
     sheet: Sheet, plan: TopView, place: PanelTransform, doubtful: frozenset[int], walked: bool
 ) -> None:
-    """Draw the way of the camera and what it looked at, from teal to orange in time."""
+    """Draw the camera path and the view directions, from teal to orange in time."""
     poses, count = plan.cameras, len(plan.cameras)
     points = [place.at(float(pose[0, 3]), float(pose[1, 3])) for pose in poses]
     for index in range(count - 1) if walked else ():
@@ -326,7 +326,7 @@ def _draw_scale_bar(
 ) -> None:
     left, low = corner[0] + 22, corner[1] + size[1] - 24
     if not has_unit:
-        sheet.text((left, low), "the poses have no unit: no scale", 17, FAINT, anchor="lm")
+        sheet.text((left, low), "no scale: the poses have no unit", 17, FAINT, anchor="lm")
         return
     length = max([1e-9, *(m for m in LENGTHS if m * place.px_per_m < 0.3 * size[0])])
     end = left + length * place.px_per_m
@@ -337,7 +337,7 @@ def _draw_scale_bar(
 
 
 def _draw_direction_rose(sheet: Sheet, directions: ViewDirections, middle: Point) -> None:
-    """Draw how much of each heading is seen: petals of eight sectors, gaps in orange."""
+    """Draw the coverage of each heading: petals for eight sectors, gaps in orange."""
     sheet.dot(middle, 50, PAPER, RULE)
     for index, share in enumerate(directions.sectors()):
         angle = np.radians(90 - 45 * index)

@@ -2,8 +2,7 @@
 
 A sample of images is decoded at low resolution. If there are depth and poses, some frames are
 rendered to a top view. ``survey_capture`` collects the results, ``diagnose_capture`` rates them,
-and
-the package ``capture.poster`` draws them on a page.
+and the package ``capture.poster`` draws them on a page.
 """
 
 from world2minecraft.capture.quality.survey import Survey, survey_capture

@@ -93,11 +93,7 @@ def _check_count(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     elif (route.from_pictures or not survey.validated.posed) and count < FEW_PHOTOS:
         text = f"only {count} images; use 40 to 100 from all directions"
         more = "take more images, each sharing two thirds with the previous image"
-        advice = (
-            "film longer, around the room along its walls"
-            if route.kind == "film longer, along all walls of the room"
-            else more
-        )
+        advice = "film longer, along all walls of the room" if route.kind == "video" else more
         yield Diagnostic("warn", "few", text, advice)
     elif count < FEW_FRAMES:
         text = f"only {count} {_plural('frame', count)}; use 30 or more from all directions"
@@ -195,9 +191,9 @@ def _check_light(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     text = f"{len(dark)} of {count} sampled images {are} dark: {_named(dark)}"
     yield Diagnostic(
         level,
-        "switch on the lights and open the curtains",
+        "dark",
         text,
-        "switch the lights on, open the curtains" * (level != "ok"),
+        "switch on the lights and open the curtains" * (level != "ok"),
     )
 
 

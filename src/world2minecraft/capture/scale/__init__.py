@@ -1,8 +1,8 @@
-"""The metric scale of a capture whose unit is unknown, as photos give it.
+"""Metric scale of captures without a unit, such as photos.
 
-``collect_unscaled`` gathers the surface, ``estimate_scale`` finds the factor to metres from usual
-sizes in rooms, or from lengths that the user knows: ``parse_known_length`` takes one by its name,
-``KnownDistance`` by two pixels.
+``collect_unscaled`` collects the surface. ``estimate_scale`` estimates the factor to metres from
+typical sizes in rooms or from lengths known to the user. ``parse_known_length`` parses a named
+length, and ``KnownDistance`` is a length between two pixels.
 """
 
 from world2minecraft.capture.scale.estimate import ScaleEstimate, estimate_scale

@@ -1,7 +1,7 @@
 """Estimation of the factor from a scan's unit to metres, with its uncertainty and sources.
 
-Without known lengths it is the main mode of a posterior over the logarithm of the scale, made of
-the priors in ``priors`` and the measurements of the room.
+Without known lengths, the estimate is the main mode of a posterior over the logarithm of the scale,
+which combines the densities in ``priors`` with the measurements of the room.
 """
 
 from collections.abc import Sequence
@@ -32,23 +32,31 @@ MAX_NAMED_LEVELS = 2  # More would make the sentence long.
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Log-density over the logarithm of the scale: ``log_scale`` and ``log_density`` [N]."""
+    """A posterior density over the logarithm of the scale.
+
+    Attributes:
+        log_scale: Logarithms of the scale, [N].
+        log_density: Logarithms of the density, up to a constant, [N].
+    """
 
     log_scale: np.ndarray
     log_density: np.ndarray
 
     @property
     def weight(self) -> np.ndarray:
-        """The probability of each step; sums to 1."""
+        """The probability of each step; the sum is 1."""
         weight = np.exp(self.log_density - self.log_density.max())
         return weight / weight.sum()
 
 
 @dataclass(frozen=True)
 class ScaleMode:
-    """The scale of the heaviest mode, the relative sigma of the whole, and a rival mode.
+    """The main mode of a scale posterior.
 
-    ``rival`` is the scale of the next mode and its share, None where it has under a fifth.
+    Attributes:
+        scale: Scale of the mode with the largest probability.
+        sigma: Relative standard deviation of the whole posterior.
+        rival: Scale and probability of the second mode, or None if its probability is below 0.2.
     """
 
     scale: float
@@ -57,13 +65,13 @@ class ScaleMode:
 
 
 def scale_posterior(measures: RoomMeasurements) -> Posterior:
-    """Return how likely each scale is by all that was measured."""
+    """Return the posterior of the scale for the measurements of a room."""
     log_scale = np.log(measures.rough) + np.linspace(-LOG_RANGE, LOG_RANGE, STEPS)
     return Posterior(log_scale, log_density(measures, np.exp(log_scale)))
 
 
 def log_density(measures: RoomMeasurements, scale: np.ndarray) -> np.ndarray:
-    """Return how likely scales are, float64 [N], up to one constant."""
+    """Return the log-density of scales, float64 [N], up to a constant."""
     total = priors.camera_likelihood(scale * measures.camera, measures.floor_seen)
     if measures.ceiling is not None:
         total = total + priors.ceiling_likelihood(scale * measures.ceiling)
@@ -78,7 +86,7 @@ def log_density(measures: RoomMeasurements, scale: np.ndarray) -> np.ndarray:
 
 
 def main_mode(posterior: Posterior) -> ScaleMode:
-    """Return the heaviest mode of a posterior, and how far the truth may be from it."""
+    """Return the mode with the largest probability, with its uncertainty."""
     weight = posterior.weight
     modes = _mode_ranges(weight)
     shares = [float(weight[a:b].sum()) for a, b in modes]
@@ -98,7 +106,7 @@ def _mode_mean(posterior: Posterior, weight: np.ndarray, first: int, last: int) 
 
 
 def _mode_ranges(weight: np.ndarray) -> list[tuple[int, int]]:
-    """Return the ranges of the modes: parted where the density falls to half of both sides."""
+    """Return the ranges of the modes, separated where the density falls to half of both sides."""
     bounds, low, high = [0], 0, 0
     for n in range(1, len(weight)):
         if weight[n] > weight[high]:
@@ -115,9 +123,13 @@ def _mode_ranges(weight: np.ndarray) -> list[tuple[int, int]]:
 
 @dataclass(frozen=True)
 class ScaleEstimate:
-    """``scale`` multiplies the scan's lengths to give metres; ``sigma`` is relative.
+    """An estimate of the scale of a scan.
 
-    ``notes`` are sentences for the report, ``sources`` the names of what it was taken from.
+    Attributes:
+        scale: Factor from the scan's unit to metres.
+        sigma: Relative standard deviation of the scale.
+        notes: Sentences for the report.
+        sources: Names of the lengths used for the estimate.
     """
 
     scale: float
@@ -127,26 +139,27 @@ class ScaleEstimate:
 
     def __post_init__(self):
         if not (0 < self.scale < np.inf and 0 < self.sigma < np.inf):
-            raise ValueError(f"scale and sigma must be above 0, not {self.scale}, {self.sigma}")
+            raise ValueError(f"scale and sigma must be above 0, got {self.scale} and {self.sigma}")
 
 
 def estimate_scale(surface: OrientedPoints, knowns: Sequence[KnownLength] = ()) -> ScaleEstimate:
-    """Return the scale of a scan whose unit is unknown.
+    """Estimate the scale of a scan whose unit is unknown.
 
     Args:
-        surface: oriented points and cameras in the scan's unit and frame, any tilt; see
+        surface: Oriented points and cameras in the unit and frame of the scan; see
             ``collect_unscaled``.
-        knowns: lengths that the user knows. Without them the scale rests on habits: how high
-            people hold cameras, and how high ceilings, tables, worktops, seats and beds are.
+        knowns: Lengths known to the user. Without them, the scale is estimated from typical heights
+            of cameras, ceilings, tables, worktops, seats and beds.
 
     Raises:
-        ImplausibleRoomError: too little surface was seen.
-        UsageError: nothing was seen of what a known length speaks of.
+        ImplausibleRoomError: If there is too little surface.
+        UsageError: If the scan does not show the object of a known length.
     """
     if len(surface.points_m) < MIN_POINTS:
         raise ImplausibleRoomError(
-            f"only {len(surface.points_m)} places of the depth are smooth surface; at least "
-            f"{MIN_POINTS} are needed to find the scale: take more photos of floor and walls"
+            f"the depth contains only {len(surface.points_m)} patches of smooth surface, at "
+            f"least {MIN_POINTS} are required to estimate the scale; take more photos of "
+            "floor and walls"
         )
     measures = measure_room(surface)
     return _from_known_lengths(measures, knowns) if knowns else _from_priors(measures)
@@ -154,7 +167,7 @@ def estimate_scale(surface: OrientedPoints, knowns: Sequence[KnownLength] = ()) 
 
 def _from_priors(measures: RoomMeasurements) -> ScaleEstimate:
     found = main_mode(scale_posterior(measures))
-    sources = [("the cameras' height", measures.camera * found.scale)]
+    sources = [("the camera height", measures.camera * found.scale)]
     if measures.ceiling is not None:
         sources.append(("the ceiling", measures.ceiling * found.scale))
     sources += _named_levels(measures, found.scale)
@@ -163,16 +176,17 @@ def _from_priors(measures: RoomMeasurements) -> ScaleEstimate:
     ]
     if found.rival is not None:
         notes.append(
-            f"the scale may as well be {found.rival[0]:.3g} ({100 * found.rival[1]:.0f} %): "
-            "one known length, such as a table's height, would tell"
+            f"the scale may also be {found.rival[0]:.3g} (probability "
+            f"{100 * found.rival[1]:.0f} %); a known length, such as a table height, would "
+            "decide"
         )
     if not measures.floor_seen:
-        notes.append("no floor was seen, so heights count from the lowest points")
+        notes.append("no floor was seen; heights are measured from the lowest points")
     return ScaleEstimate(found.scale, found.sigma, tuple(notes), tuple(name for name, _ in sources))
 
 
 def _named_levels(measures: RoomMeasurements, scale: float) -> list[tuple[str, float]]:
-    """Return the largest level faces that are of a usual height, by name."""
+    """Return the largest level faces at typical heights, with their names."""
     named: list[tuple[str, float]] = []
     for level in sorted(measures.levels, key=lambda level: -level.area):
         kind = priors.likeliest_level(level.height * scale)
@@ -188,7 +202,7 @@ def _listed(sources: list[tuple[str, float]]) -> str:
 
 
 def _from_known_lengths(measures: RoomMeasurements, knowns: Sequence[KnownLength]) -> ScaleEstimate:
-    """Return the scale at which the known lengths and the room fit best."""
+    """Return the scale at which the known lengths and the room agree best."""
     choices = [
         [(known.length_m / length, weight) for length, weight in candidate_lengths(known, measures)]
         for known in knowns
@@ -205,11 +219,16 @@ def _from_known_lengths(measures: RoomMeasurements, knowns: Sequence[KnownLength
     scale = float(np.exp((trust * logs).sum() / trust.sum()))
     sigma = max(float(trust.sum() ** -0.5), float(np.std(logs)))
     notes = [
-        f"scale taken from {_describe_match(known, known.length_m / near, measures, scale)}: "
-        f"{scale:.3g} +- {100 * sigma:.1f} %"
+        (
+            "scale computed from "
+            f"{_describe_match(known, known.length_m / near, measures, scale)}: {scale:.3g} "
+            f"+- {100 * sigma:.1f} %"
+        )
         if n in agreeing
-        else f"{known.name} ({known.length_m:g} m) contradicts the other lengths by "
-        f"{100 * abs(near / scale - 1):.0f} % and was left out"
+        else (
+            f"{known.name} ({known.length_m:g} m) contradicts the other lengths by "
+            f"{100 * abs(near / scale - 1):.0f} % and is ignored"
+        )
         for n, (known, near) in enumerate(zip(knowns, nearest, strict=True))
     ]
     notes += _contradictions(measures, knowns, tried, fit, best)
@@ -217,7 +236,7 @@ def _from_known_lengths(measures: RoomMeasurements, knowns: Sequence[KnownLength
 
 
 def _fit(known: KnownLength, choices: list[tuple[float, float]], tried: np.ndarray) -> np.ndarray:
-    """Return how well each tried scale explains a known length, as a log-likelihood."""
+    """Return the log-likelihood of each candidate scale for a known length."""
     total = sum(weight for _, weight in choices)
     parts = [
         np.log(weight / total) - 0.5 * (np.log(tried / scale) / known.sigma) ** 2
@@ -229,8 +248,8 @@ def _fit(known: KnownLength, choices: list[tuple[float, float]], tried: np.ndarr
 def _describe_match(
     known: KnownLength, length: float, measures: RoomMeasurements, scale: float
 ) -> str:
-    """Return a known length and the thing it was found to be, in words."""
-    words = f"the {known.name} given ({known.length_m:g} m)"
+    """Return a known length and the matching face in words."""
+    words = f"the given {known.name} ({known.length_m:g} m)"
     if known.name not in LEVEL_HEIGHTS:
         return words
     level: LevelFace = min(measures.levels, key=lambda at: abs(at.height - length))
@@ -244,16 +263,18 @@ def _contradictions(
     fit: np.ndarray,
     best: float,
 ) -> list[str]:
-    """Return what speaks for another reading of the known lengths, or against the whole."""
+    """Return notes about other plausible matches of the known lengths, or implausible results."""
     contradictions = []
     others = np.abs(np.log(tried / best)) > MAX_LOG_DIFFERENCE
     if others.any() and fit[others].max() > fit.max() - 1.5:
         other = float(tried[others][int(np.argmax(fit[others]))])
         contradictions.append(
-            f"with another face taken for the {knowns[0].name} the scale would be {other:.3g}: "
-            "one more known length would tell"
+            f"if the {knowns[0].name} refers to another face, the scale is {other:.3g}; "
+            "another known length would decide"
         )
     camera_m = best * measures.camera
     if measures.floor_seen and not 0.8 <= camera_m <= 2.2:
-        contradictions.append(f"by that, the cameras were held {camera_m:.2f} m over the floor")
+        contradictions.append(
+            f"at this scale, the cameras were {camera_m:.2f} m above the floor, which is unusual"
+        )
     return contradictions

@@ -1,4 +1,4 @@
-"""Lengths that the user knows: a table's height, a room's side, or a distance of two pixels."""
+"""Lengths known to the user, such as a table height or a distance between two pixels."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -32,7 +32,13 @@ EXAMPLE = "such as 'table height' 0.72"
 
 @dataclass(frozen=True)
 class KnownLength:
-    """A length that the user knows. ``measured`` is the same in the scan's unit, if known too."""
+    """A length known to the user.
+
+    Attributes:
+        name: Name of the length, such as ``table height``.
+        length_m: The length in metres.
+        measured: The same length in the unit of the scan, or None if it was not measured.
+    """
 
     name: str
     length_m: float
@@ -44,23 +50,29 @@ class KnownLength:
         minimum, maximum = LENGTHS_M[self.name]
         if not minimum <= self.length_m <= maximum:
             raise UsageError(
-                f"{self.name} must be {minimum:g} to {maximum:g} m, not {self.length_m:g}; "
+                f"{self.name} must be from {minimum:g} to {maximum:g} m, got {self.length_m:g}; "
                 "lengths are in metres"
             )
         if self.measured is not None and not 0 < self.measured < np.inf:
-            raise ValueError(f"measured must be above 0, not {self.measured}")
+            raise ValueError(f"measured must be above 0, got {self.measured}")
 
     @property
     def sigma(self) -> float:
-        """The relative error of the scale that it gives."""
+        """The relative error of the scale computed from this length."""
         return SIGMA.get(self.name, USUAL_SIGMA)
 
 
 @dataclass(frozen=True)
 class KnownDistance:
-    """Two pixels, each x and y in the depth image's or colour image's own size, and their distance.
+    """A known distance between two pixels of views.
 
-    ``image_a`` and ``image_b`` are names of views; they may be the same.
+    Attributes:
+        image_a: Name of the first view.
+        point_a: Pixel x and y in the depth image, or in the colour image if it is a different
+            camera.
+        image_b: Name of the second view, which may be the same.
+        point_b: Pixel in the second view.
+        length_m: Distance in metres.
     """
 
     image_a: str
@@ -70,27 +82,30 @@ class KnownDistance:
     length_m: float
 
     def known(self, views: Iterable[View]) -> KnownLength:
-        """Return the known length with what it measures in the scan.
+        """Measure the distance in the scan, and return it as a known length.
 
         Raises:
-            UsageError: an image is not there, or has no depth at its point.
+            UsageError: If a view is missing or has no depth at its pixel.
         """
         at = ((self.image_a, self.point_a), (self.image_b, self.point_b))
         return KnownLength("distance", self.length_m, length_between(views, *at))
 
 
 def parse_known_length(name: str, length_m: float) -> KnownLength:
-    """Return a known length by its name; spaces, dashes and underscores are alike.
+    """Return the known length with a given name; spaces, dashes and underscores are equivalent.
 
     Raises:
-        UnknownNameError: nothing is measured under this name. UsageError: no such length.
+        UnknownNameError: If the name is unknown.
+        UsageError: If the length is not plausible, or the name requires two points.
     """
     plain = " ".join(name.lower().replace("_", " ").replace("-", " ").split())
     if plain == "distance":
-        raise UsageError(f"a distance needs two points of the photos; or give a name, {EXAMPLE}")
+        raise UsageError(
+            f"a distance requires two points in the photos; or give a named length, {EXAMPLE}"
+        )
     if plain in NEEDS_POINTS:
         raise UsageError(
-            f"{plain} is not measured by itself: give two points of the photos at its ends, "
+            f"{plain} cannot be measured automatically; give two points in the photos at its ends, "
             f"or another length, {EXAMPLE}"
         )
     if plain not in LENGTHS_M:
@@ -101,16 +116,16 @@ def parse_known_length(name: str, length_m: float) -> KnownLength:
 def length_between(
     views: Iterable[View], a: tuple[str, tuple[float, float]], b: tuple[str, tuple[float, float]]
 ) -> float:
-    """Return the distance of two pixels' surface points, in the scan's unit.
+    """Return the distance between the surface points of two pixels, in the unit of the scan.
 
     Args:
-        views: read once, one at a time; those with depth.
-        a: the name of a view and the pixel's x and y, from the left upper corner of its depth
-            image, or of its colour image where that is another camera.
-        b: the same of the other point.
+        views: Views with depth, read once and one at a time.
+        a: Name of a view, and the pixel's x and y from the upper left corner of its depth image, or
+            of its colour image if that is a different camera.
+        b: View and pixel of the second point.
 
     Raises:
-        UsageError: an image is not there, or has no depth at its point.
+        UsageError: If a view is missing or has no depth at its pixel.
     """
     found: dict[int, np.ndarray] = {}
     names = []
@@ -124,15 +139,17 @@ def length_between(
             raise UnknownNameError("image", name, names)
     length = float(np.linalg.norm(found[0] - found[1]))
     if length <= 0:
-        raise UsageError(f"the two points of {a[0]} and {b[0]} are one; give two different ones")
+        raise UsageError(
+            f"the two points in {a[0]} and {b[0]} are identical; give two different points"
+        )
     return length
 
 
 def _unproject_pixel(view: View, pixel: tuple[float, float]) -> np.ndarray:
-    """Return the surface point [3] under a pixel, in the scan's frame."""
+    """Return the surface point [3] at a pixel, in the frame of the scan."""
     depth, camera = view.depth_m, view.depth_camera
     if depth is None or camera is None:
-        raise UsageError(f"{view.name} has no depth; click in another image")
+        raise UsageError(f"{view.name} has no depth; choose a point in another image")
     x, y = pixel
     if view.colour_camera is not None:
         # Captures of our own and of photos have both in one place; the images differ in size only.
@@ -140,7 +157,7 @@ def _unproject_pixel(view: View, pixel: tuple[float, float]) -> np.ndarray:
         y *= camera.height_px / view.colour_camera.height_px
     column, row = int(np.floor(x)), int(np.floor(y))
     if not (0 <= column < camera.width_px and 0 <= row < camera.height_px):
-        raise UsageError(f"point {pixel[0]:g},{pixel[1]:g} lies outside image {view.name}")
+        raise UsageError(f"point {pixel[0]:g},{pixel[1]:g} is outside image {view.name}")
     near = depth[
         max(row - WINDOW_RADIUS_PX, 0) : row + WINDOW_RADIUS_PX + 1,
         max(column - WINDOW_RADIUS_PX, 0) : column + WINDOW_RADIUS_PX + 1,
@@ -148,8 +165,8 @@ def _unproject_pixel(view: View, pixel: tuple[float, float]) -> np.ndarray:
     near = near[near > 0]
     if not len(near):
         raise UsageError(
-            f"there is no depth at {pixel[0]:g},{pixel[1]:g} of {view.name}; "
-            "click on a surface with texture, away from edges, glass and light"
+            f"there is no depth at {pixel[0]:g},{pixel[1]:g} in {view.name}; choose a "
+            "textured surface away from edges, glass and lamps"
         )
     z = float(np.median(near))
     point = [(x - camera.cx_px) / camera.fx_px * z, (y - camera.cy_px) / camera.fy_px * z, z, 1.0]
@@ -157,16 +174,16 @@ def _unproject_pixel(view: View, pixel: tuple[float, float]) -> np.ndarray:
 
 
 def candidate_lengths(known: KnownLength, measures: RoomMeasurements) -> list[tuple[float, float]]:
-    """Return what may be meant by a known length: (length in the scan's unit, weight) each.
+    """Return the candidates for a known length: (length in the unit of the scan, weight) each.
 
     Raises:
-        UsageError: nothing of the kind was seen.
+        UsageError: If the scan does not show the object of the length.
     """
     if known.measured is not None:
         return [(known.measured, 1.0)]
     if known.name in LEVEL_HEIGHTS:
         if not measures.levels:
-            raise UsageError(_unseen(known.name, "no level face was seen over the floor"))
+            raise UsageError(_unseen(known.name, "no level face was seen above the floor"))
         return [(level.height, level.area) for level in measures.levels]
     value = {
         "ceiling height": measures.ceiling,
@@ -176,7 +193,7 @@ def candidate_lengths(known: KnownLength, measures: RoomMeasurements) -> list[tu
         "camera height": measures.camera if measures.floor_seen else None,
     }[known.name]
     if value is None:
-        what = {"c": "no floor", "r": "not both of its walls"}.get(known.name[0], "no ceiling")
+        what = {"c": "no floor", "r": "no pair of opposite walls"}.get(known.name[0], "no ceiling")
         if known.name in ("ceiling height", "room height"):
             what = "no ceiling"
         raise UsageError(_unseen(known.name, f"{what} was seen"))
@@ -184,4 +201,4 @@ def candidate_lengths(known: KnownLength, measures: RoomMeasurements) -> list[tu
 
 
 def _unseen(name: str, reason: str) -> str:
-    return f"{name} cannot be taken: {reason}; give another length, {EXAMPLE}, or two points"
+    return f"{name} cannot be used: {reason}; give another length, {EXAMPLE}, or two points"

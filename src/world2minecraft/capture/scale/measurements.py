@@ -1,8 +1,8 @@
-"""Measurements of a room in the scan's own unit: floor, cameras, ceiling, level faces.
+"""Measurements of a room in the unit of the scan: floor, cameras, ceiling and level faces.
 
-The stages behind need thresholds in metres. So depth is first brought to about metres by what a
-person who walks through a room usually looks at, and the surface by the height at which a person
-holds a camera; what was found is carried back to the scan's unit.
+The measuring functions use thresholds in metres. Depth is therefore first scaled to roughly metres
+by the typical viewing distance in a room, and then by the typical height of a hand-held camera. The
+results are converted back to the unit of the scan.
 """
 
 from collections.abc import Iterable, Iterator
@@ -33,11 +33,11 @@ MERGE_DISTANCE_M = 0.035  # Two peaks nearer than that are one noisy face.
 
 
 def collect_unscaled(views: Iterable[View], max_per_view: int = 4096) -> OrientedPoints:
-    """Collect the flat patches of views in any unit; all lengths of the result are in that unit.
+    """Collect oriented surface points of views in any unit; the result has the same unit.
 
     Args:
-        views: read twice, one view at a time; those without depth give nothing.
-        max_per_view: of a view with more patches, that many are taken, evenly spread.
+        views: Views, read twice and one at a time; views without depth are ignored.
+        max_per_view: Maximum number of evenly spaced points per view.
     """
     median = _median_depth(views)
     if median <= 0:
@@ -49,7 +49,7 @@ def collect_unscaled(views: Iterable[View], max_per_view: int = 4096) -> Oriente
 
 
 def scale_points(surface: OrientedPoints, factor: float) -> OrientedPoints:
-    """Return the surface with all its lengths multiplied by a factor above 0."""
+    """Multiply all lengths of a surface by a positive factor."""
     cameras = surface.cameras.copy()
     cameras[:, :3, 3] *= factor
     return replace(
@@ -61,7 +61,7 @@ def scale_points(surface: OrientedPoints, factor: float) -> OrientedPoints:
 
 
 def _median_depth(views: Iterable[View]) -> float:
-    """Return the median over the views of their median depths, 0 where none has depth."""
+    """Return the median of the median depths of the views, or 0 without depth."""
     medians = []
     for view in views:
         if view.depth_m is not None:
@@ -90,7 +90,12 @@ def _scale_views(views: Iterable[View], factor: float) -> Iterator[View]:
 
 @dataclass(frozen=True)
 class LevelFace:
-    """A level face that looks up: its height over the floor, and its area, in the scan's unit."""
+    """A level face that faces up, in the unit of the scan.
+
+    Attributes:
+        height: Height above the floor.
+        area: Area of the face.
+    """
 
     height: float
     area: float
@@ -98,12 +103,18 @@ class LevelFace:
 
 @dataclass(frozen=True)
 class RoomMeasurements:
-    """The lengths of a room in the scan's unit; None where a thing was not seen.
+    """Lengths of a room in the unit of the scan; None for anything not seen.
 
-    ``camera`` is the cameras' middle height over the floor, ``camera_spread`` how much it varies,
-    relative to it; ``top`` the height where points end, None where there is another storey;
-    ``length`` and ``width`` the sides of the room's inner box, the longer first. ``rough`` is
-    the scale at which the camera would be at its usual height.
+    Attributes:
+        rough: Scale at which the cameras would be at a typical height.
+        camera: Median height of the cameras above the floor.
+        camera_spread: Relative variation of the camera height.
+        floor_seen: Whether a floor was found.
+        top: Height of the highest points, or None if there is another storey.
+        ceiling: Height of the ceiling.
+        levels: Level faces that face up.
+        length: Longer side of the room's inner box.
+        width: Shorter side of the room's inner box.
     """
 
     rough: float
@@ -118,10 +129,10 @@ class RoomMeasurements:
 
 
 def measure_room(surface: OrientedPoints) -> RoomMeasurements:
-    """Measure a room in a surface of any unit and tilt.
+    """Measure a room in a surface of any unit and orientation.
 
     Args:
-        surface: at least a few hundred points, and the cameras that saw them.
+        surface: At least a few hundred points, and the cameras that saw them.
     """
     rough = _rough_scale(surface)
     level, _ = _level_points(scale_points(surface, rough))
@@ -150,13 +161,13 @@ def measure_room(surface: OrientedPoints) -> RoomMeasurements:
 
 
 def _rough_scale(surface: OrientedPoints) -> float:
-    """Return the scale at which what the cameras see is about as far as in a usual room."""
+    """Return the scale at which the median viewing distance is that of a typical room."""
     away = surface.points_m - surface.cameras[surface.owner, :3, 3]
     return USUAL_RANGE_M / max(float(np.median(np.linalg.norm(away, axis=1))), 1e-12)
 
 
 def _level_points(surface: OrientedPoints) -> tuple[OrientedPoints, bool]:
-    """Return the surface with the floor at z = 0 and z up, and whether a floor was seen."""
+    """Return the surface with z up and the floor at z = 0, and whether a floor was found."""
     ground = find_ground(surface)
     to_level = np.eye(4)
     to_level[:3, :3] = rotation_to_z(ground.up)
@@ -165,14 +176,14 @@ def _level_points(surface: OrientedPoints) -> tuple[OrientedPoints, bool]:
 
 
 def _lowest_camera(heights: np.ndarray) -> float:
-    """Return the middle height of the cameras of the lowest storey, above 0."""
+    """Return the median height of the cameras on the lowest storey, above 0."""
     low = float(np.quantile(heights, 0.1))
     near = heights[heights <= OTHER_STOREY_RATIO * max(low, 0.05)]
     return max(float(np.median(near if len(near) else heights)), 0.05)
 
 
 def _level_faces(level: OrientedPoints) -> list[LevelFace]:
-    """Return the faces that look up between a stool's height and the chest's, from low to high."""
+    """Return the upward faces between stool height and chest height, from low to high."""
     up = level.points_m[level.normals[:, 2] > MIN_FACING_COSINE]
     found = axis_profile(up, 2, 0.02)
     peaks = [at for at in found.peaks(MIN_LEVEL_M2) if LEVEL_RANGE_M[0] <= at <= LEVEL_RANGE_M[1]]
@@ -193,7 +204,7 @@ def _top_height(level: OrientedPoints) -> float:
 
 
 def _ceiling_height(level: OrientedPoints, camera: float) -> float | None:
-    """Return the height of the lowest large face that looks down over the cameras."""
+    """Return the height of the lowest large downward face above the cameras."""
     down = level.points_m[level.normals[:, 2] < -MIN_FACING_COSINE]
     found = axis_profile(down, 2, 0.03)
     min_height = MIN_CEILING_OVER_CAMERA * camera
@@ -206,7 +217,7 @@ def _ceiling_height(level: OrientedPoints, camera: float) -> float | None:
 
 
 def _side_lengths(level: OrientedPoints) -> tuple[float | None, float | None]:
-    """Return the longer and the shorter side of the room, each None where a wall is missing."""
+    """Return the longer and the shorter side of the room, or None if a wall is missing."""
     box = find_room_box(level.transformed(rotation_about_z(-find_yaw(level))))
     sides = []
     for axis, name in enumerate("xy"):

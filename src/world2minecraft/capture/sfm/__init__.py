@@ -1,4 +1,4 @@
-"""Structure from motion: camera poses of photos, from pixels alone or verified where stated."""
+"""Structure from motion: camera poses of photos, estimated or verified from their pixels."""
 
 from world2minecraft.capture.sfm.incremental_mapping import find_poses
 from world2minecraft.capture.sfm.parameters import SfmParameters

@@ -1,13 +1,13 @@
 """Triangulation and bundle adjustment with pycolmap.
 
-A round takes poses and cameras, triangulates points from all matches that meet within a gate,
-adjusts everything, and drops observations that are then off by more than the gate.
+One round triangulates points from all matches that agree within a distance (the gate), adjusts
+poses, cameras and points together, and removes observations with larger errors.
 
-Anchors hold photos with stated poses that see too little to place themselves. Each photo sees
-eight points that are not there: they lie where its stated pose would have them, and do not move.
-The robust loss lets many real points that agree overrule them. On a generated room with bare
-walls, refining without them moved good poses by 70 mm. They hold the lens too, so they are for
-captures that see too little to tell it.
+Anchors stabilise photos that have stated poses but show too little texture. Each photo observes
+eight virtual points, which are fixed at the positions that its stated pose implies. Because of the
+robust loss, many consistent real points outweigh the anchors. On a generated room with bare walls,
+refinement without anchors moved good poses by 70 mm. Anchors also constrain the intrinsics, so they
+are used only for captures with too little texture to estimate them.
 """
 
 from dataclasses import dataclass
@@ -37,13 +37,13 @@ MIN_PHOTOS_FOR_RADIAL = 15  # With so many photos a lens takes a second term of 
 
 
 def anchor_pixels(camera: Camera) -> np.ndarray:
-    """Return where a photo sees its anchors, float64 [16, 2]."""
+    """Return the pixels at which a photo observes its anchors, float64 [16, 2]."""
     corners = np.array(CORNERS) * [camera.width_px, camera.height_px]
     return np.concatenate([corners] * (ANCHORS // len(corners)))
 
 
 def anchor_points(camera: Camera, pose: np.ndarray, depth: float) -> np.ndarray:
-    """Return the anchors of a photo with a stated pose, float64 [8, 3], for a middle depth."""
+    """Return the anchors of a photo with a stated pose for a median depth, float64 [8, 3]."""
     rays = normalise_pixels(camera, anchor_pixels(camera)[: ANCHORS // 2])
     local = np.concatenate([rays, np.ones((len(rays), 1))], axis=1)
     local *= depth * np.repeat(DEPTHS, len(CORNERS))[:, None]
@@ -53,7 +53,10 @@ def anchor_points(camera: Camera, pose: np.ndarray, depth: float) -> np.ndarray:
 def add_anchors(
     pycolmap: Any, model: Any, stated: dict[int, np.ndarray], cameras: dict[int, Camera]
 ) -> list[int]:
-    """Add the anchors of stated poses to a model whose images end with them; return their ids."""
+    """Add the anchors of stated poses to a model, and return their point ids.
+
+    The features of each image in the model must end with those of the anchors.
+    """
     inside = [i for i in sorted(stated) if model.exists_image(i + 1)]
     if not inside or not model.num_points3D():
         return []
@@ -81,11 +84,19 @@ def _median_depth(model: Any, inside: list[int]) -> float:
 
 @dataclass(frozen=True, eq=False)
 class SparseModel:
-    """Poses with the points that they give.
+    """Camera poses with triangulated points.
 
-    ``poses`` maps photo numbers to float64 [4, 4] camera-to-world, ``cameras`` to their lens.
-    ``points`` float64 [P, 3]; observation t is point ``track_point[t]`` in photo
-    ``track_photo[t]``, feature ``track_feature[t]``, off by ``error_px[t]``.
+    Observation t is point ``track_point[t]`` in photo ``track_photo[t]`` at feature
+    ``track_feature[t]``, with a reprojection error of ``error_px[t]``.
+
+    Attributes:
+        poses: Camera-to-world matrices, float64 [4, 4], by photo number.
+        cameras: Intrinsics by photo number.
+        points: Point positions, float64 [P, 3].
+        track_point: Point index of each observation.
+        track_photo: Photo number of each observation.
+        track_feature: Feature index of each observation.
+        error_px: Reprojection error of each observation in pixels.
     """
 
     poses: dict[int, np.ndarray]
@@ -97,12 +108,12 @@ class SparseModel:
     error_px: np.ndarray
 
     def seen_by(self, photo: int) -> int:
-        """The number of points that a photo sees."""
+        """Return the number of points that a photo observes."""
         return int((self.track_photo == photo).sum())
 
     @property
     def median_px(self) -> float:
-        """The median error, infinite where nothing is seen."""
+        """The median reprojection error in pixels, or infinity without observations."""
         return float(np.median(self.error_px)) if len(self.error_px) else float("inf")
 
 
@@ -117,18 +128,19 @@ def triangulate_and_adjust(
     tolerance: float = 1e-6,
     stated: dict[int, np.ndarray] | None = None,
 ) -> SparseModel:
-    """Return points for the posed photos, and with ``free`` better poses and lenses.
+    """Triangulate points for photos with poses, and optionally refine poses and intrinsics.
 
     Args:
-        photos: the features of all photos.
-        links: what they share.
-        poses: camera-to-world of those that are placed, by number.
-        groups: the shared lenses; with ``free`` False each keeps its camera.
-        gate_px: an observation farther from its point is dropped; of a picture 640 wide.
-        parameters: the seed and more.
-        free: move poses and lenses, not points alone.
-        tolerance: adjusting ends when a step gains a smaller share.
-        stated: poses that hold their photos where these see little (see the module).
+        photos: Features of all photos.
+        links: Verified matches between photos.
+        poses: Camera-to-world matrices by photo number.
+        groups: Shared cameras; they are unchanged if ``free`` is False.
+        gate_px: Maximum reprojection error of an observation, in pixels of an image 640 pixels
+            wide.
+        parameters: Parameters such as the seed.
+        free: Whether to refine poses and intrinsics as well as points.
+        tolerance: Relative improvement per step at which the adjustment stops.
+        stated: Stated poses by photo number that act as anchors.
     """
     unit = pixel_unit(photos)
     gate_px = gate_px * unit
@@ -212,7 +224,7 @@ def _adjustment_options(pycolmap: Any, free: bool, unit: float, tolerance: float
 
 
 def _adjust(pycolmap: Any, model: Any, options: Any, fixed: list[int], anchors: list[int]) -> None:
-    """Move what the options let move to where it fits best, but for lenses and points listed."""
+    """Run the bundle adjustment with the listed cameras and points fixed."""
     config = pycolmap.BundleAdjustmentConfig()
     for image in sorted(model.reg_image_ids()):
         config.add_image(image)
@@ -248,7 +260,7 @@ def _read_model(photos: list[Features], model: Any, poses: dict[int, np.ndarray]
 def _reprojection_errors(
     photos: list[Features], poses: dict, cameras: dict, points, rows
 ) -> np.ndarray:
-    """Return how far each observation is from where its point is seen, in pixels."""
+    """Return the reprojection error of each observation in pixels."""
     errors = np.zeros(len(rows))
     for i, pose in poses.items():
         mine = rows[:, 1] == i
@@ -260,7 +272,7 @@ def _reprojection_errors(
 
 
 def project_points(camera: Camera, points: np.ndarray) -> np.ndarray:
-    """Return the pixels float64 [K, 2] at which a camera sees points [K, 3] in front of it."""
+    """Project points [K, 3] in front of a camera to pixels, float64 [K, 2]."""
     k1, k2, p1, p2, k3 = camera.distortion
     x, y = (points[:, :2] / points[:, 2:]).T
     r2 = x * x + y * y

@@ -18,10 +18,13 @@ MAX_DISTORTION = 0.6  # Terms of distortion; wide phones have 0.3.
 
 @dataclass(frozen=True)
 class CameraGroup:
-    """A lens that several photos share: its camera, the photos' numbers, and how it is known.
+    """A group of photos that share a camera.
 
-    ``known`` is "stated", "guessed" (EXIF), "unknown" (a usual lens is where the search begins) or
-    "assumed" (it stays as it is, for the photos cannot tell it).
+    Attributes:
+        camera: The shared intrinsics.
+        photos: Numbers of the photos.
+        known: ``stated``, ``guessed`` (from EXIF), ``unknown`` (starts from default intrinsics) or
+            ``assumed`` (fixed, because the photos cannot determine the intrinsics).
     """
 
     camera: Camera
@@ -30,25 +33,25 @@ class CameraGroup:
 
     @property
     def is_fixed(self) -> bool:
-        """Whether nothing may move it."""
+        """Whether the intrinsics must not be refined."""
         return self.known == "assumed"
 
 
 def camera_by_photo(lenses: list[CameraGroup]) -> dict[int, Camera]:
-    """Return the camera of each photo's lens."""
+    """Return the camera of each photo by photo number."""
     return {i: group.camera for group in lenses for i in group.photos}
 
 
 def default_camera(width_px: int, height_px: int, focal: float = DEFAULT_FOCAL) -> Camera:
-    """Return a camera without distortion whose focal length is usual for the longer side."""
+    """Return a camera without distortion, with a focal length typical for the longer side."""
     focal_px = focal * max(width_px, height_px)
     return Camera(width_px, height_px, focal_px, focal_px, width_px / 2, height_px / 2)
 
 
 def group_cameras(photos: list[Features]) -> list[CameraGroup]:
-    """Return the lenses of the photos: those of one size whose stated focal lengths are near.
+    """Group photos of the same size with similar stated focal lengths.
 
-    Each lens takes the middle camera of its photos.
+    The camera of a group is the median of its photos' cameras.
     """
     groups: list[list[int]] = []
     for i, photo in enumerate(photos):
@@ -79,9 +82,9 @@ def _make_group(photos: list[Features], group: list[int]) -> CameraGroup:
 
 
 def to_colmap(pycolmap: Any, camera: Camera, number: int, simple: bool) -> Any:
-    """Return a pycolmap camera; ``simple`` has one focal length and one distortion term.
+    """Convert a camera to pycolmap; ``simple`` uses one focal length and one distortion term.
 
-    What a simple camera cannot hold is left out, so it suits lenses that are still to be found.
+    A simple camera omits all other terms, which suits intrinsics that are still to be estimated.
     """
     k1, k2, p1, p2, k3 = camera.distortion
     focal = (camera.fx_px * camera.fy_px) ** 0.5
@@ -102,7 +105,7 @@ def to_colmap(pycolmap: Any, camera: Camera, number: int, simple: bool) -> Any:
 
 
 def from_colmap(made: Any) -> Camera:
-    """Return a camera of ours from pycolmap's, rounded to 1e-9."""
+    """Convert a pycolmap camera, with parameters rounded to 1e-9."""
     params = np.round(np.asarray(made.params, np.float64), 9).tolist()
     if made.model_name in ("SIMPLE_RADIAL", "RADIAL"):
         focal, cx, cy, *radial = params
@@ -117,7 +120,12 @@ def from_colmap(made: Any) -> Camera:
 
 
 def normalise_pixels(camera: Camera, pixels: np.ndarray) -> np.ndarray:
-    """Return where rays cross the plane z = 1, float64 [K, 2], for pixels [K, 2] of a lens."""
+    """Return the intersections of pixel rays with the plane z = 1, float64 [K, 2].
+
+    Args:
+        camera: Intrinsics with distortion.
+        pixels: Pixel positions, [K, 2].
+    """
     k1, k2, p1, p2, k3 = camera.distortion
     bent = (pixels - [camera.cx_px, camera.cy_px]) / [camera.fx_px, camera.fy_px]
     straight = bent.copy()
@@ -137,9 +145,9 @@ def normalise_pixels(camera: Camera, pixels: np.ndarray) -> np.ndarray:
 
 
 def is_plausible_camera(camera: Camera) -> bool:
-    """Return whether a lens that was found is one that rooms are taken with.
+    """Return whether estimated intrinsics are plausible for photos of rooms.
 
-    Photos of one flat surface, or of few details, let it run away.
+    Photos of a single flat surface or with few details can lead to implausible intrinsics.
     """
     longer = max(camera.width_px, camera.height_px)
     in_range = MIN_FOCAL * longer < camera.fx_px < MAX_FOCAL * longer

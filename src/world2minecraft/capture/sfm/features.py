@@ -1,4 +1,4 @@
-"""SIFT features of photos, with their colours and each photo's sharpness."""
+"""SIFT features of photos, with colours and the sharpness of each photo."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -19,10 +19,20 @@ PEAK_THRESHOLD = 0.0067  # COLMAP's own threshold, for images of 0 to 1.
 
 @dataclass(frozen=True, eq=False)
 class Features:
-    """Features of a photo, without its pixels.
+    """The features of a photo, without its pixels.
 
-    ``pixels`` float64 [K, 2] (centres at +0.5), ``descriptors`` uint8 [K, 128] of length 512 and
-    ``colours`` uint8 [K, 3], the largest features first. ``sharpness`` is 1 for crisp pictures.
+    Attributes:
+        name: Name of the photo.
+        width_px: Width in pixels.
+        height_px: Height in pixels.
+        camera: Stated or guessed intrinsics, or None.
+        camera_guessed: Whether the intrinsics are an initial guess.
+        camera_to_scan: Stated pose, float64 [4, 4], or None.
+        pixels: Feature positions with pixel centres at +0.5, float64 [K, 2], the largest feature
+            first.
+        descriptors: SIFT descriptors of norm 512, uint8 [K, 128].
+        colours: Colours at the features, uint8 [K, 3].
+        sharpness: Edge sharpness; about 1 for sharp photos.
     """
 
     name: str
@@ -38,12 +48,12 @@ class Features:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height in pixels."""
+        """The width and height in pixels."""
         return self.width_px, self.height_px
 
 
 def pixel_unit(photos: list[Features]) -> float:
-    """Return what a pixel of a picture of 640 is in these, 0.5 to 3: limits in pixels grow so."""
+    """Return the scale of pixel thresholds relative to images 640 pixels wide, from 0.5 to 3."""
     longer = float(np.median([max(photo.size) for photo in photos])) if photos else 640.0
     return min(max(longer / 640, 0.5), 3.0)
 
@@ -51,15 +61,17 @@ def pixel_unit(photos: list[Features]) -> float:
 def extract_features(
     photos: PhotoStream, parameters: SfmParameters, steps: ProgressSteps
 ) -> list[Features]:
-    """Return the features of all photos, in their order.
+    """Return the features of all photos in order.
 
     Raises:
-        CaptureError: two photos share a name.
-        LimitError: there are too many.
+        CaptureError: If two photos have the same name.
+        LimitError: If there are too many photos.
     """
     if len(photos) > MAX_PHOTOS:
         raise LimitError(
-            PHOTOS, f"are {len(photos)}, over {MAX_PHOTOS}; take fewer: --set capture.every=10"
+            PHOTOS,
+            f"got {len(photos)} photos, the limit is {MAX_PHOTOS}; use fewer, for "
+            "example with --set capture.every=10",
         )
     gathered: list[Features] = []
     with pycolmap_session() as pycolmap:
@@ -70,7 +82,9 @@ def extract_features(
     names = [photo.name for photo in gathered]
     if len(set(names)) != len(names):
         twice = next(name for name in names if names.count(name) > 1)
-        raise CaptureError(PHOTOS, f"two are named {twice!r}; give each a name of its own")
+        raise CaptureError(
+            PHOTOS, f"two photos have the name {twice!r}; give each photo a unique name"
+        )
     return gathered
 
 
@@ -111,9 +125,9 @@ def _extract_photo(
 
 
 def sharpness(grey: np.ndarray) -> float:
-    """Return how steep the steepest edges of a uint8 image [H, W] are, against how high they are.
+    """Return the ratio of the steepest to the highest edges of a uint8 image [H, W].
 
-    A step seen sharply rises within about a pixel of the picture: then it is near 1.
+    In a sharp image, an edge rises within about one pixel, and the ratio is close to 1.
     """
     values = grey[::4].astype(np.int16)  # Every fourth row tells as much.
     near = np.abs(np.diff(values, axis=1))

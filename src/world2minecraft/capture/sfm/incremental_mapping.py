@@ -1,7 +1,7 @@
-"""Incremental mapping: poses, cameras and points of photos from their pixels alone.
+"""Incremental mapping: estimates poses, cameras and points of photos from their pixels alone.
 
-COLMAP's mapper runs on one thread, so that it repeats itself. Its models become one where they
-share photos and agree on their poses.
+COLMAP's mapper runs on one thread to be deterministic. Models that share photos are merged if their
+poses agree.
 """
 
 from dataclasses import replace
@@ -62,10 +62,10 @@ def run_mapper(
     parameters: SfmParameters,
     steps: ProgressSteps,
 ) -> list[Model]:
-    """Return the models that the links give, the one of most photos first.
+    """Run the incremental mapper, and return its models with the largest first.
 
-    A model maps photo numbers to camera-to-world float64 [4, 4], in a frame of its own, and to the
-    camera found. Photos may be in several.
+    A model maps photo numbers to the camera-to-world matrix, float64 [4, 4] in the model's own
+    frame, and to the estimated camera. A photo may be part of several models.
     """
     with pycolmap_session() as pycolmap:
         pycolmap.set_random_seed(parameters.seed)
@@ -90,7 +90,7 @@ def run_mapper(
 def _database_cache(
     pycolmap: Any, photos: list[Features], links: MatchGraph, groups: list[CameraGroup]
 ) -> Any:
-    """Return what mapping reads, made in memory: no file and no database."""
+    """Return the input of the mapper, created in memory without a database file."""
     cache = pycolmap.DatabaseCache()
     for number, group in enumerate(groups):
         camera = to_colmap(pycolmap, group.camera, number + 1, simple=group.known != "stated")
@@ -144,10 +144,10 @@ def _read_model(found: Any) -> Model:
 
 
 def merge_models(models: list[Model]) -> tuple[Model, int]:
-    """Return the largest model with those joined to it that fit, and how many these were.
+    """Merge fitting models into the largest one, and return it and their number.
 
     Args:
-        models: as mapping gives them, the largest first.
+        models: Models of ``run_mapper``, the largest first.
     """
     whole = dict(models[0])
     waiting, count = list(models[1:]), 0
@@ -162,7 +162,7 @@ def merge_models(models: list[Model]) -> tuple[Model, int]:
 
 
 def _register_model(model: Model, whole: Model) -> Model | None:
-    """Return the photos of a model in the frame of the whole, or None where it does not fit."""
+    """Return the photos of a model in the frame of the merged model, or None if it does not fit."""
     shared = sorted(set(model) & set(whole))
     if len(shared) < MIN_SHARED_PHOTOS or len(shared) == len(model):
         return None
@@ -188,14 +188,14 @@ def find_poses(
     parameters: SfmParameters | None = None,
     progress: Progress = no_progress,
 ) -> SparseScene:
-    """Return where photos were taken, from their pixels alone.
+    """Estimate the camera poses of photos from their pixels alone.
 
-    The frame is its own, turned at will; its scale is set so that the median depth of what the
-    photos see is 2.5. Cameras that the photos state are where the search for lenses begins.
+    The result has an arbitrary frame, and a scale at which the median depth is 2.5. Cameras stated
+    by the photos are the initial values of the intrinsics.
 
     Raises:
-        CaptureError: too few photos, or they cannot be placed; the message tells what to do.
-        MissingExtraError: pycolmap is not installed.
+        CaptureError: If there are too few photos or their poses cannot be estimated.
+        MissingExtraError: If pycolmap is not installed.
     """
     chosen = parameters or SfmParameters()
     count = len(photos)
@@ -215,7 +215,7 @@ def find_poses(
     )
     out = explain_left_out(features, found.poses, links)
     if len(found.poses) < ENOUGH_SHARE * len(features):
-        notes.append(f"only {len(found.poses)} of {len(features)} photos could be placed")
+        notes.append(f"poses were found for only {len(found.poses)} of {len(features)} photos")
     return to_sparse_scene(
         features,
         found,
@@ -233,16 +233,19 @@ def map_from_scratch(
     parameters: SfmParameters,
     steps: ProgressSteps,
 ) -> tuple[SparseModel, list[str], int]:
-    """Return the photos placed from their links alone, notes, and how many models there were.
+    """Estimate the poses of photos from their matches alone.
+
+    Returns:
+        The model, notes, and the number of models found by the mapper.
 
     Raises:
-        CaptureError: no model of three photos was found.
+        CaptureError: If no model of at least three photos was found.
     """
     models, groups = _best_trial(photos, groups, links, parameters, steps)
     if not models or len(models[0]) < MIN_PHOTOS:
         raise no_model_error(photos, links, camera_by_photo(groups))
     whole, count = merge_models(models)
-    notes = [f"{count + 1} groups of photos were joined by those they share"] if count else []
+    notes = [f"{count + 1} groups of photos were merged by the photos they share"] if count else []
     poses = {i: pose for i, (pose, _) in sorted(whole.items())}
     cameras = {i: camera for i, (_, camera) in whole.items()}
     gates = parameters.gates_px[-2:] if count else parameters.gates_px[-1:]
@@ -250,7 +253,7 @@ def map_from_scratch(
     if len(found.poses) < MIN_PHOTOS or len(found.points) < MIN_POINTS:
         raise no_model_error(photos, links, camera_by_photo(groups))
     if any(group.is_fixed for group in groups):
-        notes.append("the photos cannot tell their lens: a usual one was assumed")
+        notes.append("the photos do not determine the focal length; using a typical value")
     return found, notes, len(models)
 
 
@@ -261,10 +264,10 @@ def _best_trial(
     parameters: SfmParameters,
     steps: ProgressSteps,
 ) -> tuple[list[Model], list[CameraGroup]]:
-    """Return the models, and the lenses that they began from.
+    """Return the models and the initial cameras of the best trial.
 
-    Where lenses are not known and the usual ones lead nowhere, they are held as they are, and then
-    others are tried.
+    If intrinsics are unknown and the defaults do not lead to a model, fixed defaults are tried, and
+    then other focal lengths.
     """
     linked = {i for pair in links.matches for i in pair}
     best: tuple[list[Model], list[CameraGroup]] = ([], groups)
@@ -284,7 +287,7 @@ def _best_trial(
 
 
 def _initial_cameras(groups: list[CameraGroup]) -> list[list[CameraGroup]]:
-    """Return the lenses to begin from, one trial after another."""
+    """Return the initial cameras of each trial."""
     fixed = [replace(group, known="assumed") for group in groups]
     others = [[_with_focal(group, focal) for group in groups] for focal in OTHER_FOCALS]
     return [groups, fixed, *(others if any(group.known == "unknown" for group in groups) else [])]
@@ -306,7 +309,7 @@ def refine_poses(
     parameters: SfmParameters,
     stated: dict[int, np.ndarray] | None = None,
 ) -> SparseModel:
-    """Return poses and lenses after a round for each gate; photos that see too little are left."""
+    """Refine poses and intrinsics in one round per gate, and remove photos with too few points."""
     found = None
     for gate in gates_px:
         last = gate == gates_px[-1]
@@ -321,12 +324,12 @@ def refine_poses(
                 photos, links, poses, groups, gate, parameters, tolerance=1e-5, stated=stated
             )
     if found is None:
-        raise ValueError("there must be a gate")
+        raise ValueError("gates_px must not be empty")
     return found
 
 
 def replace_cameras(groups: list[CameraGroup], cameras: dict) -> list[CameraGroup]:
-    """Return the lenses with the cameras that were found for their photos."""
+    """Return the camera groups with the estimated cameras of their photos."""
     return [
         replace(
             group, camera=next((cameras[i] for i in group.photos if i in cameras), group.camera)
@@ -336,7 +339,7 @@ def replace_cameras(groups: list[CameraGroup], cameras: dict) -> list[CameraGrou
 
 
 def focal_facts(photos: list[Features], found: SparseModel, groups: list[CameraGroup]) -> dict:
-    """Return the focal length found and given for the lens of most photos, in pixels."""
+    """Return the given and the estimated focal length of the largest camera group, in pixels."""
     main = max(groups, key=lambda group: sum(i in found.poses for i in group.photos))
     placed = next((i for i in main.photos if i in found.poses), None)
     return {

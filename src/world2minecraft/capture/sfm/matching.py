@@ -1,7 +1,7 @@
 """Matching of photos: candidate pairs, descriptor matches and two-view verification.
 
-Descriptors are bytes, so their products are whole numbers below 2^24 and float32 holds them
-exactly: no order of summing, and so no number of threads, can change a match.
+Descriptors are bytes, so their dot products are integers below 2^24, which float32 represents
+exactly. The result is therefore independent of the summation order and the number of threads.
 """
 
 from collections.abc import Iterable
@@ -36,9 +36,9 @@ MAX_ROTATION_STRETCH = 1.1
 
 
 def match_descriptors(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Return int64 [M, 2]: rows of the two descriptor arrays uint8 [K, 128] that are each other's.
+    """Return mutual nearest neighbours of two descriptor arrays, uint8 [K, 128], as int64 [M, 2].
 
-    A match is the best both ways, clearly better than the next one, and near.
+    A match must be the best in both directions, clearly better than the second best, and close.
     """
     if len(first) == 0 or len(second) < 2:
         return np.zeros((0, 2), np.int64)
@@ -58,9 +58,9 @@ def match_descriptors(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 def count_common_features(
     photos: list[Features], parameters: SfmParameters, steps: ProgressSteps
 ) -> np.ndarray:
-    """Return int [N, N]: how many of their largest features each two photos share.
+    """Return the number of matches between the largest features of each two photos, int [N, N].
 
-    Pairs that were not compared have 0.
+    The number is 0 for pairs that were not compared.
     """
     strong = [photo.descriptors[: parameters.strong] for photo in photos]
     pairs = _candidate_pairs(strong, parameters)
@@ -80,7 +80,7 @@ def count_common_features(
 
 
 def select_pairs(alike: np.ndarray, parameters: SfmParameters) -> list[Pair]:
-    """Return the pairs (i < j) that are matched in full: the most alike of each, and neighbours."""
+    """Select the pairs (i < j) to match fully: the most similar of each photo, and neighbours."""
     pairs: set[Pair] = set()
     count = len(alike)
     for i in range(count):
@@ -94,7 +94,7 @@ def select_pairs(alike: np.ndarray, parameters: SfmParameters) -> list[Pair]:
 
 
 def thread_count() -> int:
-    """The number of threads that matching uses; it changes no result."""
+    """Return the number of threads used for matching, which does not affect the result."""
     return min(usable_cores(), MAX_THREADS)
 
 
@@ -113,9 +113,9 @@ def _candidate_pairs(strong: list[np.ndarray], parameters: SfmParameters) -> lis
 
 
 def _visual_words(strong: list[np.ndarray]) -> np.ndarray:
-    """Return float64 [N, words], of length 1: how often each photo holds each word, rare ones more.
+    """Return weighted histograms of visual words for each photo, unit length, float64 [N, words].
 
-    The words are some of the photos' own descriptors, so none have to be brought along.
+    The words are descriptors of the photos themselves, so that no vocabulary file is required.
     """
     every = np.concatenate([photo[::4] for photo in strong])
     if len(every) == 0:
@@ -137,8 +137,10 @@ def _visual_words(strong: list[np.ndarray]) -> np.ndarray:
 class MatchGraph:
     """Verified matches between photos.
 
-    ``matches`` int64 [M, 2] of features for each linked pair (i < j) of photos; ``geometry``
-    pycolmap's value for the same; ``alike`` int [N, N] is a first count for all pairs.
+    Attributes:
+        matches: Matched features, int64 [M, 2], of each linked pair (i < j) of photos.
+        geometry: Two-view geometry of pycolmap for each linked pair.
+        alike: Number of initial matches of all pairs, int [N, N].
     """
 
     matches: dict[Pair, np.ndarray]
@@ -146,17 +148,17 @@ class MatchGraph:
     alike: np.ndarray
 
     def of(self, photo: int) -> list[int]:
-        """Return the photos that one is linked with."""
+        """Return the photos linked with a photo."""
         return [j if i == photo else i for i, j in self.matches if photo in (i, j)]
 
     def flat(self) -> float:
-        """Return the share of links that one flat surface, or a mere turn, explains."""
+        """Return the share of links that a planar scene or a pure rotation explains."""
         return sum(one.config in PLANAR_CONFIGS for one in self.geometry.values()) / max(
             1, len(self.geometry)
         )
 
     def turned(self, cameras: dict[int, Camera]) -> float:
-        """Return the share of links that a camera that only turned, on one spot, would make."""
+        """Return the share of links that a pure rotation of the camera explains."""
         count = 0
         for (i, j), one in self.geometry.items():
             if one.config in PLANAR_CONFIGS and one.H is not None:
@@ -172,7 +174,7 @@ def match_photos(
     parameters: SfmParameters,
     steps: ProgressSteps,
 ) -> MatchGraph:
-    """Return the links of photos whose lenses are about right."""
+    """Return the verified matches between photos with approximately known cameras."""
     with threadpool_limits(1, "blas"):  # Small products: our threads are enough.
         return _match_and_verify(photos, groups, parameters, steps)
 

@@ -9,24 +9,27 @@ ABOVE_0 = "above 0"
 
 @dataclass(frozen=True)
 class SfmParameters:
-    """How features are taken, matched, and made into poses. Pixels are those of 640 wide pictures.
+    """Parameters of structure from motion. Pixel thresholds are for images 640 pixels wide.
 
-    working_px: pixels of the image that features are sought in; smaller pictures are enlarged up
-        to twice.
-    most_features: kept of a photo, the largest first.
-    strong: of these, how many tell which photos are alike.
-    least_strong: how many of the strong ones must match for two photos to be alike.
-    exhaustive: up to so many photos each is compared with each; above, with its neighbours in
-        order and those that share most words with it.
-    partners, neighbours: how many of the most alike, and of those next in order, a photo is
-        matched with in full.
-    least_matches: that fit one geometry, for two photos to be linked.
-    good_px: stated poses whose reprojection error is at most this stay as they are.
-    gates_px: rounds of refining stated poses; what lies farther from its point is no match.
-    wide_px: how far stated poses may be off to be measured.
-    outlier_px: a stated pose whose matches are off by more, and by over ``outlier_times`` the
-        usual, is wrong.
-    seed: of all chance in it.
+    Attributes:
+        working_px: Number of pixels of the image for feature extraction; smaller images are
+            enlarged up to twice.
+        most_features: Maximum number of features per photo, the largest first.
+        strong: Number of largest features used to find similar photos.
+        least_strong: Minimum number of matching strong features of similar photos.
+        exhaustive: Maximum number of photos for which all pairs are compared; above it, each photo
+            is compared with its neighbours in order and the photos with the most common visual
+            words.
+        partners: Number of most similar photos that a photo is fully matched with.
+        neighbours: Number of following photos that a photo is fully matched with.
+        least_matches: Minimum number of geometrically consistent matches between linked photos.
+        good_px: Maximum reprojection error at which stated poses are kept unchanged.
+        gates_px: Maximum reprojection errors of the refinement rounds.
+        wide_px: Maximum reprojection error when stated poses are measured.
+        outlier_px: Error above which a stated pose is wrong, if it also exceeds ``outlier_times``
+            the median.
+        outlier_times: See ``outlier_px``.
+        seed: Random seed.
     """
 
     working_px: int = parameter(
@@ -71,9 +74,11 @@ class SfmParameters:
     def __post_init__(self):
         for name, (least, most) in fact_by_name(self, "limits").items():
             if not least <= getattr(self, name) <= most:
-                raise ValueError(f"{name} must be {least} to {most}, not {getattr(self, name)}")
+                raise ValueError(
+                    f"{name} must be from {least} to {most}, got {getattr(self, name)}"
+                )
         for name in names_where(self, bounds=ABOVE_0):
             if not getattr(self, name) > 0:
-                raise ValueError(f"{name} must be above 0, not {getattr(self, name)}")
+                raise ValueError(f"{name} must be above 0, got {getattr(self, name)}")
         if not self.gates_px or min(self.gates_px) <= 0:
-            raise ValueError(f"gates_px must be above 0, not {self.gates_px}")
+            raise ValueError(f"gates_px must be above 0, got {self.gates_px}")

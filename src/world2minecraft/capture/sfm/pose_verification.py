@@ -1,4 +1,4 @@
-"""Verification of stated poses and cameras, and refinement where they are off."""
+"""Verification of stated poses and cameras, with refinement if they are inaccurate."""
 
 from dataclasses import dataclass, field, replace
 
@@ -51,9 +51,10 @@ def epipolar_errors_px(
     poses: dict[int, np.ndarray],
     cameras: dict[int, Camera],
 ) -> dict[int, float]:
-    """Return the median distance of each photo's matches from what the poses allow, in pixels.
+    """Return the median epipolar error of each photo's matches for the given poses, in pixels.
 
-    It is Sampson's, so it needs no points and no gate; photos without links are not in it.
+    The Sampson error is used, which requires neither points nor a threshold. Photos without links
+    are not part of the result.
     """
     rays = {i: normalise_pixels(cameras[i], photos[i].pixels) for i in poses}
     off: dict[int, list[np.ndarray]] = {}
@@ -70,7 +71,7 @@ def epipolar_errors_px(
 def sampson_errors(
     first: np.ndarray, second: np.ndarray, first_to_second: np.ndarray
 ) -> np.ndarray:
-    """Return how far matched rays [K, 2] (on z = 1) are from meeting, to first order, [K]."""
+    """Return the Sampson errors of matched rays, given as [K, 2] on the plane z = 1, as [K]."""
     x, y, z = first_to_second[:3, 3]
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     essential = cross @ first_to_second[:3, :3]
@@ -82,7 +83,7 @@ def sampson_errors(
 
 
 def find_outliers(off_px: dict[int, float], unit: float, parameters: SfmParameters) -> set[int]:
-    """Return the photos whose stated poses are wrong, not merely inexact."""
+    """Return the photos whose stated poses are wrong rather than inaccurate."""
     if len(off_px) < 4:
         return set()  # Of three, nobody can say which one is wrong.
     usual = float(np.median(list(off_px.values())))
@@ -98,7 +99,11 @@ def register_photo(
     camera: Camera,
     parameters: SfmParameters,
 ) -> np.ndarray | None:
-    """Return the pose of a photo by the points that its partners see, or None if it has too few."""
+    """Estimate the pose of a photo from the points that linked photos observe.
+
+    Returns:
+        The camera-to-world matrix, or None if there are too few points.
+    """
     point_of = {
         (int(i), int(f)): int(p)
         for p, i, f in zip(found.track_point, found.track_photo, found.track_feature, strict=True)
@@ -149,15 +154,15 @@ def check_poses(
     parameters: SfmParameters | None = None,
     progress: Progress = no_progress,
 ) -> SparseScene:
-    """Return the photos with their stated poses where these are good, with better ones if not.
+    """Verify the stated poses of photos, and refine them if necessary.
 
-    Poses and lenses that fit the pixels within ``good_px`` are given back bit by bit. Others are
-    refined together and carried back to the stated frame by a similarity. Single wrong poses are
-    found again from their neighbours, or left out.
+    Poses and intrinsics with errors of at most ``good_px`` are returned unchanged. Others are
+    refined together and transformed back to the stated frame by a similarity. Single wrong poses
+    are estimated again from their neighbours, or removed.
 
     Raises:
-        CaptureError: the photos share too little to be measured.
-        MissingExtraError: pycolmap is not installed.
+        CaptureError: If the photos have too few common details to measure their poses.
+        MissingExtraError: If pycolmap is not installed.
     """
     chosen = parameters or SfmParameters()
     count = len(photos)
@@ -179,8 +184,8 @@ def check_poses(
     if len(measured.points) < MIN_POINTS and len(links.matches) < 2:
         raise CaptureError(
             PHOTOS,
-            f"share too few details to check their poses ({len(measured.points)} points); "
-            "take pictures that overlap, with the lights on",
+            "the photos have too few common details to check their poses "
+            f"({len(measured.points)} points); take overlapping photos in good light",
         )
     before = _error_px(measured, off_px, wrong)
     good = before <= unit * chosen.good_px and all(group.known == "stated" for group in groups)
@@ -194,7 +199,7 @@ def check_poses(
 
 
 def _triangulate_stated(stated: StatedPoses, cameras: dict[int, Camera]) -> SparseModel:
-    """Return the points that stated poses and lenses give as they are, gates wide."""
+    """Return the points triangulated with unchanged stated poses and wide thresholds."""
     poses = {i: pose for i, pose in stated.poses.items() if i not in stated.wrong}
     return triangulate_and_adjust(
         stated.photos,
@@ -208,17 +213,17 @@ def _triangulate_stated(stated: StatedPoses, cameras: dict[int, Camera]) -> Spar
 
 
 def _error_px(measured: SparseModel, off_px: dict[int, float], wrong: set[int]) -> float:
-    """Return how far off the stated poses are, in pixels.
+    """Return the error of the stated poses in pixels.
 
-    Points exist only where matches meet within a gate, so poses that are far off look better by
-    points than they are; the epipolar error has no gate.
+    Points exist only if matches agree within a threshold, so the reprojection error underestimates
+    large pose errors. The epipolar error has no threshold.
     """
     usual = [off for i, off in off_px.items() if i not in wrong]
     return max(measured.median_px, float(np.median(usual)) if usual else 0.0)
 
 
 def _exact_groups(cameras: dict[int, Camera], poses: dict) -> list[CameraGroup]:
-    """Return a lens for each camera as it is stated, none taken for another."""
+    """Return a camera group for each distinct stated camera."""
     groups: dict[Camera, list[int]] = {}
     for i in sorted(poses):
         groups.setdefault(cameras[i], []).append(i)
@@ -228,7 +233,7 @@ def _exact_groups(cameras: dict[int, Camera], poses: dict) -> list[CameraGroup]:
 def _register_missing(
     stated: StatedPoses, found: SparseModel, cameras: dict[int, Camera]
 ) -> dict[int, np.ndarray]:
-    """Return poses for photos that have none, or a wrong one, by the points of the others."""
+    """Return poses for photos with a missing or wrong pose, from the points of the others."""
     fresh = {}
     for i in range(len(stated.photos)):
         if i in stated.wrong or i not in stated.poses:
@@ -243,7 +248,7 @@ def _register_missing(
 def _keep_stated(
     stated: StatedPoses, measured: SparseModel, before: float, cameras: dict[int, Camera]
 ) -> SparseScene:
-    """Return the scene with all good poses as they were stated."""
+    """Return the scene with all good poses unchanged."""
     fresh = _register_missing(stated, measured, cameras)
     retained = {i: (cameras[i], p) for i, p in stated.poses.items() if i not in stated.wrong}
     poses = {**{i: pose for i, (_, pose) in retained.items()}, **fresh}
@@ -267,11 +272,11 @@ def _keep_stated(
 def _refine_stated(
     stated: StatedPoses, measured: SparseModel, before: float, steps: ProgressSteps
 ) -> SparseScene:
-    """Return the scene with poses and lenses that fit the pixels, in the stated frame."""
+    """Return the scene with refined poses and cameras in the stated frame."""
     notes = stated.notes
     found = _refine_from_stated(stated, _is_poor(stated, measured, before))
     if found is None:
-        notes.append("the stated poses are too far off to start from: places were found anew")
+        notes.append("the stated poses are too inaccurate to refine; new poses were estimated")
         found, more, _ = map_from_scratch(
             stated.photos, stated.groups, stated.links, stated.parameters, steps
         )
@@ -288,9 +293,9 @@ def _refine_stated(
         **_focal_facts(stated, found),
     }
     notes.append(
-        f"stated poses were off by {before:.1f} px (median); refined to {found.median_px:.2f} px, "
-        f"which moved them by {facts['moved_median_mm']:.0f} mm "
-        f"and {facts['turned_median_deg']:.1f} degrees"
+        f"the median error of the stated poses was {before:.1f} px; after refinement it "
+        f"is {found.median_px:.2f} px, which moved the poses by "
+        f"{facts['moved_median_mm']:.0f} mm and {facts['turned_median_deg']:.1f} degrees"
     )
     fresh = {i: pose for i, pose in found.poses.items() if i not in shared}
     return _to_scene(stated, found, change, {}, fresh, facts)
@@ -299,23 +304,23 @@ def _refine_stated(
 def _scale_correction(
     measured: SparseModel, found: SparseModel, change: Similarity
 ) -> float | None:
-    """Return how much deeper everything is now than by the stated poses."""
+    """Return the ratio of the refined to the stated median depth."""
     if len(measured.points) < MIN_POINTS:
         return None
     return round(change.scale * median_depth(found) / median_depth(measured), 4)
 
 
 def _is_poor(stated: StatedPoses, measured: SparseModel, before: float) -> bool:
-    """Return whether the photos see too little to overrule poses that are nearly right."""
+    """Return whether there are too few points to override poses that are almost correct."""
     unit = pixel_unit(stated.photos)
     seen = len(measured.track_photo) / max(1, len(measured.poses))
     return seen < MIN_POINTS_PER_PHOTO and before < NEARLY_RIGHT_PX * unit
 
 
 def _refine_from_stated(stated: StatedPoses, poor: bool) -> SparseModel | None:
-    """Return better poses from the stated ones, or None where these lead nowhere.
+    """Return refined poses, starting from the stated ones, or None if that fails.
 
-    In a ``poor`` capture these hold their photos, and the lens is taken for right.
+    In a ``poor`` capture, the stated poses act as anchors and the intrinsics are fixed.
     """
     links, chosen = stated.links, stated.parameters
     linked = {i for pair in links.matches for i in pair}
@@ -338,7 +343,7 @@ def _refine_from_stated(stated: StatedPoses, poor: bool) -> SparseModel | None:
 
 
 def _align_to_stated(stated: StatedPoses, found: SparseModel) -> tuple[Similarity, set[int]]:
-    """Return the similarity to the stated frame, and the photos that it was found by."""
+    """Return the similarity to the stated frame, and the photos from which it was computed."""
     shared = sorted(i for i in found.poses if i in stated.poses and i not in stated.wrong)
     given = np.array([found.poses[i] for i in shared]).reshape(-1, 4, 4)
     wanted = np.array([stated.poses[i] for i in shared]).reshape(-1, 4, 4)
@@ -352,7 +357,8 @@ def _align_to_stated(stated: StatedPoses, found: SparseModel) -> tuple[Similarit
         return mounted if better and near else plain, set(shared)
     except ValueError as error:
         raise CaptureError(
-            PHOTOS, f"cannot be carried to the stated frame ({error}); leave the poses out"
+            PHOTOS,
+            f"the poses cannot be aligned with the stated poses ({error}); remove the stated poses",
         ) from error
 
 
@@ -366,12 +372,12 @@ def _to_scene(stated, found, change, retained, fresh, facts) -> SparseScene:
     placed = {*found.poses, *retained}
     wrong = sorted(stated.wrong)
     for i in wrong:
-        how = "found anew" if i in fresh else "left out"
-        notes.append(f"the stated pose of {photos[i].name} contradicts the pictures: {how}")
+        how = "estimated again" if i in fresh else "removed"
+        notes.append(f"the stated pose of {photos[i].name} contradicts the images and was {how}")
     out = dict(explain_left_out(photos, placed, stated.links))
     for i in wrong:
         if i not in placed:
-            out[photos[i].name] = "its stated pose contradicts the pictures; take it again"
+            out[photos[i].name] = "the stated pose contradicts the images; take the photo again"
     facts = {"stated_wrong": len(wrong), **facts}
     return to_sparse_scene(
         photos, found, change, retained,

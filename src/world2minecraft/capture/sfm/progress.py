@@ -1,4 +1,4 @@
-"""Progress of structure from motion: one stage, whose parts follow each other."""
+"""Progress of structure from motion: one stage that consists of several parts."""
 
 from dataclasses import dataclass
 
@@ -9,14 +9,14 @@ STAGE = "poses"
 
 @dataclass
 class ProgressSteps:
-    """Counts the steps of all parts as one row. Parts that turn out shorter are made up for."""
+    """A progress counter over several parts, reported as one stage."""
 
     progress: Progress
     parts: dict[str, int]
     at: int = 0
 
     def done(self, part: str, of: int = 0, count: int = 0) -> None:
-        """Tell one more step of a part, or that ``of`` of its ``count`` own steps are done."""
+        """Report one more step of a part, or ``of`` completed steps out of ``count``."""
         names = list(self.parts)
         begin = sum(self.parts[name] for name in names[: names.index(part)])
         end = begin + self.parts[part]
@@ -26,9 +26,9 @@ class ProgressSteps:
 
     @property
     def total(self) -> int:
-        """The steps of all parts."""
+        """The number of steps of all parts."""
         return sum(self.parts.values())
 
     def end(self) -> None:
-        """Tell that all is done."""
+        """Report that all parts are completed."""
         self.progress(STAGE, self.total + 1, self.total + 1, "")

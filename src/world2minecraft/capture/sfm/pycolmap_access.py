@@ -1,4 +1,4 @@
-"""Access to pycolmap: imported when needed, without its log, failures as one-line errors."""
+"""Access to pycolmap: lazy import, suppressed log output, and one-line errors."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,11 +12,11 @@ PHOTOS = "photos"  # What an error names: a stream of photos has no path.
 
 @contextmanager
 def pycolmap_session() -> Iterator[Any]:
-    """Give the module, without its log lines; what it raises becomes a CaptureError.
+    """Yield pycolmap with its log suppressed; exceptions inside the block become CaptureError.
 
     Raises:
-        MissingExtraError: pycolmap is not installed.
-        CaptureError: it has failed inside the block.
+        MissingExtraError: If pycolmap is not installed.
+        CaptureError: If pycolmap fails inside the block.
     """
     module = import_pycolmap()
     before = module.logging.minloglevel
@@ -27,15 +27,19 @@ def pycolmap_session() -> Iterator[Any]:
         if isinstance(error, ValueError) and not str(error).startswith("["):
             raise  # Ours; those of its own checks begin with its source file.
         first = (str(error).splitlines() or ["no reason given"])[0][:200]
-        reason = f"their places could not be found ({first}); leave out odd photos and try again"
+        reason = f"pose estimation failed ({first}); remove unusual photos and try again"
         raise CaptureError(PHOTOS, reason) from error
     finally:
         module.logging.minloglevel = before
 
 
 def import_pycolmap() -> Any:
-    """Return pycolmap. Raises MissingExtraError where it is not installed."""
+    """Import and return pycolmap.
+
+    Raises:
+        MissingExtraError: If pycolmap is not installed.
+    """
     try:
         return import_module("pycolmap")
     except ImportError as error:
-        raise MissingExtraError("finding the places of photos", "capture") from error
+        raise MissingExtraError("pose estimation", "capture") from error

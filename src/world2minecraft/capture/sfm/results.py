@@ -1,4 +1,4 @@
-"""Results of structure from motion: a ``SparseScene``, and reasons for photos left out."""
+"""Results of structure from motion: a ``SparseScene``, and reasons for unplaced photos."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -16,14 +16,16 @@ from world2minecraft.core.types import Camera, SparseScene
 MIN_FEATURES = 60  # A photo with fewer shows a bare wall, or is out of focus.
 CHANCE_MATCHES = 6  # So many features match by chance.
 BLURRED_SHARE = 0.5  # Times the usual sharpness.
-CAPTURE_ADVICE = "walk sideways around the room, with most of each picture in the next"
+CAPTURE_ADVICE = (
+    "move sideways around the room so that each photo overlaps the next by more than half"
+)
 DIGITS = 9  # What is left of rounding in sums; a nanometre.
 
 
 def explain_left_out(
     photos: list[Features], placed: Iterable[int], links: MatchGraph
 ) -> list[tuple[str, str]]:
-    """Return name and reason of each photo that is not among those placed."""
+    """Return the name and the reason for each photo without an estimated pose."""
     inside = set(placed)
     median_sharpness = float(np.median([photo.sharpness for photo in photos]))
     return [
@@ -41,23 +43,23 @@ def _reason(
     if len(photo.pixels) < MIN_FEATURES:
         return f"shows only {len(photo.pixels)} details ({'blurred' if blurred else 'bare'})"
     if blurred:
-        return "is blurred: hold the camera still for each picture, with more light"
+        return "is blurred; hold the camera still and use more light"
     partners = links.of(i)
     near = _nearest(i, inside, links)
     advice = (
-        f"take more pictures between {photo.name} and {photos[near].name}"
+        f"take more photos between {photo.name} and {photos[near].name}"
         if inside
         else CAPTURE_ADVICE
     )
     if not partners:
-        return f"shares nothing with the other photos; {advice}"
+        return f"has no details in common with the other photos; {advice}"
     if not inside & set(partners):
-        return f"shares nothing with the photos that were placed; {advice}"
-    return f"shares too little with the photos that were placed; {advice}"
+        return f"has no details in common with the photos that have poses; {advice}"
+    return f"has too few details in common with the photos that have poses; {advice}"
 
 
 def _nearest(i: int, inside: set[int], links: MatchGraph) -> int:
-    """Return the placed photo that is most like one, by what both show, then by order."""
+    """Return the photo with a pose that is most similar to a given photo."""
     if not inside:
         return i
     shared = np.maximum(links.alike[i] - CHANCE_MATCHES, 0)
@@ -65,49 +67,53 @@ def _nearest(i: int, inside: set[int], links: MatchGraph) -> int:
 
 
 def check_enough(photos: list[Features], least: int) -> None:
-    """Raise CaptureError where there are too few photos, or too few that show anything."""
+    """Check that there are enough photos with details.
+
+    Raises:
+        CaptureError: If there are too few photos, or too few photos with details.
+    """
     if len(photos) < least:
-        count = "there is no photo" if not photos else f"only {len(photos)} were given"
-        raise CaptureError(PHOTOS, f"{count}; take 20 to 60 of the room: {CAPTURE_ADVICE}")
+        count = "there are no photos" if not photos else f"there are only {len(photos)} photos"
+        raise CaptureError(PHOTOS, f"{count}; take 20 to 60 photos of the room: {CAPTURE_ADVICE}")
     bare = sum(len(photo.pixels) < MIN_FEATURES for photo in photos)
     if len(photos) - bare < least:
         raise CaptureError(
             PHOTOS,
-            f"{bare} of {len(photos)} show too few details to be placed (blank, blurred or dark); "
-            "turn on the lights, step back so that furniture and corners are seen",
+            f"{bare} of {len(photos)} photos show too few details (blank, blurred or dark); "
+            "switch on the lights, and step back to show furniture and corners",
         )
 
 
 def too_few_error(placed: int, given: int) -> CaptureError:
-    """Return the error for photos of which only a few could be placed."""
+    """Return the error for captures in which only a few photos could be placed."""
     return CaptureError(
         PHOTOS,
-        f"only {placed} of {given} could be placed, too few to trust; {CAPTURE_ADVICE}, "
-        "and stand back so that furniture and corners are seen",
+        f"poses were found for only {placed} of {given} photos, which is not reliable; "
+        f"{CAPTURE_ADVICE}, and step back to show furniture and corners",
     )
 
 
 def no_model_error(
     photos: list[Features], links: MatchGraph, cameras: dict[int, Camera]
 ) -> CaptureError:
-    """Return the error for photos that make no model at all."""
+    """Return the error for photos from which no model could be computed."""
     linked = {i for pair in links.matches for i in pair}
     if len(linked) < 3:
-        reason = f"no three of the {len(photos)} show the same things; {CAPTURE_ADVICE}"
+        reason = f"no three of the {len(photos)} photos show the same objects; {CAPTURE_ADVICE}"
     elif links.turned(cameras) > 0.5:
         reason = (
-            "the camera turned on one spot, which shows no depth; "
-            "take steps of 20 to 40 cm sideways between pictures"
+            "the camera only rotated, which gives no depth; move 20 to 40 cm sideways "
+            "between photos"
         )
     elif links.flat() > 0.5:
         reason = (
-            "they show little but one flat surface (floor, wall or poster), which tells neither "
-            "lens nor places; hold the camera level, so that furniture and corners are seen"
+            "the photos mostly show a single flat surface (floor, wall or poster), which is not "
+            "enough to estimate poses; hold the camera level to show furniture and corners"
         )
     else:
         reason = (
-            f"{len(linked)} of the {len(photos)} share details, but too few to tell where they "
-            f"were taken; {CAPTURE_ADVICE}"
+            f"{len(linked)} of the {len(photos)} photos have common details, but too few to "
+            f"estimate poses; {CAPTURE_ADVICE}"
         )
     return CaptureError(PHOTOS, reason)
 
@@ -119,14 +125,14 @@ def to_sparse_scene(
     unchanged: dict[int, tuple[Camera, np.ndarray]] | None = None,
     **details: Any,
 ) -> SparseScene:
-    """Return the solved photos as a SparseScene.
+    """Convert a model to a SparseScene.
 
     Args:
-        photos: all photos, in their order.
-        found: poses and points.
-        change: carries these to the wanted frame.
-        unchanged: cameras and poses by number that are given out as they are, not rounded.
-        details: ``explain_left_out``, ``notes`` and ``facts``.
+        photos: All photos in order.
+        found: Poses and points.
+        change: Similarity to the frame of the result, or None.
+        unchanged: Cameras and poses by photo number that are returned exactly, without rounding.
+        details: Further fields of the scene: ``left_out``, ``notes`` and ``facts``.
     """
     unchanged = unchanged or {}
     order = sorted({*found.poses, *unchanged})
@@ -165,7 +171,7 @@ def to_sparse_scene(
 
 
 def median_depth(found: SparseModel) -> float:
-    """Return the median distance along the view from a photo to a point that it sees."""
+    """Return the median depth of the points that the photos observe."""
     depths = []
     for i, pose in sorted(found.poses.items()):
         seen = found.points[found.track_point[found.track_photo == i]]
@@ -174,7 +180,7 @@ def median_depth(found: SparseModel) -> float:
 
 
 def median_triangulation_angle_deg(found: SparseModel) -> float:
-    """Return the median over points of the widest angle between the first ray and another."""
+    """Return the median over points of the widest angle between the first ray and another ray."""
     if len(found.points) == 0:
         return 0.0
     centres = np.zeros((max(found.poses) + 1, 3))
@@ -197,7 +203,7 @@ def _pixels(photos: list[Features], found: SparseModel) -> np.ndarray:
 
 
 def _colours(photos: list[Features], found: SparseModel) -> np.ndarray:
-    """Return each point's mean colour, uint8 [P, 3]."""
+    """Return the mean colour of each point, uint8 [P, 3]."""
     count = len(found.points)
     total = np.zeros((count, 3), np.int64)
     for i in found.poses:

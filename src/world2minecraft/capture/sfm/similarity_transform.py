@@ -1,13 +1,15 @@
-"""A robust similarity transform between two sets of poses, by centres and rotations.
+"""Robust similarity transform between two sets of poses, from centres and rotations.
 
-Centres alone rotate and stretch a small path with noisy poses (2.5 % in a trial); rotations hold
-it. Both are weighted by how well they agree, and poses that do not fit lose their weight.
+With centres alone, a short path with noisy poses would be rotated and stretched (by 2.5 % in a
+trial); rotations prevent that. Both are weighted by how well they agree, and the weight of outliers
+is reduced.
 
-Stated poses are often those of another sensor on the same device, or of its wrong lens: a focal
-length or a principal point that is off moves and rotates all poses alike, as seen from the camera.
-Where that is allowed for, position and rotation of that sensor in the camera are estimated too. On
-the real kitchen, with poses of the depth sensor, they bring 84 % of the points within 8 cm of the
-sensor's own surface; its position alone 60 %, neither 32 %.
+Stated poses are often those of another sensor on the same device, or were computed with wrong
+intrinsics: an error in the focal length or the principal point moves and rotates all poses alike,
+as seen from the camera. The position and rotation of that sensor relative to the camera can be
+estimated too. On the real kitchen with poses of the depth sensor, 84 % of the points are then
+within 8 cm of the sensor's own surface, compared with 60 % for the position alone and 32 % without
+both.
 """
 
 from dataclasses import dataclass, field
@@ -24,10 +26,16 @@ MAX_ITERATIONS = 60  # It settles to 1e-9 in about ten, with a mount in thirty.
 
 @dataclass(frozen=True, eq=False)
 class Similarity:
-    """x -> scale * rotation @ x + shift_m; ``off_m`` and ``off_deg`` [N] are what is left.
+    """The similarity transform x -> scale * rotation @ x + shift_m.
 
-    ``mount_m`` is where the stated poses' sensor sits in the camera's own axes, ``mount_turn``
-    [3, 3] how it is turned against them.
+    Attributes:
+        scale: Scale factor.
+        rotation: Rotation matrix [3, 3].
+        shift_m: Translation [3].
+        off_m: Remaining distances of the camera centres, [N].
+        off_deg: Remaining rotation angles in degrees, [N].
+        mount_m: Position of the stated poses' sensor in camera axes, [3].
+        mount_turn: Rotation of that sensor relative to the camera, [3, 3].
     """
 
     scale: float
@@ -44,11 +52,11 @@ class Similarity:
         object.__setattr__(self, "shift_m", checks.floats("shift_m", self.shift_m, (3,)))
 
     def points(self, points: np.ndarray) -> np.ndarray:
-        """Return points [..., 3] carried over."""
+        """Transform points [..., 3]."""
         return self.scale * points @ self.rotation.T + self.shift_m
 
     def poses(self, poses: np.ndarray) -> np.ndarray:
-        """Return camera poses [N, 4, 4] carried over; the cameras themselves do not stretch."""
+        """Transform camera poses [N, 4, 4]; the rotation part stays orthonormal."""
         carried = np.array(poses, np.float64)
         carried[:, :3, :3] = self.rotation @ carried[:, :3, :3]
         carried[:, :3, 3] = self.points(carried[:, :3, 3])
@@ -56,25 +64,25 @@ class Similarity:
 
 
 def align_similarity(given: np.ndarray, wanted: np.ndarray, mounted: bool = False) -> Similarity:
-    """Return the similarity that carries poses ``given`` to ``wanted``, robust to a wrong third.
+    """Estimate the similarity from poses ``given`` to ``wanted``; up to a third may be outliers.
 
     Args:
-        given: camera-to-world poses [N, 4, 4] in one frame, N >= 2, with centres apart.
-        wanted: the poses [N, 4, 4] of the same cameras in the other frame.
-        mounted: ``wanted`` may be of a sensor that sits elsewhere on the device and is turned a
-            little; needs eight poses that look in different directions.
+        given: Camera-to-world poses [N, 4, 4], N >= 2, with different centres.
+        wanted: Poses [N, 4, 4] of the same cameras in the other frame.
+        mounted: Whether ``wanted`` may belong to another sensor on the same device. This requires
+            eight poses that look in different directions.
 
     Raises:
-        ValueError: shapes differ, there are too few, or all centres coincide.
+        ValueError: If the shapes differ, there are too few poses, or all centres coincide.
     """
     given = checks.floats("given", given, (len(given), 4, 4))
     wanted = checks.floats("wanted", wanted, (len(given), 4, 4))
     least = 8 if mounted else 2
     if len(given) < least:
-        raise ValueError(f"a similarity needs {least} poses or more, not {len(given)}")
+        raise ValueError(f"a similarity requires {least} or more poses, got {len(given)}")
     reach = [float(np.ptp(poses[:, :3, 3], axis=0).max()) for poses in (given, wanted)]
     if min(reach) < 1e-12:
-        raise ValueError("all cameras stand in one place: no scale can be found")
+        raise ValueError("all camera positions are identical, so the scale cannot be estimated")
     turns = wanted[:, :3, :3] @ given[:, :3, :3].transpose(0, 2, 1)
     a, b, axes = given[:, :3, 3], wanted[:, :3, 3], wanted[:, :3, :3]
     rotation, scale, shift = _initial_similarity(turns, a, b)
@@ -105,10 +113,10 @@ def align_similarity(given: np.ndarray, wanted: np.ndarray, mounted: bool = Fals
 def _fit_mount_rotation(
     given: np.ndarray, wanted: np.ndarray, start: Similarity, reach_m: float
 ) -> Similarity:
-    """Return a similarity with the sensor's turn found too, by least squares over all at once.
+    """Return a similarity with the estimated sensor rotation, by joint least squares.
 
-    One after the other they would hold each other fast: the turn takes up whatever the rotation
-    leaves. What keeps them apart is that one is the camera's and the other the world's.
+    An alternating optimisation would not converge, because each rotation absorbs the error of the
+    other. The joint fit separates the camera's rotation from the world's.
     """
     sigma_m = max(1.48 * float(np.median(start.off_m)), 1e-6 * reach_m)
     sigma = max(np.radians(1.48 * float(np.median(start.off_deg))), 1e-6)
@@ -140,7 +148,7 @@ def _fit_mount_rotation(
 
 
 def _initial_similarity(turns: np.ndarray, given: np.ndarray, wanted: np.ndarray):
-    """Return the rotation that half of the poses agree with best, and scale and shift by it."""
+    """Return the rotation that agrees best with half of the poses, with its scale and shift."""
     medians = [np.median(_angles(turns, turn)) for turn in turns]
     rotation = turns[int(np.argmin(medians))]
     a, b = given @ rotation.T, wanted
@@ -157,7 +165,7 @@ def _initial_similarity(turns: np.ndarray, given: np.ndarray, wanted: np.ndarray
 
 
 def _robust_weights(turns, given, wanted, found, reach_m) -> tuple[np.ndarray, np.ndarray]:
-    """Return what centres and rotations weigh, by the square of Cauchy's weight over variance."""
+    """Return the weights of centres and rotations: the squared Cauchy weight over the variance."""
     rotation, scale, shift = found
     off_m = _distances(given, wanted, rotation, scale, shift)
     angles = _angles(turns, rotation)
@@ -168,7 +176,7 @@ def _robust_weights(turns, given, wanted, found, reach_m) -> tuple[np.ndarray, n
 
 
 def _fit_rotation(turns, given, wanted, scale, near, turned) -> np.ndarray:
-    """Return the rotation that both the centres and the poses' own rotations pull to."""
+    """Return the rotation that fits both the centres and the rotations of the poses."""
     a = given - np.average(given, axis=0, weights=near)
     b = wanted - np.average(wanted, axis=0, weights=near)
     pull = scale * np.einsum("i,ia,ib->ab", near, b, a) + np.einsum("i,iab->ab", turned, turns)
@@ -177,7 +185,7 @@ def _fit_rotation(turns, given, wanted, scale, near, turned) -> np.ndarray:
 
 
 def _fit_scale_and_shift(turned, wanted, axes, near, scale) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return scale, shift and mount by weighted least squares, the rotation being known."""
+    """Return scale, shift and mount by weighted least squares for a known rotation."""
     count = len(turned)
     columns = [turned.reshape(-1, 1), np.tile(np.eye(3), (count, 1))]
     if axes is not None:
@@ -195,6 +203,6 @@ def _distances(given, wanted, rotation, scale, shift) -> np.ndarray:
 
 
 def _angles(turns: np.ndarray, rotation: np.ndarray) -> np.ndarray:
-    """Return the angle in rad between each turn and the rotation, exact where it is small."""
+    """Return the angle in rad between each turn and the rotation, exact for small angles."""
     chord = np.linalg.norm(turns - rotation, axis=(1, 2))
     return 2 * np.arcsin(np.minimum(chord / np.sqrt(8), 1))

@@ -1,4 +1,4 @@
-"""Consistency between depth maps, and the speckle filter."""
+"""Consistency checks between depth maps, and the speckle filter."""
 
 import numpy as np
 
@@ -7,19 +7,19 @@ from world2minecraft.core.jit import njit
 
 @njit
 def check_consistency(depth, rays, others, to_others, cameras, tolerance):
-    """Ask other depth maps about each pixel.
+    """Count for each pixel the other depth maps that agree with its depth.
 
     Args:
-        depth: float32 [h, w] z-depth, 0 where there is none.
-        rays: float32 [h, w, 2], x/z and y/z of the pixels.
-        others: float32 [N, h, w], the others' depth.
-        to_others: float64 [N, 4, 4], from this camera's frame to theirs.
-        cameras: float64 [N, 4], their fx, fy, cx, cy.
-        tolerance: two depths are the same within this share.
+        depth: z-depth, float32 [h, w]; 0 if missing.
+        rays: x/z and y/z of the pixels, float32 [h, w, 2].
+        others: Depth maps of the other cameras, float32 [N, h, w].
+        to_others: Transforms from this camera's frame to those of the others, float64 [N, 4, 4].
+        cameras: fx, fy, cx, cy of the other cameras, float64 [N, 4].
+        tolerance: Maximum relative difference of depths that agree.
 
     Returns:
-        ``votes`` uint8 [h, w], how many agree, and ``mean`` float32 [h, w], the mean of the
-        pixel's own depth and of those that agree, carried to its ray.
+        The number of agreeing depth maps as uint8 [h, w], and the mean of the pixel's own depth and
+        the agreeing depths along its ray as float32 [h, w].
     """
     height, width = depth.shape
     votes, mean = np.zeros((height, width), np.uint8), np.zeros((height, width), np.float32)
@@ -52,12 +52,12 @@ def check_consistency(depth, rays, others, to_others, cameras, tolerance):
 
 @njit
 def filter_speckles(depth, min_size_px, step):
-    """Return the depth map without islands of under ``min_size_px`` pixels, 0 in their place.
+    """Return the depth map with connected regions of under ``min_size_px`` pixels set to 0.
 
     Args:
-        depth: float32 [h, w] z-depth, 0 where there is none.
-        min_size_px: pixels of the smallest island that stays.
-        step: neighbours hang together where their depths differ by less than this share.
+        depth: z-depth, float32 [h, w]; 0 if missing.
+        min_size_px: Size of the smallest region that is kept.
+        step: Maximum relative difference of neighbouring depths in a region.
     """
     height, width = depth.shape
     result = depth.copy()

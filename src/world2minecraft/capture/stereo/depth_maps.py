@@ -1,4 +1,4 @@
-"""Depth maps of all photos: swept, filtered by consistency, filled by planes or a network."""
+"""Depth maps of all photos by plane sweep, consistency checks and hole filling."""
 
 from collections.abc import Iterator
 
@@ -32,13 +32,16 @@ STAGE = "stereo"
 def select_neighbours(
     photos: list[StereoPhoto], depths_m: np.ndarray, count: int, angle_deg: float
 ) -> list[np.ndarray]:
-    """Return for each photo the numbers of up to ``count`` others, the best first.
+    """Select up to ``count`` neighbours for each photo, the best first.
 
     Args:
-        photos: all of them.
-        depths_m: float64 [F, 3], three depths that stand for what each sees.
-        count: of neighbours.
-        angle_deg: the angle wanted between the two rays to a point.
+        photos: All photos.
+        depths_m: Three representative depths of each photo, float64 [F, 3].
+        count: Maximum number of neighbours.
+        angle_deg: Ideal angle between the two rays to a point, in degrees.
+
+    Returns:
+        The indices of the neighbours of each photo.
     """
     result = []
     poses = np.array([photo.camera_to_scan for photo in photos])
@@ -61,7 +64,7 @@ def select_neighbours(
 
 
 def _sample_points(photo: StereoPhoto, depths_m: np.ndarray):
-    """Return points [P, 3] of the scan frame that the photo may see, and their depth."""
+    """Return points [P, 3] in the scan frame that the photo may show, and their depth."""
     camera = photo.camera
     u, v = np.meshgrid(
         (np.arange(SAMPLE_GRID) + 0.5) / SAMPLE_GRID * camera.width_px,
@@ -74,7 +77,7 @@ def _sample_points(photo: StereoPhoto, depths_m: np.ndarray):
 
 
 def _neighbour_score(photo, other, to_other, points_m, depth_m, angle_deg) -> float:
-    """Return how much of the points the other sees, each counted by its angle and distance."""
+    """Return the weighted share of points that the other photo shows, by angle and distance."""
     seen_m = apply(to_other, points_m)
     z = seen_m[:, 2]
     ahead = z > 0.3 * depth_m
@@ -102,17 +105,18 @@ def compute_depth_maps(
     progress: Progress = no_progress,
     guide: DepthModel | None = None,
 ) -> Iterator[DepthMap]:
-    """Yield the depth of each photo of a scene, in its order.
+    """Yield the depth map of each photo of a scene, in its order.
 
     Args:
-        photos: read once; those that the scene does not name are left out.
-        scene: where they were taken, in any unit; the depths are in the same.
-        parameters: how.
-        progress: called with the stage ``stereo``.
-        guide: a network that fills what stays open, with low trust; see ``monocular_depth``.
+        photos: Photos, read once; photos that are not in the scene are ignored.
+        scene: Poses and sparse points in any unit; depths have the same unit.
+        parameters: Stereo parameters, or None for the defaults.
+        progress: Callback for the progress of the stage ``stereo``.
+        guide: Network that fills remaining holes with low confidence; see ``monocular_depth``.
 
     Raises:
-        CaptureError: no photo has another that sees the same, or one is missing.
+        CaptureError: If no two photos show the same surface from different positions, or a photo is
+            missing.
     """
     values = parameters or StereoParameters()
     small = prepare_stereo_photos(photos, scene, values.width_px, no_progress)
@@ -132,7 +136,7 @@ def compute_depth_maps(
 def _fill_planes(
     found: DepthMap, photo: StereoPhoto, every_m: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return a guess at flat patches; see ``planar_regions``."""
+    """Return a depth estimate for flat patches; see ``planar_regions``."""
     sure = found.trust >= SURE_TRUST
     return fill_planar_regions(photo.colour, found.depth_m, sure, depth_range(photo, every_m))
 
@@ -140,14 +144,14 @@ def _fill_planes(
 def _merge_planes(
     found: DepthMap, guess_m: np.ndarray, guessed: np.ndarray, agreed: np.ndarray
 ) -> DepthMap:
-    """Take the guess where others agree; where they do not, what it contradicts goes too."""
+    """Use the estimate where other photos agree, and remove the contradicted depth elsewhere."""
     depth_m = np.where(guessed, np.where(agreed, guess_m, np.float32(0)), found.depth_m)
     trust = np.where(guessed, np.where(agreed, PLANE_TRUST, np.uint8(0)), found.trust)
     return DepthMap(found.name, found.camera, depth_m, trust)
 
 
 def _fill_from_network(found: DepthMap, photo: StereoPhoto, guide: DepthModel) -> DepthMap:
-    """Fill what is open by a network's guess."""
+    """Fill holes with the prediction of a network."""
     guess = guide.predict(photo.colour, photo.camera)
     depth_m, trust = fill_holes(
         found.depth_m, found.trust, guess, guide.kind, photo.guide_px, photo.guide_m
@@ -158,16 +162,29 @@ def _fill_from_network(found: DepthMap, photo: StereoPhoto, guide: DepthModel) -
 def sweep_photos(
     small: list[StereoPhoto], values: StereoParameters, progress: Progress = no_progress
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Return each photo's depth float32 [h, w] by itself, and the numbers of its neighbours."""
+    """Return the depth of each photo by plane sweep, and the indices of its neighbours.
+
+    Depth maps are float32 [h, w], without consistency checks.
+
+    Raises:
+        CaptureError: If the photos have no common points, or no two photos show the same surface
+            from different positions.
+    """
     every_m = np.concatenate([photo.guide_m for photo in small])
     if not len(every_m):
-        raise CaptureError("photos", "share no points; depth cannot be found: take more, nearer")
+        raise CaptureError(
+            "photos",
+            "the photos share no points, so depth cannot be computed; take more "
+            "photos from closer together",
+        )
     known = [p.guide_m if len(p.guide_m) > MIN_SPARSE_POINTS else every_m for p in small]
     usual = np.array([np.percentile(found, DEPTH_PERCENTILES) for found in known])
     neighbours = select_neighbours(small, usual, values.neighbours, values.angle_deg)
     if not any(len(found) for found in neighbours):
         raise CaptureError(
-            "photos", "no two see the same from places far enough apart: take steps aside"
+            "photos",
+            "no two photos show the same surface from different positions; "
+            "move sideways between photos",
         )
     swept: list[np.ndarray] = [np.zeros(0, np.float32)] * len(small)
 
@@ -197,7 +214,7 @@ def filter_consistent(
     neighbours: list[np.ndarray],
     values: StereoParameters,
 ) -> DepthMap:
-    """Return the depth of a photo that its neighbours' depths confirm."""
+    """Return the depth of a photo that the depth maps of its neighbours confirm."""
     photo = small[number]
     votes, mean = count_votes(number, small, swept, neighbours[number], values.agreement)
     neighbour_count = max(1, len(neighbours[number]))
@@ -215,7 +232,7 @@ def count_votes(
     others: np.ndarray,
     agreement: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return how many others confirm each pixel's depth, uint8 [h, w], and the mean depth."""
+    """Return how many photos confirm each pixel's depth, uint8 [h, w], and the mean depth."""
     photo = small[number]
     votes = np.zeros(swept[number].shape, np.uint8)
     mean = swept[number].copy()

@@ -14,11 +14,11 @@ METRIC_TYPES = ("zoedepth", "glpn")
 
 
 class HuggingFaceDepth:
-    """A network of a model hub or a folder, on the processor, in whole single precision.
+    """A depth network from a model hub or a folder, run on the CPU in single precision.
 
     Raises:
-        MissingExtraError: torch or transformers is not installed.
-        InputError: the model cannot be had, is of another kind, or lacks weights.
+        MissingExtraError: If torch or transformers is not installed.
+        InputError: If the model cannot be downloaded, is of another type or lacks weights.
     """
 
     kind: Kind
@@ -34,17 +34,17 @@ class HuggingFaceDepth:
         self.kind = "metric" if metric else "inverse"
 
     def predict(self, colour: np.ndarray, camera: Camera) -> np.ndarray:
-        """Return float32 [H, W] for a picture uint8 [H, W, 3]; its camera is not needed.
+        """Predict the depth of an image, uint8 [H, W, 3], as float32 [H, W], without its camera.
 
         Raises:
-            InputError: the network cannot work on a picture of this size.
+            InputError: If the network does not support images of this size.
         """
         with single_thread() as torch:
             try:
                 pixels = torch.from_numpy(preprocess(colour, self._ready))
                 found = self._network(pixel_values=pixels).predicted_depth
             except RuntimeError as error:
-                reason = f"the network fails: {first_line(error)}"
+                reason = f"cannot process the image: {first_line(error)}"
                 raise InputError(self.name, reason) from None
             values = found.reshape(found.shape[-2:]).to(torch.float32).numpy()
         size = (colour.shape[1], colour.shape[0])

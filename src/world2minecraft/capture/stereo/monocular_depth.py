@@ -1,11 +1,11 @@
-"""Depth networks: filling the holes of stereo, or giving the depth of a photo alone.
+"""Depth networks, which fill holes of stereo depth or predict the depth of single photos.
 
-A network knows how walls look, but not how large this room is, and it errs by some per cent from
-photo to photo. So each map is first fitted to what was measured in its photo (the sparse points,
-and the pixels of which stereo is sure) by one factor, or a factor and a shift, and then locally.
-Where it then agrees with what lies around a hole, it fills the hole, with less trust than anything
-measured. Without stereo, a photo with too few points takes the factor that most others have;
-registration evens out what is left.
+A network predicts the shape of surfaces but not the size of a room, and its error varies by some
+per cent between photos. Each prediction is therefore fitted to the measurements in its photo
+(sparse points and confident stereo pixels), first by a factor or a factor and a shift, and then
+locally. Holes are filled where the fitted prediction agrees with the depth around them, with a
+lower confidence than measured depth. Without stereo, photos with too few points use the median
+factor of the other photos; registration compensates for the remaining differences.
 """
 
 from collections.abc import Callable, Iterator
@@ -44,33 +44,35 @@ STAGE = "stereo"
 
 
 class DepthModel(Protocol):
-    """A network, or anything else, that guesses the depth of a picture.
+    """A model that predicts the depth of an image.
 
-    ``kind`` is "metric" where it gives depths up to one factor, "inverse" where it gives inverse
-    depths up to a factor and a shift.
+    ``kind`` is ``metric`` for depth up to a factor, or ``inverse`` for inverse depth up to a factor
+    and a shift.
     """
 
     name: str
     kind: Kind
 
     def predict(self, colour: np.ndarray, camera: Camera) -> np.ndarray:
-        """Return float32 [H, W] for a picture uint8 [H, W, 3] without distortion."""
+        """Predict the depth of an image, uint8 [H, W, 3] without distortion, as float32 [H, W]."""
         ...
 
 
 def load_depth_model(name: str) -> DepthModel:
-    """Return the network that ``FAMILY:MODEL`` names, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.
+    """Load the depth model ``FAMILY:MODEL``, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.
 
     Raises:
-        UnknownNameError: no registry holds the family.
-        UsageError: no model is named after the colon.
-        MissingExtraError: what the family needs is not installed.
-        InputError: the model cannot be had or read.
+        UnknownNameError: If the family is not registered.
+        UsageError: If there is no model name after the colon.
+        MissingExtraError: If the libraries of the family are not installed.
+        InputError: If the model cannot be downloaded or read.
     """
     family, _, model = name.partition(":")
     make: Callable[[str], DepthModel] = DEPTH_MODELS.load(family)
     if not model:
-        raise UsageError(f"a depth model is FAMILY:MODEL, not {name!r}; type {family}:ORG/NAME")
+        raise UsageError(
+            f"a depth model must have the form FAMILY:MODEL, got {name!r}; use {family}:ORG/NAME"
+        )
     return make(model)
 
 
@@ -82,28 +84,29 @@ def fill_holes(
     guide_px: np.ndarray,
     guide_m: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Fill the holes of a depth map with a network's, where both agree around them.
+    """Fill the holes of a stereo depth map with a network's prediction if both agree around them.
 
     Args:
-        depth_m: float32 [H, W], z-depth by stereo; 0 is a hole.
-        trust: uint8 [H, W], 255 where stereo is sure.
-        predicted: float32 [H, W], what the network says.
-        kind: "metric" or "inverse", see ``DepthModel``.
-        guide_px: float64 [G, 2], where sparse points are seen; pixel centres at +0.5.
-        guide_m: float64 [G], their z-depth.
+        depth_m: Stereo z-depth, float32 [H, W]; 0 marks a hole.
+        trust: Stereo confidence, uint8 [H, W]; 255 means certain.
+        predicted: Prediction of the network, float32 [H, W].
+        kind: ``metric`` or ``inverse``; see ``DepthModel``.
+        guide_px: Pixel positions of sparse points with pixel centres at +0.5, float64 [G, 2].
+        guide_m: z-depth of the sparse points, float64 [G].
 
     Returns:
-        New maps ``(depth_m, trust)``: pixels that had a depth are untouched, filled ones have
-        trust 96. Nothing is filled where the network fits worse than 15 % as a whole.
+        New maps ``(depth_m, trust)``. Existing depth is unchanged, and filled pixels have a
+        confidence of 96. Nothing is filled if the overall error of the prediction exceeds 15 %.
 
     Raises:
-        ValueError: the maps are of different sizes, or the kind is unknown.
+        ValueError: If the maps have different sizes or the kind is unknown.
     """
     if kind not in ("metric", "inverse"):
-        raise ValueError(f"kind must be 'metric' or 'inverse', not {kind!r}")
+        raise ValueError(f"kind must be 'metric' or 'inverse', got {kind!r}")
     if not depth_m.shape == trust.shape == predicted.shape:
         raise ValueError(
-            f"maps of one size expected: {depth_m.shape}, {trust.shape}, {predicted.shape}"
+            f"the maps must have the same size, got {depth_m.shape}, {trust.shape}, "
+            f"{predicted.shape}"
         )
     known_m, weight = _known_depths(depth_m, trust, guide_px, guide_m)
     guess_m = _fit_to_known(predicted.astype(np.float64), kind, known_m, weight)
@@ -122,17 +125,17 @@ def fill_holes(
 def align_to_points(
     predicted: np.ndarray, kind: Kind, guide_px: np.ndarray, guide_m: np.ndarray
 ) -> tuple[np.ndarray, float] | None:
-    """Fit a network's depth to the sparse points of its picture, as a whole and then locally.
+    """Fit a depth prediction to the sparse points of its image, first globally and then locally.
 
     Args:
-        predicted: float32 [H, W].
-        kind: "metric" or "inverse", see ``DepthModel``.
-        guide_px: float64 [G, 2], where points are seen; pixel centres at +0.5.
-        guide_m: float64 [G], their z-depth.
+        predicted: Prediction of the network, float32 [H, W].
+        kind: ``metric`` or ``inverse``; see ``DepthModel``.
+        guide_px: Pixel positions of sparse points with pixel centres at +0.5, float64 [G, 2].
+        guide_m: z-depth of the sparse points, float64 [G].
 
     Returns:
-        Depth float64 [H, W], NaN where there is none, and the middle factor that it took; None
-        where points are few or the network fits them worse than 15 %.
+        The depth as float64 [H, W], NaN if unknown, and the median factor applied. The result is
+        None if there are too few points or the error exceeds 15 %.
     """
     nothing = np.zeros(predicted.shape, np.float32)
     known_m, weight = _known_depths(nothing, nothing.astype(np.uint8), guide_px, guide_m)
@@ -146,7 +149,7 @@ def align_to_points(
 
 
 def _known_depths(depth_m, trust, guide_px, guide_m):
-    """Return float64 [H, W] depths that count as known, and how much each counts, often 0."""
+    """Return the known depths as float64 [H, W], and their weights, which are mostly 0."""
     weight = np.where((trust == SURE_TRUST) & (depth_m > 0), 1.0, 0.0)
     known_m = np.where(weight > 0, depth_m, 1.0).astype(np.float64)
     u, v = np.floor(guide_px).astype(np.int64).reshape(-1, 2).T
@@ -160,7 +163,7 @@ def _known_depths(depth_m, trust, guide_px, guide_m):
 
 
 def _fit_to_known(predicted, kind: Kind, known_m, weight) -> np.ndarray | None:
-    """Return the network's depth in metres, NaN where it has none; None where it fits badly."""
+    """Return the predicted depth in metres (NaN if unknown), or None if it does not fit."""
     usable = np.isfinite(predicted) & ((predicted > 0) | (kind == "inverse"))
     sampled = usable & (weight > 0)
     guess, true_m, much = predicted[sampled], known_m[sampled], weight[sampled]
@@ -181,9 +184,9 @@ def _fit_to_known(predicted, kind: Kind, known_m, weight) -> np.ndarray | None:
 
 
 def _fit_inverse_depth(guess, true_m, weight) -> tuple[float, float]:
-    """Return the factor and shift of the least sum of relative errors ``|(a g + b) z - 1|``.
+    """Return the factor and shift with the least sum of relative errors ``|(a g + b) z - 1|``.
 
-    Weighted least squares again and again, each time with less weight for what is far off.
+    The fit is iteratively reweighted least squares, with a lower weight for outliers.
     """
     middle = float(np.median(guess))
     wide = float(np.median(np.abs(guess - middle)))
@@ -200,10 +203,10 @@ def _fit_inverse_depth(guess, true_m, weight) -> tuple[float, float]:
 
 
 def _fit_locally(guess_m, known_m, weight) -> tuple[np.ndarray, np.ndarray]:
-    """Return the guess moved to what was measured around each pixel, and how badly that fits.
+    """Return the prediction corrected by measurements around each pixel, and the residuals.
 
-    Both float64 [H, W]. The least window that holds enough decides; the second is infinite, and
-    the first as it was, where even the largest does not.
+    Both are float64 [H, W]. The smallest window with enough measurements is used. Without enough
+    measurements in the largest window, the prediction is unchanged and the residual is infinite.
     """
     counts = np.where(np.isfinite(guess_m), weight, 0.0)
     log = np.log(known_m / np.where(counts > 0, guess_m, known_m))
@@ -238,12 +241,12 @@ def network_maps(
     parameters: StereoParameters | None = None,
     progress: Progress = no_progress,
 ) -> Iterator[DepthMap]:
-    """Yield the network's depth of each photo of a scene, in its order and its unit.
+    """Yield the predicted depth map of each photo of a scene, in the order and unit of the scene.
 
-    A network of inverse depth says nothing of a photo with too few points.
+    Inverse depth cannot be scaled for photos with too few points; their maps are empty.
 
     Raises:
-        CaptureError: no photo has points enough to tell the network's scale.
+        CaptureError: If no photo has enough points to determine the scale of the network.
     """
     width_px = max(WIDTH_PX, (parameters or StereoParameters()).width_px)
     small = prepare_stereo_photos(photos, scene, width_px, no_progress)
@@ -259,8 +262,8 @@ def network_maps(
     if not factors:
         raise CaptureError(
             "photos",
-            f"share too few points to tell how large {guide.name} takes the room for: take more "
-            "that overlap",
+            f"the photos have too few common points to determine the scale of {guide.name}; "
+            "take more overlapping photos",
         )
     usual = float(np.median(factors))
     for photo, (guess, factor) in zip(small, found, strict=True):

@@ -7,23 +7,27 @@ from world2minecraft.core.parameters import fact_by_name, parameter
 
 @dataclass(frozen=True)
 class StereoParameters:
-    """How depth is found. docs/stereo.md tells what each figure bought on real photos.
+    """Parameters of stereo. docs/stereo.md contains measurements of their effect.
 
-    width_px: photos are made this wide.
-    planes: depths tried for each pixel, even in inverse depth.
-    neighbours: other photos compared with each; best_of: of which so many, those that fit best at
-        a pixel, decide there, as the others may not see it.
-    angle_deg: the angle wanted between the rays of two photos.
-    window_px: width of the square that is compared, an odd number.
-    noise: grey levels that are no texture: what is flatter follows its surroundings.
-    small_step, large_step: what a change of depth by one plane, by more costs between pixels, on
-        the scale of 0 to 254 for a match.
-    guide_cost: what it costs, likewise, to be two planes or more from a sparse point.
-    agreeing: so many other photos must find the same depth; agreement: within this share of it.
-        Four or more confirm it wholly, fewer leave it with less trust.
-    island_share: the part of a picture that depth must fill in one piece, of neighbours that
-        differ by less than island_step.
-    network_alone: photos are not compared at all; the network of ``--depth`` says their depth.
+    Attributes:
+        width_px: Width in pixels that photos are downscaled to.
+        planes: Number of depth planes, evenly spaced in inverse depth.
+        neighbours: Number of photos compared with each photo.
+        best_of: Number of best-matching neighbours that count at each pixel; others may be
+            occluded.
+        angle_deg: Ideal angle between the rays of two photos.
+        window_px: Width of the square matching window, an odd number.
+        noise: Grey levels below which variation is not texture.
+        small_step: Cost of a change by one plane between neighbouring pixels, for matching costs
+            from 0 to 254.
+        large_step: Cost of a larger change between neighbouring pixels.
+        guide_cost: Cost of a distance of two or more planes from a sparse point.
+        agreeing: Minimum number of photos that confirm a depth; confidence grows up to four.
+        agreement: Maximum relative difference of depths that agree.
+        island_share: Minimum size of a connected region of depth, as a share of the image.
+        island_step: Maximum relative difference of neighbouring depths in a connected region.
+        network_alone: Whether to skip stereo and use the depth predicted by the ``--depth``
+            network.
     """
 
     width_px: int = parameter(
@@ -69,6 +73,8 @@ class StereoParameters:
     def __post_init__(self):
         for name, (least, most) in fact_by_name(self, "limits").items():
             if not least <= getattr(self, name) <= most:
-                raise ValueError(f"{name} must be {least} to {most}, not {getattr(self, name)}")
+                raise ValueError(
+                    f"{name} must be from {least} to {most}, got {getattr(self, name)}"
+                )
         if self.window_px % 2 == 0:
-            raise ValueError(f"window_px must be odd, not {self.window_px}")
+            raise ValueError(f"window_px must be odd, got {self.window_px}")

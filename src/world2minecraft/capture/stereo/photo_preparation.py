@@ -1,4 +1,4 @@
-"""Photos prepared for stereo: downscaled and undistorted, with poses and sparse depths."""
+"""Preparation of photos for stereo: downscaling, undistortion, poses and sparse depths."""
 
 from dataclasses import dataclass
 
@@ -17,10 +17,16 @@ MIN_SIDE_PX = 16  # So that windows lie in it.
 
 @dataclass(frozen=True, eq=False)
 class StereoPhoto:
-    """A photo of ``width_px`` without distortion, its pose, and what is known of its depths.
+    """A downscaled photo without distortion, with its pose and sparse depths.
 
-    ``guide_px`` float64 [G, 2] and ``guide_m`` float64 [G] are the sparse points that were seen in
-    it: where, and their z-depth; ``guide_point`` int64 [G] are their numbers, rising.
+    Attributes:
+        name: Name of the photo.
+        camera: Intrinsics without distortion.
+        camera_to_scan: Camera pose, float64 [4, 4].
+        colour: Image, uint8 [h, w, 3].
+        guide_px: Pixel positions of the visible sparse points, float64 [G, 2].
+        guide_m: z-depth of the sparse points, float64 [G].
+        guide_point: Indices of the sparse points, ascending, int64 [G].
     """
 
     name: str
@@ -33,17 +39,18 @@ class StereoPhoto:
 
     @property
     def grey(self) -> np.ndarray:
-        """The brightest channel, float32 from -128 to 127: it tells red from black, grey hardly."""
+        """The brightest channel as float32 from -128 to 127, which separates red from black."""
         return self.colour.max(axis=2).astype(np.float32) - np.float32(128)
 
 
 def prepare_stereo_photos(
     photos: PhotoStream, scene: SparseScene, width_px: int, progress: Progress
 ) -> list[StereoPhoto]:
-    """Return the photos of a scene in its order, made small one after the other.
+    """Return the photos of a scene in its order, downscaled one after the other.
 
     Raises:
-        CaptureError: a photo of the scene is missing, or is of another size than its camera.
+        CaptureError: If a photo of the scene is missing, or its size differs from that of its
+            camera.
     """
     order = {name: frame for frame, name in enumerate(scene.names)}
     found: dict[str, StereoPhoto] = {}
@@ -56,7 +63,7 @@ def prepare_stereo_photos(
         progress("shrink", len(found), len(order), photo.name)
     missing = [name for name in scene.names if name not in found]
     if missing:
-        raise CaptureError(missing[0], "the scene has this photo, but the photos do not")
+        raise CaptureError(missing[0], "is part of the scene but missing in the photos")
     return [found[name] for name in scene.names]
 
 
@@ -65,13 +72,14 @@ def _prepare_photo(name, colour, scene: SparseScene, frame: int, width_px: int) 
     if colour.shape[:2] != (camera.height_px, camera.width_px):
         raise CaptureError(
             name,
-            f"the photo is {colour.shape[1]}x{colour.shape[0]}, "
-            f"but its camera is {camera.width_px}x{camera.height_px}",
+            f"the photo is {colour.shape[1]}x{colour.shape[0]} px, but its camera is "
+            f"{camera.width_px}x{camera.height_px} px",
         )
     target = pinhole_camera(camera, min(width_px, camera.width_px))
     if min(target.width_px, target.height_px) < MIN_SIDE_PX:
         raise CaptureError(
-            name, f"the photo must have sides of {MIN_SIDE_PX} pixels or more: give larger ones"
+            name,
+            f"the sides of the photo must have at least {MIN_SIDE_PX} pixels; use larger photos",
         )
     seen = np.unique(scene.track_point[scene.track_frame == frame])
     points_m = _to_camera(scene.points_m[seen], pose)

@@ -1,8 +1,8 @@
-"""Planes for surfaces without texture, or glossy ones, fitted to the depth at their rims.
+"""Plane fitting for surfaces without texture or with gloss, from the depth at their borders.
 
-Where a picture has one colour there is nothing to match, or only what is mirrored in it, which
-lies behind it. But around it there are edges, and an even patch of colour is mostly one plane.
-What is guessed here counts only where other photos, guessing alike, agree.
+A region of uniform colour contains nothing to match, or only reflections, whose depth is too large.
+Its border, however, has edges, and a region of uniform colour is usually a single plane. The
+estimates are used only where the estimates of other photos agree.
 """
 
 import numpy as np
@@ -23,17 +23,17 @@ RANSAC_TRIALS = 80  # A plane that holds half of the rim is missed once in 40,00
 def fill_planar_regions(
     colour: np.ndarray, depth_m: np.ndarray, sure: np.ndarray, range_m: tuple[float, float]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Lay patches of one colour on the planes of their rims.
+    """Estimate the depth of uniformly coloured regions from planes fitted to their borders.
 
     Args:
-        colour: uint8 [h, w, 3].
-        depth_m: float32 [h, w], 0 where there is none.
-        sure: bool [h, w], where it may decide about planes.
-        range_m: the nearest and farthest depth that is believed.
+        colour: Image, uint8 [h, w, 3].
+        depth_m: z-depth, float32 [h, w]; 0 if missing.
+        sure: Pixels whose depth may be used to fit planes, bool [h, w].
+        range_m: Smallest and largest plausible depth.
 
     Returns:
-        ``guess_m`` float32 [h, w], the depth with patches filled, and with what lay behind the
-        plane of its patch put there; and ``guessed`` bool [h, w], the pixels so changed.
+        The depth as float32 [h, w] with regions filled and reflections replaced, and the changed
+        pixels as bool [h, w].
     """
     guess_m, guessed = depth_m.copy(), np.zeros(depth_m.shape, bool)
     patches, boxes = _uniform_patches(colour)
@@ -58,7 +58,7 @@ def fill_planar_regions(
 
 
 def _uniform_patches(colour: np.ndarray):
-    """Return int [h, w], numbered patches of one colour; and the larger ones, with their boxes."""
+    """Return numbered regions of uniform colour, and the boxes of the larger ones."""
     highest = np.asarray(ndimage.maximum_filter(colour, (3, 3, 1)), np.int16)
     lowest = np.asarray(ndimage.minimum_filter(colour, (3, 3, 1)), np.int16)
     even = (highest - lowest).max(axis=2) < MAX_LEVEL_RANGE
@@ -74,16 +74,16 @@ def _uniform_patches(colour: np.ndarray):
 
 
 def _rim(mask: np.ndarray) -> np.ndarray:
-    """Return the pixels near the outline of a patch, inside and outside."""
+    """Return the pixels near the border of a region, inside and outside."""
     outer = np.asarray(ndimage.binary_dilation(mask, iterations=RIM_PX), bool)
     inner = np.asarray(ndimage.binary_erosion(mask, iterations=RIM_PX), bool)
     return outer & ~inner
 
 
 def _fit_plane(u: np.ndarray, v: np.ndarray, inverse: np.ndarray) -> np.ndarray | None:
-    """Return (a, b, c) of ``1/z = a u + b v + c`` that holds most of the pixels; None if none does.
+    """Return (a, b, c) of the plane ``1/z = a u + b v + c`` with the most inliers, or None.
 
-    In inverse depth a plane is linear in the picture.
+    In inverse depth, a plane is linear in the pixel coordinates.
     """
     points = np.stack([u, v, np.ones(len(u))], axis=1)
     chosen = np.random.default_rng(0).integers(0, len(u), (RANSAC_TRIALS, 3))

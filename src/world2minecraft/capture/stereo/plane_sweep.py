@@ -1,10 +1,10 @@
-"""Plane-sweep stereo of one photo: matching costs, semi-global matching, the winning depth.
+"""Plane-sweep stereo of a photo: matching costs, semi-global matching and selection of depth.
 
-A plane at depth z before the camera carries the pixel u of the photo to
-``turn @ (u, v, 1) + shift / z`` of a neighbour, up to scale. There the windows around both are
-compared by their zero-mean normalised cross-correlation, to which brightness and contrast mean
-nothing. In Hirschmueller's semi-global matching a path along each of eight directions carries, for
-each plane, the least cost of everything behind it; the plane with the least sum of all eight wins.
+A plane at depth z maps the pixel (u, v) of the photo to ``turn @ (u, v, 1) + shift / z`` in a
+neighbour, up to scale. Windows around both pixels are compared by zero-mean normalised
+cross-correlation, which is invariant to brightness and contrast. In Hirschmueller's semi-global
+matching, a path from each of eight directions accumulates, for each plane, the least cost of the
+pixels before it. The plane with the least sum over all directions is selected.
 """
 
 import numpy as np
@@ -19,21 +19,21 @@ NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest sparse
 
 @njit
 def sweep_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, noise):
-    """Return the cost of each pixel at each plane, 0 (fits) to 254 (is the opposite).
+    """Return the matching cost of each pixel at each plane, from 0 (equal) to 254 (opposite).
 
     Args:
-        grey: float32 [h, w], whole halves from -128 to 127.5, of the photo.
-        sources: float32 [N, H, W], likewise, of its neighbours.
-        sizes: int64 [N, 2], height and width of each, which fills the corner of its array.
-        turns: float32 [N, 3, 3], ``K_n R K^-1``.
-        shifts: float32 [N, 3], ``K_n t``.
-        inverse: float32 [D], the planes' 1 / z.
-        best_of: the mean of so many best neighbours counts.
-        radius: of the window in pixels, up to 7: then all sums are exact.
-        noise: variance that is added to that of both windows.
+        grey: Grey image of the photo, float32 [h, w], multiples of 0.5 from -128 to 127.5.
+        sources: Grey images of the neighbours, float32 [N, H, W].
+        sizes: Height and width of each neighbour in its array, int64 [N, 2].
+        turns: Matrices ``K_n R K^-1``, float32 [N, 3, 3].
+        shifts: Vectors ``K_n t``, float32 [N, 3].
+        inverse: Inverse depths of the planes, float32 [D].
+        best_of: Number of best neighbours whose mean score is used.
+        radius: Radius of the window in pixels, at most 7 so that sums are exact.
+        noise: Variance added to that of both windows.
 
     Returns:
-        uint8 [h, w, D]; 127, which says nothing, where fewer than two neighbours see the place.
+        The costs as uint8 [h, w, D]; 127 (neutral) if fewer than two neighbours show the pixel.
     """
     height, width = grey.shape
     count = len(sources)
@@ -74,7 +74,7 @@ def sweep_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, n
 
 @njit
 def _padded(grey, radius):
-    """The picture with its edge repeated ``radius`` pixels outwards."""
+    """Return the image with its edge repeated ``radius`` pixels outwards."""
     height, width = grey.shape
     result = np.empty((height + 2 * radius, width + 2 * radius), np.float32)
     for y in range(height + 2 * radius):
@@ -86,7 +86,7 @@ def _padded(grey, radius):
 
 @njit
 def _window_statistics(grey, radius, noise):
-    """The sum of each window of the photo, and one by the root of its variance."""
+    """Return the sum of each window and the inverse root of its variance."""
     height, width = grey.shape
     padded = _padded(grey, radius)
     side = 2 * radius + 1
@@ -108,7 +108,7 @@ def _window_statistics(grey, radius, noise):
 
 @njit
 def _warp_row(source, size, turn, shift, inverse, v, radius, at_x, at_y, values, seen):
-    """Read a row of the photo out of a neighbour, by way of a plane, and repeat its ends."""
+    """Sample a row of the photo from a neighbour through a plane, and repeat its ends."""
     height, width = size
     y0, half = np.float32(v) + np.float32(0.5), np.float32(0.5)
     ax = turn[0, 1] * y0 + turn[0, 2] + shift[0] * inverse
@@ -141,7 +141,7 @@ def _warp_row(source, size, turn, shift, inverse, v, radius, at_x, at_y, values,
 
 @njit
 def _add_row(sums, values, own, sign):
-    """Add a row to the sums of columns, or take it away."""
+    """Add a row to the column sums, or subtract it."""
     for x in range(len(values)):
         value = values[x]
         signed = value * np.float32(sign)
@@ -152,7 +152,7 @@ def _add_row(sums, values, own, sign):
 
 @njit
 def _score_row(sums, mean, spread, seen, side, noise, box, scores):
-    """Return the correlation of each window of a row; -2 where the neighbour does not reach."""
+    """Compute the correlation of each window of a row; -2 outside the neighbour."""
     area = np.float32(side * side)
     extra = area * np.float32(noise)
     width = len(scores)
@@ -196,12 +196,15 @@ def _mean_best_scores(scores, best, costs, d):
 
 @njit
 def aggregate_costs(costs, small_step, large_step):
-    """Return float32 [h, w, D]: the sum of eight paths' costs; see the module.
+    """Aggregate matching costs along eight directions (semi-global matching).
 
     Args:
-        costs: uint8 [h, w, D].
-        small_step: what a change by one plane between two pixels costs.
-        large_step: what a larger change costs.
+        costs: Matching costs, uint8 [h, w, D].
+        small_step: Cost of a change by one plane between neighbouring pixels.
+        large_step: Cost of a larger change.
+
+    Returns:
+        The sum of the path costs as float32 [h, w, D].
     """
     height, width, planes = costs.shape
     total = np.zeros((height, width, planes), np.float32)
@@ -236,7 +239,7 @@ def aggregate_costs(costs, small_step, large_step):
 
 @njit
 def _reset_paths(paths, min_costs, now):
-    """Paths that come in from the sides begin with nothing."""
+    """Set the paths that enter from the sides to zero."""
     width, planes = paths.shape[2] - 2, paths.shape[3] - 2
     for k in range(3):
         for side in (0, width + 1):
@@ -249,7 +252,7 @@ def _reset_paths(paths, min_costs, now):
 
 @njit
 def _advance_path(costs, before, previous_min, here, total, small_step, large_step):
-    """Carry a path on by one pixel and add it to the sum; return its least cost."""
+    """Advance a path by one pixel, add it to the sum, and return its least cost."""
     small, jump = np.float32(small_step), previous_min + np.float32(large_step)
     smallest = np.float32(np.inf)
     for d in range(len(costs)):
@@ -263,7 +266,7 @@ def _advance_path(costs, before, previous_min, here, total, small_step, large_st
 
 @njit
 def select_planes(total):
-    """Return float32 [h, w]: the plane of the least sum, between planes by a parabola."""
+    """Return the plane with the least cost as float32 [h, w], interpolated by a parabola."""
     height, width, planes = total.shape
     found = np.empty((height, width), np.float32)
     for y in range(height):
@@ -282,7 +285,7 @@ def select_planes(total):
 
 
 def depth_range(photo: StereoPhoto, all_m: np.ndarray) -> tuple[float, float]:
-    """Return the nearest and farthest z-depth that is tried."""
+    """Return the smallest and largest z-depth of the sweep for a photo."""
     known = photo.guide_m if len(photo.guide_m) >= 20 else all_m
     near, far = np.percentile(known, [1, 99])
     return float(near * NEAR_SHARE), float(far * FAR_SHARE)
@@ -294,7 +297,14 @@ def sweep_depth(
     depths_m: tuple[float, float],
     values: StereoParameters,
 ) -> np.ndarray:
-    """Return float32 [h, w]: the z-depth of each pixel, between the two of ``depths_m``."""
+    """Compute the z-depth of a photo by plane sweep, float32 [h, w].
+
+    Args:
+        photo: The photo.
+        others: Its neighbours.
+        depths_m: Smallest and largest depth.
+        values: Stereo parameters.
+    """
     near_m, far_m = depths_m
     inverse = np.linspace(1 / far_m, 1 / near_m, values.planes)
     turns, shifts = _homographies(photo, others)
@@ -311,7 +321,7 @@ def sweep_depth(
 
 
 def _stack_images(greys: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return pictures of any sizes as one array with room for all, and their sizes."""
+    """Return images of any sizes in one padded array, and their sizes."""
     sizes = np.array([grey.shape for grey in greys], np.int64)
     stack = np.zeros((len(greys), *sizes.max(axis=0)), np.float32)
     for number, grey in enumerate(greys):
@@ -320,7 +330,7 @@ def _stack_images(greys: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _add_sparse_point_costs(costs, photo, inverse, guide_cost):
-    """Raise the costs of planes far from a sparse point, in the pixels around it."""
+    """Increase the costs of planes far from a sparse point in the pixels around it."""
     height, width, planes = costs.shape
     at = (1 / photo.guide_m - inverse[0]) / (inverse[1] - inverse[0])
     away = np.minimum(np.abs(np.arange(planes)[None] - at[:, None]) / 2, 1) * guide_cost

@@ -94,7 +94,7 @@ def test_one_depth_image_cut_short(room, app):
     patterns = {"record3d": "rgbd/*.depth", "polycam": "keyframes/depth/*", "stray": "depth/*"}
     patterns |= {"arkitscenes": "lowres_depth/*", "scanner_app": "depth_*"}
     cut(first(folder, patterns[app]))
-    left_out(folder, "copy it again" if app != "record3d" else "cut short")
+    left_out(folder, "copy the file again")
 
 
 @pytest.mark.parametrize("app", WRITERS)
@@ -105,7 +105,7 @@ def test_depth_of_another_size(room, app):
     if app == "record3d":
         path = first(folder, "rgbd/*.depth")
         path.write_bytes(stored_lzfse(bytes(4 * 40 * 30)))
-        left_out(folder, "unpacks to 4,800 bytes")
+        left_out(folder, "decompresses to 4,800 bytes")
         return
     Image.fromarray(np.full((90, 40), 900, np.uint16)).save(first(folder, patterns[app]))
     refused(folder, "40x90")
@@ -166,7 +166,7 @@ def test_record3d_without_metadata_or_with_broken_metadata(room):
     (folder / "metadata").write_text("[]")
     refused(folder, "metadata", "object")
     (folder / "metadata").unlink()
-    refused(folder, "another kind")
+    refused(folder, "unknown format")
 
 
 def test_lzfse_that_promises_more_than_it_should(tmp_path):
@@ -261,7 +261,7 @@ def test_polycam_without_cameras_or_pictures(room):
     shutil.rmtree(folder / "keyframes" / "corrected_images")
     refused(folder, "keyframes/images")
     shutil.rmtree(folder / "keyframes")
-    refused(folder, "another kind")
+    refused(folder, "unknown format")
 
 
 def test_polycams_lenses_of_another_shape(room):
@@ -277,8 +277,8 @@ def test_polycams_lenses_of_another_shape(room):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", ["odometry.csv", "names"]),
-        ("timestamp, frame, x, y, z\n", ["lacks qx"]),
+        ("", ["odometry.csv", "header row"]),
+        ("timestamp, frame, x, y, z\n", ["column qx is missing"]),
         ("timestamp, frame, x, y, z, qx, qy, qz, qw\n", ["no pose"]),
         ("timestamp, frame, x, y, z, qx, qy, qz, qw\n1, 2, 3\n", ["line 2"]),
         ("timestamp, frame, x, y, z, qx, qy, qz, qw\n1,0,a,0,0,0,0,0,1\n", ["line 2"]),
@@ -299,7 +299,7 @@ def test_stray_lacks_its_matrix_or_states_nonsense(room):
     (folder / "camera_matrix.csv").write_text("0,0,80\n0,0,60\n0,0,1\n")
     refused(folder, "camera_matrix.csv", "fx_px")
     (folder / "camera_matrix.csv").unlink()
-    refused(folder, "has no camera_matrix.csv")
+    refused(folder, "does not contain camera_matrix.csv")
 
 
 def test_strays_video_is_damaged(room):
@@ -335,7 +335,7 @@ def test_stray_loses_tracking_in_one_frame(room):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", ["states no pose"]),
+        ("", ["contains no poses"]),
         ("1 2 3\n", ["line 1", "7 numbers"]),
         ("a b c d e f g\n", ["line 1"]),
         ("nan 0 0 0 0 0 0\n", ["line 1"]),

@@ -107,7 +107,7 @@ def test_it_may_lie_in_a_zip_with_other_things(tmp_path, shots):
         ({"camera_model": "OPENCV_FISHEYE"}, "undistort"),
         ({"frames": []}, "frames"),
         ({"frames": [{"file_path": "../x.png", "transform_matrix": []}]}, "relative"),
-        ({"frames": [{"file_path": "a.png", "depth_path": "/etc/passwd"}]}, "has a pose"),
+        ({"frames": [{"file_path": "a.png", "depth_path": "/etc/passwd"}]}, "no camera poses"),
     ],
 )
 def test_nonsense_is_refused(tmp_path, shots, stated, words):
@@ -119,5 +119,5 @@ def test_nonsense_is_refused(tmp_path, shots, stated, words):
 
 def test_depth_outside_the_folder_is_refused(tmp_path, shots):
     _write(tmp_path, shots, {"depth_path": "../../secret.png"}, "")
-    with pytest.raises(CaptureError, match="stay inside"):
+    with pytest.raises(CaptureError, match="inside the folder"):
         find_capture(tmp_path)

@@ -46,7 +46,7 @@ def test_a_scene_is_depth_and_colour_without_poses(tmp_path, views):
     depth = read_depth(frame.depth_path, DepthEncoding("nyu_raw"))
     true = views[4].depth_m
     np.testing.assert_allclose(depth, true, atol=0.5 * true.max() ** 2 / 351.3)
-    with pytest.raises(CaptureError, match="has no poses"):
+    with pytest.raises(CaptureError, match="contains no poses"):
         open_scan(tmp_path)
 
 
@@ -116,7 +116,7 @@ def huge(folder):
         (cut, "frames are damaged"),
         (empty, "is empty"),
         (holes, "median depth of 0 m"),
-        (huge, "at most 64"),
+        (huge, "the limit is 64"),
     ],
 )
 def test_damaged_dumps(tmp_path, views, refused, damage, words):

@@ -110,7 +110,7 @@ def mirrored(folder):
         (cut_depth, "12 of 12 frames are damaged"),
         (depth_8_bit, "is an 8-bit image, but depth requires 16-bit"),
         (all_lost, "none of 12 frames can be used"),
-        (mirrored, "mirrors"),
+        (mirrored, "is mirrored"),
     ],
 )
 def test_damaged_exports(tmp_path, views, refused, damage, words):

@@ -71,7 +71,9 @@ def test_cameras_by_name(tmp_path, views, name, focal, k3):
     capture = find_capture(tmp_path / name)
     camera = capture.frames[0].colour_camera
     assert (camera.fx_px, camera.distortion[4]) == (focal, k3)
-    assert capture.notes[0].startswith("no calibration.txt" if name == "mine" else "the intrinsics")
+    assert capture.notes[0].startswith(
+        "no calibration.txt" if name == "mine" else "using the intrinsics"
+    )
     assert capture.frames[0].depth_camera == camera
 
 

@@ -2,8 +2,7 @@
 
 ``metadata`` (or ``metadata.json``) contains the image size ``w``, ``h``, the depth size ``dw``,
 ``dh``, the intrinsic matrix ``K`` (column-major), in newer versions ``perFrameIntrinsicCoeffs``
-(fx,
-fy, cx, cy), and ``poses`` (qx qy qz qw x y z, camera-to-world, OpenGL axes). ``rgbd/N.jpg``,
+(fx, fy, cx, cy), and ``poses`` (qx qy qz qw x y z, camera-to-world, OpenGL axes). ``rgbd/N.jpg``,
 ``N.depth`` (LZFSE, float32 metres) and ``N.conf`` (LZFSE, 0 to 2) form one frame. The front camera
 is not tracked, so all its poses are identical.
 

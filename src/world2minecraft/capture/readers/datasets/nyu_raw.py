@@ -3,9 +3,8 @@
 File names have the form ``r-SECONDS-TICKS.ppm``. Depth images contain Kinect disparities with
 swapped bytes, neither registered nor undistorted. The intrinsics and the transform between the two
 cameras are those of the data set's toolbox. The toolbox stores the rotation with all signs
-inverted,
-which its projection code corrects; here, the signs are correct, and the colour lens is 2.5 cm to
-the right of the depth lens.
+inverted, which its projection code corrects; here, the signs are correct, and the colour lens is
+2.5 cm to the right of the depth lens.
 """
 
 import re

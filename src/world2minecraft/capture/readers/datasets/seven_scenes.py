@@ -1,11 +1,10 @@
 """Reader of 7-Scenes: ``frame-000000.color.png``, ``.depth.png`` and ``.pose.txt`` files.
 
 Frames are in the folder itself, in ``frames/`` or in ``seq-01/``, ``seq-02/`` and so on, which
-share
-one world frame. ``camera-intrinsics.txt`` (3x3) in that folder or its parent contains the intrinsic
-matrix. The original data set has no such file and names its colour images ``.png``; in that case,
-the published Kinect matrix is used. The matrix is that of the depth camera; the colour camera is a
-separate camera next to it.
+share one world frame. ``camera-intrinsics.txt`` (3x3) in that folder or its parent contains the
+intrinsic matrix. The original data set has no such file and names its colour images ``.png``; in
+that case, the published Kinect matrix is used. The matrix is that of the depth camera; the colour
+camera is a separate camera next to it.
 """
 
 import re

@@ -2,8 +2,7 @@
 
 A room has three dominant directions at right angles. The up axis is the direction that the most
 surface faces (floor, ceiling, tables) and along which the room is shortest. Its sign follows from
-the
-distribution of surface: between floor and ceiling, there is more surface in the lower half. The
+the distribution of surface: between floor and ceiling, there is more surface in the lower half. The
 usual up axis of the file format decides ambiguous cases.
 
 The unit is the one that gives the room a plausible height.

@@ -1,8 +1,7 @@
 """Estimation of surfels for a point cloud: disc radii from the point spacing, and normals.
 
-Radius and normal are computed from the points in the same grid cell. A flat patch of n points in
-a cell of side s has a point spacing of ``s / sqrt(n)``. The normal is the principal axis along
-which
+Radius and normal are computed from the points in the same grid cell. A flat patch of n points in a
+cell of side s has a point spacing of ``s / sqrt(n)``. The normal is the principal axis along which
 the points vary least.
 """
 
