@@ -118,7 +118,7 @@ class ImageSource(Protocol):
         ...
 
     def raw(self) -> np.ndarray:
-        """Return the stored values, such as depth, labels or confidence, as [H, W]."""
+        """Return the stored values, such as depth, labels or confidence, as an array [H, W]."""
         ...
 
 
@@ -212,7 +212,7 @@ def _shrink_to(image: Image.Image, longest_px: int) -> np.ndarray:
 
 
 def read_raw(path: ImagePlace) -> np.ndarray:
-    """Decode a single-channel image to its stored values, [H, W] of any numeric dtype."""
+    """Decode a single-channel image to an array [H, W] of its stored values and dtype."""
     if not isinstance(path, _FILES):
         return path.raw()
     if path.suffix == ".npy":

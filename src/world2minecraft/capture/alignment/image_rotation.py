@@ -56,7 +56,7 @@ class RotatedImage:
         return self.image.name
 
     def header(self) -> ImageHeader:
-        """Return the size after rotation, and the mode."""
+        """Return the size of the rotated image and its mode."""
         header = read_header(self.image)
         if self.quarter_turns % 2 == 0:
             return header
@@ -71,7 +71,7 @@ class RotatedImage:
         return np.ascontiguousarray(np.rot90(read_colour(self.image), self.quarter_turns))
 
     def raw(self) -> np.ndarray:
-        """Return the rotated stored values, [H, W]."""
+        """Return the rotated stored values as an array [H, W]."""
         return np.ascontiguousarray(np.rot90(read_raw(self.image), self.quarter_turns))
 
 

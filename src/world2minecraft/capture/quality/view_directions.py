@@ -37,7 +37,7 @@ class ViewDirections:
         return np.array([level[:, sector == index].mean() for index in range(8)])
 
     def gaps(self) -> tuple[str, ...]:
-        """Return the names of the sectors that hardly any image covers."""
+        """Return the names of the sectors of which less than a tenth is covered."""
         shares = self.sectors()
         return tuple(name for name, share in zip(SECTORS, shares, strict=True) if share < 0.1)
 

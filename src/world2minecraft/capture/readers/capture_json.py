@@ -208,7 +208,9 @@ def _camera(path: AnyPath, stated: dict[str, Any], key: str, needed: bool) -> Ca
     if value is None and not needed:
         return None  # It is found with the poses.
     if not isinstance(value, dict):
-        raise CaptureError(path, f'"{key}" must be an object with {", ".join(_CAMERA_FIELDS)}')
+        raise CaptureError(
+            path, f'must contain "{key}", an object with {", ".join(_CAMERA_FIELDS)}'
+        )
     try:
         sizes = [value[field] for field in _CAMERA_FIELDS]
         for field, number in zip(_CAMERA_FIELDS, sizes, strict=True):

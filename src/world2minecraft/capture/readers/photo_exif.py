@@ -59,7 +59,7 @@ class UprightPhoto(NamedByFile):
     path: AnyPath
 
     def header(self) -> ImageHeader:
-        """Return the size after rotation, and the mode."""
+        """Return the size of the rotated photo and its mode."""
         with open_image(self.path) as image:
             return ImageHeader(*_upright_size(image), image.mode)
 

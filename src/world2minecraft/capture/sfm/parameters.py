@@ -35,14 +35,17 @@ class SfmParameters:
     working_px: int = parameter(
         1_230_000,
         unit="px",
-        origin="640x480 in its own size gives half the points and 0.8 px instead of 0.68",
+        origin=(
+            "without enlargement, 640x480 gives half the points and an error of 0.8 px "
+            "instead of 0.68"
+        ),
         limits=(10_000, 10_000_000),
     )
     most_features: int = parameter(4000, unit="features", origin="not recorded", limits=(1, 20_000))
     strong: int = parameter(
         500,
         unit="features",
-        origin="of the kitchen's pairs that match at all, 500 find 99 % at least_strong",
+        origin="on the kitchen, 500 features find 99 % of the matching pairs at least_strong",
         limits=(1, 20_000),
     )
     least_strong: int = parameter(8, unit="features", origin="measured with strong")
@@ -50,7 +53,7 @@ class SfmParameters:
     partners: int = parameter(
         12,
         unit="photos",
-        origin="with 12 the kitchen's model is that of all pairs, in half the time",
+        origin="on the kitchen, 12 gives the same model as all pairs, in half the time",
         limits=(1, 20_000),
     )
     neighbours: int = parameter(3, unit="photos", origin="not recorded")
@@ -58,18 +61,18 @@ class SfmParameters:
     good_px: float = parameter(
         1.0,
         unit="px",
-        origin="a guess: stereo at half size needs about half a pixel of its own",
+        origin="estimated: stereo at half resolution requires an error of about half a pixel",
         bounds=ABOVE_0,
     )
     gates_px: tuple[float, ...] = parameter(
         (12.0, 4.0, 2.0),
         unit="px",
-        origin="a fourth round changes the kitchen's error by nothing",
+        origin="a fourth round does not change the error on the kitchen",
     )
     wide_px: float = parameter(12.0, unit="px", origin="not recorded", bounds=ABOVE_0)
     outlier_px: float = parameter(8.0, unit="px", origin="not recorded", bounds=ABOVE_0)
     outlier_times: float = parameter(4.0, unit="times", origin="not recorded", bounds=ABOVE_0)
-    seed: int = parameter(0, origin="any number will do")
+    seed: int = parameter(0, origin="arbitrary")
 
     def __post_init__(self):
         for name, (least, most) in fact_by_name(self, "limits").items():

@@ -33,24 +33,24 @@ class StereoParameters:
     width_px: int = parameter(
         320,
         unit="px",
-        origin="twice that took six times as long and erred more",
+        origin="twice the width takes six times as long, with larger errors",
         limits=(32, 2000),
     )
     planes: int = parameter(
         64,
         unit="planes",
-        origin="96 took half as long again for the same",
+        origin="96 planes take 50 % longer, with the same result",
         limits=(8, 254),
     )
     neighbours: int = parameter(
         12,
         unit="photos",
-        origin="with 8, and best_of 4, 1 % more of what is occupied was called free",
+        origin="with 8 neighbours and best_of 4, 1 % more occupied cells were reported as free",
         limits=(1, 32),
     )
     best_of: int = parameter(6, unit="photos", origin="measured with neighbours", limits=(1, 32))
     angle_deg: float = parameter(
-        4.0, unit="degrees", origin="9 erred by a third more", limits=(0.1, 60)
+        4.0, unit="degrees", origin="9 degrees increase the error by a third", limits=(0.1, 60)
     )
     window_px: int = parameter(9, unit="px", origin="docs/stereo.md", limits=(3, 15))
     noise: float = parameter(4.0, unit="grey levels", origin="docs/stereo.md", limits=(0, 100))
@@ -62,7 +62,7 @@ class StereoParameters:
     island_share: float = parameter(
         0.003,
         unit="share",
-        origin="nearly half of what was wrong hung on nothing",
+        origin="almost half of the wrong depth was in isolated regions",
         limits=(0, 0.5),
     )
     island_step: float = parameter(

@@ -130,7 +130,7 @@ class EncodedImage(FileSlice):
             return np.array(image.convert("RGB"), np.uint8)
 
     def raw(self) -> np.ndarray:
-        """Return the stored pixel values, [H, W]."""
+        """Return the stored pixel values as an array [H, W]."""
         with open_image(self) as image:
             return np.array(image)
 

@@ -27,7 +27,7 @@ _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "PERSPECTIVE", "SIMPLE_RADIAL"
 class NerfstudioSource:
     """A reader of folders with a ``transforms.json``."""
 
-    layout = "transforms.json with the images it names (nerfstudio, instant-ngp)"
+    layout = "transforms.json with its images (nerfstudio, instant-ngp)"
 
     def recognise(self, folder: AnyPath) -> bool:
         """Return whether the folder contains a ``transforms.json``."""

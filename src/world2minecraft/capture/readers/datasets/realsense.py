@@ -252,7 +252,7 @@ class BagImage(NamedByFrame):
         return np.ascontiguousarray(pixels[..., list(order)])
 
     def raw(self) -> np.ndarray:
-        """Return the stored pixel values, [H, W]."""
+        """Return the stored pixel values as an array [H, W]."""
         rows, message = self._rows()
         kind, _, _ = self._encoding(message)
         if kind == "u1":
@@ -314,12 +314,12 @@ class _StreamPair:
 
 
 class RealSenseSource:
-    """A reader of ``.bag`` files and of folders that contain one."""
+    """A reader of ROS bags recorded by RealSense cameras, and of folders that contain a bag."""
 
     layout = "a RealSense recording (.bag)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether the path is a bag or a folder with exactly one bag."""
+        """Return whether the path is a bag or a folder that contains exactly one bag."""
         return _bag_file(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:

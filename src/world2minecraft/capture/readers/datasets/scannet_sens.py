@@ -64,12 +64,12 @@ class SensHeader:
 
 
 class ScanNetSensSource:
-    """A reader of ``.sens`` files and of folders that contain one."""
+    """A reader of ScanNet ``.sens`` files, and of folders that contain a ``.sens`` file."""
 
     layout = "scene0000_00.sens (ScanNet)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether the path is a ``.sens`` file or a folder with exactly one."""
+        """Return whether the path is a ``.sens`` file or a folder with exactly one such file."""
         return _sens_file(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:

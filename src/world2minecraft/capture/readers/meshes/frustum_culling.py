@@ -26,7 +26,7 @@ class Blocks:
     radii_m: np.ndarray
 
     def runs(self, camera: Camera, world_to_camera: np.ndarray) -> np.ndarray:
-        """Return the index ranges of the blocks that a camera may see, as int64 [R, 2]."""
+        """Return the index ranges of blocks that may be visible to a camera, as int64 [R, 2]."""
         middles = self.middles_m @ world_to_camera[:3, :3].T + world_to_camera[:3, 3]
         seen = middles[:, 2] > -self.radii_m
         left, right = camera.cx_px / camera.fx_px, (camera.width_px - camera.cx_px) / camera.fx_px

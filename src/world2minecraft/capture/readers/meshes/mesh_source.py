@@ -230,7 +230,7 @@ class MeshSource:
     layout = "a mesh or a point cloud (.glb .gltf .obj .ply .stl .usdz .las .laz .e57 .xyz .pts ..)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether the path is a mesh or point cloud, or a folder that contains one."""
+        """Return whether the path is a mesh or point cloud, or a folder that contains either."""
         return find_mesh_file(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:

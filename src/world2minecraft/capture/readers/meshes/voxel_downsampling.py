@@ -41,7 +41,14 @@ class VoxelDownsampler:
         colour: np.ndarray | None = None,
         labels: np.ndarray | None = None,
     ) -> None:
-        """Add points float64 [N, 3] with optional colours uint8 [N, 3] and labels uint8 [N]."""
+        """Add points with optional colours and class labels.
+
+        Args:
+            points: Point positions in file units, float64 [N, 3]; points that are not finite are
+                ignored.
+            colour: sRGB colours, uint8 [N, 3], or None.
+            labels: Class ids, uint8 [N], or None.
+        """
         good = np.isfinite(points).all(axis=1)
         if not good.any():
             return
