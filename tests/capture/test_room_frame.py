@@ -98,7 +98,7 @@ def test_a_room_of_an_impossible_size_is_refused_with_its_size(surfaces, factor,
 
 def test_depth_without_surface_is_refused(box_room):
     views = [replace(view, depth_m=np.zeros_like(view.depth_m)) for view in box_room.views(3)]
-    with pytest.raises(ImplausibleRoomError, match="only 0 places"):
+    with pytest.raises(ImplausibleRoomError, match="only 0 patches"):
         align(views)
 
 

@@ -114,12 +114,12 @@ def test_a_known_length_gives_the_scale(box_surface, name, length_m, within):
     found = estimate_scale(surface, [parse_known_length(name, length_m)])
     assert found.scale * 0.37 == pytest.approx(1, rel=within)
     assert found.sigma <= 0.03
-    assert f"given ({length_m:g} m)" in found.notes[0]
+    assert f" ({length_m:g} m)" in found.notes[0]
 
 
 def test_the_face_of_a_known_length_is_reported(box_surface):
     notes = estimate_scale(box_surface, [parse_known_length("table height", 0.72)]).notes
-    assert "the table height given (0.72 m), a level face of" in notes[0]
+    assert "the given table height (0.72 m), a level face of" in notes[0]
 
 
 def test_a_known_length_overrules_priors(box_surface):
@@ -162,7 +162,7 @@ def test_points_far_apart_in_one_image_give_the_scale(box_room, box_surface):
     points = KnownDistance("000000", (20, 60), "000000", (140, 60), true)
     found = estimate_scale(small, [points.known(shrunk(views, 0.25))])
     assert found.scale == pytest.approx(4, rel=1e-6)
-    assert "distance given" in found.notes[0]
+    assert "given distance" in found.notes[0]
 
 
 def test_points_without_depth_are_refused_in_words(box_room):
@@ -225,7 +225,7 @@ def test_what_was_not_seen_cannot_be_known(box_room, box_surface):
 
 
 def test_too_little_surface_is_refused(box_surface):
-    with pytest.raises(ImplausibleRoomError, match="at least 500 are needed"):
+    with pytest.raises(ImplausibleRoomError, match="at least 500 are required"):
         estimate_scale(box_surface.subset(np.arange(20)))
     assert len(collect_unscaled([]).points_m) == 0
 

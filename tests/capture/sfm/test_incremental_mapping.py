@@ -147,5 +147,5 @@ def test_too_many_photos_are_refused_before_any_is_read():
         def __iter__(self):
             raise AssertionError("must not be read")
 
-    with pytest.raises(LimitError, match="are 100000, over 3000"):
+    with pytest.raises(LimitError, match="got 100000 photos, the limit is 3000"):
         find_poses(Many(), SMALL)

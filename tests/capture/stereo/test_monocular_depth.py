@@ -120,7 +120,7 @@ def test_nothing_measured_fills_nothing():
 
 def test_what_is_no_map_is_refused():
     depth_m, trust = with_hole(slanted())
-    with pytest.raises(ValueError, match="one size"):
+    with pytest.raises(ValueError, match="the same size"):
         fill_holes(depth_m, trust, depth_m[1:], "metric", NO_PX, NO_M)
     with pytest.raises(ValueError, match="'metric' or 'inverse'"):
         fill_holes(depth_m, trust, depth_m, "relative", NO_PX, NO_M)
@@ -130,5 +130,5 @@ def test_names_are_checked_in_one_line():
     assert DEPTH_MODELS.names()[0] == "hf"
     with pytest.raises(UnknownNameError, match="no depth_model is named 'hg'; known: hf"):
         load_depth_model("hg:a/b")
-    with pytest.raises(UsageError, match="type hf:ORG/NAME"):
+    with pytest.raises(UsageError, match="use hf:ORG/NAME"):
         load_depth_model("hf")
