@@ -175,7 +175,7 @@ def test_points_without_depth_are_refused_in_words(box_room):
         (("000000", (80, 60)), "there is no depth at 80,60 in 000000"),
         (("000000", (800, 60)), "is outside image 000000"),
         (("other", (80, 60)), "no image is named 'other'"),
-        (ok, "are one"),
+        (ok, "are identical"),
     ):
         with pytest.raises(UsageError, match=text):
             length_between(views, ok, point)
@@ -201,7 +201,7 @@ def test_a_hole_of_a_pixel_does_not_matter(box_room):
             UsageError,
             "must be from 0.3 to 1.3 m, got 72; lengths are in metres",
         ),
-        ("table height", float("nan"), UsageError, "must be 0.3 to 1.3 m"),
+        ("table height", float("nan"), UsageError, "must be from 0.3 to 1.3 m"),
         ("distance", 1.0, UsageError, "requires two points"),
         (
             "door-height",

@@ -148,4 +148,6 @@ def test_another_predictor_makes_the_photo_anew(tmp_path, photo, network, monkey
 def test_a_look_at_one_photo_names_what_would_help(photo):
     lines = summary_lines(describe_capture(photo))
     (stop,) = [line for line in lines if line.strip().startswith("stop")]
-    assert "only 1 image" in stop and "or estimate depth with a network: --depth hf:ORG/NAME" in stop
+    assert (
+        "only 1 image" in stop and "or estimate depth with a network: --depth hf:ORG/NAME" in stop
+    )
