@@ -1,1 +1,1 @@
-"""MinecraftOcc: labelled images of worlds, and the files that trainers read."""
+"""MinecraftOcc: labelled images rendered from block worlds, with import and export."""

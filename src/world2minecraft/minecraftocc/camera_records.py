@@ -1,9 +1,10 @@
-"""Camera records: K, E and the conventions in words, ours or as the paper prints them.
+"""Camera records: K, E and descriptions of their conventions, ours or those printed in the paper.
 
-By itself the record is right: K from the vertical field of view, E carries the camera's axes to the
-room. ``paper_compat`` gives the paper's two matrices exactly as its equations are printed, with
-their two slips: K takes the game's vertical field of view for the horizontal one, and E's rotation
-is world to camera where a camera-to-world one is due. Such matrices do not meet the image.
+A standard record is correct: K is computed from the vertical field of view, and E transforms camera
+coordinates to room coordinates. With ``paper_compat``, the record contains the two matrices exactly
+as printed in the paper's equations, including their two errors: K uses the game's vertical field of
+view as the horizontal one, and the rotation in E is world-to-camera instead of camera-to-world.
+These matrices do not match the image.
 """
 
 from collections.abc import Mapping
@@ -25,20 +26,20 @@ from world2minecraft.core.types import Camera
 CONVENTIONS = {
     "K": "[[fx, 0, cx], [0, fy, cy], [0, 0, 1]] in pixels; pixel centres at +0.5",
     "E": "camera to room, 4x4: camera axes x right, y down, z forward; room in metres, "
-    "right-handed, z up, the floor's top at z = 0",
-    "camera_to_block": "the same camera in world block coordinates: x east, y up, z south; "
-    "a block spans n to n + 1; no scale in its rotation",
+    "right-handed, z up, floor surface at z = 0",
+    "camera_to_block": "camera to world block coordinates, 4x4: x east, y up, z south; "
+    "a block spans n to n + 1; the rotation contains no scale",
     "depth": "along the camera's z, not along the ray",
     "fov": "vertical, as in the game's options",
-    "game_pose": "the eye in world block coordinates; yaw 0 looks to +z (south) and grows "
-    "clockwise from above, pitch grows downward; degrees",
-    "distortion": "none (k1 k2 p1 p2 k3 are 0)",
+    "game_pose": "eye position in world block coordinates, angles in degrees; yaw 0 faces +z "
+    "(south) and increases clockwise seen from above; pitch increases downward",
+    "distortion": "none (k1, k2, p1, p2 and k3 are 0)",
 }
 PAPER_CONVENTIONS = {
-    "K": "as the paper prints it: fx = fy = W / (2 tan(fov / 2)), which takes the game's vertical "
-    "field of view for the horizontal one; too long by W / H",
-    "E": "as the paper prints it: [R p; 0 1] with R = R_X(pitch + pi) R_Y(yaw + pi) and p the eye "
-    "in block coordinates; R is world to camera though E is called camera to world",
+    "K": "as printed in the paper: fx = fy = W / (2 tan(fov / 2)), which uses the game's vertical "
+    "field of view as the horizontal one; fx and fy are too large by the factor W / H",
+    "E": "as printed in the paper: [R p; 0 1] with R = R_X(pitch + pi) R_Y(yaw + pi) and the eye p "
+    "in block coordinates; R is world-to-camera although E is called camera-to-world",
     "game_pose": CONVENTIONS["game_pose"],
     "fov": CONVENTIONS["fov"],
     "distortion": CONVENTIONS["distortion"],
@@ -52,16 +53,17 @@ def camera_record(
     *,
     paper_compat: bool = False,
 ) -> dict[str, Any]:
-    """Return what a data set says of an image's camera, as plain values.
+    """Return the camera record of an image, ready for JSON.
 
     Args:
-        camera: without distortion, as all rendered pictures.
-        camera_to_room: float64 [4, 4].
-        block_to_room: of the world, float64 [4, 4].
-        paper_compat: the paper's printed matrices in place of the right ones.
+        camera: Camera without lens distortion.
+        camera_to_room: Camera pose in the room, float64 [4, 4].
+        block_to_room: Matrix from block coordinates to room coordinates, float64 [4, 4].
+        paper_compat: Whether to return the matrices as printed in the paper instead of the correct
+            ones.
 
     Raises:
-        UsageError: the camera has distortion.
+        UsageError: If the camera has lens distortion.
 
     Example:
         >>> camera = Camera(640, 480, 500.0, 500.0, 320.0, 240.0)
@@ -70,7 +72,7 @@ def camera_record(
         ([500.0, 0.0, 320.0], [0.0, 0.0, 0.0, 0.0, 0.0])
     """
     if any(camera.distortion):
-        raise UsageError("a record's camera has no distortion; undistort the picture first")
+        raise UsageError("camera records do not support lens distortion; undistort the image first")
     camera_to_block = carry_camera(camera_to_room, invert(block_to_room))
     eye, yaw_deg, pitch_deg = game_pose_of_camera_to_block(camera_to_block)
     fov_deg = fov_deg_of_focal_px(camera.height_px, camera.fy_px)
@@ -103,15 +105,15 @@ def paper_matrices(
     game_yaw_deg: float,
     game_pitch_deg: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the paper's K, float64 [3, 3], and E, float64 [4, 4], as its appendix prints them.
+    """Return the matrices K (3x3) and E (4x4), float64, as printed in the paper's appendix.
 
     Args:
-        width_px: W, of which its focal length is made.
-        height_px: H.
-        fov_deg: the game's field of view, the paper's alpha.
-        eye_block: p, float64 [3], in world block coordinates.
-        game_yaw_deg: theta.
-        game_pitch_deg: phi.
+        width_px: Image width in pixels (W), from which the focal length is computed.
+        height_px: Image height in pixels (H).
+        fov_deg: Field of view in the game in degrees (alpha).
+        eye_block: Eye position p in world block coordinates, float64 [3].
+        game_yaw_deg: Yaw in the game in degrees (theta).
+        game_pitch_deg: Pitch in the game in degrees (phi).
     """
     focal_px = paper_focal_px(width_px, fov_deg)
     k = np.array([[focal_px, 0, width_px / 2], [0, focal_px, height_px / 2], [0, 0, 1]])
@@ -122,14 +124,16 @@ def paper_matrices(
 
 
 def camera_from_record(record: Mapping[str, Any]) -> tuple[Camera, np.ndarray]:
-    """Return the camera and ``camera_to_room``, float64 [4, 4], of a record.
+    """Return the camera and the ``camera_to_room`` matrix, float64 [4, 4], from a camera record.
 
     Raises:
-        UsageError: it is no record, or one with the paper's matrices, which do not meet the image.
+        UsageError: If the record is invalid, or contains the paper's matrices, which do not match
+            the image.
     """
     if record.get("paper_compat"):
         raise UsageError(
-            "K and E of a paper_compat record do not meet its image; make it without paper_compat"
+            "K and E of a paper_compat record do not match its image; use a record "
+            "without paper_compat"
         )
     try:
         k, e = (np.array(record[name], np.float64) for name in ("K", "E"))
@@ -138,8 +142,8 @@ def camera_from_record(record: Mapping[str, Any]) -> tuple[Camera, np.ndarray]:
             or e.shape != (4, 4)
             or not (np.isfinite(k).all() & np.isfinite(e).all())
         ):
-            raise ValueError("K must be 3x3 and E 4x4, of finite numbers")
+            raise ValueError("K must be a 3x3 and E a 4x4 matrix of finite numbers")
         size = int(record["width"]), int(record["height"])
         return Camera(*size, k[0, 0], k[1, 1], k[0, 2], k[1, 2]), e
     except (KeyError, TypeError, ValueError) as error:
-        raise UsageError(f"this is no camera's record ({error})") from error
+        raise UsageError(f"not a valid camera record ({error})") from error

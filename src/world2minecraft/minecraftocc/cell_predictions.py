@@ -1,7 +1,8 @@
-"""Predicted labels of cells as the npz file that ``w2m occupy`` writes and others read.
+"""Predicted cell labels in the npz file format of ``w2m occupy``.
 
-A frame's cells lie in the axes of its grid file, those of a capture in the room's. ``axes`` says
-which: ``xzy`` is x right, z up, y forward, as NYUv2's files are; ``xyz`` has z last.
+The cells of a frame follow the axes of its grid file; those of a capture follow the room axes. The
+``axes`` entry of the file names the order of the array axes: ``xzy`` is x right, z up, y forward,
+as in NYUv2 files, and ``xyz`` has z last.
 """
 
 from dataclasses import dataclass
@@ -23,7 +24,7 @@ OBSERVED = 1  # Of ``OccupancyGrid.source``.
 
 @dataclass(frozen=True, eq=False)
 class PredictedCells:
-    """Labels of a grid along its world's axes x, y, z up."""
+    """Predicted labels for a grid of cells, with the axes x, y and z (up)."""
 
     labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11, or 255 where nothing was observed
     confidence: np.ndarray  # float [X, Y, Z], 0 to 1
@@ -33,16 +34,18 @@ class PredictedCells:
 
 
 def write_cells(out: Path, cells: PredictedCells, axes: str, **more: np.ndarray) -> None:
-    """Write an npz: labels, confidence, observed, voxel_m, origin_m, axes and what is given.
+    """Write predicted cells to an npz file.
+
+    The file contains labels, confidence, observed, voxel_m, origin_m, axes and the extra arrays.
 
     Args:
-        out: the file.
-        cells: the predictions.
-        axes: xyz or xzy, the order in which the three arrays are written.
-        more: further arrays, such as ``scan_to_room``.
+        out: Output file.
+        cells: Predictions to write.
+        axes: Axis order of the three cell arrays in the file, ``xyz`` or ``xzy``.
+        more: Extra arrays to store, such as ``scan_to_room``.
 
     Raises:
-        OutputError: it cannot be written.
+        OutputError: If the file cannot be written.
     """
     order = FILE_AXES if axes == "xzy" else (0, 1, 2)
     write_npz(
@@ -60,7 +63,7 @@ def write_cells(out: Path, cells: PredictedCells, axes: str, **more: np.ndarray)
 
 
 def cells_of_room(grid: OccupancyGrid) -> PredictedCells:
-    """Return the predictions of a room's grid; unseen cells are 255."""
+    """Convert the occupancy grid of a room to predicted cells. Unseen cells have the label 255."""
     return PredictedCells(
         grid.labels, grid.confidence, grid.source == OBSERVED, grid.voxel_m, grid.origin_m
     )
@@ -69,15 +72,16 @@ def cells_of_room(grid: OccupancyGrid) -> PredictedCells:
 def resample_to_grid(
     room: PredictedCells, scan_to_room: np.ndarray, place: GridPlace
 ) -> PredictedCells:
-    """Resample a room's cells to a grid file's: each takes the cell that its centre lies in.
+    """Resample the cells of a room to the grid of a grid file by nearest neighbour.
 
     Args:
-        room: cells in the room's axes.
-        scan_to_room: [4, 4]; the scan's world is that of the grid file.
-        place: where the grid lies.
+        room: Predicted cells along the room axes.
+        scan_to_room: Matrix from scan coordinates to room coordinates [4, 4]. The scan must have
+            the same world coordinates as the grid file.
+        place: Position of the grid in the scan.
 
     Raises:
-        InputError: no centre of the grid lies in the room's cells.
+        InputError: If the grid does not overlap the cells of the room.
     """
     centers_m = (np.moveaxis(np.indices(SHAPE), 0, -1) + 0.5) * VOXEL_M + place.origin_m
     at = (apply(scan_to_room, centers_m) - room.origin_m) / room.voxel_m
@@ -85,7 +89,10 @@ def resample_to_grid(
     within = (cells >= 0) & (cells < np.array(room.labels.shape))
     inside = np.asarray(within.all(axis=-1), bool)
     if not inside.any():
-        raise InputError("grid", "lies beside all that the capture shows; is it of another world?")
+        raise InputError(
+            "grid",
+            "does not overlap the captured area; check that it has the same world coordinates",
+        )
     index = tuple(np.moveaxis(np.where(inside[..., None], cells, 0), -1, 0))
     return PredictedCells(
         np.where(inside, room.labels[index], np.uint8(UNKNOWN)),
@@ -99,30 +106,32 @@ def resample_to_grid(
 def predict_cells(
     photo: np.ndarray, camera: Camera, place: GridPlace, network: OccupancyNetwork
 ) -> PredictedCells:
-    """Predict a frame's grid by a monocular network, from one photo.
+    """Predict the grid of a frame from a single photo with a monocular network.
 
-    A network of cells twice as large predicts the same for the eight cells in each. Nothing of it
-    counts as observed: a network guesses all of it.
+    If the network's cells are twice as large, each of them is split into eight cells with the same
+    prediction. No cell is marked as observed, because all of them are estimates.
 
     Args:
-        photo: uint8 [H, W, 3].
-        camera: of it.
-        place: the grid and the camera's place.
-        network: of as large a box of cells, without depth.
+        photo: Colour image, uint8 [H, W, 3].
+        camera: Camera of the photo.
+        place: Position of the grid and pose of the camera.
+        network: Network without depth input, whose grid covers the same volume as the frame grid.
 
     Raises:
-        UsageError: the network wants depth, or has another box.
+        UsageError: If the network requires depth, or if its grid covers a different volume.
     """
     facts = network.facts
     if facts.wants_depth:
-        raise UsageError(f"{facts.name} wants depth; give a network trained without --depth given")
+        raise UsageError(
+            f"{facts.name} requires depth; choose a network trained without --depth given"
+        )
     times = round(facts.voxel_m / VOXEL_M)
     sides_of_ours = tuple(side * times for side in facts.grid_shape)
     if not np.isclose(times * VOXEL_M, facts.voxel_m) or sides_of_ours != SHAPE:
         sides = "x".join(map(str, facts.grid_shape))
         raise UsageError(
-            f"{facts.name} says {sides} cells of {facts.voxel_m:g} m; a frame's grid has "
-            "60x60x36 of 0.08 m, and a network 30x30x18 of 0.16 m or as many"
+            f"{facts.name} has a grid of {sides} cells of {facts.voxel_m:g} m; choose a network "
+            "with 60x60x36 cells of 0.08 m or 30x30x18 cells of 0.16 m"
         )
     view = View(
         name="frame", camera_to_scan=place.camera_to_world, colour=photo, colour_camera=camera

@@ -1,4 +1,4 @@
-"""Predict the cells of one frame's grid: from its depth picture, or from its photo alone."""
+"""Occupancy prediction for the grid of a single frame, from its depth map or from a photo."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,13 +21,13 @@ NYU_FOCAL_PX = 518.8579
 
 @dataclass(frozen=True)
 class Frame:
-    """A depth picture with its photo, or a photo alone.
+    """A depth map with an optional photo, or a photo without a depth map.
 
     Attributes:
-        source: the depth PNG of 16 bits, or the photo.
-        colour: the photo of a depth picture's camera.
-        depth_code: how a depth PNG holds metres: auto, rotated, mm or 8000.
-        focal_px: of the camera, at the picture's size.
+        source: 16-bit depth PNG, or the photo.
+        colour: Photo taken with the same camera as the depth map.
+        depth_code: Encoding of the depth PNG: ``auto``, ``rotated``, ``mm`` or ``8000``.
+        focal_px: Focal length of the camera in pixels, at the size of the image.
     """
 
     source: Path
@@ -36,24 +36,25 @@ class Frame:
     focal_px: float = NYU_FOCAL_PX
 
     def from_depth(self, place: GridPlace) -> PredictedCells:
-        """Predict the grid from the depth picture, by the completion network.
+        """Predict the grid from the depth map with the completion network.
 
         Raises:
-            CaptureError: the source is a photo. UsageError: the photo has another size.
+            CaptureError: If the source is a photo.
+            UsageError: If the photo and the depth map differ in size.
         """
         header = read_header(self.source)
         if header.mode in ("RGB", "RGBA", "CMYK", "YCbCr"):
             raise CaptureError(
                 self.source,
-                "is a photo; give its depth picture, or a network for photos: --predictor mono",
+                "this is a photo, expected a depth image; choose a depth image or --predictor mono",
             )
         check_depth_kind(self.source, header)
         depth_m = depth_of_png(self.source, read_raw(self.source), self.depth_code)
         photo = None if self.colour is None else read_colour(self.colour)
         if photo is not None and photo.shape[:2] != depth_m.shape:
             raise UsageError(
-                f"{self.colour} has {photo.shape[1]} x {photo.shape[0]} pixels, the depth picture "
-                f"{depth_m.shape[1]} x {depth_m.shape[0]}; give the photo of the same camera"
+                f"{self.colour} has {photo.shape[1]}x{photo.shape[0]} pixels, but the depth image "
+                f"has {depth_m.shape[1]}x{depth_m.shape[0]}; choose the photo of the same camera"
             )
         camera = self._camera(*depth_m.shape)
         found = complete_frame(depth_m, place, colour=photo, camera=camera)
@@ -62,19 +63,20 @@ class Frame:
         )
 
     def from_photo(self, place: GridPlace, network: str) -> PredictedCells:
-        """Predict the grid from the photo, by a monocular network.
+        """Predict the grid from the photo with a monocular network.
 
         Args:
-            place: where the grid lies.
-            network: an ONNX file; the shipped one where empty.
+            place: Position of the grid and pose of the camera.
+            network: ONNX file of the network. An empty string selects the shipped network.
 
         Raises:
-            CaptureError: there is no photo.
+            CaptureError: If there is no photo.
         """
         photo = self.colour or self.source
         if read_header(photo).mode.startswith(("I", "F")):
             raise CaptureError(
-                photo, "is a depth picture; --predictor mono needs the photo: --colour PHOTO"
+                photo,
+                "this is a depth image, but --predictor mono needs a photo; add --colour PHOTO",
             )
         loaded = MonoPredictor(network).network
         pixels = read_colour(photo)

@@ -1,7 +1,8 @@
-"""Measure the image quality of a data set or a folder: NIQE, PIQE and LV over a sample.
+"""Image quality of a data set or folder: NIQE, PIQE and LV for a sample of its images.
 
-The paper measures 100 pictures of each set, chosen by chance, and names no variant. Here each
-figure says its own: the NIQE model, the kernel of the Laplacian, the size of the pictures.
+The paper measures 100 random images of each data set and does not name the variants of the metrics.
+Here, each result names its variant: the NIQE model, the kernel size of the Laplacian and the size
+of the images.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -36,15 +37,22 @@ PAPER_KERNEL, PAPER_VARIANT = 5, "skvideo"  # Inferred: see CAVEATS.
 NATIVE = "native"
 MAX_SIDE_PX = 16_384  # Of a side that pictures are resized to.
 CAVEATS = (
-    "NIQE and PIQE model photographs; drawn pictures, above all of blocks, are no photographs.",
-    "LV depends on the kernel (k) by hundreds and on the size, and takes block edges for detail.",
-    "The paper names no variant; its values are such as scikit-video's NIQE and LV at k=5 give.",
+    "NIQE and PIQE are made for photographs, so their values for rendered blocks mean little.",
+    "LV changes by hundreds with kernel k and image size, and counts block edges as detail.",
+    "The paper names no variant; its values resemble scikit-video's NIQE and LV with k=5.",
 )
 
 
 @dataclass(frozen=True)
 class PictureSource:
-    """Pictures to be read one at a time."""
+    """A set of images that are read one at a time.
+
+    Attributes:
+        name: Name of the data set or folder.
+        keys: Keys of the images.
+        read: Function that reads the image with a key, uint8 [H, W, 3].
+        is_picture: Function that returns whether a key is a colour image. None if all of them are.
+    """
 
     name: str
     keys: tuple[str, ...]
@@ -53,10 +61,11 @@ class PictureSource:
 
 
 def open_pictures(path: str | Path) -> PictureSource:
-    """Return the pictures of a stored data set or of a folder, its subfolders too.
+    """Open the images of a data set, or of a folder with its subfolders.
 
     Raises:
-        InputError: there are none. DamagedFileError: the data set is damaged.
+        InputError: If there are no images.
+        DamagedFileError: If the data set is damaged.
     """
     place = Path(path)
     if (place / META).is_file():
@@ -68,7 +77,7 @@ def _of_store(store: OccStore) -> PictureSource:
     def read(key: str) -> np.ndarray:
         colour = store[key].colour
         if colour is None:
-            raise InputError(store.folder, f"sample {key} has labels alone, no picture")
+            raise InputError(store.folder, f"sample {key} has labels but no image")
         return colour
 
     return PictureSource(store.folder.resolve().name, tuple(store.keys()), read)
@@ -76,14 +85,14 @@ def _of_store(store: OccStore) -> PictureSource:
 
 def _of_folder(folder: Path) -> PictureSource:
     if not folder.is_dir():
-        raise InputError(folder, "is no folder of pictures and no data set")
+        raise InputError(folder, "not a data set and not a folder of images")
     found = sorted(
         place.relative_to(folder).as_posix()
         for place in folder.rglob("*")
         if place.suffix.lower() in SUFFIXES and place.is_file()
     )
     if not found:
-        raise InputError(folder, f"holds no pictures ({', '.join(SUFFIXES)})")
+        raise InputError(folder, f"no image files found ({', '.join(SUFFIXES)})")
 
     def is_picture(key: str) -> bool:
         return not read_header(folder / key).mode.startswith(("I", "F"))  # Depth and the like.
@@ -96,7 +105,13 @@ def _of_folder(folder: Path) -> PictureSource:
 
 @dataclass(frozen=True)
 class PictureQuality:
-    """The figures of one picture at one size; ``niqe`` is by model, ``laplacian`` by kernel."""
+    """The quality metrics of one image at one size.
+
+    Attributes:
+        niqe: NIQE by model name; NaN if it cannot be computed.
+        piqe: PIQE.
+        laplacian: Variance of the Laplacian by kernel size.
+    """
 
     niqe: Mapping[str, float]
     piqe: float
@@ -105,7 +120,16 @@ class PictureQuality:
 
 @dataclass(frozen=True)
 class QualityRow:
-    """Means over pictures at one size: None where no picture has a figure."""
+    """Mean quality metrics of images at one size. A mean without values is None.
+
+    Attributes:
+        size: ``native``, or the size such as ``640x480``.
+        pictures: Number of images.
+        niqe: Mean NIQE by model name.
+        piqe: Mean PIQE.
+        laplacian: Mean variance of the Laplacian by kernel size.
+        without_niqe: Number of images that are too small or too uniform for NIQE.
+    """
 
     size: str  # "native" or "640x480"
     pictures: int
@@ -117,7 +141,15 @@ class QualityRow:
 
 @dataclass(frozen=True)
 class QualityReport:
-    """What a sample of a data set gave."""
+    """The image quality of a data set.
+
+    Attributes:
+        name: Name of the data set.
+        rows: Mean metrics for each image size.
+        variants: Names of the NIQE models.
+        sizes_px: Original sizes of the images, such as ``640x480``.
+        found: Number of images in the data set, of which a sample was measured.
+    """
 
     name: str
     rows: tuple[QualityRow, ...]
@@ -129,34 +161,41 @@ class QualityReport:
 def sample_keys(
     keys: Sequence[str], count: int, seed: int, is_wanted: Callable[[str], bool] | None = None
 ) -> list[str]:
-    """Return a sample of keys, all where there are no more; the same for the same seed.
+    """Choose a random sample of keys.
 
     Args:
-        keys: in any order.
-        count: how many.
-        seed: which.
-        is_wanted: whether a key may be taken; any may where None. It is called for few.
+        keys: Keys in any order.
+        count: Size of the sample. All keys are returned if there are fewer.
+        seed: Random seed. The same seed always gives the same sample.
+        is_wanted: Function that returns whether a key may be chosen. It is called only until the
+            sample is complete. Defaults to all keys.
 
     Example:
         >>> sample_keys(["a", "b", "c", "d"], 2, seed=0)
         ['a', 'c']
     """
     if count < 1:
-        raise UsageError(f"--sample must be 1 or more, not {count}")
+        raise UsageError(f"--sample must be 1 or more, got {count}")
     ordered = sorted(keys)
     shuffled = (ordered[n] for n in np.random.default_rng(seed).permutation(len(ordered)))
     return sorted(islice((key for key in shuffled if not is_wanted or is_wanted(key)), count))
 
 
 def check_size(size: tuple[int, int]) -> None:
-    """Raise UsageError for a width and height that pictures cannot be resized to."""
+    """Check that images can be resized to this width and height.
+
+    Raises:
+        UsageError: If a side is out of range.
+    """
     if min(size) < 1 or max(size) > MAX_SIDE_PX:
         width, height = size
-        raise UsageError(f"--resize must be 1 to {MAX_SIDE_PX:,} pixels, not {width}x{height}")
+        raise UsageError(
+            f"--resize must be from 1 to {MAX_SIDE_PX:,} pixels per side, got {width}x{height}"
+        )
 
 
 def picture_quality(picture: np.ndarray, models: Sequence[NiqeModel]) -> PictureQuality:
-    """Return the figures of a picture, uint8 [H, W, 3]; NIQE is nan where it has none."""
+    """Compute the quality metrics of an image, uint8 [H, W, 3]."""
     return PictureQuality(
         _niqe(picture, models),
         piqe(picture),
@@ -173,15 +212,15 @@ def measure_quality(
     *,
     progress: Progress = no_progress,
 ) -> QualityReport:
-    """Measure pictures as they are, and resized.
+    """Compute the mean quality metrics of images at their original size and, if requested, resized.
 
     Args:
-        name: of the data set.
-        keys: of the pictures.
-        read: returns a picture of a key, uint8 [H, W, 3].
-        models: of NIQE.
-        resize: width and height to measure at too; None for none.
-        progress: called after each image.
+        name: Name of the data set.
+        keys: Keys of the images to measure.
+        read: Function that reads the image with a key, uint8 [H, W, 3].
+        models: NIQE models to use.
+        resize: Width and height of a second size to measure. None measures only the original size.
+        progress: Callback that reports progress after each image.
     """
     found: dict[str, list[PictureQuality]] = {NATIVE: []}
     sizes = set()
@@ -208,9 +247,9 @@ def measure_quality(
 
 
 def resize_and_crop(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
-    """Return a picture at a width and height, each pixel the mean of what it covers.
+    """Resize an image to a width and height with an area filter, or bicubic if it is enlarged.
 
-    A picture of other proportions is cut to those of the size, about its middle.
+    An image with a different aspect ratio is cropped around its centre.
     """
     image = Image.fromarray(picture)
     share = max(size[0] / image.width, size[1] / image.height)
@@ -222,9 +261,9 @@ def resize_and_crop(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
 
 
 def quality_text(report: QualityReport) -> str:
-    """Return the table, the paper's rows above, and what to heed in reading it."""
+    """Format a report as a table with the paper's values at the top and remarks below."""
     shown = _shown_variants(report)
-    head = ["data set", "size", "pictures", *(f"NIQE {name}" for name in shown)]
+    head = ["data set", "size", "images", *(f"NIQE {name}" for name in shown)]
     head += ["PIQE", *(f"LV k={kernel}" for kernel in KERNELS)]
     rows = [tuple(head)]
     rows += [_published_row(row, shown) for row in PUBLISHED_QUALITY]
@@ -240,12 +279,12 @@ def quality_text(report: QualityReport) -> str:
     lines += [f"note: {caveat}" for caveat in CAVEATS]
     without = max((row.without_niqe for row in report.rows), default=0)
     if without:
-        lines.append(f"note: {without:,} pictures are too small or too flat for NIQE.")
+        lines.append(f"note: {without:,} images are too small or too uniform for NIQE.")
     return "\n".join(lines)
 
 
 def quality_json(report: QualityReport) -> dict[str, Any]:
-    """Return everything, the paper's rows and the caveats too, as JSON values."""
+    """Return a report with the paper's values and the remarks as a dict for JSON."""
     return {
         **asdict(report),
         "published": {"source": PAPER, "rows": [asdict(row) for row in PUBLISHED_QUALITY]},

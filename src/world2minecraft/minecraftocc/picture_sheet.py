@@ -1,4 +1,4 @@
-"""Draw contact sheets: many images side by side, each with a caption under it."""
+"""Contact sheets: many images side by side with captions."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -26,24 +26,26 @@ MAX_PX = 60_000_000  # Of a sheet.
 def make_contact_sheet(
     pictures: Iterable[tuple[np.ndarray, str]], columns: int = 6, tile_px: int = 240
 ) -> np.ndarray:
-    """Return a sheet of pictures with captions, uint8 [H, W, 3].
+    """Compose images with captions into a contact sheet, uint8 [H, W, 3].
 
     Args:
-        pictures: uint8 [h, w, 3] each, and its caption; they may differ in size.
-        columns: pictures a row.
-        tile_px: the width of a picture on the sheet.
+        pictures: Images, uint8 [h, w, 3] of any size, with their captions.
+        columns: Number of images per row.
+        tile_px: Width of each image on the sheet in pixels.
 
     Raises:
-        UsageError: there is no picture, or the sheet would be too large.
+        UsageError: If there are no images, or if the sheet would be too large.
     """
     tiles = [(_thumbnail(colour, tile_px), caption) for colour, caption in pictures]
     if not tiles:
-        raise UsageError("a sheet needs one picture or more")
+        raise UsageError("a contact sheet needs at least one image")
     tall = max(tile.height for tile, _ in tiles) + LINE_PX + GAP_PX
     columns = min(columns, len(tiles))
     size = (columns * (tile_px + GAP_PX) + GAP_PX, -(-len(tiles) // columns) * tall + GAP_PX)
     if size[0] * size[1] > MAX_PX:
-        raise UsageError(f"a sheet of {size[0]}x{size[1]} pixels is too large; ask for fewer")
+        raise UsageError(
+            f"a contact sheet of {size[0]}x{size[1]} pixels is too large; use fewer images"
+        )
     page = Image.new("RGB", size, PAPER)
     drawn, font = ImageDraw.Draw(page), ImageFont.load_default(12)
     for number, (tile, caption) in enumerate(tiles):
@@ -55,7 +57,7 @@ def make_contact_sheet(
 
 
 def spread_indices(count: int, limit: int) -> list[int]:
-    """Return up to ``limit`` numbers below ``count``, evenly spread.
+    """Return up to ``limit`` evenly spaced indices below ``count``.
 
     Example:
         >>> spread_indices(10, 4)
@@ -67,24 +69,24 @@ def spread_indices(count: int, limit: int) -> list[int]:
 
 
 def select_indices(count: int, limit: int, first: bool) -> list[int]:
-    """Return up to ``limit`` numbers below ``count``: the first ones, or spread over all."""
+    """Return up to ``limit`` indices below ``count``, either the first ones or evenly spaced ones."""
     return list(range(min(count, limit))) if first else spread_indices(count, limit)
 
 
 def pictures_of_dataset(
     folder: Path, limit: int, *, first: bool = False, split: str = "", labels: bool = False
 ) -> Iterable[tuple[np.ndarray, str]]:
-    """Yield pictures of a data set with their captions.
+    """Yield images of a data set with their captions.
 
     Args:
-        folder: the data set.
-        limit: how many samples at most.
-        first: take the first ones, not some spread over all.
-        split: train or test; all samples where empty.
-        labels: yield each picture a second time with its labels drawn over it.
+        folder: Folder of the data set.
+        limit: Maximum number of samples.
+        first: Whether to use the first samples instead of evenly spaced ones.
+        split: Split to use, ``train`` or ``test``. An empty string uses all samples.
+        labels: Whether to yield each image again with its labels overlaid.
 
     Raises:
-        InputError: the data set has no pictures and ``labels`` is not given.
+        InputError: If the data set contains no images and ``labels`` is False.
     """
     store = open_store(folder)
     keys = store.keys(split or None)
@@ -93,7 +95,9 @@ def pictures_of_dataset(
         if sample.colour is not None:
             yield sample.colour, keys[number]
         elif not labels:
-            raise InputError(folder, "has labels and no pictures; add --labels to see the labels")
+            raise InputError(
+                folder, "contains labels but no images; add --labels to show the labels"
+            )
         if labels:
             yield overlay_labels(sample), f"{keys[number]} labels"
 
@@ -107,15 +111,15 @@ def pictures_of_tour(
     first: bool = False,
     hour: float | None = None,
 ) -> Iterable[tuple[np.ndarray, str]]:
-    """Draw views of a tour file in its world; yield them with their captions.
+    """Render views of a tour file in its world and yield them with their captions.
 
     Args:
-        tour: the file.
-        world: what it is a tour of.
-        limit: how many views at most.
-        width_px: the width of each picture.
-        first: take the first ones, not some spread over all.
-        hour: the time of day that lights them; that of ``LightSettings`` where None.
+        tour: Tour file.
+        world: World that the tour was made for.
+        limit: Maximum number of views.
+        width_px: Width of each image in pixels.
+        first: Whether to use the first views instead of evenly spaced ones.
+        hour: Time of day for the light, from 0 to 24. Defaults to that of ``LightSettings``.
     """
     volume = open_scene_source(world).volume()
     views = read_views(tour, volume.block_to_room)
@@ -134,13 +138,13 @@ def draw_views(
     width_px: int,
     light: LightSettings = DAY,
 ) -> Iterable[np.ndarray]:
-    """Draw views small, uint8 [h, width_px, 3] each.
+    """Render small images of views, uint8 [h, width_px, 3] each.
 
     Args:
-        scene: ``prepare_scene`` of a volume.
-        views: cameras, and ``camera_to_room`` float64 [4, 4].
-        width_px: how wide.
-        light: how it is lit.
+        scene: Scene prepared with ``prepare_scene``.
+        views: Cameras with their poses in the room, float64 [4, 4].
+        width_px: Width of each image in pixels.
+        light: Light settings.
     """
     cameras = [pinhole_camera(camera, width_px) for camera, _ in views]
     options = DrawOptions(outputs=("colour",), light=light, samples=2)

@@ -1,6 +1,7 @@
-"""The plan of a data set: its scenes with their split and their share of the images.
+"""The plan of a data set: its scenes with their splits and numbers of images.
 
-The plan also says how each picture is taken; it alone decides every byte, whoever carries it out.
+The plan also contains all settings for images and labels. It determines every byte of the data set,
+independent of the engine and the machine.
 """
 
 import hashlib
@@ -24,7 +25,13 @@ MAX_SCENE_NAME = 46
 
 @dataclass(frozen=True)
 class Preset:
-    """A size of the paper: images of either split, and how many houses give enough views."""
+    """A data set size from the paper.
+
+    Attributes:
+        train: Number of training images.
+        test: Number of test images.
+        houses: Number of houses to generate, enough for these images.
+    """
 
     train: int
     test: int
@@ -40,7 +47,19 @@ PRESETS = {
 
 @dataclass(frozen=True)
 class Recipe:
-    """How every picture of a data set is taken, labelled and packed."""
+    """The settings for rendering, labelling and storing the images of a data set.
+
+    Attributes:
+        camera: Camera of the images.
+        region: Rule for the region of each image.
+        is_block_cells: Whether to use one cell per block, overriding the cell size of ``region``.
+        files: File formats of a sample.
+        pictures: Whether to render images and depth maps. False writes only labels and masks.
+        block_map: Name or file of the block map.
+        hour: Time of day from 0 to 24. None uses that of each scene.
+        paper_compat: Whether to store also the matrices K and E as printed in the paper.
+        seed: Random seed.
+    """
 
     camera: Camera = field(default_factory=nyu_camera)
     region: RegionRule = field(default_factory=RegionRule)
@@ -53,7 +72,7 @@ class Recipe:
     seed: int = 0
 
     def facts(self) -> dict[str, Any]:
-        """Return all of it as JSON."""
+        """Return all settings as a dict for JSON."""
         data = asdict(self)
         data["camera"] = {k: v for k, v in data["camera"].items() if k != "distortion"}
         return data
@@ -61,9 +80,16 @@ class Recipe:
 
 @dataclass(frozen=True)
 class GivenViews:
-    """Views that somebody has recorded: a tour file, or a folder of screenshots with their poses.
+    """Recorded views to use instead of planned ones: a tour file, or a folder of screenshots.
 
-    ``at`` says whether screenshots tell the feet or the eye; see ``minecraftocc.screenshots``.
+    Attributes:
+        path: Tour file or folder of screenshots.
+        is_screenshots: Whether ``path`` is a folder of screenshots.
+        at: Reference point of the screenshot positions, ``feet`` or ``eye``; see
+            ``minecraftocc.screenshots``.
+        pattern: Pattern of the screenshot file names.
+        vertical_fov_deg: Vertical field of view of screenshots that do not record their own, in
+            degrees.
     """
 
     path: str
@@ -75,7 +101,18 @@ class GivenViews:
 
 @dataclass(frozen=True)
 class SceneSpec:
-    """A scene of a data set. ``house`` is the number of a house that is generated, else 0."""
+    """A scene of a data set.
+
+    Attributes:
+        scene_id: Unique name of the scene.
+        path: World, run folder or schematic of the scene.
+        house: Number of the generated house, or 0 for an existing world.
+        split: ``train`` or ``test``.
+        images: Number of images.
+        blocks_per_metre: Scale for worlds that do not record their own.
+        box: Part of the world to use, as x0 y0 z0 x1 y1 z1 in blocks.
+        given: Recorded views. None plans views automatically.
+    """
 
     scene_id: str
     path: str
@@ -89,7 +126,13 @@ class SceneSpec:
 
 @dataclass(frozen=True)
 class DatasetPlan:
-    """All that a data set is made of."""
+    """All settings that define a data set.
+
+    Attributes:
+        scenes: Scenes with their splits and numbers of images.
+        recipe: Settings for images and labels.
+        preset: Name of the preset that was used, if any.
+    """
 
     scenes: tuple[SceneSpec, ...]
     recipe: Recipe = field(default_factory=Recipe)
@@ -97,7 +140,7 @@ class DatasetPlan:
 
     @property
     def images(self) -> dict[str, int]:
-        """How many images each split has."""
+        """Number of images in each split."""
         splits = sorted({scene.split for scene in self.scenes}, reverse=True)
         return {
             split: sum(scene.images for scene in self.scenes if scene.split == split)
@@ -105,7 +148,7 @@ class DatasetPlan:
         }
 
     def facts(self) -> dict[str, Any]:
-        """Return what ``dataset.json`` tells of the plan, and a later run compares."""
+        """Return the plan as it is stored in ``dataset.json`` and compared when a build is resumed."""
         return {
             "preset": self.preset,
             "recipe": self.recipe.facts(),
@@ -114,7 +157,7 @@ class DatasetPlan:
 
 
 def house_scenes(houses: int) -> list[SceneSpec]:
-    """Return the specs of generated houses, without split and images."""
+    """Return scenes for generated houses, without splits and numbers of images."""
     return [
         SceneSpec(f"house_{number:04d}", f"worlds/house_{number:04d}", number)
         for number in range(1, houses + 1)
@@ -122,7 +165,11 @@ def house_scenes(houses: int) -> list[SceneSpec]:
 
 
 def preset_named(name: str) -> Preset:
-    """Return a preset. Raises UnknownNameError."""
+    """Return the preset with this name.
+
+    Raises:
+        UnknownNameError: If there is no such preset.
+    """
     if name not in PRESETS:
         raise UnknownNameError("preset", name, PRESETS)
     return PRESETS[name]
@@ -136,19 +183,21 @@ def plan_dataset(
     recipe: Recipe | None = None,
     test_share: float = TEST_SHARE,
 ) -> DatasetPlan:
-    """Return a plan: scenes are split by chance of the seed, images shared evenly among them.
+    """Plan a data set: split the scenes randomly and distribute the images evenly among them.
 
-    A scene's place in that chance depends on its name alone, so another scene more changes little.
+    The split of a scene depends on the seed and on its name, so adding a scene changes few others.
 
     Args:
-        scenes: with names that differ.
-        images: how many in all, where there is no preset.
-        preset: one of ``PRESETS``, or none.
-        recipe: how pictures are taken; its seed splits too.
-        test_share: of the images, without a preset; at least one scene is for training.
+        scenes: Scenes with unique names.
+        images: Total number of images. Required without a preset.
+        preset: Name of a preset in ``PRESETS``, or an empty string.
+        recipe: Settings for images and labels. Its seed also determines the split.
+        test_share: Fraction of the images to use for testing, without a preset. At least one scene
+            is used for training.
 
     Raises:
-        UsageError: the numbers do not go together. UnknownNameError: there is no such preset.
+        UsageError: If the arguments contradict each other.
+        UnknownNameError: If there is no such preset.
     """
     how = recipe or Recipe()
     _check(scenes, images, preset, test_share)
@@ -177,16 +226,16 @@ def plan_dataset(
 
 
 def source_scenes(paths: Sequence[Path]) -> list[SceneSpec]:
-    """Return the specs of worlds and schematics, each with a name of its own.
+    """Return scenes for worlds and schematics, with unique names.
 
     Raises:
-        UsageError: a place is given twice; it would be trained on and tested on.
+        UsageError: If a path is given twice.
     """
     found: dict[str, SceneSpec] = {}
     known: set[Path] = set()
     for path in paths:
         if path.resolve() in known:
-            raise UsageError(f"{path} is given twice; give each world once")
+            raise UsageError(f"{path} is listed twice; list each world only once")
         known.add(path.resolve())
         name = base = scene_id_of(path)[:MAX_SCENE_NAME]
         number = 2
@@ -198,22 +247,21 @@ def source_scenes(paths: Sequence[Path]) -> list[SceneSpec]:
 
 def _check(scenes: Sequence[SceneSpec], images: int | None, preset: str, test_share: float) -> None:
     if not scenes:
-        raise UsageError("a data set needs a scene: give --houses, --worlds, --world or --schem")
+        raise UsageError("no scenes; add --houses, --worlds, --world or --schem")
     if len(scenes) > MAX_SCENES:
-        raise UsageError(f"at most {MAX_SCENES:,} scenes are taken, not {len(scenes):,}")
+        raise UsageError(f"a data set may have at most {MAX_SCENES:,} scenes, got {len(scenes):,}")
     if preset:
         if images is not None:
-            raise UsageError(f"--preset {preset} says how many images; leave out --images")
+            raise UsageError(f"--preset {preset} sets the number of images; remove --images")
         if len(scenes) < 2:
-            raise UsageError(f"--preset {preset} is split by scene: give it two scenes or more")
+            raise UsageError(f"--preset {preset} needs at least two scenes, one for each split")
     elif images is None or not len(scenes) <= images <= MAX_IMAGES:
-        given = "no number" if images is None else f"{images:,}"
+        given = "none" if images is None else f"{images:,}"
         raise UsageError(
-            f"--images is one for each of {len(scenes)} scenes or more, up to {MAX_IMAGES:,}, "
-            f"not {given}"
+            f"--images must be from {len(scenes):,} (one per scene) to {MAX_IMAGES:,}, got {given}"
         )
     if not 0 <= test_share < 1:
-        raise UsageError(f"--test-share is 0 or more and below 1, not {test_share:g}")
+        raise UsageError(f"--test-share must be at least 0 and below 1, got {test_share:g}")
 
 
 def _test_scenes(scenes: int, share: float) -> int:

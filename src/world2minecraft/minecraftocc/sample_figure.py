@@ -1,7 +1,7 @@
-"""Draw a sample as one figure: its image, its depth, its labels, and the region from above.
+"""Figures of samples: the image, its depth, its labels, and a top view of its region.
 
-The labels are cast back into the image: where the colours lie on the things, axes, camera and
-labels belong together. A figure beside states the same of the depth.
+The labels are projected into the image. If the colours match the objects, the axes, the camera and
+the labels are consistent. The figure also contains a number that checks the depth in the same way.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ RAMP = np.array(
 
 
 def draw_sample(sample: OccSample) -> np.ndarray:
-    """Return the picture of a sample, uint8 [H, W, 3]."""
+    """Draw the figure of a sample, uint8 [H, W, 3]."""
     width, height = PANEL_PX
     sheet = Sheet(MARGIN_PX * 4 + width * 2 + 150, HEAD_PX + (height + LINE_PX + MARGIN_PX) * 2)
     sheet.text((MARGIN_PX, 14), sample.key, 20, INK, bold=True)
@@ -44,10 +44,11 @@ def draw_sample(sample: OccSample) -> np.ndarray:
 
 
 def share_of_depth_in_cells(sample: OccSample) -> float | None:
-    """Return the share of the depth's points within the region that lie in an occupied cell.
+    """Return the fraction of depth points in the region that are in or next to an occupied cell.
 
-    Points at most a cell beside one count: surfaces lie on the borders of cells. None where there
-    is no depth, or nothing of it is within the region. Where axes are mixed up it is far below 1.
+    Points in a cell that shares a face with an occupied cell are counted, because surfaces are at
+    cell borders. The fraction is far below 1 if axes are swapped. Returns None if there is no
+    depth, or if no point is in the region.
     """
     if sample.depth_m is None:
         return None
@@ -58,10 +59,10 @@ def share_of_depth_in_cells(sample: OccSample) -> float | None:
 
 
 def project_labels(sample: OccSample) -> np.ndarray:
-    """Return the label of what each pixel sees, uint8 [H, W]; 0 where the region does not hold it.
+    """Return the label that each pixel sees, uint8 [H, W], or 0 if its surface is outside the region.
 
-    It is that of the cell behind the depth; where there is none, of the first cell that the ray
-    meets. The cell that the camera itself is in hides nothing.
+    The label is that of the cell behind the depth or, without depth, of the first occupied cell
+    along the ray. The cell that contains the camera is ignored.
     """
     region, labels = sample.occ.region, np.array(sample.occ.labels)
     camera_to_region = _camera_to_region(sample)
@@ -83,11 +84,11 @@ def _camera_to_region(sample: OccSample) -> np.ndarray:
 
 
 def cells_behind_depth(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where pixels lead by their depth: to the cell a little behind the surface they see.
+    """Return the cell just behind the surface that each pixel sees.
 
     Returns:
-        Pixels int32 [N] of the flat image, rising, and cells int64 [N, 3] of the region; pixels
-        that see beyond it are left out.
+        The flat indices of the pixels in ascending order, int32 [N], and their cells in the region,
+        int64 [N, 3]. Pixels that see surfaces outside the region are omitted.
     """
     region = sample.occ.region
     finite = np.isfinite(depth_m) & (depth_m > 0)
@@ -101,7 +102,7 @@ def cells_behind_depth(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarr
 
 
 def overlay_labels(sample: OccSample) -> np.ndarray:
-    """Return the picture with its labels over it, uint8 [H, W, 3]; on grey where there is none."""
+    """Overlay the labels of a sample on its image, or on a grey background without an image."""
     size = (sample.camera.height_px, sample.camera.width_px)
     colour = np.full((*size, 3), PANEL, np.uint8) if sample.colour is None else sample.colour
     labels = project_labels(sample)
@@ -115,12 +116,12 @@ def _panels(sample: OccSample) -> list[tuple[str, np.ndarray, bool]]:
     if colour is None:
         colour = np.full((*size, 3), PANEL, np.uint8)
     seen, far_m = _depth_colours(sample, size)
-    title = "picture" if sample.colour is not None else "picture: none"
+    title = "image" if sample.colour is not None else "image: none"
     return [
         (f"{title}, {size[1]} x {size[0]}", colour, True),
         (f"depth, 0 to {far_m:.1f} m" if far_m else "depth: none", seen, True),
-        ("labels, as the camera meets them", overlay_labels(sample), True),
-        ("the region from above, without its ceiling", _from_above(sample), False),
+        ("labels, projected into the image", overlay_labels(sample), True),
+        ("top view of the region without ceiling", _from_above(sample), False),
     ]
 
 

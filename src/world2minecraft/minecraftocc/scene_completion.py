@@ -1,9 +1,9 @@
-"""Semantic scene completion of one depth image in the grid of its frame: SSCNet's task.
+"""Semantic scene completion of a single depth image, the task of SSCNet.
 
-The grid is that of a file: of a ``.bin`` of SSCNet only its first 76 bytes are read, where the grid
-begins and where the camera stands; its labels never are. The picture is fused by our own fusion in
-the grid's own cells, and the completion network classifies each. Observed surface stays
-occupied; everything else is what the network finds likelier.
+The grid is defined by a file. Of an SSCNet ``.bin``, only the first 76 bytes are read, which
+contain the origin of the grid and the camera pose; the labels are never read. The depth image is
+fused into the grid and the completion network classifies each cell. Observed surfaces stay
+occupied; all other cells get the most likely label.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,12 @@ FLOOR_SHARE = 0.2  # Of the largest level's points: as much as a floor half hidd
 
 @dataclass(frozen=True, eq=False)
 class GridPlace:
-    """Where a frame's grid of 60 x 60 x 36 cells of 8 cm lies, and where its camera stands."""
+    """The position of a frame's grid of 60 x 60 x 36 cells of 8 cm, and the pose of its camera.
+
+    Attributes:
+        origin_m: Minimum corner of cell (0, 0, 0) in the world in metres, float64 [3], with z up.
+        camera_to_world: Camera pose in the world, float64 [4, 4].
+    """
 
     origin_m: np.ndarray  # float64 [3], minimum corner of cell (0, 0, 0) in the world, z up
     camera_to_world: np.ndarray  # float64 [4, 4]
@@ -47,7 +52,13 @@ class GridPlace:
 
 @dataclass(frozen=True, eq=False)
 class CompletedFrame:
-    """The predictions of a frame's grid, in our axes x, y, z up."""
+    """The predictions for a frame's grid, with the axes x, y and z (up).
+
+    Attributes:
+        labels: Predicted class of each cell (0 to 11), uint8 [60, 60, 36].
+        confidence: Probability of the predicted class, float32 [60, 60, 36].
+        observed: Whether the depth image observes each cell, occupied or free, bool [60, 60, 36].
+    """
 
     labels: np.ndarray  # uint8 [60, 60, 36], 0 to 11
     confidence: np.ndarray  # float32 [60, 60, 36], the chance of the label
@@ -55,17 +66,21 @@ class CompletedFrame:
 
 
 def read_grid_place(path: Path) -> GridPlace:
-    """Read where a frame's grid lies.
+    """Read the grid position and the camera pose of a frame.
 
     Args:
-        path: an SSCNet ``.bin``, or an npz with ``origin_m`` (or ``voxel_origin``) and
+        path: An SSCNet ``.bin`` file, or an npz file with ``origin_m`` (or ``voxel_origin``) and
             ``camera_to_world`` (or ``cam_pose``).
 
     Raises:
-        InputError: it is missing. DamagedFileError: it holds no such geometry.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file does not contain a valid origin and camera pose.
     """
     if not path.is_file():
-        raise InputError(path, "is not there; give an SSCNet .bin, or an npz with the geometry")
+        raise InputError(
+            path,
+            "not found; expected an SSCNet .bin file, or an npz file with an origin and a pose",
+        )
     if path.suffix == ".npz":
         names = npz_array_names(path)
         origin = "origin_m" if "origin_m" in names else "voxel_origin"
@@ -77,7 +92,9 @@ def read_grid_place(path: Path) -> GridPlace:
             head = stream.read(HEADER_BYTES)
         numbers = np.frombuffer(head[: len(head) // 4 * 4], "<f4")
     if len(numbers) != 19 or not np.isfinite(numbers).all():
-        raise DamagedFileError(path, "does not begin with 3 numbers of origin and 16 of a pose")
+        raise DamagedFileError(
+            path, "does not contain an origin (3 numbers) and a camera pose (16 numbers)"
+        )
     try:
         pose = transform("camera_to_world", _rigid(numbers[3:].reshape(4, 4)))
     except ValueError as error:
@@ -94,22 +111,23 @@ def _rigid(pose: np.ndarray) -> np.ndarray:
 
 
 def depth_of_png(path: Path, raw: np.ndarray, code: str = "auto") -> np.ndarray:
-    """Return float32 [H, W] metres of stored values.
+    """Convert the values of a depth PNG to metres, float32 [H, W].
 
     Args:
-        path: for messages.
-        raw: uint16 [H, W].
-        code: ``rotated`` (SSCNet's: millimetres, their bits turned by three), ``mm``, ``8000``
-            (1/8000 m), or ``auto``: turned bits leave nothing in the low three, and of the two
-            others the one by which the picture shows a room.
+        path: File to name in error messages.
+        raw: Values of the PNG, uint16 [H, W].
+        code: ``rotated`` (as in SSCNet: millimetres, with their bits rotated by three), ``mm``,
+            ``8000`` (units of 1/8000 m) or ``auto``. ``auto`` selects ``rotated`` if the three low
+            bits are unused, and otherwise the unit for which the depths are plausible for a room.
 
     Raises:
-        UnknownNameError: no such code. CaptureError: the values are no depths of a room.
+        UnknownNameError: If the code is unknown.
+        CaptureError: If the values are not plausible depths for a room.
     """
     if code not in CODES:
         raise UnknownNameError("depth code", code, CODES)
     if raw.ndim != 2 or raw.dtype != np.uint16 or not raw.any():
-        raise CaptureError(path, "is no depth picture: it must have one channel of 16 bits")
+        raise CaptureError(path, "not a depth image; expected one channel with 16 bits")
     if code == "auto":
         return depth_of_png(path, raw, _likely(raw))
     depth_m = {
@@ -121,7 +139,9 @@ def depth_of_png(path: Path, raw: np.ndarray, code: str = "auto") -> np.ndarray:
     middle = float(np.median(depth_m[depth_m > 0]))
     if not PLAUSIBLE_M[0] <= middle <= PLAUSIBLE_M[1]:
         raise CaptureError(
-            path, f"shows {middle:.2f} m in the middle as {code}; try --depth-code mm or 8000"
+            path,
+            f"implausible median depth of {middle:.2f} m with depth code {code}; try "
+            "--depth-code mm or 8000",
         )
     return depth_m
 
@@ -141,17 +161,17 @@ def complete_frame(
     camera: Camera = NYU_CAMERA,
     model: CompletionModel | None = None,
 ) -> CompletedFrame:
-    """Return what each cell of a frame's grid is.
+    """Predict the class of each cell in a frame's grid.
 
     Args:
-        depth_m: float32 [H, W], z-depth, 0 = hole.
-        place: the grid and the camera.
-        colour: uint8 [H, W, 3] of the same camera, where there is one.
-        camera: of the picture; NYUv2's by default.
-        model: the network; the shipped one by default.
+        depth_m: Depth along the camera's z axis in metres, float32 [H, W]; 0 for holes.
+        place: Position of the grid and pose of the camera.
+        colour: Colour image from the same camera, uint8 [H, W, 3], if available.
+        camera: Camera of the image. Defaults to that of NYUv2.
+        model: Completion network. Defaults to the shipped network.
 
     Raises:
-        CaptureError: nothing of the grid was seen.
+        CaptureError: If no cell of the grid is observed.
     """
     world_to_grid = np.eye(4)
     world_to_grid[:3, 3] = -place.origin_m
@@ -181,7 +201,9 @@ def _in_grid(points: PointEvidence, world_to_grid: np.ndarray) -> FusedEvidence:
     start = np.round(fused.origin_m / VOXEL_M).astype(np.int64)
     first, last = np.maximum(start, 0), np.minimum(start + fused.log_odds.shape, SHAPE)
     if (first >= last).any():
-        raise CaptureError("depth picture", "shows nothing of the grid; are both of one frame?")
+        raise CaptureError(
+            "depth image", "shows no part of the grid; check that both are of one frame"
+        )
     source = tuple(slice(a, b) for a, b in zip(first - start, last - start, strict=True))
     target = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
     arrays = {}
@@ -195,10 +217,11 @@ def _in_grid(points: PointEvidence, world_to_grid: np.ndarray) -> FusedEvidence:
 
 
 def floor_of(points: PointEvidence, world_to_grid: np.ndarray) -> float:
-    """Return the floor's height over the grid's lowest face, in metres.
+    """Estimate the height of the floor above the lowest face of the grid in metres.
 
-    It is the lowest level that faces up with a fair share of the points of the largest; where none
-    does, the world's z = 0, on which frames of NYUv2 stand.
+    The floor is the lowest horizontal surface with at least ``FLOOR_SHARE`` as many upward-facing
+    points as the largest one. If there are too few points, the plane z = 0 of the world is used,
+    which is the floor in NYUv2.
     """
     turn, shift = world_to_grid[:3, :3], world_to_grid[:3, 3]
     world_floor_m = float(shift[2])

@@ -1,4 +1,4 @@
-"""Select the scenes of a data set: generated houses, worlds on disk, and their recorded views."""
+"""Selection of the scenes for a data set: generated houses, existing worlds and recorded views."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -28,20 +28,21 @@ def select_scenes(
     blocks_per_metre: float | None = None,
     given: GivenViews | None = None,
 ) -> list[SceneSpec]:
-    """Return the scenes of a data set, not yet split.
+    """Select the scenes of a data set, without splitting them.
 
     Args:
-        houses: how many houses to generate; those of the preset where None.
-        worlds: worlds, run folders and schematics; no houses are generated where there are any.
-        preset: a preset that says how many houses there are, or none.
-        blocks_per_metre: the scale of worlds that do not state it.
-        given: recorded views of the one world.
+        houses: Number of houses to generate. Defaults to that of the preset.
+        worlds: Worlds, run folders and schematics to use instead of generated houses.
+        preset: Name of a preset, or an empty string.
+        blocks_per_metre: Scale for worlds that do not record their own.
+        given: Recorded views, which require exactly one world.
 
     Raises:
-        UsageError: the arguments contradict each other. InputError: a world is not found.
+        UsageError: If the arguments contradict each other.
+        InputError: If a world is not found.
     """
     if worlds and houses is not None:
-        raise UsageError("--houses are generated; give them without --worlds and --world")
+        raise UsageError("--houses cannot be combined with --worlds or --world")
     if given is not None and len(worlds) != 1:
         raise UsageError("--tour and --screenshots need exactly one --world")
     if worlds:
@@ -52,26 +53,28 @@ def select_scenes(
         return [replace(one, blocks_per_metre=blocks_per_metre, given=given) for one in found]
     count = preset_named(preset).houses if preset and houses is None else houses
     if count is not None and count < 1:
-        raise UsageError(f"--houses must be 1 or more, not {count}")
+        raise UsageError(f"--houses must be 1 or more, got {count}")
     return house_scenes(count or 0)
 
 
 def read_given_views(
     tour: Path | None, screenshots: Path | None, at: str, vertical_fov_deg: float | None
 ) -> tuple[GivenViews | None, int]:
-    """Return recorded views and their number; None where views are to be planned.
+    """Return the recorded views and their number, or None and 0 if no views are given.
 
     Args:
-        tour: a tour file.
-        screenshots: a folder of the game's own pictures with their poses.
-        at: what the positions of screenshots are: feet or eye.
-        vertical_fov_deg: of screenshots that do not state theirs.
+        tour: Tour file.
+        screenshots: Folder of in-game screenshots with their poses.
+        at: Reference point of the screenshot positions, ``feet`` or ``eye``.
+        vertical_fov_deg: Vertical field of view of screenshots that do not record their own, in
+            degrees.
 
     Raises:
-        UsageError: the arguments contradict each other. InputError: a file cannot be read.
+        UsageError: If the arguments contradict each other.
+        InputError: If a file cannot be read.
     """
     if tour is not None and screenshots is not None:
-        raise UsageError("--tour and --screenshots exclude each other; give one of them")
+        raise UsageError("--tour and --screenshots cannot be combined; use only one of them")
     if tour is not None:
         return GivenViews(str(tour)), len(read_tour(tour))
     if screenshots is None:
@@ -83,37 +86,40 @@ def read_given_views(
 
 
 def position_reference(at: str) -> Literal["feet", "eye"]:
-    """Return whether the positions of screenshots are at the feet or at the eye.
+    """Check the reference point of screenshot positions, which must be ``feet`` or ``eye``.
 
     Raises:
-        UsageError: neither is given.
+        UsageError: If the value is neither of these.
     """
     if at == "feet" or at == "eye":
         return at
     raise UsageError(
-        "state where x, y, z of the screenshots are: --at feet, as F3 and most mods show, or "
-        "--at eye; an error of 1.62 blocks spoils every label"
+        "the reference point of the screenshot positions is required: --at feet (as shown by F3 "
+        "and most mods) or --at eye; a wrong choice shifts all labels by 1.62 blocks"
     )
 
 
 def find_worlds(folder: Path) -> list[Path]:
-    """Return the worlds, builds and schematics in a folder, sorted.
+    """Return the worlds, builds and schematics directly inside a folder, sorted by name.
 
     Raises:
-        InputError: the folder is not found, or holds none.
+        InputError: If the folder does not exist or contains no worlds.
     """
     if not folder.is_dir():
-        raise InputError(folder, "is not a folder of worlds")
+        raise InputError(folder, "not a folder; --worlds needs a folder that contains worlds")
     found = [
         path for path in sorted(folder.iterdir()) if path.name[0] != "." and is_scene_source(path)
     ]
     if not found:
-        raise InputError(folder, "holds no world; w2m rooms generate --houses 4 --worlds DIR")
+        raise InputError(
+            folder,
+            "contains no worlds; generate some with w2m rooms generate --houses 4 --worlds DIR",
+        )
     return found
 
 
 def is_scene_source(path: Path) -> bool:
-    """Return whether a path is a world, a build or a schematic, by its name and its files."""
+    """Return whether a path is a world, a build or a schematic, judging by its name and files."""
     if path.is_file():
         return path.suffix.lower() in WORLD_SUFFIXES
     return any((path / mark).exists() for mark in WORLD_MARKS)

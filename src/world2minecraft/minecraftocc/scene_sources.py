@@ -1,10 +1,11 @@
-"""Open any place that holds blocks as a scene of a data set: blocks, classes and designs.
+"""Scene sources: any world, run folder or schematic, opened with blocks, classes and designs.
 
-In: a run's folder, a generated world, a world of anyone, a schematic. Files beside the blocks say
-what they are (``scene.json``, ``scene.npz``); without them, a block map decides.
+If ``scene.json`` and ``scene.npz`` are next to the blocks, the classes are read from them;
+otherwise a block map assigns the classes.
 
-In a world of others the box that somebody has built is searched for: in the chunks around the spawn
-first, by the palette of each of their sections, then in all others, up to a number.
+In worlds that were not created by this program, the built-up area is detected. The chunks around
+the spawn point are searched first, using the palette of each chunk section, and then all other
+chunks up to a limit.
 """
 
 import re
@@ -59,29 +60,37 @@ _FIRST = ("build", "world")  # Names of folders that say nothing of the scene.
 
 
 def find_built_box(world: Path) -> tuple[Box, str]:
-    """Return the box of what was built in a world, and a sentence that says so.
+    """Find the built-up area of a world.
 
-    Where nothing looks built, the blocks around the spawn are returned.
+    If nothing looks built, the blocks around the spawn point are used.
+
+    Returns:
+        The box of the built-up area, and a message for the user that describes the choice.
 
     Raises:
-        InputError: it is no world. DamagedFileError: a file of it is broken.
+        InputError: If the folder is not a world.
+        DamagedFileError: If a file of the world is damaged.
     """
     spawn = level_spawn(read_level(world))
     sections, was_cut = _built_sections(world, (spawn[0] >> 4, spawn[2] >> 4))
     if max(sections.values(), default=0) < MIN_BUILT_KINDS:
         box, _ = box_around_spawn(world)
         return box, (
-            "nothing in this world looks built, so the blocks around its spawn are taken; "
-            "--box x0 y0 z0 x1 y1 z1 chooses others"
+            "no buildings found in this world; using the blocks around the spawn point "
+            "(change with --box x0 y0 z0 x1 y1 z1)"
         )
     box = _box_of(_main_build(sections, spawn))
     corners = " ".join(str(value) for value in box)
-    more = f"; only the {MAX_CHUNKS:,} chunks nearest to the spawn were searched" if was_cut else ""
-    return box, f"this world has no scene.json: taking what looks built, --box {corners}{more}"
+    more = (
+        f"; only the {MAX_CHUNKS:,} chunks nearest to the spawn point were searched"
+        if was_cut
+        else ""
+    )
+    return box, f"this world has no scene.json; using the detected buildings: --box {corners}{more}"
 
 
 def is_built(state: str) -> bool:
-    """Whether a block state is one that players build of, or a mod's.
+    """Return whether a block state is typical of player-made builds, or belongs to a mod.
 
     Example:
         >>> is_built("minecraft:white_concrete"), is_built("minecraft:stone")
@@ -171,16 +180,18 @@ def _box_of(places: Iterable[tuple[int, int, int]]) -> Box:
 
 
 def read_designs(folder: Path | None, volume: BlockVolume) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Return the design of each block of a volume, uint16 [X, Y, Z], and their names.
-
-    Number 0 stands for none; its name is empty.
+    """Return the furniture design of each block in a volume.
 
     Args:
-        folder: that of the ``scene.json``, or None.
-        volume: the blocks.
+        folder: Folder with ``scene.json``, or None.
+        volume: Volume of blocks.
+
+    Returns:
+        The design index of each block, uint16 [X, Y, Z], and the names of the designs. Index 0
+        means no design and has an empty name.
 
     Raises:
-        DamagedFileError: designs are there and cannot be read.
+        DamagedFileError: If the designs are stored but cannot be read.
     """
     none = np.zeros(volume.states.shape, np.uint16)
     if folder is None or not (folder / "scene.npz").is_file():
@@ -206,10 +217,18 @@ def _designs_of_run(
 
 @dataclass(frozen=True)
 class SceneSource:
-    """A scene that is read when it is asked for; it can be sent to another process.
+    """A scene whose blocks are read on demand. It can be pickled and sent to another process.
 
-    Labels are the truth where there is one, and by the block map where not. By another map than
-    ``nyu`` the truth is mapped too, as far as blocks and designs tell.
+    Stored classes are used if there are any; otherwise the block map assigns the classes. With a
+    block map other than ``nyu``, stored classes are also converted, as far as the block and design
+    of each cell determine the class.
+
+    Attributes:
+        path: World, run folder or schematic.
+        scene_id: Name of the scene.
+        block_map: Name or file of the block map.
+        box: Part of the world to use, in blocks. None uses the recorded or detected part.
+        blocks_per_metre: Scale for worlds that do not record their own.
     """
 
     path: Path
@@ -220,34 +239,38 @@ class SceneSource:
     _cache: dict = field(default_factory=dict, repr=False, compare=False, hash=False)
 
     def __getstate__(self) -> dict:
-        """Leave out what was read: each process reads for itself."""
+        """Return the state without cached data, since each process reads the files itself."""
         return {
             key: value for key, value in self.__dict__.items() if key[0] != "_" and key != "rules"
         }
 
     def __setstate__(self, state: dict) -> None:
-        """Take what was sent."""
+        """Restore the state with an empty cache."""
         self.__dict__.update(state, _cache={})
 
     @cached_property
     def rules(self) -> BlockMap:
-        """The block map."""
+        """Block map of the scene."""
         return load_block_map(self.block_map)
 
     def volume(self) -> BlockVolume:
-        """Return the blocks with a class each; the same volume each time.
+        """Return the blocks with their classes. The volume is read once and cached.
 
         Raises:
-            InputError: it cannot be read, or holds air alone. UsageError: the box lies beside it.
+            InputError: If the source cannot be read, or contains only air.
+            UsageError: If the box is outside the source.
         """
         if "volume" not in self._cache:
             self._cache["volume"] = self._labelled()
         return self._cache["volume"]
 
     def designs(self) -> tuple[np.ndarray, tuple[str, ...]]:
-        """Return which furniture design each block is part of: uint16 [X, Y, Z], and the names.
+        """Return the furniture design of each block.
 
-        Number 0 stands for none; its name is empty. Worlds of others have no designs.
+        Returns:
+            The design index of each block, uint16 [X, Y, Z], and the names of the designs. Index 0
+            means no design and has an empty name. Worlds that were not created by this program have
+            no designs.
         """
         if "designs" not in self._cache:
             source = self._read()
@@ -255,16 +278,16 @@ class SceneSource:
         return self._cache["designs"]
 
     def start(self) -> tuple[float, float, float] | None:
-        """Return where its player starts, the feet in world blocks; None where it does not say."""
+        """Return the player's start position (feet, in block coordinates), or None if unknown."""
         start = self._read().start
         return None if start is None else (start.x, start.y, start.z)
 
     def has_truth(self) -> bool:
-        """Whether classes lie beside the blocks, rather than being told by the map alone."""
+        """Return whether classes are stored with the blocks, rather than assigned by the block map."""
         return bool(self._read().volume.semantic.any())
 
     def notes(self) -> list[str]:
-        """Return what was chosen for the user, in sentences."""
+        """Return messages for the user about choices that were made automatically."""
         return self._read().notes
 
     def _read(self) -> BuildSource:
@@ -297,26 +320,27 @@ def open_scene_source(
     block_map: str | Path = OWN_MAP,
     scene_id: str = "",
 ) -> SceneSource:
-    """Return the scene of a place; its blocks are read when they are asked for.
+    """Open a scene. Its blocks are read on demand.
 
     Args:
-        path: a run's folder, its ``build``, a folder with ``world/`` and ``scene.json``, a folder
-            with ``level.dat``, or a file such as ``house.schem``, ``.litematic``, ``.nbt``.
-        box: x0 y0 z0 x1 y1 z1 in blocks, the last ones not included. Left out, a scene says its
-            own, and in a world of others what was built is looked for.
-        blocks_per_metre: the scale, where the place does not say it; 1 where nobody does.
+        path: Run folder or its ``build`` folder, folder with ``world/`` and ``scene.json``, folder
+            with ``level.dat``, or a file such as ``house.schem``, ``.litematic`` or ``.nbt``.
+        box: Part of the world to use, as x0 y0 z0 x1 y1 z1 in blocks, upper bounds excluded.
+            Defaults to the recorded box or, for other worlds, to the detected buildings.
+        blocks_per_metre: Scale for sources that do not record their own. Defaults to 1.
         block_map: ``nyu``, ``paper`` or the path of a YAML file.
-        scene_id: what it is called; made of the path where it is left out.
+        scene_id: Name of the scene. Derived from the path by default.
 
     Raises:
-        InputError: nothing is there. UsageError: the box or the scale cannot be.
-        UnknownNameError: there is no such block map.
+        InputError: If the path does not exist.
+        UsageError: If the box or the scale is not valid.
+        UnknownNameError: If there is no such block map.
     """
     place = Path(path)
     if not place.exists():
-        raise InputError(place, "is not there")
+        raise InputError(place, "not found")
     if blocks_per_metre is not None and not 0 < blocks_per_metre <= 64:
-        raise UsageError(f"blocks per metre must be above 0 and up to 64, not {blocks_per_metre}")
+        raise UsageError(f"blocks per metre must be above 0 and at most 64, got {blocks_per_metre}")
     load_block_map(block_map)
     return SceneSource(
         place, scene_id or scene_id_of(place), str(block_map), _check_box(box), blocks_per_metre
@@ -324,12 +348,12 @@ def open_scene_source(
 
 
 def source_of_blocks(source: BuildSource, scene_id: str) -> SceneSource:
-    """Return the scene of blocks that are there already, such as those of a running server."""
+    """Return a scene source for blocks in memory, such as those of a running server."""
     return SceneSource(source.path, scene_id, _cache={"source": source})
 
 
 def scene_id_of(path: Path) -> str:
-    """Return a name for the scene of a path: of letters, digits and _.
+    """Derive a scene name from a path, using only letters, digits and underscores.
 
     Example:
         >>> scene_id_of(Path("worlds/house_0001/world"))
@@ -341,9 +365,9 @@ def scene_id_of(path: Path) -> str:
 
 
 def classify_unlabelled(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
-    """Return a volume with classes by a map where it has blocks that it says nothing of.
+    """Classify the unlabelled blocks of a volume with a block map.
 
-    A player who builds on in a world of ours leaves such blocks.
+    Such blocks occur if a player continues to build in a generated world.
     """
     shown = np.array([rules.meaning(state) != "empty" for state in volume.palette])
     unlabelled = (volume.semantic == 0) & (volume.states != 0) & shown[volume.states]
@@ -367,7 +391,7 @@ def _check_box(box: Sequence[int] | None) -> Box | None:
     numbers = [int(value) for value in box]
     if len(numbers) != 6 or any(a >= b for a, b in zip(numbers[:3], numbers[3:], strict=True)):
         raise UsageError(
-            f"a box is x0 y0 z0 x1 y1 z1, each second corner beyond the first, not {list(box)}"
+            f"a box must be x0 y0 z0 x1 y1 z1 with x0 < x1, y0 < y1 and z0 < z1, got {list(box)}"
         )
     x0, y0, z0, x1, y1, z1 = numbers
     return x0, y0, z0, x1, y1, z1

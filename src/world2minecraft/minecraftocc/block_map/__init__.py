@@ -1,7 +1,7 @@
-"""Block maps: from the blocks of any world to the 12 classes, by name and by place.
+"""Block maps, which assign the blocks of any world to the 12 classes by block name and position.
 
-``load_block_map`` gives a shipped map or one of a YAML file, ``classify`` labels a volume by it,
-and ``remap_labels`` gives what is labelled already other classes.
+``load_block_map`` loads a shipped map or a YAML file, ``classify`` labels a volume with a map, and
+``remap_labels`` applies a different map to existing labels.
 """
 
 from world2minecraft.minecraftocc.block_map.classification import (

@@ -1,12 +1,13 @@
-"""Where a block is: the conditions and measures that a rule of a block map can use.
+"""Position-dependent conditions and measures for the rules of a block map.
 
-``Context`` computes each condition of ``CONDITIONS`` when a rule first uses it. Blocks inside
-rooms are segmented into pieces of furniture, which have the measures of ``MEASURES``. Furniture
-stands side by side, so blocks beside each other belong to one piece only where they are the same
-block; blocks on top of each other always do, except what hangs, such as curtains and pictures over
-a sofa. Without the hanging ones that gave, in eight generated houses at 2 to 4 blocks per metre, 1
-to 1.4 times as many pieces as there are, and 85 to 96 of 100 blocks of a piece had its own class;
-joining all blocks that touch gave half as many pieces.
+``Context`` computes each condition in ``CONDITIONS`` when a rule first uses it. Blocks inside rooms
+are segmented into pieces of furniture, which have the measures in ``MEASURES``. Furniture often
+touches other furniture, so horizontally adjacent blocks belong to the same piece only if they are
+the same block. Vertically adjacent blocks always belong to the same piece, except for hanging
+blocks such as curtains and pictures above a sofa. In eight generated houses at 2 to 4 blocks per
+metre, this found 1 to 1.4 times the true number of pieces (hanging blocks not counted), and 85 to
+96 percent of the blocks of a piece had the piece's class. Joining all touching blocks found only
+half of the pieces.
 """
 
 from collections.abc import Callable
@@ -29,38 +30,38 @@ from world2minecraft.minecraftocc.block_map.rules import BlockMap, Rule, Span
 
 # A condition holds or not at a block. Zones first: a block is in one of them.
 CONDITIONS = {
-    "floor": "the layer that one walks on, of a storey's rooms",
-    "ceiling": "the first layer over a room, or a flat roof's",
-    "wall": "a column that closes a room from floor to ceiling, and lintels between such",
-    "inside": "between floor and ceiling of a room, and no wall",
-    "outside": "none of these",
-    "under_floor": "within half a metre under a floor, with no room between",
-    "wall_line": "outside, and straight on from a wall, up or down, for half a metre",
-    "over_ceiling": "over a ceiling, within three metres: roofs and attics",
-    "open_floor": "outside, part of a flat top a metre and a half wide that one can stand on",
-    "air_above": "nothing over the block",
-    "air_below": "nothing under the block",
-    "on_floor": "a floor under the block",
-    "at_wall": "a wall beside the block",
-    "under_ceiling": "a ceiling over the block, or things that hang from one",
-    "turned": "the block is upside down, as a stair that carries a table's top",
-    "coarse": "the scale is under two blocks a metre, where one block is a whole thing",
-    "in_row": "a block of the same kind beside it, at its height",
-    "climbs": "a block of the same kind one step up or down, beside it",
+    "floor": "in the walkable layer of a room",
+    "ceiling": "in the first layer above a room, or in a flat roof",
+    "wall": "in a column between floor and ceiling that closes a room, or in a lintel",
+    "inside": "between the floor and the ceiling of a room, and not a wall",
+    "outside": "in none of the four zones above",
+    "under_floor": "at most half a metre below a floor, with no room in between",
+    "wall_line": "outside, and at most half a metre directly above or below a wall",
+    "over_ceiling": "at most three metres above a ceiling, as roofs and attics are",
+    "open_floor": "outside, on a walkable flat surface at least one and a half metres wide",
+    "air_above": "with no block directly above",
+    "air_below": "with no block directly below",
+    "on_floor": "directly above a floor",
+    "at_wall": "next to a wall",
+    "under_ceiling": "directly below a ceiling, or below blocks that hang from one",
+    "turned": "upside down, such as a stair that supports a table top",
+    "coarse": "at fewer than two blocks per metre, where one block is a piece of furniture",
+    "in_row": "next to a block of the same kind at the same height",
+    "climbs": "next to a block of the same kind that is one block higher or lower",
 }
 # A condition of two words asks for the kind or class of a neighbour: "over fence".
 NEIGHBOURS = {"over": (0, -1, 0), "under": (0, 1, 0)}
 # Of the thing that a block is part of: blocks inside that touch by faces. Metres.
 MEASURES = {
-    "at_m": "of the block alone: its bottom over the floor",
-    "height_m": "from its lowest to its highest block",
-    "bottom_m": "its lowest block over the floor",
-    "top_m": "its highest block's top over the floor",
-    "long_m": "the longer side of its box from above",
-    "wide_m": "the shorter side",
-    "area_m2": "of its columns",
-    "filled": "the share of its box that is filled, 0 to 1",
-    "open": "the share of its columns with nothing at the floor, 0 to 1: under a table's top",
+    "at_m": "height of the block's underside above the floor",
+    "height_m": "height of the piece from its lowest to its highest block",
+    "bottom_m": "height of the piece's underside above the floor",
+    "top_m": "height of the piece's top above the floor",
+    "long_m": "longer side of the piece's bounding box, seen from above",
+    "wide_m": "shorter side of the piece's bounding box, seen from above",
+    "area_m2": "area that the piece covers, seen from above",
+    "filled": "fraction of the piece's bounding box that is filled, from 0 to 1",
+    "open": "fraction of the piece's columns that are empty at the floor, as under a table top",
 }
 SHEET_M, RAISED_M = 1.2, 1.0  # Of a curtain; of one that hangs over a sofa's back.
 PLATE_M = 0.66  # Pictures hang higher than seats are; two blocks of a third of a metre.
@@ -74,20 +75,25 @@ ZONES = {"outside": OUTSIDE, "floor": FLOOR, "ceiling": CEILING, "wall": WALL, "
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Pieces of furniture: ``parts`` int32 [X, Y, Z], 0 for none; measures float64 [pieces + 1]."""
+    """Pieces of furniture in a volume, with their measures.
+
+    Attributes:
+        parts: Number of the piece that each block belongs to, int32 [X, Y, Z]; 0 for none.
+        measures: For each name in ``MEASURES``, its value for each piece, float64 [pieces + 1].
+    """
 
     parts: np.ndarray
     measures: dict[str, np.ndarray]
 
 
 def measure_pieces(parts: np.ndarray, count: int, ground: np.ndarray, scale: float) -> Pieces:
-    """Return pieces with their measures.
+    """Compute the measures of pieces of furniture.
 
     Args:
-        parts: int32 [X, Y, Z], the number of the piece that each block is part of, 0 for none.
-        count: how many pieces there are.
-        ground: int16 [X, Y, Z], the layer of the floor under each block.
-        scale: blocks per metre.
+        parts: Number of the piece that each block belongs to, int32 [X, Y, Z]; 0 for none.
+        count: Number of pieces.
+        ground: Layer of the floor below each block, int16 [X, Y, Z].
+        scale: Blocks per metre.
     """
     found = {name: np.zeros(count + 1) for name in MEASURES if name != "at_m"}
     for number, box in enumerate(ndimage.find_objects(parts), 1):
@@ -110,7 +116,7 @@ def measure_pieces(parts: np.ndarray, count: int, ground: np.ndarray, scale: flo
 
 
 def kind_shares(parts: np.ndarray, kinds: np.ndarray, count: int) -> np.ndarray:
-    """Return the share of each piece's blocks that each kind has, float64 [pieces + 1, count]."""
+    """Return the fraction of each piece's blocks that each kind has, as [pieces + 1, count]."""
     pieces = int(parts.max(initial=0)) + 1
     inside = parts > 0
     pairs = parts[inside].astype(np.int64) * count + kinds[inside]
@@ -126,15 +132,19 @@ def segment_pieces(
     ground: np.ndarray,
     scale: float,
 ) -> tuple[np.ndarray, int]:
-    """Number the pieces of a volume: int32 [X, Y, Z], 0 for none, and how many there are.
+    """Segment the blocks inside rooms into pieces of furniture.
 
     Args:
-        inside: bool [X, Y, Z], the blocks inside that are part of some piece.
-        blocks: int [X, Y, Z], which block each is, whatever its properties.
-        sheets: bool [X, Y, Z], those that curtains are of.
-        plates: bool [X, Y, Z], those that pictures are of.
-        ground: int16 [X, Y, Z], the layer of the floor under each.
-        scale: blocks per metre.
+        inside: Whether each block is inside a room and part of a piece, bool [X, Y, Z].
+        blocks: Number of each block's id without its properties, int [X, Y, Z].
+        sheets: Whether each block can be part of a curtain, bool [X, Y, Z].
+        plates: Whether each block can be part of a picture, bool [X, Y, Z].
+        ground: Layer of the floor below each block, int16 [X, Y, Z].
+        scale: Blocks per metre.
+
+    Returns:
+        The number of the piece that each block belongs to, int32 [X, Y, Z] with 0 for none, and the
+        number of pieces.
     """
     height, first = block_columns(blocks)
     min_height = np.where(first > ground + 1, RAISED_M, SHEET_M) * scale
@@ -172,15 +182,19 @@ def _merge_tall_neighbours(parts: np.ndarray, count: int, tall: int) -> tuple[np
 def connected_parts(
     inside: np.ndarray, blocks: np.ndarray, separate: np.ndarray
 ) -> tuple[np.ndarray, int]:
-    """Number blocks that belong together: on one another, or beside each other and the same.
+    """Number connected groups of blocks.
+
+    Vertically adjacent blocks are connected, and so are horizontally adjacent blocks that are the
+    same.
 
     Args:
-        inside: bool [X, Y, Z], the blocks.
-        blocks: int [X, Y, Z], which each is.
-        separate: bool [X, Y, Z], those that belong to nothing else that is under or over them.
+        inside: Blocks to number, bool [X, Y, Z].
+        blocks: Number of each block's id, int [X, Y, Z].
+        separate: Blocks that are not connected to different blocks above or below, bool [X, Y, Z].
 
     Returns:
-        int32 of the shape of ``inside``, 0 outside and 1 to n inside, and n.
+        The group number of each block, int32 in the shape of ``inside`` (0 outside, 1 to n inside),
+        and n.
     """
     number = np.full(inside.shape, -1, np.int64)
     number[inside] = np.arange(int(inside.sum()))
@@ -202,9 +216,10 @@ def connected_parts(
 
 
 def block_columns(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return how many of the same block stand on one another where each is, and the lowest's layer.
+    """Measure the vertical run of identical blocks that each block is part of.
 
-    Both int [X, Y, Z].
+    Returns:
+        The height of the run in blocks and the layer of its lowest block, both int [X, Y, Z].
     """
     layers = np.arange(blocks.shape[1])[None, :, None]
     begins, ends = np.ones(blocks.shape, bool), np.ones(blocks.shape, bool)
@@ -216,7 +231,7 @@ def block_columns(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def shift(values: np.ndarray, x: int, y: int, z: int) -> np.ndarray:
-    """Return the values of the blocks at an offset; beyond the volume there is nothing, 0."""
+    """Return the neighbour of each block at the given offset, or 0 outside the volume."""
     result = np.zeros_like(values)
     cuts = [_overlap(*pair) for pair in zip((x, y, z), values.shape, strict=True)]
     result[tuple(ours for ours, _ in cuts)] = values[tuple(theirs for _, theirs in cuts)]
@@ -326,15 +341,15 @@ CONDITION_MASKS: dict[str, Callable[["Context"], np.ndarray]] = {
 
 
 class Context:
-    """The surroundings of every block of a volume.
+    """The surroundings of each block in a volume, used to check the rules of a block map.
 
     Args:
-        kinds: int [X, Y, Z], a number for each block's class or kind; 0 is air.
-        names: the name of each number.
-        rules: the map that says what structure, curtains and pictures are of.
-        blocks: int [X, Y, Z], a number for each block's id.
-        turned: bool [X, Y, Z], blocks that are upside down.
-        scale: blocks per metre.
+        kinds: Number of each block's class or kind, int [X, Y, Z]; 0 is air.
+        names: Class or kind name for each number.
+        rules: Block map that defines the kinds for structure, curtains and pictures.
+        blocks: Number of each block's id, int [X, Y, Z].
+        turned: Whether each block is upside down, bool [X, Y, Z].
+        scale: Blocks per metre.
     """
 
     def __init__(
@@ -362,7 +377,7 @@ class Context:
         }
 
     def holds(self, rule: Rule, at: np.ndarray) -> np.ndarray:
-        """Return whether a rule holds at blocks given by flat indices, bool [N]."""
+        """Return whether a rule applies to each block in a list of flat indices, bool [N]."""
         result = np.ones(len(at), bool)
         for name in rule.where:
             truth = self.condition(name.removeprefix("not ")).ravel()[at]
@@ -391,7 +406,7 @@ class Context:
         return (layer - self.zones.ground.ravel()[at] - 1) / self.scale
 
     def condition(self, name: str) -> np.ndarray:
-        """Return where a condition holds, bool [X, Y, Z]."""
+        """Return whether the condition with this name is true for each block, bool [X, Y, Z]."""
         if name in ZONES:
             return self.zones.zone == ZONES[name]
         if name not in self._found:

@@ -1,9 +1,9 @@
-"""Classify blocks by a block map: by their names, then by where they are.
+"""Classify blocks with a block map, by their names and by their positions.
 
-``classify`` labels a volume. ``remap_labels`` gives other classes to cells that are labelled
-already: a stored sample keeps the block and the design of each cell, so another map can be applied
-to it; where these alone do not decide (planks are floor, wall or ceiling), the known class stays.
-``block_map_json`` writes a map for programs that read no YAML.
+``classify`` labels a volume. ``remap_labels`` applies another map to cells that are already
+labelled. A stored sample contains the block and the design of each cell, but not its position in
+the house, so a class that depends on the position (planks can be floor, wall or ceiling) is left
+unchanged. ``block_map_json`` exports a map as JSON for programs that cannot read YAML.
 """
 
 from collections.abc import Sequence
@@ -26,9 +26,9 @@ EMPTY = CLASS_NAMES[0]
 
 
 def class_of_fine(fine: FineClass, rules: BlockMap) -> int | None:
-    """Return the class that a map gives a fine class wherever it is; None where it depends.
+    """Return the class of a fine class, or None if the class depends on the position of the block.
 
-    A design counts for more than the blocks that it is made of.
+    The design takes precedence over the block.
 
     Example:
         >>> from world2minecraft.minecraftocc.block_map import load_block_map
@@ -50,21 +50,27 @@ def class_of_fine(fine: FineClass, rules: BlockMap) -> int | None:
 def remap_labels(
     labels: np.ndarray, fine: np.ndarray, classes: Sequence[FineClass], rules: BlockMap
 ) -> np.ndarray:
-    """Return labels by another map.
+    """Apply another block map to existing labels.
 
     Args:
-        labels: uint8, any shape: 0 to 11 or 255. Cells that are empty or unknown stay so.
-        fine: uint16 of the same shape, indices of ``classes``.
-        classes: the fine classes; the first stands for empty cells.
-        rules: the map.
+        labels: Class of each cell (0 to 11, or 255 for unknown), uint8 of any shape. Empty and
+            unknown cells are not changed.
+        fine: Index into ``classes`` for each cell, uint16 in the same shape.
+        classes: The fine classes; the first one stands for empty cells.
+        rules: Block map to apply.
 
     Raises:
-        UsageError: the shapes differ, or a number is beyond the classes.
+        UsageError: If the shapes differ, or if ``fine`` contains an index outside ``classes``.
     """
     if labels.shape != fine.shape:
-        raise UsageError(f"labels {labels.shape} and fine {fine.shape} must be of one shape")
+        raise UsageError(
+            f"labels and fine must have the same shape, got {labels.shape} and {fine.shape}"
+        )
     if fine.size and int(fine.max()) >= len(classes):
-        raise UsageError(f"fine goes to {fine.max()}, there are {len(classes)} classes")
+        raise UsageError(
+            f"fine must contain indices below {len(classes)}, the number of classes; got "
+            f"{fine.max()}"
+        )
     mapped = [None if n == 0 else class_of_fine(one, rules) for n, one in enumerate(classes)]
     is_mapped = np.array([one is not None for one in mapped])
     values = np.array([one or 0 for one in mapped], np.uint8)
@@ -73,10 +79,10 @@ def remap_labels(
 
 
 def block_map_json(rules: BlockMap) -> dict[str, Any]:
-    """Return a map as a tree of plain values.
+    """Return a block map as nested dicts and lists for JSON.
 
-    ``blocks`` gives each block of the game a class, or the kind whose rules say which; ``words``
-    says what words in names of mods mean.
+    ``blocks`` assigns a class to each block of the game, or the kind whose rules decide its class.
+    ``words`` assigns classes or kinds to words in the block names of mods.
     """
     blocks = {name: rules.meaning(name) for name in known_blocks()} | dict(rules.blocks)
     return {
@@ -105,14 +111,17 @@ def _rule_json(rule: Rule) -> dict[str, Any]:
 
 
 def classify(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
-    """Return a volume with the class of every block, and its objects numbered.
+    """Classify each block of a volume and number the objects.
 
-    The classes and objects that the volume has are ignored. Blocks of one class of objects that
-    touch by a face are one object.
+    Existing classes and object numbers are ignored. Blocks of the same object class that share a
+    face form one object.
 
     Args:
-        volume: the blocks; their scale says how high a person stands.
-        rules: the block map.
+        volume: Volume to classify. Its scale determines sizes in metres, such as headroom.
+        rules: Block map to apply.
+
+    Returns:
+        A copy of the volume with new classes and object numbers.
     """
     semantic = classify_blocks(volume, rules)
     return replace(
@@ -124,7 +133,7 @@ def classify(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
 
 
 def classify_blocks(volume: BlockVolume, rules: BlockMap) -> np.ndarray:
-    """Return the class of every block by a map, uint8 [X, Y, Z]."""
+    """Return the class of each block according to a block map, uint8 [X, Y, Z]."""
     meanings = [EMPTY, *(rules.meaning(state) for state in volume.palette[1:])]
     names = tuple(dict.fromkeys([EMPTY, *meanings]))
     number_of = {name: number for number, name in enumerate(names)}

@@ -1,6 +1,7 @@
-"""Read block maps from YAML, and report what is wrong with one.
+"""Parser for block maps in YAML files.
 
-A file may begin from another map (``extends``): then what it says comes before what that map says.
+A map can extend a shipped map (``extends``). Its own entries then take precedence over those of the
+shipped map.
 """
 
 from collections.abc import Iterable
@@ -36,11 +37,12 @@ SPAN_SIZE = 2
 
 
 def load_block_map(name: str | Path) -> BlockMap:
-    """Return a shipped map by its name, or the map of a file.
+    """Load a shipped block map by name, or a block map from a file.
 
     Raises:
-        UnknownNameError: no map has this name, and it is no file.
-        InputError: the file cannot be read, or is no map. LimitError: it is too large.
+        UnknownNameError: If the name is neither a shipped map nor a file.
+        InputError: If the file cannot be read or is not a valid block map.
+        LimitError: If the file is too large.
     """
     if str(name) in MAPS:
         return load_shipped_map(str(name))
@@ -51,10 +53,11 @@ def load_block_map(name: str | Path) -> BlockMap:
 
 
 def read_block_map(path: Path) -> BlockMap:
-    """Return the map of a YAML file.
+    """Read a block map from a YAML file.
 
     Raises:
-        InputError: there is none, or it is no map. LimitError: it is too large.
+        InputError: If the file does not exist or is not a valid block map.
+        LimitError: If the file is too large.
     """
     raw = _parse_yaml(read_bytes(path, MAX_BYTES), path)
     try:
@@ -65,19 +68,19 @@ def read_block_map(path: Path) -> BlockMap:
 
 @cache
 def load_shipped_map(name: str) -> BlockMap:
-    """Return a map of the program."""
+    """Return the block map with this name that is shipped with the program."""
     return parse_block_map(_shipped_tree(name))
 
 
 def parse_block_map(raw: Any) -> BlockMap:
-    """Return the map that the tree of a file holds.
+    """Parse a block map from the content of a YAML file.
 
     Raises:
-        ValueError: it is no map.
+        ValueError: If the content is not a valid block map.
     """
     keys = _mapping("a block map", raw, KEYS)
     if not isinstance(keys.get("name"), str) or not keys["name"]:
-        raise ValueError("a block map needs a name, such as name: mine")
+        raise ValueError("the block map has no name; add a line such as name: mine")
     whole = _resolve_extends(keys)
     kinds = {kind: _patterns(f"kind {kind}", v) for kind, v in _table(whole, "kinds").items()}
     known = (*CLASS_NAMES, *kinds)
@@ -113,7 +116,7 @@ def _resolve_extends(keys: dict[str, Any]) -> dict[str, Any]:
     if "extends" not in keys:
         return keys
     if keys["extends"] not in MAPS:
-        raise ValueError(f"extends must be one of {', '.join(MAPS)}, not {_short(keys['extends'])}")
+        raise ValueError(f"extends must be one of {', '.join(MAPS)}, got {_short(keys['extends'])}")
     below = _resolve_extends(_shipped_tree(keys["extends"]))
     result = below | keys
     for key in _TABLES:
@@ -155,18 +158,22 @@ def _parse_yaml(text: bytes, path: Path) -> Any:
     try:
         return load_plain_yaml(text)
     except ValueError as error:
-        raise InputError(path, f"is not YAML ({' '.join(str(error).split())[:200]})") from error
+        raise InputError(path, f"not valid YAML ({' '.join(str(error).split())[:200]})") from error
 
 
 def _check_kinds(kinds: Iterable[str], rules: Iterable[str]) -> None:
     for kind in kinds:
         if kind not in rules and kind not in CLASS_NAMES:
-            raise ValueError(f"kind {kind} has no rules; add {kind} under rules")
+            raise ValueError(f"kind {kind} has no rules; add an entry for {kind} under rules")
     for kind in rules:
         if kind in CLASS_NAMES:
-            raise ValueError(f"rules speak of {kind}, which is a class; give the kind another name")
+            raise ValueError(
+                f"rules contains {kind}, which is the name of a class; rename the kind"
+            )
         if kind not in kinds:
-            raise ValueError(f"rules speak of {kind}, which is no kind; kinds: {', '.join(kinds)}")
+            raise ValueError(
+                f"rules contains the unknown kind {kind}; known kinds: {', '.join(kinds)}"
+            )
 
 
 def _rules(kind: str, table: dict[str, Any], kinds: Iterable[str]) -> tuple[Rule, ...]:
@@ -177,13 +184,18 @@ def _rules(kind: str, table: dict[str, Any], kinds: Iterable[str]) -> tuple[Rule
         one = left.pop(0)
         if isinstance(one, str) and one in table:
             if one in visited:
-                raise ValueError(f"rules of {kind} come round to {one} again")
+                raise ValueError(
+                    f"the rules of {kind} include the rules of {one} twice; remove one of "
+                    "the references"
+                )
             visited.add(one)
             left = [*_list(f"rules of {one}", table[one]), *left]
         else:
             rules.append(_rule(kind, one, kinds))
     if not rules or not rules[-1].always:
-        raise ValueError(f"the last rule of {kind} must hold everywhere: a class without where")
+        raise ValueError(
+            f"the last rule of {kind} must be unconditional: give only a class, without where"
+        )
     return tuple(rules)
 
 
@@ -219,7 +231,7 @@ def _words(raw: Any, known: Iterable[str]) -> Words:
     keys = _mapping("words", raw, ("namespaces", "words"))
     spaces = _names("namespaces", {"namespaces": keys.get("namespaces", [])})
     if not spaces:
-        raise ValueError("words need namespaces, such as namespaces: [my_mod]")
+        raise ValueError("words must have namespaces, such as namespaces: [my_mod]")
     words = _mapping("words", keys.get("words", {}))
     return Words(tuple(spaces), {w: _check_name(f"word {w}", m, known) for w, m in words.items()})
 
@@ -239,7 +251,9 @@ def _span(what: str, raw: Any) -> Span:
     is_span = isinstance(raw, list) and len(raw) == SPAN_SIZE
     numbers = [one for one in raw if isinstance(one, int | float)] if is_span else []
     if len(numbers) != SPAN_SIZE or not 0 <= numbers[0] <= numbers[1]:
-        raise ValueError(f"{what} must be two numbers, such as [0.3, 0.6], not {_short(raw)}")
+        raise ValueError(
+            f"{what} must be a minimum and a maximum, such as [0.3, 0.6], got {_short(raw)}"
+        )
     return float(numbers[0]), float(numbers[1])
 
 
@@ -247,7 +261,7 @@ def _check_name(what: str, name: Any, known: Iterable[str]) -> str:
     names = tuple(known)
     if name not in names:
         shown = ", ".join(names[:24])
-        raise ValueError(f"{what} is {_short(name)}, which is none of {shown}")
+        raise ValueError(f"{what} must be one of {shown}; got {_short(name)}")
     return str(name)
 
 
@@ -261,19 +275,25 @@ def _table(keys: dict[str, Any], key: str) -> dict[str, Any]:
 
 def _mapping(what: str, value: Any, known: Iterable[str] = ()) -> dict[str, Any]:
     if not isinstance(value, dict) or not all(isinstance(key, str) for key in value):
-        raise ValueError(f"{what} must be keys with values, not {_short(value)}")
+        raise ValueError(f"{what} must be a mapping with text keys, got {_short(value)}")
     names = tuple(known)
     strange = [key for key in value if names and key not in names]
     if strange:
-        raise ValueError(f"{what} has no {_short(strange[0])}; it has: {', '.join(names)}")
+        raise ValueError(
+            f"{what} contains the unknown key {_short(strange[0])}; known keys: {', '.join(names)}"
+        )
     if len(value) > MAX_NAMES or any(len(key) > MAX_NAME_LENGTH for key in value):
-        raise ValueError(f"{what} must have {MAX_NAMES} keys of {MAX_NAME_LENGTH} letters at most")
+        raise ValueError(
+            f"{what} may have at most {MAX_NAMES} keys of at most {MAX_NAME_LENGTH} characters each"
+        )
     return value
 
 
 def _list(what: str, value: Any) -> list[Any]:
     if not isinstance(value, list) or len(value) > MAX_NAMES:
-        raise ValueError(f"{what} must be a list of {MAX_NAMES} at most, not {_short(value)}")
+        raise ValueError(
+            f"{what} must be a list with at most {MAX_NAMES} items, got {_short(value)}"
+        )
     return value
 
 
@@ -281,7 +301,10 @@ def _names(what: str, keys: dict[str, Any]) -> list[str]:
     listed = _list(what, keys.get(what, []))
     for one in listed:
         if not isinstance(one, str) or not 0 < len(one) <= MAX_NAME_LENGTH:
-            raise ValueError(f"{what} must be a list of names, not {_short(one)}")
+            raise ValueError(
+                f"{what} must contain only names of 1 to {MAX_NAME_LENGTH} characters, "
+                f"got {_short(one)}"
+            )
     return listed
 
 

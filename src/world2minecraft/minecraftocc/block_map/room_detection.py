@@ -1,8 +1,8 @@
-"""Detect rooms in a volume of blocks: floors, ceilings, walls and what lies between.
+"""Room detection in a volume of blocks: floors, ceilings, walls and the space inside.
 
-In: which blocks can be structure, and the scale. Out: a zone for each block. A floor is a wide
-flat top with a roof over it under which a person stands; walls are the columns that reach from it
-to the ceiling. Labels and names of blocks are not used.
+The input is the scale and the set of blocks that can be part of the structure; the output is a zone
+for each block. A floor is a wide flat surface below a roof with enough headroom for a person. Walls
+are the columns from the floor to the ceiling. Labels and block names are not used.
 """
 
 from dataclasses import dataclass
@@ -27,19 +27,25 @@ NO_BLOCK = np.int16(0x7FFF)
 
 @dataclass(frozen=True, eq=False)
 class Zones:
-    """``zone`` uint8 [X, Y, Z]; ``ground`` int16, the layer of the floor of a block inside."""
+    """The zone of each block in a volume.
+
+    Attributes:
+        zone: ``OUTSIDE``, ``FLOOR``, ``CEILING``, ``WALL`` or ``INSIDE`` for each block, uint8 [X,
+            Y, Z].
+        ground: Layer of the floor below each block inside a room, int16 [X, Y, Z]; -1 elsewhere.
+    """
 
     zone: np.ndarray
     ground: np.ndarray
 
 
 def detect_zones(building: np.ndarray, blocks_per_metre: float) -> Zones:
-    """Return the zone of each block.
+    """Detect the zone of each block.
 
     Args:
-        building: bool [X, Y, Z] in block axes: what floors, walls and ceilings can be of, glass
-            and closed doors among it.
-        blocks_per_metre: the scale.
+        building: Whether each block can be part of a floor, wall or ceiling, bool [X, Y, Z]. This
+            includes glass and closed doors.
+        blocks_per_metre: Scale of the volume.
     """
     zone = np.zeros(building.shape, np.uint8)
     ground = np.full(building.shape, -1, np.int16)
@@ -51,7 +57,7 @@ def detect_zones(building: np.ndarray, blocks_per_metre: float) -> Zones:
 
 
 def next_above(filled: np.ndarray) -> np.ndarray:
-    """Return the layer of the next filled block over each, int16; ``NO_BLOCK`` for none."""
+    """Return the layer of the next filled block above each block, or ``NO_BLOCK`` if none."""
     layers = np.arange(filled.shape[1], dtype=np.int16)[None, :, None]
     at = np.where(filled, layers, NO_BLOCK)[:, ::-1]
     upward = np.minimum.accumulate(at, axis=1)[:, ::-1]

@@ -1,7 +1,8 @@
-"""The types of a block map: what a block stands for by its name, and else by where it is.
+"""The types of a block map, which assigns classes by block name and by position.
 
-A block's name says its class, or a kind. A kind has rules, of which the first that holds at a
-block counts. So a map is a table that a person can read and edit, and nothing in code.
+The name of a block determines its class or its kind. Each kind has an ordered list of rules, and
+the first rule that applies to a block determines its class. A map is therefore a plain table that
+can be read and edited without changing code.
 """
 
 import re
@@ -18,7 +19,7 @@ ANY = "*"  # The namespace of words that speak of every mod.
 
 
 class Pattern(NamedTuple):
-    """Names of blocks, with the properties that they must have: ``*_slab[type=double]``."""
+    """A pattern for block names with required properties, such as ``*_slab[type=double]``."""
 
     name: re.Pattern[str]
     properties: tuple[str, ...]  # "type=double"
@@ -27,7 +28,7 @@ class Pattern(NamedTuple):
 
 @dataclass(frozen=True)
 class Rule:
-    """A class, and what must hold at a block that it counts for."""
+    """A class, with the conditions under which a block belongs to it."""
 
     class_name: str
     where: tuple[str, ...] = ()  # names of conditions; "not NAME" turns one round
@@ -36,13 +37,18 @@ class Rule:
 
     @property
     def always(self) -> bool:
-        """Whether it holds everywhere."""
+        """Whether the rule has no conditions and applies to every block."""
         return not (self.where or self.spans or self.shares)
 
 
 @dataclass(frozen=True)
 class Words:
-    """Words in the names of blocks of mods; ``namespaces`` are beginnings of theirs, or ``*``."""
+    """Classes or kinds for words in the block names of mods.
+
+    Attributes:
+        namespaces: Prefixes of the namespaces to which the words apply, or ``*`` for all mods.
+        meanings: Class or kind for each word.
+    """
 
     namespaces: tuple[str, ...]
     meanings: Mapping[str, str]  # a word -> a class or a kind
@@ -52,7 +58,11 @@ class Words:
         return sorted(self.meanings, key=len, reverse=True)
 
     def of(self, namespace: str, name: str) -> str | None:
-        """Return what the longest word in a name means, of two as long the last; None for none."""
+        """Return the class or kind for the longest known word in a block name.
+
+        If several words have this length, the last one in the name is used. Returns None if the
+        name contains no known word.
+        """
         spoken = any(
             namespace != "minecraft" if start == ANY else namespace.startswith(start)
             for start in self.namespaces
@@ -66,7 +76,7 @@ class Words:
 
 @dataclass(frozen=True, eq=False)
 class BlockMap:
-    """What blocks stand for. See ``docs/block-maps.md`` for the file that it is read from."""
+    """A table that assigns blocks to classes. ``docs/block-maps.md`` describes its YAML file."""
 
     name: str
     about: str
@@ -86,7 +96,7 @@ class BlockMap:
     _found: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def meaning(self, state: str) -> str:
-        """Return the class or the kind of a block state by its name alone.
+        """Return the class or kind of a block state, determined from its name alone.
 
         Example:
             >>> from world2minecraft.minecraftocc.block_map import load_block_map
@@ -114,11 +124,11 @@ class BlockMap:
         return self.whole if _is_whole(state) else self.other
 
     def rules_of(self, meaning: str) -> tuple[Rule, ...]:
-        """Return the rules of a class or kind: a class has one, itself."""
+        """Return the rules of a kind, or a single unconditional rule for a class."""
         return (Rule(meaning),) if meaning in CLASS_NAMES else self.rules[meaning]
 
     def classes_of(self, state: str) -> tuple[str, ...]:
-        """Return the classes that a block can be of, likeliest first where it is by itself.
+        """Return the possible classes of a block state, in the order of its rules.
 
         Example:
             >>> from world2minecraft.minecraftocc.block_map import load_block_map
@@ -130,14 +140,21 @@ class BlockMap:
 
 
 def parse_pattern(text: str) -> Pattern:
-    """Return the pattern of a text; without a namespace it speaks of all."""
+    """Parse a block name pattern. A pattern without a namespace matches all namespaces."""
     name, _, rest = text.partition("[")
     properties = tuple(part for part in rest.removesuffix("]").split(",") if part)
     return Pattern(re.compile(translate(name)), properties, text)
 
 
 def matches(pattern: Pattern, full: str, name: str, stated: frozenset[str]) -> bool:
-    """Whether a block's full id, or its name alone, and its properties fit a pattern."""
+    """Return whether a block matches a pattern.
+
+    Args:
+        pattern: Pattern to match.
+        full: Block id with its namespace.
+        name: Block id without its namespace, used if the pattern has no namespace.
+        stated: Properties of the block, such as ``type=double``.
+    """
     candidate = full if ":" in pattern.text.partition("[")[0] else name
     return bool(pattern.name.match(candidate)) and stated.issuperset(pattern.properties)
 

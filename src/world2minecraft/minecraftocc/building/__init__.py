@@ -1,4 +1,4 @@
-"""Build a data set from its plan: survey scenes, render shards with an engine, write the index."""
+"""Data set builds: survey the scenes of a plan, render the shards and write the index."""
 
 from world2minecraft.minecraftocc.building.build import BuildReport, build_dataset
 from world2minecraft.minecraftocc.building.cpu_clock import STAGES, TITLES

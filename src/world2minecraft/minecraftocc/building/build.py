@@ -1,8 +1,10 @@
-"""Build a whole data set from its plan, or continue one, by one run at a time.
+"""Build or resume a complete data set from its plan.
 
-Scenes are surveyed, images are allocated to them, shards are rendered and the index is written.
-Each scene gets its share of the images; what one cannot give is allocated to those that gave
-all. The same answers give the same shares, so an interrupted build comes to the same data set.
+A build surveys the scenes, allocates images to them, renders the shards and writes the index. Each
+scene gets an equal share of the images. If a scene has too few views, its missing images are
+allocated to scenes that still have views. The allocation depends only on the number of views found,
+so an interrupted build produces the same data set when it is resumed. Only one process can build in
+a folder at a time.
 """
 
 import json
@@ -61,14 +63,15 @@ EMPTY = FineClass("minecraft:air")
 
 
 def allocate_views(scenes: Iterable[SceneSpec], look: CountViews) -> list[SceneSpec]:
-    """Return scenes with as many images as they have views, in their order.
+    """Allocate images to scenes according to the number of views that each scene has.
 
     Args:
-        scenes: of any splits, each with the images requested of it.
-        look: called with scenes and their requested images; gives how many views each has.
+        scenes: Scenes of any splits, each with its requested number of images.
+        look: Function that surveys scenes and returns the number of views found in each of them.
 
     Returns:
-        Of each split as many images as were requested in all, or fewer where there are no more.
+        The scenes in their original order with their allocated numbers of images. Each split has
+        the requested total, or fewer images if its scenes do not have enough views.
     """
     requested = {scene.scene_id: scene for scene in scenes}
     wanted = {scene.split: 0 for scene in requested.values()}
@@ -108,12 +111,15 @@ def _further_requests(
 
 
 def needs_warm_up() -> bool:
-    """Whether the inner loops of a sample are still to be compiled."""
+    """Return whether the kernels for rendering a sample must still be compiled."""
     return not is_compiled(_LAST_KERNEL)
 
 
 def warm_up(task: SceneTask, tick: Callable[[int], None]) -> None:
-    """Look at a scene and make one sample of it; the look is kept, the sample is not."""
+    """Compile the kernels by surveying a scene and rendering one sample.
+
+    The survey is saved; the sample is discarded.
+    """
     facts, _ = survey_scene(task, tick)
     if facts.views:
         sample_renderer(task.folder, task.spec, task.recipe).sample(0, StageClock())
@@ -121,7 +127,18 @@ def warm_up(task: SceneTask, tick: Callable[[int], None]) -> None:
 
 @dataclass(frozen=True)
 class BuildReport:
-    """What a build has made: the images of each split, how many now, and CPU by stage."""
+    """The outcome of a build: the images in each split, the work done and the time spent.
+
+    Attributes:
+        images: Number of images in each split.
+        made: Number of images rendered by this run.
+        shards: Number of shards in the data set.
+        sha256: SHA-256 of all samples of the data set.
+        seconds: Elapsed time of this run in seconds.
+        cpu_seconds: CPU seconds for each stage.
+        notes: Remarks for the user, such as a shortage of views.
+        milliseconds: CPU milliseconds per image for each stage and in total.
+    """
 
     images: dict[str, int]
     made: int
@@ -136,19 +153,22 @@ class BuildReport:
 def build_dataset(
     folder: str | Path, plan: DatasetPlan, engine: Engine, progress: Progress = no_progress
 ) -> BuildReport:
-    """Make a data set, or what is missing of it, and finish it.
+    """Build a data set, or complete one whose build was interrupted.
 
     Args:
-        folder: where; the same plan there is gone on with.
-        plan: what it is made of.
-        engine: who does the work.
-        progress: called with scenes, images and the index.
+        folder: Output folder. If it contains an unfinished build of the same plan, the build is
+            resumed.
+        plan: Scenes, numbers of images and settings of the data set.
+        engine: Engine that runs the tasks, such as a process pool.
+        progress: Callback that reports progress on scenes, images and the index.
 
     Raises:
-        ConflictError: the folder has another data set, or another run is at work there.
-        UsageError: the scenes do not give as many views as a preset needs.
-        OutputError: the disk is full. InputError: a scene cannot be read.
-        WorkerError: a process has died again and again.
+        ConflictError: If the folder contains another data set, or if another process is building
+            there.
+        UsageError: If the scenes have too few views for a preset.
+        OutputError: If the disk is full.
+        InputError: If a scene cannot be read.
+        WorkerError: If worker processes exit repeatedly.
     """
     root, began = Path(folder), time.monotonic()
     arrow_modules()
@@ -169,31 +189,36 @@ def build_dataset(
 
 
 def begin_dataset(folder: Path, plan: DatasetPlan) -> None:
-    """Write what the data set will be, or check that it is the same that was begun.
+    """Write the plan to the folder, or check that the folder was created with the same plan.
 
     Raises:
-        ConflictError: it is another.
+        ConflictError: If the folder contains a different data set.
     """
     facts = plan.facts()
     if not (folder / META).exists():
         if (folder / SHARDS).exists():
-            raise ConflictError(folder, "holds shards and no dataset.json; choose another folder")
+            raise ConflictError(
+                folder, "contains shards but no dataset.json; choose another folder"
+            )
         write_json(
             folder / META, {"kind": KIND, "format": FORMAT, "complete": False, "plan": facts}
         )
         return
     before = read_meta(folder, finished=False).get("plan")
     if not isinstance(before, dict):
-        raise ConflictError(folder, "holds a data set that was not built; choose another folder")
+        raise ConflictError(
+            folder, "contains a data set without a build plan; choose another folder"
+        )
     wrong = _differences(before, facts)
     if wrong:
         raise ConflictError(
-            folder, f"holds a data set of another {', '.join(wrong)}; choose another folder"
+            folder,
+            f"contains a data set with a different {', '.join(wrong)}; choose another folder",
         )
 
 
 def remove_leftovers(folder: Path) -> None:
-    """Take away what an interrupted run has left half written, but for the parts of shards."""
+    """Delete temporary files of an interrupted build, except for unfinished shards."""
     for place in (folder, folder / "scenes", folder / WORLDS, *(folder / SHARDS).glob("*")):
         for path in place.glob(".*") if place.is_dir() else ():
             if not LEFTOVER.fullmatch(path.name):
@@ -285,14 +310,14 @@ class _Build:
             found = sum(scene.images for scene in scenes if scene.split == split)
             if found < wanted:
                 shortage = (
-                    f"the {split} scenes give {found:,} views worth a picture, not {wanted:,}; "
-                    "take more scenes"
+                    f"the {split} scenes have only {found:,} usable views for {wanted:,} images; "
+                    "add more scenes"
                 )
                 if self.plan.preset:
                     raise UsageError(shortage)
                 self.notes.append(f"{shortage[0].upper()}{shortage[1:]}.")
         if not any(scene.images for scene in scenes):
-            raise UsageError("the scenes give no view worth a picture; take other scenes")
+            raise UsageError("the scenes have no usable views; choose other scenes")
         return tuple(scene for scene in scenes if scene.images)
 
     def _ticker(self, stage: str, total: int) -> Callable[[int], None]:
@@ -307,7 +332,7 @@ class _Build:
             done += count
             seconds = time.monotonic() - began
             rate = (done - first) / seconds if seconds > 0 else 0.0
-            self.progress(stage, done, total, f"{rate:.1f} a second" if rate else "")
+            self.progress(stage, done, total, f"{rate:.1f} per second" if rate else "")
 
         return tick
 
@@ -324,8 +349,8 @@ def _refuse_duplicate_worlds(scenes: Sequence[SceneSpec], facts: Mapping[str, Sc
         twin = first.setdefault(facts[scene.scene_id].digest, scene)
         if twin.split != scene.split:
             raise UsageError(
-                f"{twin.path} (for {twin.split}) and {scene.path} (for {scene.split}) are the same "
-                "world, block by block: give one of them alone"
+                f"{twin.path} (for {twin.split}) and {scene.path} (for {scene.split}) contain "
+                "identical blocks; remove one of them"
             )
 
 
@@ -347,7 +372,7 @@ def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(folder, f"cannot be made: {error.strerror or error}") from error
+        raise OutputError(folder, f"cannot be created: {error.strerror or error}") from error
 
 
 def _scene_json(scene: SceneSpec, facts: SceneFacts) -> dict[str, Any]:

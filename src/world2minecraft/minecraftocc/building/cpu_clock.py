@@ -1,4 +1,4 @@
-"""CPU time of the stages of making an image."""
+"""CPU time measurement for the stages of a data set build."""
 
 import time
 from collections import defaultdict
@@ -16,15 +16,15 @@ TITLES = {
 
 
 class StageClock:
-    """Seconds of CPU by stage, of this process."""
+    """A clock for the CPU seconds that this process spends in each stage."""
 
     def __init__(self):
-        """Begin at 0."""
+        """Create a clock with no recorded time."""
         self.seconds: defaultdict[str, float] = defaultdict(float)
 
     @contextmanager
     def of(self, stage: str) -> Iterator[None]:
-        """Count what the block takes."""
+        """Measure the CPU time of a ``with`` block and add it to a stage."""
         began = time.process_time()
         try:
             yield
@@ -33,7 +33,7 @@ class StageClock:
 
 
 def milliseconds_per_image(seconds: Mapping[str, float], images: int) -> dict[str, float]:
-    """Return the CPU milliseconds of each stage for one image, and of all."""
+    """Return the CPU milliseconds per image for each stage and, as ``all``, in total."""
     if not images:
         return {}
     per_image = {stage: 1000 * seconds.get(stage, 0.0) / images for stage in STAGES}

@@ -1,9 +1,10 @@
-"""Register the processes at work in a data set's folder, so that the next run can wait for them.
+"""Registration of worker processes in a data set folder, so that the next run can wait for them.
 
-A build that is killed lets go of its folder before its workers have noticed. Each worker therefore
-holds the folder's ``.crew`` file, shared, while it has something to do there, and looks whether the
-one who gave the order still lives *after* it has taken hold: so whoever takes the folder over and
-then finds the file free knows that nobody writes there any more.
+If a build is killed, the lock on its folder is released before its workers have exited. Each worker
+therefore holds a shared lock on the ``.crew`` file in the folder while it runs a task, and checks
+that its parent process is still alive *after* it has acquired the lock. A new run that holds the
+folder lock and finds ``.crew`` unlocked can be sure that no old worker writes to the folder any
+more.
 """
 
 # Not by filelock: its locks that readers share are databases of SQLite beside the data set.
@@ -41,7 +42,7 @@ Result = TypeVar("Result")
 def registered_task(
     task: Callable[[Item, Callable[[int], None]], Result],
 ) -> Callable[[Item, Callable[[int], None]], Result]:
-    """Return a task that is done as one of the crew of its item's ``folder``."""
+    """Wrap a task so that it runs as a registered process in the ``folder`` of its item."""
 
     @wraps(task)
     def joined(item: Item, tick: Callable[[int], None]) -> Result:
@@ -53,10 +54,10 @@ def registered_task(
 
 @contextmanager
 def register_process(folder: Path) -> Iterator[None]:
-    """Be one of those at work in a folder.
+    """Register this process in a data set folder for the duration of a ``with`` block.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the folder cannot be written.
     """
     handle = _open_registry(folder)
     try:
@@ -69,17 +70,22 @@ def register_process(folder: Path) -> Iterator[None]:
 
 
 def wait_for_others(folder: Path, patience_s: float = PATIENCE_S) -> None:
-    """Wait until nobody is at work in a folder that one has the lock of.
+    """Wait until no registered process works in a folder. The caller must hold the folder lock.
+
+    Args:
+        folder: Data set folder.
+        patience_s: Maximum time to wait in seconds.
 
     Raises:
-        ConflictError: somebody still is. OutputError: the folder cannot be written.
+        ConflictError: If a process is still at work after this time.
+        OutputError: If the folder cannot be written.
     """
     handle, until = _open_registry(folder), time.monotonic() + patience_s
     try:
         while not _is_free(handle):
             if time.monotonic() > until:
                 raise ConflictError(
-                    folder, "a process of an earlier run is still at work here; end it first"
+                    folder, "in use by a process of an earlier run; stop that process and try again"
                 )
             time.sleep(_PAUSE_S)
     finally:
@@ -87,7 +93,7 @@ def wait_for_others(folder: Path, patience_s: float = PATIENCE_S) -> None:
 
 
 def remove_registry(folder: Path) -> None:
-    """Take the crew's file away when all is done."""
+    """Delete the registration file when the build is complete."""
     (folder / CREW).unlink(missing_ok=True)
 
 

@@ -1,4 +1,4 @@
-"""Load recorded views: the poses of a tour file, or the game's own screenshots."""
+"""Recorded views for a data set: the poses in a tour file, or screenshots taken in the game."""
 
 import re
 from dataclasses import replace
@@ -19,15 +19,16 @@ MAX_TOUR_NAME = 30  # Of a tour, in the keys of its samples.
 def load_given_views(
     given: GivenViews, block_to_room: np.ndarray, camera: Camera
 ) -> list[PlannedView]:
-    """Return the views that were recorded, in their order, with names that differ.
+    """Load recorded views in their order, with unique names.
 
     Args:
-        given: where they are.
-        block_to_room: of their world.
-        camera: of poses that say none.
+        given: Tour file or folder of screenshots to load.
+        block_to_room: 4x4 matrix from block coordinates to room coordinates of the world.
+        camera: Camera for poses that do not specify their own.
 
     Raises:
-        InputError: they cannot be read. UsageError: it is not stated how.
+        InputError: If the views cannot be read.
+        UsageError: If settings required to read the views are missing.
     """
     if not given.is_screenshots:
         return _with_unique_names(read_views(given.path, block_to_room, camera))
@@ -43,7 +44,10 @@ def load_given_views(
 
 
 def load_screenshot_views(given: GivenViews) -> list[RecordedView]:
-    """Return the screenshots of a folder. Raises as ``read_screenshots``."""
+    """Load the screenshots in a folder with their poses.
+
+    Raises the same exceptions as ``read_screenshots``.
+    """
     return read_screenshots(
         given.path,
         at=given.at,
@@ -53,15 +57,20 @@ def load_screenshot_views(given: GivenViews) -> list[RecordedView]:
 
 
 def load_screenshot(path: Path, camera: Camera) -> np.ndarray:
-    """Return a screenshot, uint8 [H, W, 3], as large as its camera says.
+    """Load a screenshot as uint8 [H, W, 3].
 
     Raises:
-        DamagedFileError: it cannot be read.
+        DamagedFileError: If the file cannot be read, or if its size differs from that of the
+            camera.
     """
     try:
         with Image.open(path, formats=("PNG",)) as image:
             if image.size != (camera.width_px, camera.height_px):
-                raise DamagedFileError(path, "has changed its size")
+                raise DamagedFileError(
+                    path,
+                    f"size changed to {image.width}x{image.height} pixels since the "
+                    "folder was first read",
+                )
             return np.array(image.convert("RGB"))
     except (OSError, ValueError, SyntaxError) as error:
         raise DamagedFileError(path, f"cannot be read ({error})") from error

@@ -1,7 +1,7 @@
-"""Survey a scene before rendering: make its world, list its classes and plan its views.
+"""Scene surveys: prepare the world of a scene, list its fine classes and plan its views.
 
-``scenes/ID.json`` tells what was found, ``scenes/ID.poses.jsonl`` has the views, in the one format
-of tours. Both are made once; a build that was broken off finds them.
+The result is stored in ``scenes/ID.json``, and the views in ``scenes/ID.poses.jsonl`` as a tour
+file. A resumed build reuses both files.
 """
 
 import hashlib
@@ -33,7 +33,7 @@ DEFAULT_HOUR = 12.0
 
 @dataclass(frozen=True)
 class SceneTask:
-    """A scene to look at, with ``images`` views to plan."""
+    """A survey task: a scene, with the number of views to plan in ``spec.images``."""
 
     folder: str
     spec: SceneSpec
@@ -42,7 +42,18 @@ class SceneTask:
 
 @dataclass(frozen=True)
 class SceneFacts:
-    """What is known of a scene. ``plans`` are the numbers of views asked for and found."""
+    """The result of a scene survey.
+
+    Attributes:
+        scene_id: Name of the scene.
+        digest: SHA-256 of the blocks of the scene, used to detect changes.
+        fine: Fine classes in the scene.
+        plans: Requested and found numbers of views for each plan made so far.
+        hour: Time of day from 0 to 24.
+        blocks: Size of the scene in blocks [X, Y, Z].
+        metres_per_block: Edge length of a block in metres.
+        notes: Remarks for the user.
+    """
 
     scene_id: str
     digest: str
@@ -55,21 +66,25 @@ class SceneFacts:
 
     @property
     def views(self) -> int:
-        """How many views the last plan found."""
+        """Number of views found by the latest plan."""
         return self.plans[-1][1]
 
     def found(self, requested: int) -> int | None:
-        """Return how many views a plan for so many found, None where none was made."""
+        """Return the number of views found for a requested number, or None if never planned."""
         return dict(self.plans).get(requested)
 
 
 @registered_task
 def survey_scene(task: SceneTask, tick: Callable[[int], None]) -> tuple[SceneFacts, float]:
-    """Look at a scene and plan its views, unless that was done; return what is known, and CPU.
+    """Survey a scene and plan its views, unless this has already been done.
+
+    Returns:
+        The result of the survey and the CPU seconds used.
 
     Raises:
-        InputError: the scene cannot be read. UsageError: nobody can stand in it.
-        ConflictError: it has changed since it was first surveyed.
+        InputError: If the scene cannot be read.
+        UsageError: If the scene has no place for a person to stand.
+        ConflictError: If the scene has changed since it was first surveyed.
     """
     began = time.process_time()
     folder, spec = Path(task.folder), task.spec
@@ -83,17 +98,22 @@ def survey_scene(task: SceneTask, tick: Callable[[int], None]) -> tuple[SceneFac
 
 
 def facts_path(folder: Path, scene_id: str) -> Path:
-    """Return where the facts of a scene lie."""
+    """Return the path of the survey result of a scene."""
     return folder / SCENES / f"{scene_id}.json"
 
 
 def poses_path(folder: Path, scene_id: str) -> Path:
-    """Return where the views of a scene lie."""
+    """Return the path of the planned views of a scene."""
     return folder / SCENES / f"{scene_id}.poses.jsonl"
 
 
 def read_facts(folder: Path, scene_id: str) -> SceneFacts:
-    """Read what ``survey_scene`` wrote. Raises InputError or DamagedFileError."""
+    """Read the survey result of a scene.
+
+    Raises:
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a valid survey result.
+    """
     path = facts_path(folder, scene_id)
     raw = read_json(path)
     try:
@@ -108,11 +128,13 @@ def read_facts(folder: Path, scene_id: str) -> SceneFacts:
             notes=tuple(raw["notes"]),
         )
     except (KeyError, TypeError, ValueError) as error:
-        raise DamagedFileError(path, f"tells of no scene ({error!r})") from error
+        raise DamagedFileError(
+            path, f"not a valid scene survey ({error!r}); delete the file and build again"
+        ) from error
 
 
 def open_source(folder: Path, spec: SceneSpec, recipe: Recipe) -> SceneSource:
-    """Return where the blocks of a scene come from."""
+    """Open the source of a scene's blocks."""
     place = folder / spec.path if spec.house else Path(spec.path)
     return open_scene_source(
         place,
@@ -124,7 +146,7 @@ def open_source(folder: Path, spec: SceneSpec, recipe: Recipe) -> SceneSource:
 
 
 def volume_digest(volume: BlockVolume) -> str:
-    """Return a sum of all that pictures and labels of a volume depend on."""
+    """Return the SHA-256 of all parts of a volume that its images and labels depend on."""
     total = hashlib.sha256()
     for part in (volume.states, volume.semantic, volume.instance, volume.block_to_room):
         total.update(repr(part.shape).encode() + np.ascontiguousarray(part).tobytes())
@@ -134,10 +156,15 @@ def volume_digest(volume: BlockVolume) -> str:
 
 
 def check_digest(facts: SceneFacts, volume: BlockVolume, spec: SceneSpec) -> None:
-    """Raise ConflictError where a scene is no longer what its views were planned in."""
+    """Check that a scene has not changed since its views were planned.
+
+    Raises:
+        ConflictError: If the blocks of the scene have changed.
+    """
     if volume_digest(volume) != facts.digest:
         raise ConflictError(
-            spec.path, "has changed since this data set was begun; make another data set of it"
+            spec.path,
+            "has changed since the build of this data set was started; build a new data set",
         )
 
 

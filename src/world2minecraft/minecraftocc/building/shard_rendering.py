@@ -1,7 +1,8 @@
-"""Render one shard of one scene: the unit of work of a data set, in whatever process runs it.
+"""Rendering of one shard of a scene, the unit of work of a data set build.
 
 ``SampleRenderer`` turns planned views into samples and measures the CPU time of each stage. The
-result depends on the task alone; samples that an earlier attempt left in the shard are kept.
+result depends only on the task, so any process can run it. Samples left in the shard by an
+interrupted attempt are kept.
 """
 
 from collections.abc import Callable, Iterator
@@ -45,7 +46,7 @@ OUTPUTS = ("colour", "depth")
 
 @dataclass(frozen=True, eq=False)
 class SampleRenderer:
-    """A scene with all that its samples are made of."""
+    """A prepared scene from which samples can be rendered."""
 
     spec: SceneSpec
     recipe: Recipe
@@ -58,12 +59,12 @@ class SampleRenderer:
     screenshots: tuple[Path, ...] = ()
 
     def key(self, number: int) -> str:
-        """Return the key of a view's sample."""
+        """Return the key of the sample for a view."""
         view = self.views[number]
         return f"{self.spec.scene_id}-{view.tour_id}-{view.frame:06d}"
 
     def sample(self, number: int, clock: StageClock) -> OccSample:
-        """Take a view's picture and label it."""
+        """Render and label the image for a view."""
         view, colour = self.views[number], None
         pose, camera = view.camera_to_room, view.camera
         with clock.of("render"):
@@ -121,10 +122,10 @@ class SampleRenderer:
 
 @lru_cache(maxsize=1)
 def sample_renderer(folder: str, spec: SceneSpec, recipe: Recipe) -> SampleRenderer:
-    """Make a scene ready; the last one is kept, for its next shard.
+    """Prepare a scene for rendering. The most recent scene is cached for its next shard.
 
     Raises:
-        ConflictError: the scene has changed since its views were planned.
+        ConflictError: If the scene has changed since its views were planned.
     """
     root = Path(folder)
     facts = read_facts(root, spec.scene_id)
@@ -155,7 +156,7 @@ def sample_renderer(folder: str, spec: SceneSpec, recipe: Recipe) -> SampleRende
 
 @dataclass(frozen=True)
 class ShardTask:
-    """A shard to make: the views ``first`` to ``last``, the last not included, of a scene."""
+    """A shard to render: the views ``first`` (included) to ``last`` (excluded) of a scene."""
 
     folder: str
     name: str
@@ -166,7 +167,7 @@ class ShardTask:
 
 
 def shard_tasks(folder: Path, plan: DatasetPlan) -> list[ShardTask]:
-    """Return the units of a plan, in the order of the data set: split, scene, view."""
+    """Return the shard tasks for a plan, ordered by split, scene and view."""
     scenes = sorted(plan.scenes, key=lambda scene: list(plan.images).index(scene.split))
     return [
         ShardTask(
@@ -184,11 +185,15 @@ def shard_tasks(folder: Path, plan: DatasetPlan) -> list[ShardTask]:
 
 @registered_task
 def render_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[int, dict[str, float]]:
-    """Make a shard, or what is missing of it; return how many samples were made, and CPU seconds.
+    """Render a shard, or the samples that are missing from it.
+
+    Returns:
+        The number of samples rendered, and the CPU seconds by stage.
 
     Raises:
-        OutputError: the disk is full. ConflictError: another process writes it, or the scene has
-        changed. InputError: the scene cannot be read.
+        OutputError: If the disk is full.
+        ConflictError: If another process is writing the shard, or if the scene has changed.
+        InputError: If the scene cannot be read.
     """
     path, clock, count = Path(unit.folder) / unit.name, StageClock(), unit.last - unit.first
     if path.exists():
@@ -214,7 +219,7 @@ def render_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[int, dic
 
 
 def index_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[list[dict[str, Any]], float]:
-    """Return the index rows of a finished shard, and CPU seconds."""
+    """Return the index rows for a finished shard and the CPU seconds used."""
     clock = StageClock()
     with clock.of("write"):
         rows = shard_rows(Path(unit.folder) / unit.name, unit.name)
@@ -223,7 +228,7 @@ def index_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[list[dict
 
 
 def in_order(results: Iterator[tuple[int, Any]]) -> Iterator[Any]:
-    """Give results by their numbers, though they come as they are done."""
+    """Reorder numbered results, which arrive in any order, and yield them by number."""
     waiting: dict[int, Any] = {}
     following = 0
     for number, result in results:

@@ -1,6 +1,6 @@
-"""Engines that run the tasks of a build: this process, a pool of processes, or Ray.
+"""Engines that run the tasks of a data set build: this process, a process pool or Ray.
 
-All call the same function with the same items, so all make the same files.
+All engines call the same function with the same items, so they all produce identical files.
 """
 
 from world2minecraft.minecraftocc.engine.engines import (

@@ -1,4 +1,4 @@
-"""The engines by name, their common interface, and the one that runs in this process."""
+"""The registry of engines, their common interface, and the engine that runs in this process."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
@@ -20,10 +20,10 @@ MAX_JOBS = 1024
 
 
 class InProcessEngine:
-    """Calls a task in this process."""
+    """An engine that runs tasks one after another in this process."""
 
     def __init__(self):
-        """Begin with no notes."""
+        """Create an engine with no notes."""
         self.notes: list[str] = []
 
     def __enter__(self) -> "InProcessEngine":
@@ -31,7 +31,7 @@ class InProcessEngine:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End; there is nothing to end."""
+        """Do nothing, because there are no processes to stop."""
 
     def run(
         self,
@@ -39,33 +39,37 @@ class InProcessEngine:
         items: Sequence[Any],
         tick: Callable[[int], None],
     ) -> Iterator[tuple[int, Any]]:
-        """Give each item's number and result, in order."""
+        """Run a task for each item and yield the item's number and result, in order."""
         for number, item in enumerate(items):
             yield number, task(item, tick)
 
 
 class Engine(Protocol):
-    """Calls a task with each of many items."""
+    """Interface of an engine, which runs a task for each of many items."""
 
     notes: list[str]  # What went wrong and was repaired, in sentences.
 
     def run(self, task: Task, items: Sequence[Any], tick: Tick) -> Iterator[tuple[int, Any]]:
-        """Give each item's number and result as they are done; the first error ends all."""
+        """Run a task for each item and yield the number and result of each item as it finishes.
+
+        The first error stops all work and is raised.
+        """
         ...
 
 
 def open_engine(name: str, jobs: int) -> AbstractContextManager[Engine]:
-    """Return an engine, to be used in a ``with`` block.
+    """Create an engine, to be used in a ``with`` statement.
 
     Args:
-        name: one of ``ENGINES``.
-        jobs: how many processes; with one, a pool is this process itself.
+        name: Name of an engine in ``ENGINES``.
+        jobs: Number of processes. A pool with one job runs the tasks in this process.
 
     Raises:
-        UnknownNameError: there is no such engine. UsageError: the number is out of range.
-        MissingExtraError: Ray is requested and is not installed.
+        UnknownNameError: If there is no engine with this name.
+        UsageError: If the number of jobs is out of range.
+        MissingExtraError: If Ray is requested but not installed.
     """
     if not 1 <= jobs <= MAX_JOBS:
-        raise UsageError(f"jobs may be 1 to {MAX_JOBS}, not {jobs}")
+        raise UsageError(f"jobs must be from 1 to {MAX_JOBS}, got {jobs}")
     kind = ENGINES.load(name)
     return InProcessEngine() if name == "pool" and jobs == 1 else kind(jobs)

@@ -1,11 +1,12 @@
-"""A pool of processes: each takes an item, reports its progress, and returns its result.
+"""A process pool that reports progress and replaces workers that die.
 
-A process that dies (out of memory, killed) is replaced and its item starts again: what it had
-written to disk is found there. Processes end with their parent, however that ends: a thread of each
-waits for that.
+If a worker dies (killed, or out of memory), it is replaced and its item is started again; the new
+worker finds the files that the old one wrote to disk. Workers exit with their parent process,
+however the parent ends: a thread in each worker waits for the parent to exit.
 
-``concurrent.futures`` would not do: when a process of its ``ProcessPoolExecutor`` is killed, every
-waiting item fails with ``BrokenProcessPool``, and which one killed it cannot be found out.
+``concurrent.futures`` is not suitable: if a process of a ``ProcessPoolExecutor`` is killed, all
+waiting items fail with ``BrokenProcessPool``, and it is not possible to determine which item caused
+it.
 """
 
 import os
@@ -29,7 +30,7 @@ PATIENCE_S = 5.0
 
 @dataclass(frozen=True, eq=False)
 class WorkItem:
-    """A task, an item, and the item's number."""
+    """An item for a worker, with its number and the task to run."""
 
     number: int
     task: Callable[[Any, Callable[[int], None]], Any]
@@ -38,14 +39,14 @@ class WorkItem:
 
 @dataclass(frozen=True, eq=False)
 class ProgressMessage:
-    """So many images more are done."""
+    """A message from a worker: ``count`` more images are finished."""
 
     count: int
 
 
 @dataclass(frozen=True, eq=False)
 class ResultMessage:
-    """An item is done."""
+    """A message from a worker: an item is finished."""
 
     number: int
     result: Any
@@ -53,7 +54,7 @@ class ResultMessage:
 
 @dataclass(frozen=True, eq=False)
 class ErrorMessage:
-    """An item has failed."""
+    """A message from a worker: an item has failed with an exception."""
 
     error: Exception
 
@@ -63,7 +64,7 @@ class _ParentGone(BaseException):
 
 
 def run_worker(pipe: Connection) -> None:
-    """Do what comes through the pipe until it ends."""
+    """Run the tasks that arrive through a pipe until the pipe is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent gets it, and ends us.
     Thread(target=_end_with_parent, daemon=True).start()
     limit_threads()
@@ -83,14 +84,14 @@ def run_worker(pipe: Connection) -> None:
 
 
 def exit_if_parent_gone() -> None:
-    """End what is being done, in a worker of a pool whose parent has ended."""
+    """Stop the current task if this process is a pool worker whose parent has exited."""
     parent = parent_process()
     if parent is not None and not parent.is_alive():
         raise _ParentGone
 
 
 def limit_threads() -> None:
-    """Let libraries use one thread: there is a process for each core."""
+    """Limit libraries to one thread in this process, because there is one process per core."""
     from threadpoolctl import threadpool_limits  # noqa: PLC0415
 
     threadpool_limits(1)
@@ -121,10 +122,10 @@ class _Worker:
 
 
 class PoolEngine:
-    """Processes that call a task; a context manager."""
+    """An engine that runs tasks in a pool of processes. Use it as a context manager."""
 
     def __init__(self, jobs: int):
-        """Name how many; they are started with the first item."""
+        """Create a pool with ``jobs`` processes, which are started with the first items."""
         self.notes: list[str] = []
         self._jobs = jobs
         self._workers: list[_Worker] = []
@@ -134,7 +135,7 @@ class PoolEngine:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End all workers at once: what they have written is whole."""
+        """Stop all workers immediately. Files that they have written are complete."""
         for worker in self._workers:
             worker.pipe.close()
             if worker.number is not None:
@@ -152,10 +153,12 @@ class PoolEngine:
         items: Sequence[Any],
         tick: Callable[[int], None],
     ) -> Iterator[tuple[int, Any]]:
-        """Give each item's number and result as they are done.
+        """Run a task for each item and yield the number and result of each item as it finishes.
+
+        Exceptions of the task are raised again here.
 
         Raises:
-            WorkerError: workers have died over one item again and again. Whatever the task raises.
+            WorkerError: If several workers in a row have died while processing the same item.
         """
         waiting, deaths = deque(range(len(items))), Counter[int]()
         while waiting or any(worker.number is not None for worker in self._workers):
@@ -205,10 +208,10 @@ class PoolEngine:
         how = f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
         if deaths[number] == MAX_DEATHS:
             raise WorkerError(
-                f"{MAX_DEATHS} workers in turn have ended {how} over part {number + 1} of {count};"
-                " is memory short? Try fewer --jobs, then run the same command again to go on"
+                f"{MAX_DEATHS} workers in a row exited {how} on part {number + 1} of {count}, "
+                "possibly for lack of memory; run the same command with fewer --jobs to resume"
             )
-        self.notes.append(f"A worker ended {how}; another went on where it was.")
+        self.notes.append(f"A worker exited {how}; another worker resumed its task.")
         waiting.appendleft(number)
 
 

@@ -1,7 +1,7 @@
-"""Run tasks on many machines with Ray.
+"""An engine that runs tasks on many machines with Ray.
 
-The data set's folder and its worlds lie on a disk that all machines share. Without ``RAY_ADDRESS``
-a cluster of this machine alone is started, and ended again.
+The folder of the data set and its worlds must be on a disk that all machines share. If
+``RAY_ADDRESS`` is not set, a temporary cluster is started on this machine.
 """
 
 import os
@@ -18,13 +18,13 @@ RETRIES = 3
 
 
 class RayEngine:
-    """Calls a task on a Ray cluster; a context manager."""
+    """An engine that runs tasks on a Ray cluster. Use it as a context manager."""
 
     def __init__(self, jobs: int):
-        """Join the cluster that ``RAY_ADDRESS`` names, or start one of ``jobs`` processes here.
+        """Prepare an engine for the cluster at ``RAY_ADDRESS``, or for ``jobs`` local processes.
 
         Raises:
-            MissingExtraError: Ray is not installed.
+            MissingExtraError: If Ray is not installed.
         """
         os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Nothing is sent to anyone.
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
@@ -36,7 +36,7 @@ class RayEngine:
         self._jobs, self._is_ours = jobs, False
 
     def __enter__(self) -> "RayEngine":
-        """Join or start the cluster."""
+        """Connect to the cluster, or start one."""
         ray = self._ray
         if not ray.is_initialized():
             words: dict[str, Any] = {"include_dashboard": False, "log_to_driver": False}
@@ -47,7 +47,7 @@ class RayEngine:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End the cluster, where it was started here."""
+        """Shut down the cluster if this engine has started it."""
         if self._is_ours:
             self._ray.shutdown()
 
@@ -57,10 +57,12 @@ class RayEngine:
         items: Sequence[Any],
         tick: Callable[[int], None],
     ) -> Iterator[tuple[int, Any]]:
-        """Give each item's number and result as they are done.
+        """Run a task for each item and yield the number and result of each item as it finishes.
+
+        Exceptions of the task are raised again here.
 
         Raises:
-            WorkerError: a process has died again and again. Whatever the task raises.
+            WorkerError: If worker processes have died repeatedly.
         """
         ray = self._ray
         remote = ray.remote(num_cpus=1, max_retries=RETRIES)(_call_task)
@@ -86,7 +88,7 @@ class RayEngine:
             raise (error.cause if isinstance(error.cause, Exception) else error) from None
         except errors.RayError as error:
             reason = str(error).splitlines()[0]
-            raise WorkerError(f"Ray gave up on a part: {reason}") from error
+            raise WorkerError(f"Ray could not complete a task: {reason}") from error
 
 
 def _call_task(task: Callable[[Any, Callable[[int], None]], Any], item: Any) -> tuple[Any, int]:

@@ -1,8 +1,8 @@
-"""Export data sets in the formats that the loaders of others read.
+"""Exporters that write data sets in the published formats that existing data loaders read.
 
-In: samples with their split, one at a time. Out: a folder. Each file is written whole or not at
-all, and a sample's last file says that it is finished, so that a stopped export goes on where it
-stopped. ``docs/occupancy-formats.md`` has every file and key.
+Samples with their splits are written to a folder one at a time. Each file is written atomically,
+and the last file of a sample marks it as finished, so an interrupted export can be resumed.
+``docs/occupancy-formats.md`` describes all files and keys.
 """
 
 from world2minecraft.minecraftocc.exporters.export import ExportReport, export_samples

@@ -1,8 +1,9 @@
-"""Export as EmbodiedOcc-ScanNet: whole scenes, and which of their cells each frame sees.
+"""Exporter for EmbodiedOcc-ScanNet: complete scenes, with masks of the cells that each frame sees.
 
-OUT stands for the loader's ``data`` folder: ``occscannet/`` holds the frames, ``scene_occ/`` the
-packages of scenes and the masks. A scene is put together from the boxes of its frames, all of
-which lie in one world, cell by cell: the first frame that knows a cell decides its label.
+The output folder corresponds to the loader's ``data`` folder: ``occscannet/`` contains the frames,
+``scene_occ/`` the scene packages and the masks. The grid of a scene is assembled cell by cell from
+the boxes of its frames, which all share one coordinate system. The label of a cell comes from the
+first frame in which it is known.
 """
 
 from collections.abc import Sequence
@@ -28,7 +29,7 @@ OFFICIAL_CELLS = (200, 220, 90)  # EmbodiedOcc's compiled operation holds no lar
 
 
 class EmbodiedExporter:
-    """Writes the frames as they come, and the scenes when all are there."""
+    """An exporter that writes frames as they arrive and scenes when all frames are written."""
 
     def __init__(self, root: Path, rule: ExportRule):
         self.root, self.rule = root, rule
@@ -36,21 +37,24 @@ class EmbodiedExporter:
         self._large: list[str] = []
 
     def is_done(self, key: str) -> bool:
-        """Return whether the frame is there; scenes are remade where frames were added."""
+        """Return whether a frame is finished. Scenes are written again if frames were added."""
         return self.frames.is_done(key)
 
     def write(self, sample: OccSample) -> None:
-        """Write a frame. Raises as ``Exporter.write`` says."""
+        """Write a frame.
+
+        Raises the same exceptions as ``Exporter.write``.
+        """
         self.frames.write(sample)
 
     def pause(self) -> None:
-        """Write the table of names."""
+        """Write the table of scene and frame names."""
         self.frames.pause()
 
     def finish(self, keys: Sequence[str]) -> None:
         """Write a package for each scene, the masks of its frames, and the lists of scenes.
 
-        Scenes of which this run exported no frame stay as they are, and in their lists.
+        Scenes without frames in this run are left unchanged and stay in the lists.
         """
         self.frames.finish(keys)
         named = self.frames.names.samples
@@ -70,13 +74,13 @@ class EmbodiedExporter:
             write_text(self.root / "scene_occ" / f"{split}_online.txt", lines)
 
     def notes(self) -> list[str]:
-        """Return what the format could not hold unchanged."""
+        """Return descriptions of data that the format cannot represent unchanged."""
         lines = self.frames.notes()
         if self._large:
             size = "x".join(str(side) for side in OFFICIAL_CELLS)
             lines.append(
-                f"{len(self._large)} scenes are larger than {size} cells, which EmbodiedOcc's "
-                f"own operation holds: {', '.join(self._large[:3])}"
+                f"{len(self._large)} scenes exceed {size} cells, the limit of EmbodiedOcc's "
+                f"own code: {', '.join(self._large[:3])}"
             )
         return lines
 
@@ -141,8 +145,8 @@ def _split_of(rows: list[NamedSample]) -> str:
     splits = {row.split for row in rows}
     if len(splits) > 1:
         raise UsageError(
-            f"scene {rows[0].scene_id} has frames in train and in test; embodied splits by whole "
-            "scenes: split the data set so"
+            f"scene {rows[0].scene_id} has frames in train and in test; the embodied format needs "
+            "each scene in one split, so change the splits of the data set"
         )
     return splits.pop()
 

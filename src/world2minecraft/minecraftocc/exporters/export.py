@@ -1,4 +1,4 @@
-"""Export samples into a folder: finished ones are skipped, the others are written."""
+"""Export of samples to a folder, skipping samples that are already finished."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -17,20 +17,28 @@ SOURCE = "sha256"  # and the sum of the data set that is exported.
 
 @runtime_checkable
 class KeyedSamples(Protocol):
-    """Samples that are read by their keys, such as a store: finished ones need no reading."""
+    """Samples that can be read by key, so that an export need not read finished samples."""
 
     def keys(self, split: str | None = None) -> Iterable[str]:
-        """Return the keys, of one split or of all."""
+        """Return the keys of a split, or of all splits by default."""
         ...
 
     def __getitem__(self, key: str) -> OccSample:
-        """Read one sample."""
+        """Read the sample with this key."""
         ...
 
 
 @dataclass
 class ExportReport:
-    """What an export did."""
+    """The outcome of an export.
+
+    Attributes:
+        out: Output folder.
+        written: Number of samples written by this run.
+        passed_over: Number of samples that an earlier run had already finished.
+        keys: Keys of all exported samples.
+        notes: Descriptions of data that the format cannot represent unchanged.
+    """
 
     out: Path
     written: int = 0
@@ -49,21 +57,25 @@ def export_samples(
     limit: int | None = None,
     progress: Progress = no_progress,
 ) -> ExportReport:
-    """Write samples in one of ``FORMATS`` into a folder, new or begun by the same choices.
+    """Export samples to a folder in a published format.
+
+    The folder must be new, or contain an unfinished export with the same options.
 
     Args:
-        samples: a store, or any samples; their ``split`` says where they go.
-        format: nyu, occscannet, embodied or npz.
-        out: the folder.
-        rule: the choices that the format leaves open.
-        split: train or test alone; all by default.
-        limit: at most so many samples.
-        progress: called with each sample.
+        samples: A store, or any iterable of samples. The ``split`` of a sample determines its
+            subfolder.
+        format: ``nyu``, ``occscannet``, ``embodied`` or ``npz``.
+        out: Output folder.
+        rule: Options of the export.
+        split: Export only this split (``train`` or ``test``). Defaults to all splits.
+        limit: Maximum number of samples to export. Defaults to all samples.
+        progress: Callback that reports progress on each sample.
 
     Raises:
-        UnknownNameError: there is no such format. UsageError: there is nothing to export.
-        ConflictError: the folder holds an export by other choices, or of another data set.
-        InputError: the format cannot hold a sample.
+        UnknownNameError: If the format is unknown.
+        UsageError: If there are no samples to export.
+        ConflictError: If the folder contains an export with other options or of another data set.
+        InputError: If the format cannot represent a sample.
     """
     root, chosen = Path(out), rule or ExportRule()
     exporter = _exporter(format, root, chosen)
@@ -86,7 +98,7 @@ def export_samples(
         exporter.pause()
         raise
     if not report.keys:
-        raise UsageError(f"there is no sample to export{f' in {split}' if split else ''}")
+        raise UsageError(f"no samples to export{f' in split {split}' if split else ''}")
     exporter.finish(report.keys)
     if not total:
         progress("export", len(report.keys), len(report.keys))
@@ -152,10 +164,10 @@ def _claim(root: Path, choices: dict[str, Any], sha256: str) -> None:
     if names:
         differences = ", ".join(f"{name} {known.get(name)!r}" for name in names)
         raise ConflictError(
-            root, f"holds an export with {differences}; choose the same, or another --out"
+            root, f"contains an export with {differences}; use the same options or another --out"
         )
     if sha256 and known.get(SOURCE, sha256) != sha256:
         raise ConflictError(
-            root, "holds an export of another data set, or of this one before it was made anew; "
+            root, "contains an export of another data set or of an earlier build; "
             "choose another --out"
         )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Export as plain ``.npz``, one per sample: every array under its own name, nothing to unpickle."""
+"""Exporter for plain ``.npz`` files, one per sample, with named arrays and without pickles."""
 
 import json
 from collections.abc import Sequence
@@ -16,29 +16,29 @@ SPLITS = ("train", "test", "val", "all")
 
 
 class NpzExporter:
-    """Writes ``SPLIT/KEY.npz`` and ``index.json``."""
+    """An exporter that writes ``SPLIT/KEY.npz`` files and ``index.json``."""
 
     def __init__(self, root: Path, rule: ExportRule):
         self.root, self.rule = root, rule
 
     def is_done(self, key: str) -> bool:
-        """Return whether the file is there."""
+        """Return whether the file of a sample exists."""
         return any((self.root / split / f"{key}.npz").is_file() for split in SPLITS)
 
     def write(self, sample: OccSample) -> None:
-        """Write a sample."""
+        """Write the file of a sample."""
         write_npz(self.root / (sample.split or "all") / f"{sample.key}.npz", self._arrays(sample))
 
     def pause(self) -> None:
-        """Do nothing: the files themselves say which samples are finished."""
+        """Do nothing, because existing files mark the finished samples."""
 
     def finish(self, keys: Sequence[str]) -> None:
-        """Write the list of all samples that lie there, those of earlier runs too."""
+        """Write the list of all samples in the folder, including those of earlier runs."""
         rows = {path.stem: split for split in SPLITS for path in (self.root / split).glob("*.npz")}
         write_json(self.root / "index.json", {"format": "world2minecraft-occ-npz", "keys": rows})
 
     def notes(self) -> list[str]:
-        """Return nothing: the format holds everything unchanged."""
+        """Return an empty list, because the format represents all data unchanged."""
         return []
 
     def _arrays(self, sample: OccSample) -> dict[str, np.ndarray]:

@@ -1,9 +1,9 @@
-"""Export as NYUv2, as MonoScene, NDC-Scene, ISO and Symphonies read it.
+"""Exporter for the NYUv2 layout read by MonoScene, NDC-Scene, ISO and Symphonies.
 
-``NYUtrain/`` and ``NYUtest/`` hold NAME_color.jpg, NAME.png and NAME.bin; ``base/NYUtrain/`` and
-``base/NYUtest/`` hold NAME.pkl. The world of each file is its region's: z up, the minimum corner
-at 0, where the loaders' own arithmetic (a division that is rounded up) makes 60 cells of 4.8 m
-whatever the machine.
+``NYUtrain/`` and ``NYUtest/`` contain NAME_color.jpg, NAME.png and NAME.bin; ``base/NYUtrain/`` and
+``base/NYUtest/`` contain NAME.pkl. The world coordinates in each file are those of its region, with
+z up and the minimum corner at 0. With this origin, the loaders' own arithmetic (a division that is
+rounded up) always results in 60 cells for 4.8 m, whatever the machine.
 """
 
 from collections.abc import Sequence
@@ -39,18 +39,21 @@ AXES = (0, 2, 1)  # Ours x, y, z; theirs x, z, y. The same swap leads back.
 
 
 class NyuExporter:
-    """Writes the NYUv2 layout."""
+    """An exporter that writes the NYUv2 layout."""
 
     def __init__(self, root: Path, rule: ExportRule):
         self.root, self.rule = root, rule
         self._counts = {"resampled": 0, "no depth": 0, "no split": 0}
 
     def is_done(self, key: str) -> bool:
-        """Return whether the ``.bin``, a sample's last file, is there."""
+        """Return whether the ``.bin`` file of a sample exists, which is written last."""
         return any((self.root / folder / f"{key}.bin").is_file() for folder in FOLDERS.values())
 
     def write(self, sample: OccSample) -> None:
-        """Write the four files of a sample. Raises as ``Exporter.write`` says."""
+        """Write the four files of a sample.
+
+        Raises the same exceptions as ``Exporter.write``.
+        """
         check_standard_region(sample)
         resampler = Resampler(sample.key, sample.camera, NYU_CAMERA)
         folder = FOLDERS[export_split(sample)]
@@ -74,18 +77,18 @@ class NyuExporter:
         self._count(sample, resampler)
 
     def pause(self) -> None:
-        """Do nothing: the files themselves say which samples are finished."""
+        """Do nothing, because existing files mark the finished samples."""
 
     def finish(self, keys: Sequence[str]) -> None:
-        """Write nothing: the loaders list the folders."""
+        """Do nothing, because the loaders list the folders themselves."""
 
     def notes(self) -> list[str]:
-        """Return what the format could not hold unchanged."""
+        """Return descriptions of data that the format cannot represent unchanged."""
         texts = {
-            "resampled": "pictures were resampled to 640x480, f = 518.8579",
-            "no depth": "samples have no depth: MonoScene and NDC-Scene read them, "
-            "ISO and Symphonies do not",
-            "no split": "samples have no split and lie in NYUtrain",
+            "resampled": "images were resampled to 640x480 pixels with f = 518.8579",
+            "no depth": "samples have no depth: MonoScene and NDC-Scene can read them, "
+            "ISO and Symphonies cannot",
+            "no split": "samples have no split and were written to NYUtrain",
         }
         return [f"{count} {texts[name]}" for name, count in self._counts.items() if count]
 

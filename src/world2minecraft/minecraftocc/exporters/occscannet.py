@@ -1,8 +1,9 @@
-"""Export as OccScanNet, as ISO, EmbodiedOcc and GPOcc read it.
+"""Exporter for the OccScanNet layout read by ISO, EmbodiedOcc and GPOcc.
 
-``gathered_data/SCENE/NNNNN.pkl``, ``posed_images/SCENE/NNNNN.jpg`` and ``.png``, and the lists.
-Labels are stored as [y, x, z]: EmbodiedOcc and GPOcc swap the first two axes when they load, and
-their projected cells then meet the picture. ISO does not swap; docs/occupancy-formats.md tells.
+The folder contains ``gathered_data/SCENE/NNNNN.pkl``, ``posed_images/SCENE/NNNNN.jpg`` and
+``.png``, and the lists of samples. Labels are stored as [y, x, z]: EmbodiedOcc and GPOcc swap the
+first two axes when they load them, and the projected cells then match the image. ISO does not swap
+them; see docs/occupancy-formats.md.
 """
 
 from collections.abc import Sequence
@@ -47,7 +48,7 @@ LISTS = {
 
 
 class OccScanNetExporter:
-    """Writes the OccScanNet layout."""
+    """An exporter that writes the OccScanNet layout."""
 
     def __init__(self, root: Path, rule: ExportRule, *, only_room: bool = False):
         self.root, self.rule, self._only_room = root, rule, only_room
@@ -55,12 +56,15 @@ class OccScanNetExporter:
         self._resampled = self._turned = self._no_depth = 0
 
     def is_done(self, key: str) -> bool:
-        """Return whether the sample is in the table and its pickle, its last file, is there."""
+        """Return whether a sample is in the table and its pickle exists, which is written last."""
         row = self.names.samples.get(key)
         return row is not None and (self.root / "gathered_data" / f"{row.path}.pkl").is_file()
 
     def write(self, sample: OccSample) -> None:
-        """Write the three files of a sample. Raises as ``Exporter.write`` says."""
+        """Write the three files of a sample.
+
+        Raises the same exceptions as ``Exporter.write``.
+        """
         check_standard_region(sample)
         camera = vga_camera(sample.camera)
         resampler = Resampler(sample.key, sample.camera, camera)
@@ -84,13 +88,13 @@ class OccScanNetExporter:
         self._no_depth += sample.depth_m is None
 
     def pause(self) -> None:
-        """Write the table of names."""
+        """Write the table of scene and frame names."""
         self.names.save()
 
     def finish(self, keys: Sequence[str]) -> None:
-        """Write the table of names and the lists of ISO and of EmbodiedOcc.
+        """Write the table of names and the sample lists of ISO and EmbodiedOcc.
 
-        They name all that lies there, so that a split exported after another leaves its list alone.
+        The lists contain all samples in the folder, so splits can be exported one after another.
         """
         self.names.save()
         rows = [row for key, row in self.names.samples.items() if self.is_done(key)]
@@ -101,11 +105,11 @@ class OccScanNetExporter:
             self._write_list(with_content, [row for row in of_split if row.occupied])
 
     def notes(self) -> list[str]:
-        """Return what the format could not hold unchanged."""
+        """Return descriptions of data that the format cannot represent unchanged."""
         texts = {
-            "pictures were cropped and resampled to 640x480": self._resampled,
-            "samples have no depth, which every loader of this format opens": self._no_depth,
-            "regions are turned with the view: each has a world of its own": self._turned,
+            "images were cropped and resampled to 640x480 pixels": self._resampled,
+            "samples have no depth, which every loader of this format requires": self._no_depth,
+            "regions are rotated with the view, each with its own coordinate system": self._turned,
         }
         return [f"{count} {words}" for words, count in texts.items() if count]
 
@@ -116,8 +120,9 @@ class OccScanNetExporter:
             if self._only_room:
                 raise InputError(
                     sample.key,
-                    "its region is turned with the view, and scene packages lie along the room's "
-                    "axes; build the data set with regions of the kind paper",
+                    "the region is rotated with the view, but scene packages need "
+                    "regions along the "
+                    "room axes; build the data set with --region paper",
                 )
             self._turned += 1
             box = region_box(sample)

@@ -1,4 +1,4 @@
-"""The options of an export, the interface of an exporter, and what several exporters share."""
+"""Export options, the interface of an exporter, and functions that several exporters share."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -20,10 +20,18 @@ JPEG_QUALITY = 95  # As good as NYU's own colour images; the loaders take JPEG a
 
 @dataclass(frozen=True)
 class ExportRule:
-    """The choices that the formats leave open.
+    """The options of an export.
 
-    ``unknown`` is what cells of 255 are written as. All loaders but one leave 255 out of losses
-    and scores, and that one (ISO's, of OccScanNet) makes them empty by itself: so they are kept.
+    Attributes:
+        unknown: How to write unknown cells: ``keep`` (255) or ``empty`` (0). All loaders but one
+            ignore 255 in losses and scores, and that one (ISO's loader for OccScanNet) treats 255
+            as empty, so the default is ``keep``.
+        in_view: Whether to mark cells outside the image as unknown, as the paper does.
+        short_bin: ``nyu`` only: write only the header of each ``.bin`` file, since loaders use just
+            its name.
+        data_root: ``occscannet`` and ``embodied`` only: prefix of the paths inside the files.
+        frames_per_scene: ``embodied`` only: maximum number of frames per scene, evenly spaced; 0
+            uses all.
     """
 
     unknown: str = "keep"  # keep (255) or empty (0)
@@ -36,55 +44,61 @@ class ExportRule:
         if self.unknown not in UNKNOWN_CHOICES:
             raise UnknownNameError("choice of unknown cells", self.unknown, UNKNOWN_CHOICES)
         if self.frames_per_scene < 0:
-            raise UsageError(f"frames_per_scene must be 0 or more, not {self.frames_per_scene}")
+            raise UsageError(f"frames_per_scene must be 0 or more, got {self.frames_per_scene}")
 
     def as_data(self) -> dict[str, Any]:
-        """Return the choices as JSON holds them."""
+        """Return the options as a dict for JSON."""
         return asdict(self)
 
 
 class Exporter(Protocol):
-    """Writes one format into one folder."""
+    """Interface of an exporter, which writes samples in one format to one folder."""
 
     def is_done(self, key: str) -> bool:
-        """Return whether all files of a sample are there."""
+        """Return whether all files of a sample exist."""
         ...
 
     def write(self, sample: OccSample) -> None:
         """Write a sample.
 
         Raises:
-            InputError: the format cannot hold it. OutputError: the folder cannot be written.
+            InputError: If the format cannot represent the sample.
+            OutputError: If the folder cannot be written.
         """
         ...
 
     def pause(self) -> None:
-        """Leave the folder so that the same export can go on: it was stopped."""
+        """Save what is needed to resume the export later. Called when the export is interrupted."""
         ...
 
     def finish(self, keys: Sequence[str]) -> None:
-        """Write what names all samples: lists and tables."""
+        """Write the lists and tables that cover all samples."""
         ...
 
     def notes(self) -> list[str]:
-        """Return sentences on what the format could not hold unchanged."""
+        """Return descriptions of data that the format cannot represent unchanged."""
         ...
 
 
 def encode_jpeg(pixels: np.ndarray) -> bytes:
-    """Return uint8 [H, W, 3] as a JPEG, its colours at full resolution."""
+    """Encode a colour image, uint8 [H, W, 3], as a JPEG without chroma subsampling."""
     return colour_bytes(pixels, ".jpg", JPEG_QUALITY)
 
 
 def require_colour(sample: OccSample) -> np.ndarray:
-    """Return a sample's colour image. Raises InputError where it has none."""
+    """Return the colour image of a sample.
+
+    Raises:
+        InputError: If the sample has no colour image.
+    """
     if sample.colour is None:
         raise InputError(
-            sample.key, "it has no colour image, which this format needs; npz does without"
+            sample.key,
+            "the sample has no colour image, which this format requires; export to npz instead",
         )
     return sample.colour
 
 
 def export_split(sample: OccSample) -> str:
-    """Return train or test; a sample of neither goes to train."""
+    """Return ``train`` or ``test`` for a sample, with ``train`` if it has no split."""
     return "test" if sample.split in ("test", "val") else "train"

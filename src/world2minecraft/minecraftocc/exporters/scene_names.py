@@ -1,8 +1,8 @@
-"""ScanNet-like names for our scenes and frames, with the table that maps them back.
+"""ScanNet-like names for scenes and frames, with a table that maps them to sample keys.
 
-OccScanNet's loaders cut ``scene0000_00/00000`` out of paths. A scene has the number of its first
-appearance, a frame the number of its turn within the scene. The table is kept in the folder, so
-that an export that goes on, or grows, keeps its names.
+The loaders of OccScanNet extract ``scene0000_00/00000`` from paths. Scenes are numbered in the
+order in which they first appear, and frames in their order within the scene. The table is saved in
+the output folder, so a resumed or extended export keeps its names.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,15 @@ SAVE_EVERY = 50  # Samples, or a twentieth of them: writing the table stays chea
 
 @dataclass(frozen=True)
 class NamedSample:
-    """What a sample is called, and what lists need to know of it."""
+    """The name of an exported sample and the facts needed for the lists.
+
+    Attributes:
+        scene: Exported scene name, such as ``scene0000_00``.
+        frame: Exported frame name, such as ``00000``.
+        split: ``train`` or ``test``.
+        occupied: Number of cells that are neither empty nor unknown.
+        scene_id: Name of the scene in the original data set.
+    """
 
     scene: str  # scene0000_00
     frame: str  # 00000
@@ -27,12 +35,16 @@ class NamedSample:
 
     @property
     def path(self) -> str:
-        """The name within folders, ``scene0000_00/00000``."""
+        """Relative path of the sample, such as ``scene0000_00/00000``."""
         return f"{self.scene}/{self.frame}"
 
 
 class SceneNames:
-    """The table of one folder. Raises DamagedFileError where the file is none of ours."""
+    """The table of exported names in a folder.
+
+    Raises:
+        DamagedFileError: If the existing table file is not valid.
+    """
 
     def __init__(self, root: Path):
         self.path = root / TABLE
@@ -46,14 +58,14 @@ class SceneNames:
             self._frames[row.scene] = max(self._frames.get(row.scene, 0), int(row.frame) + 1)
 
     def name(self, key: str, scene_id: str, split: str, occupied: int) -> NamedSample:
-        """Return the name of a sample, a new one where it has none."""
+        """Return the name of a sample, assigning a new name if it has none."""
         if key in self.samples:
             return self.samples[key]
         scene = self.scenes.get(scene_id) or f"scene{len(self.scenes):04d}_00"
         return NamedSample(scene, f"{self._frames.get(scene, 0):05d}", split, occupied, scene_id)
 
     def keep(self, key: str, row: NamedSample) -> None:
-        """Put a finished sample into the table."""
+        """Add a finished sample to the table."""
         self.samples[key] = row
         self.scenes[row.scene_id] = row.scene
         self._frames[row.scene] = max(self._frames.get(row.scene, 0), int(row.frame) + 1)
@@ -62,7 +74,7 @@ class SceneNames:
             self.save()
 
     def save(self) -> None:
-        """Write the table."""
+        """Write the table to its file."""
         rows = {
             key: [row.scene, row.frame, row.split, row.occupied, row.scene_id]
             for key, row in self.samples.items()
@@ -77,5 +89,7 @@ def _read(path: Path) -> dict[str, NamedSample]:
         for row in found.values():
             int(row.frame)
     except (TypeError, ValueError, AttributeError) as error:
-        raise DamagedFileError(path, f"is no table of names ({error}); remove it") from error
+        raise DamagedFileError(
+            path, f"not a valid table of names ({error}); delete the file"
+        ) from error
     return dict(sorted(found.items(), key=lambda item: (item[1].scene, item[1].frame)))

@@ -1,1 +1,1 @@
-"""What exporters and importers share: pickles, SSCNet's voxels, depth codes, cameras, boxes."""
+"""Shared code for exporters and importers: pickles, SSCNet voxels, depth encodings and cameras."""

@@ -1,12 +1,13 @@
-"""Images and depth as the occupancy data sets store them: cameras, resampling and depth codes.
+"""Image and depth conventions of the published data sets: cameras, resampling and depth encodings.
 
-The loaders count pixel centres as whole numbers (they round a projection), ours lie at +0.5: half
-a pixel lies between a principal point of theirs and of ours.
+The published loaders round projected coordinates, so their pixel centres are at whole numbers; ours
+are at +0.5. The principal points therefore differ by half a pixel.
 
-NYU's depth PNGs hold millimetres whose 16 bits are rotated left by three. ISO rotates them back;
-Symphonies divides by 8000 instead, which is the same up to 8.191 m: beyond, the rotation wraps
-around. So whole millimetres up to 8.191 m are written, times eight, and both read them alike; what
-is farther is written as a hole. OccScanNet's PNGs hold millimetres.
+NYU depth PNGs contain millimetres whose 16 bits are rotated left by three. ISO rotates them back,
+while Symphonies divides by 8000. The results are the same up to 8.191 m; beyond this depth, the
+rotation wraps around. We therefore write whole millimetres up to 8.191 m, multiplied by eight,
+which both loaders read correctly, and write larger depths as holes. OccScanNet PNGs contain plain
+millimetres.
 """
 
 import math
@@ -34,7 +35,12 @@ SAME_FOCAL_PX, SAME_CENTRE_PX = 0.05, 0.51
 
 
 def encode_depth(depth_m: np.ndarray, code: DepthCode) -> bytes:
-    """Return the PNG of float32 [H, W] metres; holes, and what is too far, are 0."""
+    """Encode a depth map in metres as a PNG, with 0 for holes and depths out of range.
+
+    Args:
+        depth_m: Depth in metres, float32 [H, W].
+        code: ``nyu`` for the bit-rotated millimetres of NYUv2, or ``mm`` for plain millimetres.
+    """
     millimetres = np.round(np.nan_to_num(depth_m, posinf=0) * 1000).astype(np.int64)
     far = NYU_MAX_MM if code == "nyu" else MAX_MM
     millimetres[(millimetres < 0) | (millimetres > far)] = 0
@@ -43,10 +49,10 @@ def encode_depth(depth_m: np.ndarray, code: DepthCode) -> bytes:
 
 
 def decode_depth(raw: np.ndarray, code: DepthCode) -> np.ndarray:
-    """Return float32 [H, W] metres of stored values, 0 where there is none.
+    """Decode stored depth values to metres, float32 [H, W], with 0 for holes.
 
-    NYU's two encodings differ in their low three bits: rotated millimetres have 0 or 1 there (depth
-    under 16.4 m), true units of 1/8000 m have any.
+    The two NYU encodings are told apart by their three low bits: rotated millimetres have the value
+    0 or 1 there (for depths below 16.4 m), while units of 1/8000 m have any value.
 
     Example:
         >>> decode_depth(np.array([[8000, 0, 16385]], np.uint16), "nyu").tolist()
@@ -60,7 +66,7 @@ def decode_depth(raw: np.ndarray, code: DepthCode) -> np.ndarray:
 
 
 def is_same_camera(camera: Camera, other: Camera) -> bool:
-    """Return whether two cameras give the same picture, within half a pixel."""
+    """Return whether two cameras produce the same image, within half a pixel."""
     return (
         (camera.width_px, camera.height_px) == (other.width_px, other.height_px)
         and abs(camera.fx_px - other.fx_px) <= SAME_FOCAL_PX
@@ -72,7 +78,7 @@ def is_same_camera(camera: Camera, other: Camera) -> bool:
 
 
 def vga_camera(camera: Camera) -> Camera:
-    """Return the 640x480 camera that sees the largest middle part of a picture.
+    """Return the 640x480 camera that covers the largest possible central part of an image.
 
     Example:
         >>> vga_camera(Camera(1920, 1080, 1000, 1000, 960, 540)).fx_px
@@ -94,20 +100,23 @@ def vga_camera(camera: Camera) -> Camera:
 
 
 class Resampler:
-    """Carries pictures of one camera to another that looks the same way from the same place."""
+    """A resampler that converts images of one camera to another camera with the same pose."""
 
     def __init__(self, name: str, source: Camera, target: Camera):
-        """Check that the source sees all of the target.
+        """Check that the source camera covers the whole image of the target camera.
 
         Raises:
-            InputError: it sees less, or one of them has a distorting lens.
+            InputError: If the source camera covers less, or if a lens has distortion.
         """
         self.same = is_same_camera(source, target)
         self.source, self.target = source, target
         if self.same:
             return
         if any(source.distortion) or any(target.distortion):
-            raise InputError(name, "the lens distorts; render or undistort the pictures without it")
+            raise InputError(
+                name,
+                "the camera has lens distortion; undistort the images or render them without it",
+            )
         self.left, self.width = _span(source.fx_px, source.cx_px, target.fx_px, target.cx_px, 640)
         self.top, self.height = _span(source.fy_px, source.cy_px, target.fy_px, target.cy_px, 480)
         self.pad = math.ceil(max(self.width / 640, self.height / 480) * TOLERANCE_PX) + 1
@@ -120,7 +129,7 @@ class Resampler:
             raise InputError(name, _too_narrow(source, target))
 
     def colour(self, pixels: np.ndarray) -> np.ndarray:
-        """Return uint8 [480, 640, 3]: bilinear, of all pixels that fall into one."""
+        """Resample a colour image to uint8 [480, 640, 3] with an antialiased bilinear filter."""
         if self.same:
             return pixels
         pad = self.pad
@@ -136,7 +145,7 @@ class Resampler:
         return np.asarray(image)
 
     def depth(self, depth_m: np.ndarray) -> np.ndarray:
-        """Return float32 [480, 640] of the nearest pixels: depth is never mixed."""
+        """Resample a depth map to float32 [480, 640] by nearest neighbour."""
         if self.same:
             return depth_m
         columns = _nearest(self.left, self.width, self.target.width_px, depth_m.shape[1])
@@ -163,6 +172,6 @@ def _too_narrow(source: Camera, target: Camera) -> str:
         return f"{across:.1f} x {fov_deg_of_focal_px(camera.height_px, camera.fy_px):.1f}"
 
     return (
-        f"the camera sees {angles(source)} degrees, the format wants {angles(target)}; "
-        "make the pictures with a wider field of view, or export to occscannet or npz"
+        f"the camera covers {angles(source)} degrees, but the format needs {angles(target)}; "
+        "use a wider field of view, or export to occscannet or npz"
     )

@@ -1,4 +1,4 @@
-"""The labelled box of an image, in its own axes or the room's, and the grid of a whole scene."""
+"""The labelled box of an image, in region or room axes, and the grid of a complete scene."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,13 @@ MAX_CELLS = 100_000_000  # A hall of 64 x 64 x 12 m; its package would take 1.4 
 
 @dataclass(frozen=True, eq=False)
 class LabelledBox:
-    """A box of cells along the axes of a world, and the camera in that world."""
+    """A box of labelled cells along the axes of a world, with the camera pose in that world.
+
+    Attributes:
+        labels: Class of each cell, uint8 [60, 60, 36], with axes x, y and z (up).
+        origin_m: Minimum corner of cell (0, 0, 0) in metres, float64 [3].
+        camera_to_world: Camera pose in the world, float64 [4, 4].
+    """
 
     labels: np.ndarray  # uint8 [60, 60, 36] as x, y, z up
     origin_m: np.ndarray  # float64 [3], minimum corner of cell (0, 0, 0)
@@ -29,29 +35,29 @@ class LabelledBox:
 
 
 def check_standard_region(sample: OccSample) -> None:
-    """Refuse a region that the papers' loaders cannot hold.
+    """Check that the region of a sample has the size that the published loaders require.
 
     Raises:
-        InputError: its shape or its voxel size is another.
+        InputError: If its shape or voxel size differs.
     """
     region = sample.occ.region
     if region.shape != DEFAULT_SHAPE or abs(region.voxel_m - DEFAULT_VOXEL_M) > 1e-9:
         sides = "x".join(str(side) for side in region.shape)
         raise InputError(
             sample.key,
-            f"its region is {sides} cells of {region.voxel_m:g} m; this format holds 60x60x36 of "
-            "0.08 m alone: build the data set so, or export to npz",
+            f"the region has {sides} cells of {region.voxel_m:g} m, but this format needs 60x60x36 "
+            "cells of 0.08 m; export to npz, or build the data set with this region",
         )
 
 
 def region_box(sample: OccSample) -> LabelledBox:
-    """Return the box in the region's own world: x right, y forward, z up, its corner at 0."""
+    """Return the box of a sample in region coordinates (x right, y forward, z up, corner at 0)."""
     camera_to_region = invert_rigid(sample.occ.region.region_to_room) @ sample.camera_to_room
     return LabelledBox(sample.occ.labels, np.zeros(3), camera_to_region)
 
 
 def room_box(sample: OccSample) -> LabelledBox | None:
-    """Return the box along the room's axes, or None where it is turned by no quarter."""
+    """Return the box of a sample along the room axes, or None if it is not aligned with them."""
     region = sample.occ.region
     turn_deg = np.degrees(np.arctan2(region.region_to_room[1, 0], region.region_to_room[0, 0]))
     quarters = round(turn_deg / 90)
@@ -69,11 +75,12 @@ def cells_in_image(
     box_to_camera: np.ndarray,
     camera: Camera,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Project the centres of a box's cells, as the loaders do.
+    """Project the centres of a box's cells into an image, in the same way as the published loaders.
 
     Returns:
-        Which fall into the image in front of the camera, bool [X, Y, Z]; their pixels int64
-        [X, Y, Z, 2] (column, row) and their depths float64 [X, Y, Z], sound only where they do.
+        Three arrays. The first tells whether each cell is in front of the camera and inside the
+        image, bool [X, Y, Z]. The others are the pixel positions (column, row), int64 [X, Y, Z, 2],
+        and the depths in metres, float64 [X, Y, Z]; they are valid only for cells inside the image.
     """
     centres = (np.moveaxis(np.indices(shape), 0, -1) + 0.5) * voxel_m
     points = apply(box_to_camera, centres)
@@ -89,7 +96,7 @@ def cells_in_image(
 
 
 def box_cells_in_image(box: LabelledBox, camera: Camera) -> np.ndarray:
-    """Return which cells of a box fall into an image, bool [60, 60, 36]."""
+    """Return whether the centre of each cell of a box is inside an image, bool [60, 60, 36]."""
     box_to_world = np.eye(4)
     box_to_world[:3, 3] = box.origin_m
     box_to_camera = invert_rigid(box.camera_to_world) @ box_to_world
@@ -97,7 +104,14 @@ def box_cells_in_image(box: LabelledBox, camera: Camera) -> np.ndarray:
 
 
 def export_labels(labels: np.ndarray, in_image: np.ndarray | None, unknown: str) -> np.ndarray:
-    """Return labels with cells outside the image unknown, and unknown kept or made empty."""
+    """Prepare labels for export.
+
+    Args:
+        labels: Class of each cell, 255 for unknown.
+        in_image: Whether each cell is inside the image; other cells become unknown. None changes no
+            cells.
+        unknown: ``keep`` (255) or ``empty`` (0): the value to write for unknown cells.
+    """
     result = labels if in_image is None else np.where(in_image, labels, UNKNOWN)
     if unknown == "empty":
         result = np.where(result == UNKNOWN, 0, result)
@@ -106,7 +120,10 @@ def export_labels(labels: np.ndarray, in_image: np.ndarray | None, unknown: str)
 
 @dataclass(frozen=True, eq=False)
 class SceneGrid:
-    """Cells along the room's axes, in step with the first box; others lie to the nearest cell."""
+    """The grid of a complete scene along the room axes.
+
+    The grid is aligned with the first box; other boxes are rounded to the nearest cell.
+    """
 
     shape: tuple[int, int, int]
     origin_m: np.ndarray  # float64 [3]
@@ -114,26 +131,28 @@ class SceneGrid:
 
     @classmethod
     def around(cls, origins_m: Sequence[np.ndarray], voxel_m: float) -> "SceneGrid":
-        """Return the smallest grid that holds usual boxes with these minimum corners.
+        """Return the smallest grid that contains the standard boxes with the given minimum corners.
 
         Raises:
-            LimitError: it would be larger than any home.
+            LimitError: If the grid has more than ``MAX_CELLS`` cells.
         """
         steps = np.array([np.round((at - origins_m[0]) / voxel_m) for at in origins_m])
         low, high = steps.min(axis=0), steps.max(axis=0) + DEFAULT_SHAPE
         sides = (high - low).astype(np.int64)
         if np.prod(sides.astype(np.float64)) > MAX_CELLS:
-            raise LimitError("scene", f"its frames span {sides.tolist()} cells; too far apart")
+            raise LimitError(
+                "scene", f"the frames are too far apart: they span {sides.tolist()} cells"
+            )
         shape = (int(sides[0]), int(sides[1]), int(sides[2]))
         return cls(shape, origins_m[0] + low * voxel_m, voxel_m)
 
     def slices(self, origin_m: np.ndarray) -> tuple[slice, ...]:
-        """Return where the box with this minimum corner lies."""
+        """Return the slices of the grid that the box with this minimum corner covers."""
         first = np.round((origin_m - self.origin_m) / self.voxel_m).astype(int)
         return tuple(slice(at, at + side) for at, side in zip(first, DEFAULT_SHAPE, strict=True))
 
     def centers_m(self) -> np.ndarray:
-        """Return the centres of all cells in the room, float64 [X, Y, Z, 3]."""
+        """Return the centres of all cells in room coordinates in metres, float64 [X, Y, Z, 3]."""
         return cell_centers_m(
             np.moveaxis(np.indices(self.shape), 0, -1), self.origin_m, self.voxel_m
         )
@@ -141,7 +160,13 @@ class SceneGrid:
 
 @dataclass(frozen=True, eq=False)
 class StoredFrame:
-    """A frame of OccScanNet as scenes are made of it."""
+    """An OccScanNet frame, as needed to assemble a scene.
+
+    Attributes:
+        labels: Class of each cell, uint8 [60, 60, 36], with axes x, y and z.
+        origin_m: Minimum corner of the box in metres, float64 [3].
+        in_image: Whether each cell is inside the image, bool [60, 60, 36].
+    """
 
     labels: np.ndarray  # uint8 [60, 60, 36] as x, y, z
     origin_m: np.ndarray
@@ -149,7 +174,10 @@ class StoredFrame:
 
 
 def read_stored_frame(path: Path) -> StoredFrame:
-    """Read the box of a frame that was written as 640x480. Raises what ``read_pickle`` raises."""
+    """Read the box of a frame that was exported at 640x480 pixels.
+
+    Raises the same exceptions as ``read_pickle``.
+    """
     found: dict[str, Any] = read_pickle(path)
     matrix = np.asarray(found["intrinsic"], np.float64)
     camera = Camera(

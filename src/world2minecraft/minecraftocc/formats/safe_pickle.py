@@ -1,15 +1,16 @@
-"""Read and write pickles of arrays safely: a pickle is a program, and may be hostile.
+"""Safe reading and writing of pickled arrays.
 
-Python's unpickler calls whatever a pickle names. ``read_pickle`` knows some fifty operations on a
-stack, and of names only those by which numpy's arrays and numbers are made; they stand for values
-of ours, so that no foreign byte reaches numpy but as the content of an array whose size was
-checked. Each ``do_NAME`` of ``PickleMachine`` is one operation of the pickle protocols 0 to 5 by
-the name that ``pickletools`` gives it. There is no operation that imports, looks up an attribute or
-calls what was looked up.
+A pickle is a program, and Python's unpickler calls any function that a pickle names.
+``read_pickle`` therefore uses its own interpreter, which supports about fifty stack operations and
+only those names from which numpy arrays and numbers are built. Untrusted bytes reach numpy only as
+the content of an array whose size was checked. Each method ``do_NAME`` of ``PickleMachine``
+implements the operation NAME of the pickle protocols 0 to 5, named as in ``pickletools``. No
+operation imports a module, looks up an attribute or calls an object from the pickle.
 
-``dump_pickle`` writes pickle protocol 3, the same bytes for the same values. Python's own pickler
-names numpy's modules as the numpy that runs it does; numpy 2 moved them, and the loaders run on
-numpy 1. Here they have the old names, which both know.
+``dump_pickle`` writes pickle protocol 3, with identical bytes for identical values. Python's own
+pickler writes the module names of the installed numpy version; numpy 2 renamed these modules, but
+the published loaders run on numpy 1. ``dump_pickle`` uses the old names, which both versions
+accept.
 """
 
 import pickletools
@@ -49,15 +50,15 @@ _BROKEN = (ValueError, TypeError, KeyError, IndexError, OverflowError, MemoryErr
 
 
 class PickleRefused(Exception):
-    """A pickle asks for what arrays and plain values do not need."""
+    """A pickle contains something other than arrays and plain values."""
 
 
 class Mark:
-    """Where the members of a tuple, list or dict begin on the stack."""
+    """A stack marker for the start of a tuple, list or dict."""
 
 
 class GlobalName:
-    """A name that a pickle may call."""
+    """A supported global name that a pickle may call."""
 
     __slots__ = ("name",)
 
@@ -66,26 +67,30 @@ class GlobalName:
 
 
 class DtypeValue:
-    """An array's dtype while its state is not known yet."""
+    """The dtype of an array, before its byte order is known."""
 
     __slots__ = ("dtype",)
 
     def __init__(self, code: Any):
         if not isinstance(code, str) or not _CODE.fullmatch(code):
-            raise PickleRefused(f"has an array of {str(code)[:20]!r}")
+            raise PickleRefused(f"contains an array with the unsupported dtype {str(code)[:20]!r}")
         self.dtype = np.dtype(code)
 
     def build(self, state: Any) -> "DtypeValue":
-        """Take the byte order; a dtype with fields or shapes is refused."""
+        """Set the byte order.
+
+        Raises:
+            PickleRefused: If the dtype has fields or subarrays.
+        """
         match state:
             case (_, "<" | ">" | "|" | "=" as order, None, None, None, *_):
                 self.dtype = self.dtype.newbyteorder(order)
                 return self
-        raise PickleRefused("has an array of records")
+        raise PickleRefused("contains a structured array, which is not supported")
 
 
 class ArrayValue:
-    """An array whose content is not known yet; an operation on the stack puts it in."""
+    """An array whose content is not known yet. A later stack operation sets it."""
 
     __slots__ = ("values",)
 
@@ -94,25 +99,31 @@ class ArrayValue:
 
 
 def make_array(data: Any, dtype: Any, shape: Any, fortran: bool) -> np.ndarray:
-    """Return an array of bytes, its size checked. Raises Refusal where it does not fit."""
+    """Create an array from raw bytes after checking their size.
+
+    Raises:
+        PickleRefused: If the dtype, the shape and the bytes do not match.
+    """
     if isinstance(data, str):
         data = data.encode("latin-1")
     if not isinstance(dtype, DtypeValue) or not isinstance(data, (bytes, bytearray)):
-        raise PickleRefused("has an array without bytes")
+        raise PickleRefused("contains an array without data")
     sides = tuple(shape) if isinstance(shape, (tuple, list)) else (shape,)
     if not all(type(side) is int and 0 <= side < 1 << 32 for side in sides) or len(sides) > 8:
-        raise PickleRefused("has an array of no shape")
+        raise PickleRefused("contains an array without a valid shape")
     count = 1
     for side in sides:
         count *= side
     if count * dtype.dtype.itemsize != len(data):
-        raise PickleRefused(f"has an array {sides} of {dtype.dtype} in {len(data):,} bytes")
+        raise PickleRefused(
+            f"contains a {dtype.dtype} array of shape {sides} with {len(data):,} bytes"
+        )
     flat = np.frombuffer(bytearray(data), dtype.dtype)
     return flat.reshape(sides, order="F" if fortran else "C")
 
 
 class PickleMachine:
-    """The stack and the memo of one pickle."""
+    """The stack and memo of a pickle that is being read."""
 
     def __init__(self):
         self.stack: list[Any] = []
@@ -120,46 +131,46 @@ class PickleMachine:
         self.done = False
 
     def result(self) -> Any:
-        """Return what the pickle stands for."""
+        """Return the value of the complete pickle."""
         if not self.done or len(self.stack) != 1:
-            raise PickleRefused("is a pickle that does not end")
+            raise PickleRefused("incomplete pickle")
         return self.stack[0]
 
     def push(self, value: Any) -> None:
-        """Put a value on the stack."""
+        """Push a value onto the stack."""
         if len(self.stack) > MAX_DEPTH:
-            raise PickleRefused("is a pickle that piles up values")
+            raise PickleRefused("pickle with too many values on its stack")
         self.stack.append(value)
 
     def pop(self) -> Any:
-        """Take the last value, which may not be a mark."""
+        """Pop the last value, which must not be a mark."""
         value = self.stack.pop()
         if isinstance(value, Mark):
-            raise PickleRefused("is a pickle whose marks do not match")
+            raise PickleRefused("pickle with mismatched marks")
         return value
 
     def marked(self) -> list[Any]:
-        """Take all values since the last mark."""
+        """Pop all values after the last mark."""
         for index in range(len(self.stack) - 1, -1, -1):
             if isinstance(self.stack[index], Mark):
                 values = self.stack[index + 1 :]
                 del self.stack[index:]
                 return values
-        raise PickleRefused("is a pickle without a mark")
+        raise PickleRefused("pickle with a missing mark")
 
     # What makes a value out of nothing.
 
     def do_PROTO(self, argument: Any) -> None:
-        """Say the protocol."""
+        """Ignore the protocol number."""
 
     do_FRAME = do_PROTO
 
     def do_STOP(self, argument: Any) -> None:
-        """End."""
+        """Mark the pickle as complete."""
         self.done = True
 
     def do_MARK(self, argument: Any) -> None:
-        """Begin a tuple, a list or a dict."""
+        """Push a mark."""
         self.push(Mark())
 
     def do_NONE(self, argument: Any) -> None:
@@ -175,7 +186,7 @@ class PickleMachine:
         self.push(False)
 
     def do_INT(self, argument: Any) -> None:
-        """Push what the operation carries: a number, a text, bytes."""
+        """Push the argument of the operation: a number, a string or bytes."""
         self.push(argument)
 
     do_BININT = do_BININT1 = do_BININT2 = do_LONG = do_LONG1 = do_LONG4 = do_INT
@@ -187,107 +198,107 @@ class PickleMachine:
     # What joins values.
 
     def do_EMPTY_TUPLE(self, argument: Any) -> None:
-        """Push ()."""
+        """Push an empty tuple."""
         self.push(())
 
     def do_TUPLE(self, argument: Any) -> None:
-        """Join what was marked."""
+        """Combine the values after the last mark into a tuple."""
         self.push(tuple(self.marked()))
 
     def do_TUPLE1(self, argument: Any) -> None:
-        """Join one value."""
+        """Combine the last value into a tuple."""
         self.push((self.pop(),))
 
     def do_TUPLE2(self, argument: Any) -> None:
-        """Join two values."""
+        """Combine the last two values into a tuple."""
         last, first = self.pop(), self.pop()
         self.push((first, last))
 
     def do_TUPLE3(self, argument: Any) -> None:
-        """Join three values."""
+        """Combine the last three values into a tuple."""
         last, middle, first = self.pop(), self.pop(), self.pop()
         self.push((first, middle, last))
 
     def do_EMPTY_LIST(self, argument: Any) -> None:
-        """Push []."""
+        """Push an empty list."""
         self.push([])
 
     def do_LIST(self, argument: Any) -> None:
-        """Join what was marked to a list."""
+        """Combine the values after the last mark into a list."""
         self.push(self.marked())
 
     def do_APPEND(self, argument: Any) -> None:
-        """Lengthen a list by one."""
+        """Append the last value to a list."""
         value = self.pop()
         self._list().append(value)
 
     def do_APPENDS(self, argument: Any) -> None:
-        """Lengthen a list by what was marked."""
+        """Append the values after the last mark to a list."""
         values = self.marked()
         self._list().extend(values)
 
     def do_EMPTY_DICT(self, argument: Any) -> None:
-        """Push {}."""
+        """Push an empty dict."""
         self.push({})
 
     def do_DICT(self, argument: Any) -> None:
-        """Join what was marked to a dict."""
+        """Combine the keys and values after the last mark into a dict."""
         values = self.marked()
         self.push({})
         self._set(values)
 
     def do_SETITEM(self, argument: Any) -> None:
-        """Set one key."""
+        """Set a key of a dict."""
         value, key = self.pop(), self.pop()
         self._set([key, value])
 
     def do_SETITEMS(self, argument: Any) -> None:
-        """Set the keys that were marked."""
+        """Set the keys and values after the last mark in a dict."""
         self._set(self.marked())
 
     # The memo.
 
     def do_PUT(self, argument: Any) -> None:
-        """Remember the last value by a number."""
+        """Store the last value in the memo under a given number."""
         self.memo[int(argument)] = self.stack[-1]
 
     do_BINPUT = do_LONG_BINPUT = do_PUT
 
     def do_MEMOIZE(self, argument: Any) -> None:
-        """Remember the last value by the next number."""
+        """Store the last value in the memo under the next number."""
         self.memo[len(self.memo)] = self.stack[-1]
 
     def do_GET(self, argument: Any) -> None:
-        """Push what was remembered."""
+        """Push a value from the memo."""
         self.push(self.memo[int(argument)])
 
     do_BINGET = do_LONG_BINGET = do_GET
 
     def do_POP(self, argument: Any) -> None:
-        """Drop the last value."""
+        """Discard the last value."""
         self.stack.pop()
 
     # Names, and what stands for calling them.
 
     def do_GLOBAL(self, argument: Any) -> None:
-        """Push one of the few names."""
+        """Push a supported global name."""
         module, _, name = argument.partition(" ")
         self._name(module, name)
 
     def do_STACK_GLOBAL(self, argument: Any) -> None:
-        """Push one of the few names, given by the last two texts."""
+        """Push a supported global name that is given by the last two strings on the stack."""
         name, module = self.pop(), self.pop()
         self._name(module, name)
 
     def do_REDUCE(self, argument: Any) -> None:
-        """Make what a name and its arguments stand for."""
+        """Create the value that a supported name and its arguments describe."""
         arguments, named = self.pop(), self.pop()
         if not isinstance(named, GlobalName) or not isinstance(arguments, tuple):
-            raise PickleRefused("calls what is no name")
+            raise PickleRefused("calls an object that is not a supported name")
         self.push(_reduce(named.name, arguments))
 
     def do_BUILD(self, argument: Any) -> None:
-        """Give an array its content or a dtype its byte order."""
+        """Set the content of an array, or the byte order of a dtype."""
         state, value = self.pop(), self.stack[-1]
         if isinstance(value, DtypeValue):
             value.build(state)
@@ -295,21 +306,23 @@ class PickleMachine:
             _, shape, dtype, fortran, data = state
             value.values = make_array(data, dtype, shape, bool(fortran))
         else:
-            raise PickleRefused(f"sets the state of a {type(value).__name__}")
+            raise PickleRefused(f"sets the state of an unsupported {type(value).__name__}")
 
     def _list(self) -> list[Any]:
         if not isinstance(self.stack[-1], list):
-            raise PickleRefused("lengthens what is no list")
+            raise PickleRefused("appends to a value that is not a list")
         return self.stack[-1]
 
     def _set(self, values: list[Any]) -> None:
         if not isinstance(self.stack[-1], dict) or len(values) % 2:
-            raise PickleRefused("sets keys of what is no dict")
+            raise PickleRefused("sets keys of a value that is not a dict")
         self.stack[-1].update(zip(values[::2], values[1::2], strict=True))
 
     def _name(self, module: Any, name: Any) -> None:
         if (module, name) not in _NAMES:
-            raise PickleRefused(f"names {str(module)[:60]}.{str(name)[:60]}, which no array needs")
+            raise PickleRefused(
+                f"refers to {str(module)[:60]}.{str(name)[:60]}, which is not allowed"
+            )
         self.push(GlobalName(_NAMES[module, name]))
 
 
@@ -332,14 +345,14 @@ def _reduce(name: str, arguments: tuple[Any, ...]) -> Any:
             return b""
         case "bytes", (bytes() as data,):
             return data
-    raise PickleRefused(f"calls {name} as no array does")
+    raise PickleRefused(f"calls {name} with unsupported arguments")
 
 
 def dump_pickle(values: Mapping[str, Value]) -> bytes:
-    """Return the pickle of a dict.
+    """Pickle a dict.
 
     Raises:
-        TypeError: a value, or a member of a list, is of no kind that loaders expect.
+        TypeError: If a value or list member has a type that the published loaders do not expect.
 
     Example:
         >>> import pickle
@@ -367,7 +380,7 @@ def _encode_value(value: Value) -> bytes:
         return _encode_array(value)
     if isinstance(value, (list, tuple)):
         return b"](" + b"".join(_encode_value(member) for member in value) + b"e"
-    raise TypeError(f"a pickle for other loaders holds no {type(value).__name__}")
+    raise TypeError(f"cannot pickle a {type(value).__name__} for the published loaders")
 
 
 def _encode_text(value: str) -> bytes:
@@ -385,7 +398,7 @@ def _encode_int(value: int) -> bytes:
 def _encode_array(values: np.ndarray) -> bytes:
     """An array is made empty, then given its shape, its dtype and its bytes in C order."""
     if values.dtype.kind not in KINDS:
-        raise TypeError(f"a pickle for other loaders holds no array of {values.dtype}")
+        raise TypeError(f"cannot pickle an array of {values.dtype} for the published loaders")
     little = values.astype(values.dtype.newbyteorder("<"), order="C", copy=False)
     data = little.tobytes()
     order = b"X\x01\x00\x00\x00" + (b"|" if little.dtype.itemsize == 1 else b"<")
@@ -398,46 +411,55 @@ def _encode_array(values: np.ndarray) -> bytes:
 
 
 def read_pickle(path: str | Path, limit_bytes: int = MAX_BYTES) -> dict[str, Any]:
-    """Read a pickled dict of arrays, texts, numbers and lists of them.
+    """Read a pickled dict of arrays, strings, numbers and lists of these.
 
-    Arrays are ndarrays that may be written to; tuples come back as lists.
+    Arrays are returned as writable ndarrays and tuples as lists.
+
+    Args:
+        path: Pickle file.
+        limit_bytes: Maximum file size in bytes.
 
     Raises:
-        InputError: it is missing. LimitError: it is too large. DamagedFileError: it is no pickle,
-            or names anything but arrays and plain values.
+        InputError: If the file does not exist.
+        LimitError: If the file is too large.
+        DamagedFileError: If the file is not a pickle, or contains anything but arrays and plain
+            values.
     """
     return parse_pickle(read_bytes(path, limit_bytes), path)
 
 
 def parse_pickle(data: bytes, name: object = "pickle") -> dict[str, Any]:
-    """Read the bytes of a pickled dict. Raises what ``read_pickle`` raises."""
+    """Parse the bytes of a pickled dict.
+
+    Raises the same exceptions as ``read_pickle``.
+    """
     try:
         found = _interpret(data)
         if not isinstance(found, dict):
-            raise PickleRefused(f"holds a {type(found).__name__}, not a dict")
+            raise PickleRefused(f"contains a {type(found).__name__}, expected a dict")
         return {_key(key): _plain(value) for key, value in found.items()}
     except PickleRefused as error:
-        raise DamagedFileError(name, f"{error}; it is not read") from error
+        raise DamagedFileError(name, f"{error}; the file was not read") from error
     except _BROKEN as error:
         words = reason_of(error, 120)
-        raise DamagedFileError(name, f"is no whole pickle ({words})") from error
+        raise DamagedFileError(name, f"not a valid pickle ({words})") from error
 
 
 def _interpret(data: bytes) -> Any:
     machine = PickleMachine()
     for count, (operation, argument, _) in enumerate(pickletools.genops(data)):
         if count > MAX_OPERATIONS:
-            raise PickleRefused(f"is a program of over {MAX_OPERATIONS:,} steps")
+            raise PickleRefused(f"pickle with more than {MAX_OPERATIONS:,} operations")
         step: Callable[[Any], None] | None = getattr(machine, f"do_{operation.name}", None)
         if step is None:
-            raise PickleRefused(f"is a pickle with {operation.name}, which no array needs")
+            raise PickleRefused(f"pickle with the unsupported operation {operation.name}")
         step(argument)
     return machine.result()
 
 
 def _key(key: Any) -> str:
     if not isinstance(key, str):
-        raise PickleRefused(f"has a key that is a {type(key).__name__}, not a text")
+        raise PickleRefused(f"contains a key of type {type(key).__name__}, expected a string")
     return key
 
 
@@ -449,4 +471,4 @@ def _plain(value: Any, depth: int = 0) -> Any:
         return value
     if isinstance(value, (list, tuple)) and depth < 3:
         return [_plain(member, depth + 1) for member in value]
-    raise PickleRefused(f"holds a {type(value).__name__}")
+    raise PickleRefused(f"contains an unsupported {type(value).__name__}")

@@ -1,9 +1,10 @@
-"""Read and write SSCNet's ``.bin``: the voxels of one NYU frame at 2 cm, run-length encoded.
+"""Reader and writer for SSCNet ``.bin`` files: run-length encoded 2 cm voxels of an NYU frame.
 
-A file is 3 float32 (where voxel (0, 0, 0) begins in the world), 16 float32 (the camera's pose in
-the world, row by row), then uint32 pairs of value and count: 240 x 144 x 240 voxels in C order,
-axes (x, z up, y), values 0 to 36 or 255. MonoScene's preprocessing makes 8 and 32 cm grids of it;
-here it is done the same way, all cells at once.
+A file contains 3 float32 (the minimum corner of voxel (0, 0, 0) in the world), 16 float32 (the
+camera pose in the world, row by row), and uint32 pairs of value and count for 240 x 144 x 240
+voxels in C order with the axes (x, z up, y). The values are 0 to 36 or 255. Like MonoScene's
+preprocessing, this module downsamples the voxels to grids of 8 and 32 cm, but for all cells at
+once.
 """
 
 from dataclasses import dataclass
@@ -36,7 +37,14 @@ CODE_OF_CLASS = np.array([0, 1, 2, 3, 4, 6, 7, 8, 9, 16, 11, 14], np.uint8)
 
 @dataclass(frozen=True, eq=False)
 class SscnetFrame:
-    """What a ``.bin`` holds, its codes made our classes."""
+    """The content of a ``.bin`` file, with its codes converted to the 12 classes.
+
+    Attributes:
+        labels: Class of each voxel (0 to 11 or 255), uint8 [240, 144, 240], with axes x, z (up) and
+            y.
+        origin_m: Minimum corner of voxel (0, 0, 0) in the world in metres, float32 [3].
+        camera_to_world: Camera pose in the world, float32 [4, 4].
+    """
 
     labels: np.ndarray  # uint8 [240, 144, 240] as x, z up, y; 0 to 11 or 255
     origin_m: np.ndarray  # float32 [3], minimum corner of voxel (0, 0, 0) in the world
@@ -44,20 +52,24 @@ class SscnetFrame:
 
 
 def read_bin(path: str | Path) -> SscnetFrame:
-    """Read a ``.bin``.
+    """Read a ``.bin`` file.
 
     Raises:
-        InputError: it is missing. LimitError: it is too large. DamagedFileError: it is none.
+        InputError: If the file does not exist.
+        LimitError: If the file is too large.
+        DamagedFileError: If the file is not a valid SSCNet ``.bin``.
     """
     data = read_bytes(path, MAX_BYTES)
     if len(data) < HEADER_BYTES or (len(data) - HEADER_BYTES) % 8:
-        raise DamagedFileError(path, f"has {len(data):,} bytes, which no SSCNet .bin has")
+        raise DamagedFileError(
+            path, f"not a valid SSCNet .bin: {len(data):,} bytes is not a possible file size"
+        )
     head = np.frombuffer(data, "<f4", 19)
     pairs = np.frombuffer(data, "<u4", offset=HEADER_BYTES).reshape(-1, 2)
     try:
         codes = _expand_runs(pairs)
     except ValueError as error:
-        raise DamagedFileError(path, f"{error}; it is no SSCNet .bin") from error
+        raise DamagedFileError(path, f"not a valid SSCNet .bin: {error}") from error
     table = np.zeros(256, np.uint8)
     table[: len(CLASS_OF_CODE)], table[UNKNOWN] = CLASS_OF_CODE, UNKNOWN
     return SscnetFrame(table[codes].reshape(FINE_SHAPE), head[:3].copy(), head[3:].reshape(4, 4))
@@ -67,23 +79,22 @@ def _expand_runs(pairs: np.ndarray) -> np.ndarray:
     """Return the codes, uint8 [8294400], of runs whose sum is checked first."""
     voxels, total = int(np.prod(FINE_SHAPE)), int(pairs[:, 1].sum(dtype=np.uint64))
     if total != voxels:
-        raise ValueError(f"holds {total:,} voxels of {voxels:,}")
+        raise ValueError(f"contains {total:,} voxels, expected {voxels:,}")
     values = pairs[:, 0]
     if np.any((values >= len(CLASS_OF_CODE)) & (values != UNKNOWN)):
-        raise ValueError(f"holds the class {int(values[values != UNKNOWN].max())}")
+        raise ValueError(f"contains the unknown class code {int(values[values != UNKNOWN].max())}")
     return np.repeat(values.astype(np.uint8), pairs[:, 1])
 
 
 def encode_bin(labels: np.ndarray, origin_m: np.ndarray, camera_to_world: np.ndarray) -> bytes:
-    """Return the ``.bin`` of an 8 cm grid: each cell is 4 x 4 x 4 equal voxels.
+    """Encode an 8 cm grid as a ``.bin`` file, with 4 x 4 x 4 equal voxels for each cell.
 
-    ``downsampled(read_bin(...).labels, 4)`` gives the grid back: an equal block is all of one
-    kind, so that the rule of 95 % decides nothing.
+    ``downsample_labels(read_bin(...).labels, 4)`` restores the grid exactly.
 
     Args:
-        labels: uint8 [60, 36, 60] as x, z up, y; 0 to 11 or 255.
-        origin_m: [3], minimum corner of cell (0, 0, 0).
-        camera_to_world: [4, 4].
+        labels: Class of each cell (0 to 11 or 255), uint8 [60, 36, 60], with axes x, z (up) and y.
+        origin_m: Minimum corner of cell (0, 0, 0) in metres [3].
+        camera_to_world: Camera pose in the world [4, 4].
     """
     table = np.full(256, UNKNOWN, np.uint8)
     table[:CLASS_COUNT] = CODE_OF_CLASS
@@ -99,14 +110,16 @@ def encode_bin(labels: np.ndarray, origin_m: np.ndarray, camera_to_world: np.nda
 
 
 def downsample_labels(labels: np.ndarray, factor: int) -> np.ndarray:
-    """Return a grid with cells ``factor`` times as large, by the rule of SSCNet's loaders.
+    """Downsample a label grid with the rule of SSCNet's loaders.
 
-    A cell of which more than 95 % is empty or unknown is the more frequent of the two (unknown
-    where they are even); any other is its most frequent class, the lower id where two are even.
+    If more than 95 % of a cell is empty or unknown, the cell gets the more frequent of these two
+    labels (unknown in case of a tie). Any other cell gets its most frequent class, or the lowest id
+    in case of a tie.
 
     Args:
-        labels: uint8 [X, Y, Z], 0 to 11 or 255, sides whole multiples of ``factor``.
-        factor: 4 makes 8 cm cells of 2 cm voxels.
+        labels: Class of each cell (0 to 11 or 255), uint8 [X, Y, Z]. The sides must be multiples of
+            ``factor``.
+        factor: Ratio of the cell sizes, such as 4 to make 8 cm cells from 2 cm voxels.
 
     Example:
         >>> fine = np.zeros((4, 4, 4), np.uint8)

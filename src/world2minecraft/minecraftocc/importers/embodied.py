@@ -1,7 +1,7 @@
-"""Import EmbodiedOcc-ScanNet: frames of whole scenes, and the scenes themselves.
+"""Importer for EmbodiedOcc-ScanNet: the frames of complete scenes, and the scenes themselves.
 
-``scene_occ`` holds the packages; the frames' poses and pictures are those of ``occscannet`` beside
-it, as the loaders of the format have them.
+``scene_occ`` contains the packages. The poses and images of the frames are read from ``occscannet``
+in the same folder, as in the loaders of this format.
 """
 
 import re
@@ -28,7 +28,15 @@ MAX_SCENE_BYTES = 2 << 30
 
 @dataclass(frozen=True, eq=False)
 class ScenePackage:
-    """A whole scene: ``labels[x, y, z]``, z up, in the world that its frames share."""
+    """A complete scene in the coordinate system that its frames share.
+
+    Attributes:
+        labels: Class of each cell (0 to 11 or 255), uint8 [X, Y, Z], with z up.
+        seen: Whether each cell is seen by any frame, bool [X, Y, Z].
+        origin_m: Minimum corner of cell (0, 0, 0) in metres, float64 [3].
+        voxel_m: Cell size in metres.
+        images: Image paths as stored in the package. They contain the scene name and frame number.
+    """
 
     labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
     seen: np.ndarray  # bool [X, Y, Z], by any frame
@@ -38,16 +46,22 @@ class ScenePackage:
 
 
 def is_embodied(path: Path) -> bool:
-    """Return whether a folder, or its ``scene_occ``, holds packages of scenes."""
+    """Return whether a folder, or its ``scene_occ`` subfolder, contains scene packages."""
     return _packages(path).joinpath("global_occ_package").is_dir()
 
 
 def open_embodied(path: Path) -> ImportedSet:
-    """List the frames of all scenes. Raises InputError where they, or their poses, are missing."""
+    """Open a folder and list the frames of all its scenes.
+
+    Raises:
+        InputError: If the frames or their poses are missing.
+    """
     packages = _packages(path)
     frames = packages.parent / "occscannet"
     if not (frames / "gathered_data").is_dir():
-        raise InputError(frames, "is not there; the frames' poses lie in its gathered_data")
+        raise InputError(
+            frames, "contains no gathered_data folder, which is required for the camera poses"
+        )
     files: dict[str, tuple[Path, str]] = {}
     for split in ("train", "test"):
         folder = packages / "streme_occ_new_package" / split
@@ -55,7 +69,9 @@ def open_embodied(path: Path) -> ImportedSet:
             if match := _FRAME.fullmatch(file.stem):
                 files[f"{match[1]}-{match[2]}"] = file, split
     if not files:
-        raise InputError(packages, "holds no streme_occ_new_package/train/SCENE_NNNNN_new.pkl")
+        raise InputError(
+            packages, "no files found that match streme_occ_new_package/train/SCENE_NNNNN_new.pkl"
+        )
     splits = {key: split for key, (_, split) in files.items()}
     return ImportedSet(
         path, "embodied", splits, lambda key: _read(frames, key, files[key][0], splits[key])
@@ -63,22 +79,25 @@ def open_embodied(path: Path) -> ImportedSet:
 
 
 def read_scene(path: Path) -> ScenePackage:
-    """Read one ``global_occ_package/SCENE.pkl``.
+    """Read a scene package ``global_occ_package/SCENE.pkl``.
 
     Raises:
-        InputError: it is missing. DamagedFileError: it is none.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a valid scene package.
     """
     stored = read_pickle(path, MAX_SCENE_BYTES)
     wanted = ("scene_dim", "global_labels", "global_pts", "global_mask", "valid_img_paths")
     if missing := [name for name in wanted if name not in stored]:
-        raise DamagedFileError(path, f"has no {', '.join(missing)}")
+        raise DamagedFileError(path, f"does not contain {', '.join(missing)}")
     sides = checked_numbers(stored["scene_dim"], (3,), "scene_dim", path).astype(int)
     shape = (int(sides[0]), int(sides[1]), int(sides[2]))
     labels = checked_labels(stored["global_labels"], shape, path)
     centres = np.asarray(stored["global_pts"])
     seen = np.asarray(stored["global_mask"])
     if centres.shape != (*shape, 3) or centres.dtype.kind != "f" or seen.shape != shape:
-        raise DamagedFileError(path, "has centres or a mask of another shape than its labels")
+        raise DamagedFileError(
+            path, "global_pts or global_mask does not have the shape of global_labels"
+        )
     first = centres.reshape(-1, 3).min(axis=0).astype(np.float64)
     origin_m = first - DEFAULT_VOXEL_M / 2  # Theirs are centres.
     images = stored["valid_img_paths"]
@@ -88,17 +107,26 @@ def read_scene(path: Path) -> ScenePackage:
 
 @dataclass(frozen=True)
 class SceneSet:
-    """The scenes of a folder, by name, each with its split and its frames' packages."""
+    """The scenes of a folder.
+
+    Attributes:
+        path: Folder with the scene packages.
+        splits: Split of each scene, ``train`` or ``test``.
+        frames: Frame files of each scene.
+    """
 
     path: Path
     splits: dict[str, str]  # scene to train or test
     frames: dict[str, tuple[Path, ...]]
 
     def read(self, scene: str) -> ScenePackage:
-        """Read a scene. What is ``seen`` is what its frames say, as published scores have it.
+        """Read a scene.
+
+        ``seen`` is the union of the masks of its frames, as in the published evaluations.
 
         Raises:
-            InputError: it is missing. DamagedFileError: it, or a frame's mask, is none.
+            InputError: If the scene package does not exist.
+            DamagedFileError: If the scene package or the mask of a frame is not valid.
         """
         package = read_scene(self.path / "global_occ_package" / f"{scene}.pkl")
         seen = np.zeros(package.labels.shape, bool)
@@ -106,14 +134,18 @@ class SceneSet:
             mask = np.asarray(read_pickle(file, MAX_SCENE_BYTES).get("mask_in_global"))
             if mask.shape != seen.shape or mask.dtype.kind not in ("b", "u"):
                 raise DamagedFileError(
-                    file, f"has a mask_in_global of {mask.shape}, its scene {seen.shape} cells"
+                    file, f"mask_in_global has shape {mask.shape}, but its scene has {seen.shape}"
                 )
             seen |= mask.astype(bool)
         return replace(package, seen=seen)
 
 
 def open_scenes(path: Path) -> SceneSet:
-    """List the scenes that have a package and frames. Raises InputError where there are none."""
+    """Open a folder and list the scenes that have both a package and frames.
+
+    Raises:
+        InputError: If there are no such scenes.
+    """
     packages = _packages(path)
     frames: dict[str, list[Path]] = {}
     splits: dict[str, str] = {}
@@ -125,7 +157,9 @@ def open_scenes(path: Path) -> SceneSet:
     there = {one.stem for one in (packages / "global_occ_package").glob("*.pkl")}
     names = sorted(there & set(splits))
     if not names:
-        raise InputError(packages, "holds no scene with a global_occ_package and frames")
+        raise InputError(
+            packages, "no scene found that has both a global_occ_package file and frames"
+        )
     return SceneSet(
         packages, {name: splits[name] for name in names}, {n: tuple(frames[n]) for n in names}
     )
@@ -139,7 +173,7 @@ def _read(frames: Path, key: str, file: Path, split: str) -> OccSample:
     scene, _, number = key.rpartition("-")
     stored: dict[str, Any] = read_pickle(file)
     if "local_label" not in stored:
-        raise DamagedFileError(file, "has no local_label")
+        raise DamagedFileError(file, "does not contain local_label")
     found = read_frame(frames, f"{scene}/{number}", stored["local_label"])
     return make_sample(
         found, key, scene_id=scene, tour_id="", frame=int(number), split=split, format="embodied"

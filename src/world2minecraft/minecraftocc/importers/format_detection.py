@@ -1,4 +1,4 @@
-"""Detect the format of a folder, and open its samples."""
+"""Format detection for occupancy data sets, and the function that opens them."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +13,7 @@ from world2minecraft.minecraftocc.importers.occscannet import is_occscannet, ope
 
 
 class FormatReader(NamedTuple):
-    """How a format is found out and opened."""
+    """The functions that detect and open a data set format."""
 
     is_at: Callable[[Path], bool]
     open: Callable[[Path], ImportedSet]
@@ -46,15 +46,18 @@ IMPORTED: dict[str, FormatReader] = {
 def open_occupancy(
     path: str | Path, format: str | None = None, *, labels: str | Path | None = None
 ) -> ImportedSet:
-    """Open an occupancy data set: of others, an export of ours, or a store of ours.
+    """Open an occupancy data set in our own format or in one of the published formats.
 
     Args:
-        path: a folder in one of the formats; a single ``.bin`` or ``.npz`` does as well.
-        format: store, nyu, occscannet, embodied or npz; found out by default.
-        labels: nyu: where MonoScene's preprocessed ``base/`` lies, if not beside the frames.
+        path: Folder in one of the formats. A single ``.bin`` or ``.npz`` file is also accepted.
+        format: ``store`` (our own format), ``nyu``, ``occscannet``, ``embodied`` or ``npz``.
+            Detected automatically by default.
+        labels: Folder with MonoScene's preprocessed ``base/``, if it is stored elsewhere. Only for
+            ``nyu``.
 
     Raises:
-        UnknownNameError: there is no such format. InputError: the folder is in none, or is empty.
+        UnknownNameError: If the format is unknown.
+        InputError: If the folder is not in any of the formats, or is empty.
     """
     place = Path(path)
     if not place.exists():
@@ -64,8 +67,9 @@ def open_occupancy(
         if format is None:
             raise InputError(
                 place,
-                "is no occupancy data set: it has no dataset.json, NYUtrain/, gathered_data/, "
-                "scene_occ/ or train/KEY.npz",
+                "not an occupancy data set: no dataset.json, NYUtrain/, gathered_data/, "
+                "scene_occ/ or "
+                "train/KEY.npz found",
             )
     if format not in IMPORTED:
         raise UnknownNameError("format", format, IMPORTED)

@@ -1,8 +1,9 @@
-"""Imported data sets, and how a sample is made of the labels, camera and images of other formats.
+"""Imported data sets, and the conversion of labels, cameras and images to samples.
 
-Other formats name no single blocks or objects: the fine classes are the 12 classes, and there are
-no instances. Where there is depth, it shows which cells are seen first and which empty ones are
-crossed; else both masks are left empty, and the sample's facts say so.
+The published formats do not identify blocks or objects, so the fine classes of a sample are the 12
+classes and there are no instances. If depth is available, it determines which cells are seen first
+and which empty cells are observed as free. Otherwise both masks are empty, and the facts of the
+sample say so.
 """
 
 from collections import Counter
@@ -35,12 +36,21 @@ from world2minecraft.minecraftocc.types import (
 CLASS_KINDS = tuple(FineClass(f"nyu:{name}") for name in CLASS_NAMES)
 INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is taken to lie in it.
 MAX_SKEW = 1e-3  # A pose of float32, or of a few printed digits, is put right within this.
-HITS_FACT, FREE_FACT = "first seen, by depth", "centres in front of the depth"
+HITS_FACT, FREE_FACT = "first surface, from depth", "cell centres in front of the depth"
 
 
 @dataclass(frozen=True)
 class ImportedSet:
-    """Samples of a folder, by key; it is read as a store is."""
+    """An imported data set, which provides its samples by key with the same interface as a store.
+
+    Attributes:
+        path: Folder or file of the data set.
+        format: Name of its format.
+        splits: Split of each key: ``train``, ``test`` or an empty string.
+        read: Function that reads the sample with a key.
+        notes: Remarks for the user.
+        sha256: SHA-256 of all samples, if the data set states it.
+    """
 
     path: Path
     format: str
@@ -50,17 +60,17 @@ class ImportedSet:
     sha256: str = ""  # The sum of all samples, where the data set states it.
 
     def keys(self, split: str | None = None) -> list[str]:
-        """Return the keys, of one split or of all."""
+        """Return the sample keys of a split, or of all splits by default."""
         return [key for key, of in self.splits.items() if split in (None, of)]
 
     def describe(self) -> str:
-        """Return format and counts in words, such as ``nyu, 3 samples (1 test, 2 train)``."""
+        """Return the format and sample counts, such as ``nyu, 3 samples (1 test, 2 train)``."""
         counts = Counter(self.splits.values())
-        parts = ", ".join(f"{counts[one]:,} {one or 'of no split'}" for one in sorted(counts))
+        parts = ", ".join(f"{counts[one]:,} {one or 'without split'}" for one in sorted(counts))
         return f"{self.format}, {len(self):,} samples ({parts})"
 
     def samples(self, split: str | None = None) -> Iterator[OccSample]:
-        """Read the samples of one split, or all, one at a time."""
+        """Iterate over the samples of a split, or of all splits by default."""
         return (self.read(key) for key in self.keys(split))
 
     def __getitem__(self, key: str) -> OccSample:
@@ -76,15 +86,15 @@ class ImportedSet:
 
 
 def read_colour_if_present(path: Path) -> np.ndarray | None:
-    """Read uint8 [H, W, 3], or return None where there is no file."""
+    """Read a colour image as uint8 [H, W, 3], or return None if the file does not exist."""
     return read_colour(path) if path.is_file() else None
 
 
 def read_depth_if_present(path: Path, code: DepthCode) -> np.ndarray | None:
-    """Read float32 [H, W] metres, or return None where there is no file.
+    """Read a depth image in metres as float32 [H, W], or return None if the file does not exist.
 
     Raises:
-        CaptureError: the image cannot hold depth.
+        CaptureError: If the image type cannot contain depth.
     """
     if not path.is_file():
         return None
@@ -93,7 +103,7 @@ def read_depth_if_present(path: Path, code: DepthCode) -> np.ndarray | None:
 
 
 def resize_colour(pixels: np.ndarray, width_px: int, height_px: int) -> np.ndarray:
-    """Return a picture at another size, as the loaders resize theirs."""
+    """Resize a colour image with a bilinear filter, as the published loaders do."""
     if pixels.shape[:2] == (height_px, width_px):
         return pixels
     image = Image.fromarray(pixels).resize((width_px, height_px), Image.Resampling.BILINEAR)
@@ -102,7 +112,17 @@ def resize_colour(pixels: np.ndarray, width_px: int, height_px: int) -> np.ndarr
 
 @dataclass(frozen=True, eq=False)
 class ImportedFrame:
-    """What a format holds of one image."""
+    """The data of one image in a published format.
+
+    Attributes:
+        name: File to name in error messages.
+        labels: Class of each cell, uint8 [60, 60, 36], with axes x, y and z (up).
+        origin_m: Minimum corner of cell (0, 0, 0) in metres, float64 [3].
+        camera_to_world: Camera pose in the world, float64 [4, 4].
+        camera: Camera of the image.
+        colour: Colour image, uint8 [H, W, 3], or None.
+        depth_m: Depth in metres, float32 [H, W], or None.
+    """
 
     name: Path  # For messages.
     labels: np.ndarray  # uint8 [60, 60, 36] as x, y, z up
@@ -123,10 +143,10 @@ def make_sample(
     split: str,
     format: str,
 ) -> OccSample:
-    """Return the sample, its world taken as the room.
+    """Convert an imported frame to a sample. Its world coordinates become the room coordinates.
 
     Raises:
-        DamagedFileError: the labels or the pose are none.
+        DamagedFileError: If the labels or the camera pose are not valid.
     """
     region_to_room = np.eye(4)
     region_to_room[:3, 3] = _checked_origin(found)
@@ -134,8 +154,8 @@ def make_sample(
     region = LabelRegion(DEFAULT_SHAPE, DEFAULT_VOXEL_M, region_to_room)
     facts: dict[str, Any] = {"format": format}
     has_depth = found.depth_m is not None
-    facts["hits"] = HITS_FACT if has_depth else "none: there is no depth"
-    facts["free"] = FREE_FACT if has_depth else "none: there is no depth"
+    facts["hits"] = HITS_FACT if has_depth else "none, because there is no depth"
+    facts["free"] = FREE_FACT if has_depth else "none, because there is no depth"
     return OccSample(
         key=key,
         scene_id=scene_id,
@@ -153,33 +173,41 @@ def make_sample(
 
 
 def checked_labels(values: Any, shape: tuple[int, ...], name: Path) -> np.ndarray:
-    """Return class ids as uint8 of a shape.
+    """Check class ids and convert them to uint8.
 
     Raises:
-        DamagedFileError: they are of another shape, or hold other ids.
+        DamagedFileError: If the array has another shape, or contains values other than class ids.
     """
     labels = np.asarray(values)
     if labels.shape != shape or labels.dtype.kind not in "biuf":
-        raise DamagedFileError(name, f"has labels {labels.shape} of {labels.dtype}, not {shape}")
+        raise DamagedFileError(
+            name, f"labels must be numbers of shape {shape}, got {labels.dtype} {labels.shape}"
+        )
     whole = labels.astype(np.uint8)
     if not (np.array_equal(whole, labels) and np.all((whole < CLASS_COUNT) | (whole == UNKNOWN))):
-        raise DamagedFileError(name, "has labels that are no class ids 0 to 11 or 255")
+        raise DamagedFileError(name, "labels must be class ids from 0 to 11, or 255")
     return whole
 
 
 def checked_numbers(values: Any, shape: tuple[int, ...], what: str, name: Path) -> np.ndarray:
-    """Return finite float64 numbers of a shape. Raises DamagedFileError where they are none."""
+    """Check an array of finite numbers and convert it to float64.
+
+    Raises:
+        DamagedFileError: If the values are not finite numbers, or if the array has another shape.
+    """
     try:
         numbers = np.array(values, np.float64)
     except (TypeError, ValueError) as error:
-        raise DamagedFileError(name, f"has no numbers for {what}") from error
+        raise DamagedFileError(name, f"the {what} does not consist of numbers") from error
     if numbers.shape != shape or not np.isfinite(numbers).all():
-        raise DamagedFileError(name, f"has a {what} of {numbers.shape}, not {shape} finite numbers")
+        raise DamagedFileError(
+            name, f"the {what} must be finite numbers of shape {shape}, got shape {numbers.shape}"
+        )
     return numbers
 
 
 def resize_depth(depth_m: np.ndarray, camera: Camera) -> np.ndarray:
-    """Return depth at a camera's size, of the nearest pixels."""
+    """Resize a depth map to the size of a camera by nearest neighbour."""
     rows, columns = depth_m.shape
     if (rows, columns) == (camera.height_px, camera.width_px):
         return depth_m
@@ -198,7 +226,9 @@ def _orthonormal_pose(found: ImportedFrame) -> np.ndarray:
     left, _, right = np.linalg.svd(pose[:3, :3])
     turn = left @ right
     if np.abs(turn - pose[:3, :3]).max() > MAX_SKEW or np.linalg.det(turn) < 0:
-        raise DamagedFileError(found.name, "has a camera pose that is no rotation and shift")
+        raise DamagedFileError(
+            found.name, "the camera pose is not a rigid transform (rotation and translation)"
+        )
     result = np.eye(4)
     result[:3, :3], result[:3, 3] = turn, pose[:3, 3]
     return result

@@ -1,4 +1,4 @@
-"""Import plain ``.npz`` files, one per sample, as our own exporter writes them."""
+"""Importer for plain ``.npz`` files, one per sample, as written by our own exporter."""
 
 import json
 from pathlib import Path
@@ -21,14 +21,18 @@ NEEDED = (
 
 
 def is_npz(path: Path) -> bool:
-    """Return whether a path is a ``.npz`` of a sample, or a folder of them by split."""
+    """Return whether a path is an ``.npz`` file of a sample, or a folder of such files by split."""
     if path.suffix == ".npz":
         return path.is_file() and "camera_lens" in npz_array_names(path)
     return any(any((path / split).glob("*.npz")) for split in SPLITS)
 
 
 def open_npz(path: Path) -> ImportedSet:
-    """List the samples. Raises InputError where there are none."""
+    """Open a file or folder and list its samples.
+
+    Raises:
+        InputError: If there are no samples.
+    """
     if path.suffix == ".npz":
         files = {path.stem: path}
         splits = {path.stem: SPLITS.get(path.parent.name, "")}
@@ -37,7 +41,9 @@ def open_npz(path: Path) -> ImportedSet:
         files = {file.stem: file for file, _ in found}
         splits = {file.stem: SPLITS[split] for file, split in found}
     if not files:
-        raise InputError(path, "holds no train/KEY.npz, test/KEY.npz or all/KEY.npz")
+        raise InputError(
+            path, "no files found that match train/KEY.npz, test/KEY.npz or all/KEY.npz"
+        )
     return ImportedSet(path, "npz", splits, lambda key: _read(files[key]))
 
 
@@ -48,7 +54,7 @@ def _read(path: Path) -> OccSample:
     try:
         return _sample(arrays)
     except (ValueError, TypeError, KeyError, AttributeError, IndexError) as error:
-        raise DamagedFileError(path, f"is no sample of ours ({error})") from error
+        raise DamagedFileError(path, f"not a valid sample ({error})") from error
 
 
 def _sample(arrays: dict[str, np.ndarray]) -> OccSample:

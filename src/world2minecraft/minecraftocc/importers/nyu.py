@@ -1,7 +1,8 @@
-"""Import NYUv2 in the layout of MonoScene and all after it.
+"""Importer for NYUv2 in the layout of MonoScene and later methods.
 
-The labels are in ``NAME.pkl`` where MonoScene's preprocessing has run, under ``base/`` here or in
-another folder; else ``NAME.bin`` is read and made coarse the same way.
+The labels are read from ``NAME.pkl`` if MonoScene's preprocessing has been run; this file is in
+``base/``, in the same folder or in another one. Otherwise ``NAME.bin`` is read and downsampled in
+the same way.
 """
 
 from dataclasses import dataclass
@@ -42,7 +43,7 @@ class _Place:
 
 
 def is_nyu(path: Path) -> bool:
-    """Return whether a path is a ``.bin``, or a folder of them or with NYUtrain or NYUtest."""
+    """Return whether a path is a ``.bin`` file, or a folder in the layout of NYUv2."""
     if path.suffix == ".bin":
         return path.is_file()
     if path.name in FOLDERS or any((path / name).is_dir() for name in FOLDERS):
@@ -51,14 +52,14 @@ def is_nyu(path: Path) -> bool:
 
 
 def open_nyu(path: Path, labels: Path | None = None) -> ImportedSet:
-    """List the frames.
+    """Open a folder or file and list its frames.
 
     Args:
-        path: the folder of NYUtrain and NYUtest, any folder of ``.bin``, or one ``.bin``.
-        labels: the folder that ``base/`` of the preprocessing lies in, where it is elsewhere.
+        path: Folder with NYUtrain and NYUtest, any folder with ``.bin`` files, or a ``.bin`` file.
+        labels: Folder with the ``base/`` folder of the preprocessing, if it is stored elsewhere.
 
     Raises:
-        InputError: there are no frames.
+        InputError: If there are no frames.
     """
     places: dict[str, _Place] = {}
     for folder in _folders(path):
@@ -68,7 +69,7 @@ def open_nyu(path: Path, labels: Path | None = None) -> ImportedSet:
             key = name if name not in places else f"{split or folder.name}-{name}"
             places[key] = _Place(name, folder, _pickle_of(folder, name, path, labels), split)
     if not places:
-        raise InputError(path, "holds no NAME.bin and no base/NYUtrain/NAME.pkl")
+        raise InputError(path, "no files found that match NAME.bin or base/NYUtrain/NAME.pkl")
     splits = {key: place.split for key, place in places.items()}
     return ImportedSet(path, "nyu", splits, lambda key: _read(key, places[key]))
 
@@ -117,7 +118,10 @@ def _read(key: str, place: _Place) -> OccSample:
     if colour is not None:
         height, width = colour.shape[:2]
         if abs(width * HEIGHT_PX / (height * WIDTH_PX) - 1) > SAME_SHAPE:
-            raise DamagedFileError(picture, f"is {width}x{height}; NYUv2's pictures are 640x480")
+            raise DamagedFileError(
+                picture,
+                f"image must have the aspect ratio of NYUv2 (640x480), got {width}x{height}",
+            )
         colour = resize_colour(colour, WIDTH_PX, HEIGHT_PX)
     depth_m = read_depth_if_present(place.folder / f"{place.name}.png", "nyu")
     if depth_m is not None:
@@ -138,5 +142,5 @@ def _labels(place: _Place) -> tuple[np.ndarray, np.ndarray, np.ndarray, Path]:
     found = read_pickle(place.labels)
     missing = [name for name in ("target_1_4", "voxel_origin", "cam_pose") if name not in found]
     if missing:
-        raise DamagedFileError(place.labels, f"has no {', '.join(missing)}")
+        raise DamagedFileError(place.labels, f"does not contain {', '.join(missing)}")
     return found["target_1_4"], found["voxel_origin"], found["cam_pose"], place.labels

@@ -1,7 +1,8 @@
-"""Import OccScanNet: ``gathered_data/SCENE/NNNNN.pkl`` with images in ``posed_images``.
+"""Importer for OccScanNet: ``gathered_data/SCENE/NNNNN.pkl`` with images in ``posed_images``.
 
-Labels are stored as [y, x, z], as EmbodiedOcc and GPOcc read them. The paths inside the pickles are
-those of the machine that wrote them, and are not followed: pictures are found by scene and number.
+Labels are stored as [y, x, z], as EmbodiedOcc and GPOcc read them. The paths inside the pickles
+refer to the machine that wrote them and are ignored: images are found by scene name and frame
+number.
 """
 
 import re
@@ -36,19 +37,23 @@ _LINE = re.compile(r"(?:.*/)?([\w-]{1,100}/\d{1,9})\.pkl", re.ASCII)
 
 
 def is_occscannet(path: Path) -> bool:
-    """Return whether a folder holds ``gathered_data``."""
+    """Return whether a folder contains ``gathered_data``."""
     return (path / "gathered_data").is_dir()
 
 
 def open_occscannet(path: Path) -> ImportedSet:
-    """List the frames, with their splits by the lists. Raises InputError where there are none."""
+    """Open a folder and list its frames, with the splits given by its list files.
+
+    Raises:
+        InputError: If there are no frames.
+    """
     names = sorted(
         f"{file.parent.name}/{file.stem}"
         for file in path.glob("gathered_data/*/*.pkl")
         if file.stem.isdecimal()
     )
     if not names:
-        raise InputError(path, "holds no gathered_data/SCENE/NNNNN.pkl")
+        raise InputError(path, "no files found that match gathered_data/SCENE/NNNNN.pkl")
     listed = {name: split for split in LISTS for name in _listed(path, split)}
     of_key = {name.replace("/", "-"): name for name in names}
     splits = {key: listed.get(name, "") for key, name in of_key.items()}
@@ -82,21 +87,22 @@ def _read(root: Path, key: str, name: str, split: str) -> OccSample:
 
 
 def read_frame(root: Path, name: str, labels: Any = None) -> ImportedFrame:
-    """Read one frame, ``scene0000_00/00000``, at 640x480 as all its loaders do.
+    """Read a frame such as ``scene0000_00/00000``, resized to 640x480 pixels as in all loaders.
 
     Args:
-        root: the folder of ``gathered_data``.
-        name: scene and number.
-        labels: other labels than the pickle's, [60, 60, 36] as it stores them.
+        root: Folder with ``gathered_data``.
+        name: Scene name and frame number.
+        labels: Labels to use instead of those in the pickle, [60, 60, 36] in the stored axis order.
 
     Raises:
-        InputError: the pickle is missing. DamagedFileError: it is none of this format.
+        InputError: If the pickle does not exist.
+        DamagedFileError: If the pickle is not a valid frame.
     """
     path = root / "gathered_data" / f"{name}.pkl"
     stored = read_pickle(path)
     wanted = ("target_1_4", "voxel_origin", "cam_pose", "intrinsic")
     if missing := [word for word in wanted if word not in stored]:
-        raise DamagedFileError(path, f"has no {', '.join(missing)}")
+        raise DamagedFileError(path, f"does not contain {', '.join(missing)}")
     shape = (DEFAULT_SHAPE[1], DEFAULT_SHAPE[0], DEFAULT_SHAPE[2])
     checked = checked_labels(stored["target_1_4"] if labels is None else labels, shape, path)
     picture = root / "posed_images" / name
@@ -130,4 +136,4 @@ def _camera(stored: Any, colour: np.ndarray | None, path: Path) -> Camera:
             (matrix[1, 2] + HALF_PX) * down,
         )
     except ValueError as error:
-        raise DamagedFileError(path, f"has an intrinsic that is no camera ({error})") from error
+        raise DamagedFileError(path, f"intrinsic is not a valid camera matrix ({error})") from error

@@ -1,1 +1,1 @@
-"""Labels of an image: what the cells of its region hold, and what the image shows of them."""
+"""Labels of an image: the contents of the cells in its region, and which of them are visible."""

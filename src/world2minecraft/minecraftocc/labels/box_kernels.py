@@ -1,9 +1,9 @@
-"""Rasterise solid boxes into cells: which cells they reach into, and what fills most of each.
+"""Rasterization of solid boxes into cells, with the owner that fills the most of each cell.
 
-Coordinates are blocks, from the lattice's minimum corner on; cell (a, b, c) of the lattice spans
-``(a, b, c) * step`` and one step more. A box counts in a cell where it meets the cell shrunk by
-``slack`` on all sides. Of two owners the later one wins a cell where it fills more of it by a
-margin, so that rounding decides nothing.
+Coordinates are in blocks, relative to the minimum corner of the lattice. Cell (a, b, c) starts at
+``(a, b, c) * step`` and is ``step`` wide. A box is counted in a cell only if it overlaps the cell
+shrunk by ``slack`` on all sides. A later owner replaces an earlier one only if it fills the cell
+more by a small margin, so that rounding errors do not decide the owner.
 """
 
 from typing import NamedTuple
@@ -21,7 +21,13 @@ _SAMPLES = 4  # Points per side by which the volume of a rotated box in a cell i
 
 
 class CellLattice(NamedTuple):
-    """The cells along the block axes."""
+    """A lattice of cells along the block axes.
+
+    Attributes:
+        start: Minimum corner in the block grid of the scene, float64 [3].
+        step: Side length of a cell in blocks.
+        slack: Depth in blocks to which a shape may reach into a cell without being counted.
+    """
 
     start: np.ndarray  # float64 [3], minimum corner in the scene's grid of blocks
     step: float  # a cell's side, blocks
@@ -29,7 +35,14 @@ class CellLattice(NamedTuple):
 
 
 class Slab(NamedTuple):
-    """Layers of the lattice along its first axis, filled in place."""
+    """Layers of the lattice along its first axis, which the kernels fill in place.
+
+    Attributes:
+        first: Index of the first layer.
+        amount: Volume in blocks that the owner fills in each cell, float32 [A, B, C].
+        owner: Owner of each cell, int32 [A, B, C]: the index of a block in the volume, or -2 - n
+            for display entity n.
+    """
 
     first: int  # the first layer
     amount: np.ndarray  # float32 [A, B, C], how much of a cell its owner fills, blocks' volume
@@ -38,15 +51,15 @@ class Slab(NamedTuple):
 
 @njit
 def fill_slab(tables, boxes, standing, lattice, slab, scratch):
-    """Fill the layers of a slab.
+    """Rasterize all boxes of a scene into the layers of a slab.
 
     Args:
         tables: ``SceneTables`` of the scene.
-        boxes: ``SolidBoxes`` of its elements.
-        standing: int64 [N], the elements that are in the grid's coordinates.
-        lattice: ``CellLattice``.
-        slab: ``Slab``; its amounts are 0 and its owners ``NO_OWNER`` before.
-        scratch: float64 [S, S, S], all 0; a block's cells fit in.
+        boxes: ``SolidBoxes`` of the scene's elements.
+        standing: Elements with coordinates in the grid of the scene, int64 [N].
+        lattice: ``CellLattice`` to fill.
+        slab: ``Slab`` to fill. Its amounts must be 0 and its owners ``NO_OWNER``.
+        scratch: Working memory for the cells of one block, float64 [S, S, S], all 0.
     """
     space, traits, window = tables.space, tables.traits, tables.window
     start, step = lattice.start, lattice.step
@@ -196,10 +209,10 @@ def _fill_standing(boxes, n, who, lattice, slab):
 
 @njit
 def rotated_box_volume(centre, half, x, y, z, lattice):
-    """Return how much of the cell at (x, y, z) a turned box fills; 0 where it does not reach in.
+    """Return the volume of a rotated box inside the cell at (x, y, z), or 0 if they do not overlap.
 
-    Two convex bodies do not meet exactly where some axis parts them: one of the cell's, one of the
-    box's, or one across an edge of each. What is filled is counted over a few points.
+    Whether the box and the cell overlap is decided by the separating axis theorem with 15 axes. The
+    volume is estimated from sample points.
     """
     step = lattice.step
     dx, dy, dz = centre[0] - x - step / 2, centre[1] - y - step / 2, centre[2] - z - step / 2

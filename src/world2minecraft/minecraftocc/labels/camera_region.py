@@ -1,6 +1,6 @@
-"""The region of a view: on the scene's cells, from the floor under the camera upwards.
+"""The region of a view, aligned with the cells of a scene and the floor below the camera.
 
-The rule itself is that of ``geometry/view_region.py``.
+The rule for the region is in ``geometry/view_region.py``.
 """
 
 import numpy as np
@@ -18,7 +18,15 @@ RUG_M = 0.25  # What lies so much higher than a floor that spreads wider is no f
 def region_in(
     voxels: SceneVoxels, camera_to_room: np.ndarray, rule: RegionRule | None = None
 ) -> LabelRegion:
-    """Return the region of a view of a scene: on its cells, from the floor under the camera on."""
+    """Return the region of a view, aligned with the cells of a scene.
+
+    The region starts at the floor below the camera.
+
+    Args:
+        voxels: Cells of the scene.
+        camera_to_room: Camera pose in the room [4, 4].
+        rule: Size and kind of the region. Defaults to the region of the paper.
+    """
     return label_region(
         camera_to_room,
         rule,
@@ -28,16 +36,17 @@ def region_in(
 
 
 def floor_under(voxels: SceneVoxels, camera_to_room: np.ndarray, around_m: float = 1.0) -> float:
-    """Return the height of the floor that a camera is over, in metres.
+    """Return the height in metres of the floor below a camera.
 
-    It is the top of the highest cell of class floor below the camera, of the columns nearest to it
-    that have one; of the whole scene where none is near, and 0 where there is none at all. Where
-    that lies on a floor that spreads wider, as a rug does, it is the wider floor's.
+    This is the top of the highest floor cell below the camera, in the nearest columns with a floor
+    cell. If there is none nearby, the floor cells of the whole scene are used; without any, the
+    result is 0. If the cell belongs to a small area on top of a larger floor, such as a rug, the
+    height of the larger floor is returned.
 
     Args:
-        voxels: the scene.
-        camera_to_room: 4x4.
-        around_m: how far beside the camera a floor still counts as near.
+        voxels: Cells of the scene.
+        camera_to_room: Camera pose in the room [4, 4].
+        around_m: Maximum horizontal distance of a nearby floor from the camera in metres.
     """
     eye = (camera_to_room[:3, 3] - voxels.origin_m) / voxels.voxel_m
     layers = int(np.clip(np.floor(eye[2]), 0, voxels.labels.shape[2]))

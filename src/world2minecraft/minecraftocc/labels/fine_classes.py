@@ -1,4 +1,4 @@
-"""Number the fine classes of a world: each block and each furniture design."""
+"""Numbering of the fine classes in a world: combinations of block and furniture design."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,15 @@ Designs = tuple[np.ndarray, tuple[str, ...]]  # uint16 [X, Y, Z] of block axes; 
 
 @dataclass(frozen=True, eq=False)
 class FineClassMap:
-    """The fine class of each cell of a volume and of each standing thing."""
+    """The fine class of each cell of a volume and of each display entity.
+
+    Attributes:
+        classes: All fine classes; the first is ``EMPTY``.
+        table: Fine class index for each palette entry and design, uint16 [P, D].
+        states: Palette index of each cell in the volume, uint16 [N].
+        designs: Design index of each cell, uint16 [N], or None without designs.
+        of_thing: Fine class index of each display entity, uint16 [S].
+    """
 
     classes: tuple[FineClass, ...]  # the first is ``EMPTY``
     table: np.ndarray  # uint16 [P, D]: of a palette entry and a design
@@ -25,23 +33,23 @@ class FineClassMap:
     of_thing: np.ndarray  # uint16 [S]
 
     def of_cells(self, cells: np.ndarray) -> np.ndarray:
-        """Return the fine classes, uint16, of cells in C order."""
+        """Return the fine class indices, uint16, of cells with the given flat indices."""
         design = 0 if self.designs is None else self.designs[cells]
         return self.table[self.states[cells], design]
 
 
 def map_fine_classes(volume: BlockVolume, designs: Designs | None = None) -> FineClassMap:
-    """Number the blocks and designs of a volume.
+    """Number the fine classes of a volume.
 
-    A display entity has the design that most blocks of its object have.
+    A display entity gets the most frequent design among the blocks of its object.
 
     Args:
-        volume: the blocks.
-        designs: which design each block is a part of, and the designs' names; 0 is none.
+        volume: Volume of blocks.
+        designs: Design index of each block (0 for none), and the names of the designs.
 
     Raises:
-        ValueError: the designs do not fit the volume.
-        UsageError: there are more classes than 16 bits count.
+        ValueError: If the designs do not match the volume.
+        UsageError: If there are more classes than a 16-bit index allows.
     """
     codes, names = _checked(volume, designs)
     blocks = [state.partition("[")[0] for state in volume.palette]
@@ -50,7 +58,9 @@ def map_fine_classes(volume: BlockVolume, designs: Designs | None = None) -> Fin
     found = {FineClass(blocks[row], names[design]) for row, design in pairs} | set(things)
     classes = (EMPTY, *sorted(found - {EMPTY}))
     if len(classes) > MAX_CLASSES:
-        raise UsageError(f"a world may have {MAX_CLASSES:,} kinds of blocks, not {len(classes):,}")
+        raise UsageError(
+            f"the world has {len(classes):,} fine classes, the limit is {MAX_CLASSES:,}"
+        )
     number = {fine: place for place, fine in enumerate(classes)}
     table = np.zeros((len(blocks), len(names)), np.uint16)
     for row, design in pairs:
@@ -71,9 +81,14 @@ def _checked(
         return None, ("",)
     codes, names = designs
     if codes.shape != volume.states.shape:
-        raise ValueError(f"designs of {codes.shape} do not fit blocks of {volume.states.shape}")
+        raise ValueError(
+            f"designs must have the shape of the volume, {volume.states.shape}, got {codes.shape}"
+        )
     if codes.size and int(codes.max()) >= len(names):
-        raise ValueError(f"designs go to {codes.max()}, and {len(names)} have a name")
+        raise ValueError(
+            f"designs must contain indices below {len(names)}, the number of names; got "
+            f"{codes.max()}"
+        )
     return np.ascontiguousarray(codes).reshape(-1), ("", *names[1:])
 
 

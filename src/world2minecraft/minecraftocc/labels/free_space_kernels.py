@@ -1,9 +1,9 @@
-"""Observed free space, exactly: the empty cells that the ray of some pixel crossed.
+"""Exact observed free space: the empty cells that are crossed by the ray of at least one pixel.
 
-A ray went through a cell where it was in it over more than ``CROSSED_M`` of depth before it met its
-surface. All pixels count, however many there are; and yet most cells cost one look: the pixel that
-a cell's middle falls on shows that it is free, or the depths around show that all rays end before
-it. What is left is tested pixel by pixel.
+A ray crosses a cell if it is inside the cell for more than ``CROSSED_M`` of depth before it reaches
+a surface. All pixels are considered, but most cells need only a single test: either the pixel at
+the projected centre of the cell shows that the cell is free, or the nearby depths show that all
+rays end before the cell. The remaining cells are tested pixel by pixel.
 """
 
 import numpy as np
@@ -17,7 +17,12 @@ TILE = 8  # Pixels a side whose greatest depth is kept.
 
 @lean
 def max_depth_tiles(depth, tiles):
-    """Fill ``tiles`` float32 [ceil(H / TILE), ceil(W / TILE)]; 0 counts as endless."""
+    """Compute the maximum depth of each image tile of ``TILE`` x ``TILE`` pixels.
+
+    Args:
+        depth: Depth in metres, float32 [H, W]. A depth of 0 counts as infinite.
+        tiles: Result, float32 [ceil(H / TILE), ceil(W / TILE)], filled in place.
+    """
     height, width = depth.shape
     tiles[:] = 0
     for v in range(height):
@@ -29,15 +34,15 @@ def max_depth_tiles(depth, tiles):
 
 @lean
 def mark_free(labels, cells_to_camera, image, tiles, ends, free):
-    """Mark the free cells.
+    """Mark the cells that are observed as free.
 
     Args:
-        labels: uint8 [X, Y, Z]; only what is 0 can be free.
-        cells_to_camera: float64 [3, 4], region's cells to metres of the camera.
-        image: ``DepthImage``.
-        tiles: of ``max_depth_tiles``.
-        ends: float64 [9, 3], scratch.
-        free: bool [X, Y, Z], filled in place.
+        labels: Class of each cell, uint8 [X, Y, Z]. Only cells with the value 0 can be free.
+        cells_to_camera: Matrix from region cells to camera coordinates in metres, float64 [3, 4].
+        image: ``DepthImage`` of the view.
+        tiles: Result of ``max_depth_tiles``.
+        ends: Working memory, float64 [9, 3].
+        free: Result, bool [X, Y, Z], filled in place.
     """
     intrinsics, shape = image.intrinsics, image.depth.shape
     height, width = shape
@@ -117,7 +122,7 @@ def _outside_frustum(cells_to_camera, intrinsics, width, height, x, y, z):
 
 @lean
 def ray_crosses_cell(image, u, v, i, j, k):
-    """Return whether the ray of pixel (u, v) crosses cell (i, j, k) before its surface."""
+    """Return whether the ray of pixel (u, v) crosses cell (i, j, k) before it reaches a surface."""
     place, intrinsics, depth = image.camera_to_cells, image.intrinsics, image.depth
     end = np.float64(depth[v, u]) if depth[v, u] > 0 else np.inf
     x, y = (u + 0.5 - intrinsics[2]) / intrinsics[0], (v + 0.5 - intrinsics[3]) / intrinsics[1]

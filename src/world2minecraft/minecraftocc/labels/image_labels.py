@@ -1,19 +1,23 @@
-"""Label an image: what its region holds, and what of it the image shows.
+"""Labelling of images: the contents of the cells in a region, and their visibility.
 
-In: the cells of a scene, a region, a camera and the depth of its image. Out: ``OccLabels``. The
-labels are the scene's own. Masks follow from them, the camera and the depth as it was drawn:
+The input is the cells of a scene, a region, a camera and the depth of its image; the output is an
+``OccLabels``. Its labels are those of the scene. Its masks are computed from the labels, the camera
+and the rendered depth:
 
-- in the frustum: the cell's middle is before the camera and falls into the image (the paper's);
-- hit: how many pixels' points lie in the cell. Along a pixel's ray, from ``AROUND_M`` before its
-  point to as much behind it, the first solid cell that is entered counts, else the one that it was
-  in; where none of them is solid, the nearest to the point within ``REACH_M``;
-- free: empty, and some pixel's ray was in it over more than a millimetre before its surface.
+- in the frustum: the centre of the cell is in front of the camera and inside the image, as in the
+  paper.
+- hits: the number of pixels whose surface point is in the cell. The ray of each pixel is followed
+  from ``AROUND_M`` before its point to ``AROUND_M`` behind it. The pixel is counted for the first
+  solid cell that the ray enters, else for the cell in which it started. If none of these cells is
+  solid, the nearest solid cell within ``REACH_M`` of the point is used.
+- free: the cell is empty, and the ray of at least one pixel is inside it for more than a millimetre
+  before it reaches a surface.
 
-The first surface counts, be it glass: what lies behind a window is occluded.
+The first surface always counts, even if it is glass, so cells behind a window are occluded.
 
-A region that does not stand on the scene's cells, as one that turns with the view, has them sampled
-at its own cells' middles, labels and hits alike. Pixels of a scene's cell that none samples count
-for the region's nearest cell that holds something.
+If a region is not aligned with the cells of the scene, for example because it rotates with the
+view, labels and hits are sampled at the centres of its cells. Pixels of scene cells that are not
+sampled are counted for the nearest occupied cell of the region.
 """
 
 import numpy as np
@@ -44,14 +48,15 @@ def label_image(
     camera_to_room: np.ndarray,
     depth_m: np.ndarray,
 ) -> OccLabels:
-    """Return the labels and masks of an image.
+    """Label the cells of an image's region.
 
     Args:
-        voxels: the scene.
-        region: which cells; see ``minecraftocc.labels.camera_region``.
-        camera: of the image; its distortion is ignored.
-        camera_to_room: 4x4, OpenCV axes, metres.
-        depth_m: float32 [H, W], z-depth of the first surface, 0 where there is none.
+        voxels: Cells of the scene.
+        region: Region to label; see ``minecraftocc.labels.camera_region``.
+        camera: Camera of the image. Its lens distortion is ignored.
+        camera_to_room: Camera pose in the room [4, 4], with OpenCV axes, in metres.
+        depth_m: Depth of the first surface along the camera's z axis in metres, float32 [H, W]; 0
+            if there is no surface.
     """
     view = _ImageView(voxels, region, camera, camera_to_room, depth_m)
     labels, fine, instance = view.contents
@@ -73,12 +78,12 @@ def cells_of_pixels(
     camera_to_room: np.ndarray,
     depth_m: np.ndarray,
 ) -> np.ndarray:
-    """Return the cell that each pixel sees: its C-order number in the region, -1 for none.
+    """Return the region cell that each pixel sees, as a flat index in C order, or -1 for none.
 
-    Args: as ``label_image``.
+    The arguments are the same as for ``label_image``.
 
     Returns:
-        int32 [H, W]; ``hits`` counts its values.
+        Array of int32 [H, W]. The ``hits`` of a cell are the number of pixels with its index.
     """
     return _ImageView(voxels, region, camera, camera_to_room, depth_m).hits(True)[1]
 
@@ -90,16 +95,17 @@ def cast_depth(
     *,
     width_px: int | None = LABEL_WIDTH_PX,
 ) -> tuple[Camera, np.ndarray]:
-    """Return the depth of an image that nobody draws, and the camera that it is of.
+    """Compute the depth of a view without rendering a colour image.
 
     Args:
-        scene: ``prepare_scene`` of the world.
-        camera: that the labels are for.
-        camera_to_room: 4x4.
-        width_px: the width to cast at; None for the camera's own.
+        scene: Scene prepared with ``prepare_scene``.
+        camera: Camera of the view.
+        camera_to_room: Camera pose in the room [4, 4].
+        width_px: Image width to use. None uses the width of the camera.
 
     Returns:
-        The camera, and z-depth float32 [H, W] with 0 where there is nothing.
+        The camera at this width, and the depth along its z axis in metres, float32 [H, W], with 0
+        where there is no surface.
     """
     if width_px is not None:
         camera = resize_camera(camera, width_px)
@@ -107,7 +113,7 @@ def cast_depth(
 
 
 def resize_camera(camera: Camera, width_px: int) -> Camera:
-    """Return the camera with another number of pixels for the same view."""
+    """Return a camera with the same field of view and another image width."""
     if width_px == camera.width_px:
         return camera
     height_px = max(round(camera.height_px * (width_px / camera.width_px)), 1)
@@ -121,19 +127,19 @@ def label_view(
     camera_to_room: np.ndarray,
     rule: RegionRule | None = None,
 ) -> OccLabels:
-    """Return the labels of a view of which there is no picture; see ``cast_depth``."""
+    """Label the cells of a view for which there is no image, with its depth from ``cast_depth``."""
     region = region_in(voxels, camera_to_room, rule)
     camera, depth_m = cast_depth(scene, camera, camera_to_room)
     return label_image(voxels, region, camera, camera_to_room, depth_m)
 
 
 def occluded_cells(occ: OccLabels) -> np.ndarray:
-    """Bool [X, Y, Z]: cells in the frustum that hold something and that no pixel sees."""
+    """Return the occupied cells in the frustum that no pixel sees, bool [X, Y, Z]."""
     return occ.in_frustum & (occ.fine > 0) & (occ.hits == 0)
 
 
 def unknown_cells(occ: OccLabels) -> np.ndarray:
-    """Bool [X, Y, Z]: cells in the frustum of which the image says nothing, and that are empty."""
+    """Return the empty cells in the frustum that the image does not observe, bool [X, Y, Z]."""
     return occ.in_frustum & (occ.fine == 0) & (occ.hits == 0) & ~occ.free
 
 
@@ -150,7 +156,9 @@ class _ImageView:
     ):
         size = (camera.height_px, camera.width_px)
         if depth_m.shape != size:
-            raise ValueError(f"depth of {depth_m.shape} is not of a camera with {size} pixels")
+            raise ValueError(
+                f"depth_m must have the shape of the camera, {size}, got {depth_m.shape}"
+            )
         self.voxels, self.region, self.camera_to_room = voxels, region, camera_to_room
         intrinsics = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
         camera_to_cells = _camera_to_cells(region, camera_to_room)
@@ -179,12 +187,13 @@ class _ImageView:
 def gather_region(
     voxels: SceneVoxels, region: LabelRegion, more: int = 0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return what a region's cells hold: labels, fine classes and objects, [X, Y, Z].
+    """Return the labels, fine classes and object numbers for the cells of a region, each [X, Y, Z].
 
     Args:
-        voxels: the scene.
-        region: its cells hold what the scene has at their middles; 255, 0 and 0 outside of it.
-        more: so many cells more on each side.
+        voxels: Cells of the scene.
+        region: Region whose cell centres are looked up in the scene. Cells outside the scene get
+            255, 0 and 0.
+        more: Number of additional cells on each side.
     """
     shape = tuple(side + 2 * more for side in region.shape)
     gathered = (np.empty(shape, np.uint8), np.empty(shape, np.uint16), np.empty(shape, np.uint16))
@@ -196,7 +205,7 @@ def gather_region(
 
 
 def is_on_cells(region: LabelRegion, voxels: SceneVoxels) -> bool:
-    """Return whether a region's cells are the scene's, turned by quarter turns or not at all."""
+    """Return whether a region is aligned with the cells of a scene, up to quarter turns."""
     to_scene = _to_cells_of(voxels.origin_m, voxels.voxel_m, region)
     return bool(np.abs(to_scene - np.round(to_scene)).max() < 1e-4)
 

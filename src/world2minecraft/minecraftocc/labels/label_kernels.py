@@ -1,6 +1,6 @@
-"""Labels and masks of a region's cells: what they hold, and which pixels see or cross them.
+"""Kernels for the labels and masks of a region: cell contents, visibility and crossing rays.
 
-Coordinates are cells of the region: cell (i, j, k) spans [i, i + 1].
+Coordinates are in cells of the region: cell (i, j, k) spans [i, i + 1].
 """
 
 from typing import NamedTuple
@@ -13,7 +13,15 @@ OUTSIDE_LABEL = 255
 
 
 class DepthImage(NamedTuple):
-    """A depth image, and where its camera is in the cells of a region."""
+    """A depth image, with the pose of its camera in cell coordinates of a region.
+
+    Attributes:
+        camera_to_cells: Matrix from camera coordinates in metres to cell coordinates, float64 [3,
+            4].
+        intrinsics: fx, fy, cx and cy in pixels, float64 [4].
+        depth: Depth along the camera's z axis in metres, float32 [H, W]; 0 if a ray hits no
+            surface.
+    """
 
     camera_to_cells: np.ndarray  # float64 [3, 4]
     intrinsics: np.ndarray  # float64 [4]: fx, fy, cx, cy
@@ -22,17 +30,17 @@ class DepthImage(NamedTuple):
 
 @lean
 def gather_labels(labels, fine, instance, to_scene, first, out_labels, out_fine, out_instance):
-    """Copy to each cell of a region what the scene has at its middle.
+    """Copy the contents of a scene at the centre of each cell of a region.
 
     Args:
-        labels: the scene's, [X, Y, Z].
-        fine: the scene's.
-        instance: the scene's.
-        to_scene: float64 [3, 4], region's cells to scene's cells.
-        first: int64 [3], the cell of the region that the first of ``out_*`` is.
-        out_labels: filled in place; ``OUTSIDE_LABEL`` outside the scene.
-        out_fine: filled in place; 0 outside.
-        out_instance: filled in place; 0 outside.
+        labels: Class of each scene cell [X, Y, Z].
+        fine: Fine class of each scene cell [X, Y, Z].
+        instance: Object number of each scene cell [X, Y, Z].
+        to_scene: Matrix from region cells to scene cells, float64 [3, 4].
+        first: Region cell that the first cell of the results corresponds to, int64 [3].
+        out_labels: Resulting classes, filled in place, with ``OUTSIDE_LABEL`` outside the scene.
+        out_fine: Resulting fine classes, filled in place, with 0 outside the scene.
+        out_instance: Resulting object numbers, filled in place, with 0 outside the scene.
     """
     nx, ny, nz = labels.shape
     for i in range(out_labels.shape[0]):
@@ -58,14 +66,14 @@ def _row(matrix, row, x, y, z):
 
 @lean
 def mark_in_frustum(cells_to_camera, intrinsics, width, height, marked):
-    """Mark the cells whose middle is before the camera and falls into its image.
+    """Mark the cells whose centre is in front of the camera and inside the image.
 
     Args:
-        cells_to_camera: float64 [3, 4], region's cells to metres of the camera.
-        intrinsics: float64 [4], fx, fy, cx, cy.
-        width: pixels.
-        height: pixels.
-        marked: bool [X, Y, Z], filled in place.
+        cells_to_camera: Matrix from region cells to camera coordinates in metres, float64 [3, 4].
+        intrinsics: fx, fy, cx and cy in pixels, float64 [4].
+        width: Image width in pixels.
+        height: Image height in pixels.
+        marked: Result, bool [X, Y, Z], filled in place.
     """
     for i in range(marked.shape[0]):
         for j in range(marked.shape[1]):
@@ -86,23 +94,24 @@ def mark_in_frustum(cells_to_camera, intrinsics, width, height, marked):
 
 @lean
 def count_hits(solid, image, around, reach, memo, hits, cells):
-    """Count the pixels that see each cell first.
+    """Count the pixels whose ray reaches each cell first.
 
-    A pixel's ray is followed from ``around`` before its point to as much behind it: the first solid
-    cell that it enters there counts, else the one that it was in; where none is solid, the nearest
-    within ``reach``.
+    The ray of each pixel is followed from ``around`` before its point to ``around`` behind it. The
+    pixel is counted for the first solid cell that the ray enters, else for the cell in which it
+    started. If none of these cells is solid, the nearest solid cell within ``reach`` is used.
 
     Args:
-        solid: uint16 [X + 2, Y + 2, Z + 2], not 0 where a cell holds something; one cell more on
-            each side than are counted.
-        image: ``DepthImage``.
-        around: metres of depth.
-        reach: cells, less than half of one.
-        memo: float64 [12], scratch: low and high corners of two boxes. Pixels whose way leads from
-            the first to the second see the same cell as the last one: neighbours mostly do.
-        hits: uint32 [X, Y, Z], added to.
-        cells: int32 [H, W], the C-order number of the cell each pixel sees, -1 for none; or of no
-            size where that is not wanted.
+        solid: Non-zero for solid cells, uint16 [X + 2, Y + 2, Z + 2]. This array has one additional
+            cell on each side.
+        image: ``DepthImage`` of the view.
+        around: Distance to follow the ray before and behind the point, in metres of depth.
+        reach: Maximum distance to the nearest solid cell, in cells. Must be less than 0.5.
+        memo: Working memory, float64 [12]: the corners of two boxes. Rays that lead from the first
+            box to the second reach the same cell as the previous ray, which is true for most
+            neighbouring pixels.
+        hits: Number of pixels of each cell, uint32 [X, Y, Z]. The counts are added to this array.
+        cells: Cell that each pixel sees as a flat index in C order (-1 for none), int32 [H, W],
+            filled in place. Pass an empty array to skip this result.
     """
     place, intrinsics, depth = image.camera_to_cells, image.intrinsics, image.depth
     wanted = cells.size > 0
@@ -193,9 +202,9 @@ def _narrow(memo, axis, at, reach):
 
 @lean
 def first_entered(solid, ax, ay, az, bx, by, bz):
-    """Return the first solid cell that a short way from a to b enters, else the one that a is in.
+    """Return the first solid cell that the short line from a to b enters, else the cell of a.
 
-    Each coordinate crosses one border at most.
+    The line must cross at most one cell border along each axis.
     """
     i, j, k = int(ax), int(ay), int(az)
     tx, ty, tz = _crossing(ax, bx), _crossing(ay, by), _crossing(az, bz)
@@ -224,7 +233,7 @@ def _crossing(a, b):
 
 @lean
 def nearest_solid(solid, px, py, pz, reach):
-    """Return the solid cell nearest to a point, of those within ``reach``; or -1, -1, -1."""
+    """Return the nearest solid cell within ``reach`` of a point, or (-1, -1, -1) if there is none."""
     i, j, k = int(px), int(py), int(pz)
     sx, sy, sz = _side(px - i, reach), _side(py - j, reach), _side(pz - k, reach)
     best, a, b, c = reach * reach, -1, -1, -1
@@ -263,12 +272,12 @@ def _aside(at, step):
 
 @lean
 def source_cells(to_box, shape, found):
-    """Find which cell of a box the middle of each cell of a region lies in.
+    """Find the cell of a box that contains the centre of each cell of a region.
 
     Args:
-        to_box: float64 [3, 4], region's cells to the box's.
-        shape: of the box.
-        found: int32 [X, Y, Z], filled in place: the box's cell in C order, -1 outside.
+        to_box: Matrix from region cells to box cells, float64 [3, 4].
+        shape: Shape of the box in cells.
+        found: Flat index of the box cell in C order (-1 outside), int32 [X, Y, Z], filled in place.
     """
     nx, ny, nz = shape
     for i in range(found.shape[0]):

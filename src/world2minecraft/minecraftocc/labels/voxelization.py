@@ -1,11 +1,11 @@
-"""Voxelize a world of blocks into the cells that images are labelled with.
+"""Voxelization of a block world into labelled cells.
 
-A cell is occupied where a solid shape reaches more than ``TOLERANCE_M`` into it. Shapes are the
-boxes of the renderer's tables, display entities among them, so that what a ray meets lies in an
-occupied cell. A hole in a texture is no hole here: a pane, a plant, leaves and bars are the boxes
-that their textures are drawn on. A shape thinner than ``MIN_THICKNESS_M`` is taken as that thick.
-A cell's class, object and fine class are those of the block that fills most of it. Blocks that are
-not drawn, as barriers are, leave their cells empty.
+A cell is occupied if a solid shape reaches more than ``TOLERANCE_M`` into it. The shapes are the
+boxes that the renderer uses, including display entities, so every surface that a ray hits is in an
+occupied cell. Transparent pixels of textures are ignored: glass panes, plants, leaves and bars
+occupy the full boxes that carry their textures. Shapes thinner than ``MIN_THICKNESS_M`` are
+thickened to this value. The class, object and fine class of a cell are those of the block that
+fills most of it. Blocks that are not rendered, such as barriers, leave their cells empty.
 """
 
 from collections.abc import Sequence
@@ -40,7 +40,17 @@ _SAME_BORDER = 1e-6  # Cells: borders nearer than this are one.
 
 
 class SolidBoxes(NamedTuple):
-    """The boxes of E elements, in blocks of the frame that each element is told in."""
+    """The boxes of E scene elements, in blocks, in the coordinate system of each element.
+
+    Attributes:
+        low: Minimum corner of the axis-aligned bounding box, float64 [E, 3].
+        high: Maximum corner of the axis-aligned bounding box, float64 [E, 3].
+        centre: Centre of the box, float64 [E, 3].
+        half: Half edges of the box, float64 [E, 3, 3]; row a is half the edge along the box's own
+            axis a.
+        straight: Whether the box is axis-aligned, bool [E].
+        there: Whether the box has a visible face, bool [E].
+    """
 
     low: np.ndarray  # float64 [E, 3], of the straight box around each
     high: np.ndarray  # float64 [E, 3]
@@ -51,11 +61,11 @@ class SolidBoxes(NamedTuple):
 
 
 def solid_boxes(tables: SceneTables, metres_per_block: float) -> SolidBoxes:
-    """Return the boxes of a scene's elements.
+    """Compute the boxes of all elements of a scene.
 
     Args:
-        tables: the scene.
-        metres_per_block: the size of its blocks.
+        tables: Renderer tables of the scene.
+        metres_per_block: Edge length of a block in metres.
     """
     low, high = tables.boxes[:, :3].astype(np.float64), tables.boxes[:, 3:].astype(np.float64)
     axes = np.tile(np.eye(3), (len(low), 1, 1))
@@ -107,18 +117,19 @@ def voxelize_scene(
     within_m: Sequence[Sequence[float]] | None = None,
     scene: BlockScene | None = None,
 ) -> SceneVoxels:
-    """Return the cells of a world.
+    """Voxelize a world into labelled cells.
 
     Args:
-        volume: the blocks, with class and object of each.
-        designs: which furniture design each block is a part of, and the designs' names.
-        voxel_m: a cell's side; None for one cell a block.
-        within_m: low and high corner of the part of the room that is wanted; None for all.
-        scene: the volume's ``prepare_scene``, where there is one already.
+        volume: Blocks with their classes and object numbers.
+        designs: Furniture design index of each block, and the names of the designs.
+        voxel_m: Cell size in metres. None uses one cell per block.
+        within_m: Minimum and maximum corner of the part of the room to voxelize, in metres. None
+            voxelizes the whole volume.
+        scene: Result of ``prepare_scene`` for the volume, if already available.
 
     Raises:
-        UsageError: the cells are too small, or more than ``MAX_CELLS``, or the world does not
-            stand along the room's axes.
+        UsageError: If the cells are too small or exceed ``MAX_CELLS``, or if the blocks are not
+            aligned with the room axes.
 
     Example:
         >>> from world2minecraft.procgen import generate_room
@@ -126,7 +137,7 @@ def voxelize_scene(
         True
     """
     if voxel_m is not None and not voxel_m >= MIN_VOXEL_M:
-        raise UsageError(f"a cell is {MIN_VOXEL_M} m or more, not {voxel_m}")
+        raise UsageError(f"voxel_m must be at least {MIN_VOXEL_M} m, got {voxel_m}")
     scene = prepare_scene(volume) if scene is None else scene
     lattice, voxel_m = _lattice(volume, scene, voxel_m, within_m)
     names = map_fine_classes(volume, designs)
@@ -148,7 +159,7 @@ def _lattice(
     turn = grid_to_room[:3, :3] / side
     axes = np.abs(turn).argmax(axis=0)
     if np.abs(np.abs(turn) - np.eye(3)[axes].T).max() > 1e-6:
-        raise UsageError("labels need a world that stands along the axes of its room")
+        raise UsageError("the blocks of the world must be aligned with the axes of its room")
     flips = turn[axes, range(3)] < 0
     ends = np.array([np.zeros(3), scene.tables.space.shape]) @ grid_to_room[:3, :3].T
     ends += grid_to_room[:3, 3]
@@ -178,8 +189,8 @@ def _checked_shape(shape: np.ndarray, voxel_m: float) -> tuple[int, int, int]:
     count = float(np.prod(shape.astype(float)))
     if count > MAX_CELLS:
         raise UsageError(
-            f"{'x'.join(map(str, shape))} cells of {voxel_m:g} m take {count * 5 / 1e9:.0f} GB; "
-            f"{MAX_CELLS:,} cells are allowed: take larger cells, one a block, or a part of it"
+            f"{'x'.join(map(str, shape))} cells of {voxel_m:g} m need {count * 5 / 1e9:.0f} GB and "
+            f"exceed the limit of {MAX_CELLS:,} cells; use larger cells or a part of the world"
         )
     return int(shape[0]), int(shape[1]), int(shape[2])
 
