@@ -69,7 +69,7 @@ def spread_indices(count: int, limit: int) -> list[int]:
 
 
 def select_indices(count: int, limit: int, first: bool) -> list[int]:
-    """Return up to ``limit`` indices below ``count``, either the first ones or evenly spaced ones."""
+    """Return up to ``limit`` indices below ``count``: the first ones or evenly spaced ones."""
     return list(range(min(count, limit))) if first else spread_indices(count, limit)
 
 

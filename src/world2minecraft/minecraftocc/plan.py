@@ -148,7 +148,7 @@ class DatasetPlan:
         }
 
     def facts(self) -> dict[str, Any]:
-        """Return the plan as it is stored in ``dataset.json`` and compared when a build is resumed."""
+        """Return the plan as stored in ``dataset.json`` and compared when a build is resumed."""
         return {
             "preset": self.preset,
             "recipe": self.recipe.facts(),

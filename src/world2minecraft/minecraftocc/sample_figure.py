@@ -59,7 +59,7 @@ def share_of_depth_in_cells(sample: OccSample) -> float | None:
 
 
 def project_labels(sample: OccSample) -> np.ndarray:
-    """Return the label that each pixel sees, uint8 [H, W], or 0 if its surface is outside the region.
+    """Return the label that each pixel sees, uint8 [H, W], or 0 for surfaces outside the region.
 
     The label is that of the cell behind the depth or, without depth, of the first occupied cell
     along the ray. The cell that contains the camera is ignored.

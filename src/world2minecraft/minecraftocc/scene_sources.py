@@ -283,7 +283,7 @@ class SceneSource:
         return None if start is None else (start.x, start.y, start.z)
 
     def has_truth(self) -> bool:
-        """Return whether classes are stored with the blocks, rather than assigned by the block map."""
+        """Return whether classes are stored with the blocks, not assigned by the block map."""
         return bool(self._read().volume.semantic.any())
 
     def notes(self) -> list[str]:

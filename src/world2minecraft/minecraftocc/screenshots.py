@@ -1,16 +1,18 @@
-"""Read real screenshots from the game, each with its pose: from a sidecar, its name, or PNG text.
+"""Reader for in-game screenshots with their poses, from a sidecar file, file names or PNG texts.
 
-Whether a pose is that of the feet, as F3 shows it, or of the eye must be stated: a slip of 1.62
-blocks spoils every label. By default a sidecar beside the pictures is looked for first, then the
-PNG's texts, then the name; each view states where its pose came from.
+The caller must state whether the positions are those of the feet, as shown by F3, or of the eye: a
+mistake shifts all labels by 1.62 blocks. By default, a sidecar file in the folder is used, then the
+texts in the PNG files, then the file names. Each view records where its pose came from.
 
-A pattern of names is a template such as ``shot_{x}_{y}_{z}_{yaw}_{pitch}``, which is safe whatever
-the names are, or a regex with the named groups x, y, z, yaw and pitch; a regex that could take very
-long on some name (nested repeats, many wildcards) is refused.
+A file name pattern is either a template such as ``shot_{x}_{y}_{z}_{yaw}_{pitch}``, which is safe
+for any file name, or a regular expression with the named groups x, y, z, yaw and pitch. Regular
+expressions that could take very long for some names (nested repeats or many wildcards) are
+rejected.
 
-PNGs are read chunk by chunk, everything bounded, and not by Pillow: its reader keeps the last of
-several texts with one keyword, where a pose given twice must be refused, unpacks all pixels to find
-texts behind them, and takes a text that does not unpack for an empty one.
+PNG files are parsed chunk by chunk with limits on all sizes, without Pillow. Pillow keeps only the
+last of several texts with the same keyword, although a pose that is given twice must be rejected.
+It also decodes all pixels to find texts after them, and treats a text that cannot be decompressed
+as empty.
 """
 
 import re
@@ -56,7 +58,13 @@ _PAIR = re.compile(
 
 
 class PngFacts(NamedTuple):
-    """What a PNG says before its pixels are looked at."""
+    """The size and texts of a PNG file, read without decoding its pixels.
+
+    Attributes:
+        width_px: Image width in pixels.
+        height_px: Image height in pixels.
+        texts: Pairs of keyword and text, in file order.
+    """
 
     width_px: int
     height_px: int
@@ -64,11 +72,12 @@ class PngFacts(NamedTuple):
 
 
 def read_png_facts(path: str | Path) -> PngFacts:
-    """Read the size and the texts of a PNG.
+    """Read the size and the texts of a PNG file.
 
     Raises:
-        InputError: it cannot be opened. DamagedFileError: it is no PNG, or is cut short.
-        LimitError: it holds more or longer texts than any screenshot.
+        InputError: If the file cannot be opened.
+        DamagedFileError: If the file is not a PNG or is truncated.
+        LimitError: If the file has too many or too long texts.
     """
     source = Path(path)
     try:
@@ -80,13 +89,15 @@ def read_png_facts(path: str | Path) -> PngFacts:
 
 def _read_facts(stream: BinaryIO, source: Path) -> PngFacts:
     if stream.read(8) != SIGNATURE:
-        raise DamagedFileError(source, "is no PNG")
+        raise DamagedFileError(source, "not a PNG file")
     length, kind = _read_chunk_head(stream, source)
     if kind != b"IHDR" or length != 13:
-        raise DamagedFileError(source, "is no PNG: it does not begin with its size")
+        raise DamagedFileError(source, "not a valid PNG file: the header (IHDR) is missing")
     width, height = struct.unpack(">II", _read_chunk_body(stream, length, kind, source)[:8])
     if not (0 < width <= MAX_SIDE_PX and 0 < height <= MAX_SIDE_PX):
-        raise DamagedFileError(source, f"says a size of {width}x{height} pixels")
+        raise DamagedFileError(
+            source, f"image sides must be from 1 to {MAX_SIDE_PX:,} pixels, got {width}x{height}"
+        )
     texts: list[tuple[str, str]] = []
     for _ in range(MAX_CHUNKS):
         length, kind = _read_chunk_head(stream, source)
@@ -96,27 +107,31 @@ def _read_facts(stream: BinaryIO, source: Path) -> PngFacts:
             stream.seek(length + 4, 1)
             continue
         if length > MAX_TEXT or len(texts) == MAX_TEXTS:
-            raise LimitError(source, f"holds more than {MAX_TEXTS} texts of {MAX_TEXT} bytes")
+            raise LimitError(
+                source, f"exceeds the limit of {MAX_TEXTS} texts of at most {MAX_TEXT:,} bytes"
+            )
         texts.append(_parse_text(kind, _read_chunk_body(stream, length, kind, source), source))
-    raise LimitError(source, f"has more than {MAX_CHUNKS} chunks")
+    raise LimitError(source, f"exceeds the limit of {MAX_CHUNKS:,} PNG chunks")
 
 
 def _read_chunk_head(stream: BinaryIO, source: Path) -> tuple[int, bytes]:
     head = stream.read(8)
     if len(head) < 8:
-        raise DamagedFileError(source, "is cut short")
+        raise DamagedFileError(source, "the file is truncated")
     length, kind = struct.unpack(">I4s", head)
     if length > 1 << 31:
-        raise DamagedFileError(source, "is no PNG: a chunk's length is out of range")
+        raise DamagedFileError(
+            source, "not a valid PNG file: the length of a chunk is out of range"
+        )
     return length, kind
 
 
 def _read_chunk_body(stream: BinaryIO, length: int, kind: bytes, source: Path) -> bytes:
     data = stream.read(length + 4)
     if len(data) < length + 4:
-        raise DamagedFileError(source, "is cut short")
+        raise DamagedFileError(source, "the file is truncated")
     if zlib.crc32(kind + data[:length]) != struct.unpack(">I", data[length:])[0]:
-        raise DamagedFileError(source, f"is damaged: the checksum of its {kind.decode()} is wrong")
+        raise DamagedFileError(source, f"wrong checksum in PNG chunk {kind.decode()}")
     return data[:length]
 
 
@@ -137,29 +152,35 @@ def _decompress(data: bytes, source: Path) -> bytes:
     try:
         text = unpacker.decompress(data, MAX_TEXT)
     except zlib.error as error:
-        raise DamagedFileError(source, "is damaged: a packed text does not unpack") from error
+        raise DamagedFileError(source, "a compressed PNG text cannot be decompressed") from error
     if unpacker.unconsumed_tail:
-        raise LimitError(source, f"holds a text of more than {MAX_TEXT} bytes")
+        raise LimitError(source, f"contains a text of more than {MAX_TEXT:,} bytes")
     return text
 
 
 class NamePattern:
-    """What reads a pose out of a file's name, without its suffix."""
+    """A pattern that extracts a pose from a file name without its suffix."""
 
     def __init__(self, text: str):
-        """Check a pattern. Raises UsageError."""
+        """Parse a pattern.
+
+        Raises:
+            UsageError: If the pattern is not valid.
+        """
         self.text = text
         if len(text) > MAX_PATTERN:
-            raise UsageError(f"a pattern has up to {MAX_PATTERN} letters, not {len(text)}")
+            raise UsageError(
+                f"a pattern may have at most {MAX_PATTERN} characters, got {len(text)}"
+            )
         self._compiled = re.compile(_check_regex(text) if "(?P<" in text else _template_regex(text))
         missing = [name for name in POSE_FIELDS if name not in self._compiled.groupindex]
         if missing:
             raise UsageError(
-                f"pattern {text!r} has no {missing[0]}; it needs all of {_EXAMPLE}, in any order"
+                f"pattern {text!r} does not contain {missing[0]}; it must contain all of {_EXAMPLE}"
             )
 
     def read(self, stem: str) -> dict[str, float] | None:
-        """Return x, y, z, yaw and pitch of a name; None where it does not match."""
+        """Return x, y, z, yaw and pitch from a file name, or None if the name does not match."""
         if len(stem) > MAX_NAME or (found := self._compiled.fullmatch(stem)) is None:
             return None
         try:
@@ -171,7 +192,7 @@ class NamePattern:
 def _template_regex(text: str) -> str:
     """Return the regex of a template. Raises UsageError."""
     if text.count("*") > MAX_WILD:
-        raise UsageError(f"pattern {text!r} has more than {MAX_WILD} *")
+        raise UsageError(f"pattern {text!r} may contain * at most {MAX_WILD} times")
     parts, known, before = [], set(), ""
     for part in filter(None, re.split(r"(\{[^{}]*\}|\*)", text)):
         if part == "*":
@@ -180,12 +201,13 @@ def _template_regex(text: str) -> str:
             name = part[1:-1]
             if name not in POSE_FIELDS:
                 raise UsageError(
-                    f"pattern {text!r} has {part}; it knows {', '.join(POSE_FIELDS)} and *"
+                    f"pattern {text!r} contains the unknown field {part}; known: "
+                    f"{', '.join(POSE_FIELDS)}"
                 )
             if name in known:
-                raise UsageError(f"pattern {text!r} has {part} twice")
+                raise UsageError(f"pattern {text!r} contains {part} twice")
             if before.startswith("{"):
-                raise UsageError(f"pattern {text!r} needs something between two numbers")
+                raise UsageError(f"pattern {text!r} must have a separator between two fields")
             known.add(name)
             parts.append(_WHOLE * (before == "*") + f"(?P<{name}>{NUMBER})")
         else:
@@ -199,16 +221,22 @@ def _check_regex(text: str) -> str:
     try:
         tree = import_module("re._parser").parse(text)
     except (re.error, RecursionError, OverflowError) as error:
-        raise UsageError(f"pattern {text!r} is no regex ({error}); try {_EXAMPLE}") from error
+        raise UsageError(
+            f"pattern {text!r} is not a valid regular expression ({error}); try {_EXAMPLE}"
+        ) from error
     found = list(_regex_parts(tree))
     names = [name for name, _, _ in found]
     if any("ASSERT" in name or name.startswith(("GROUPREF", "BRANCH")) for name in names):
-        raise UsageError(f"pattern {text!r} looks ahead or back, or branches; try {_EXAMPLE}")
+        raise UsageError(
+            f"pattern {text!r} uses lookaround, branches or backreferences; try {_EXAMPLE}"
+        )
     if any(inside for name, inside, _ in found if name == "REPEAT"):
-        raise UsageError(f"pattern {text!r} has a repeat within a repeat; try {_EXAMPLE}")
+        raise UsageError(f"pattern {text!r} contains nested repeats; try {_EXAMPLE}")
     wild = sum(is_wild for name, _, is_wild in found if name == "REPEAT")
     if wild > MAX_WILD:
-        raise UsageError(f"pattern {text!r} has {wild} repeats of anything; try {_EXAMPLE}")
+        raise UsageError(
+            f"pattern {text!r} contains {wild} wildcards, the limit is {MAX_WILD}; try {_EXAMPLE}"
+        )
     return text
 
 
@@ -253,20 +281,31 @@ def _is_numeric(kind: str, argument: Any) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class RecordedView:
-    """A screenshot with its pose."""
+    """A screenshot with its camera and pose.
+
+    Attributes:
+        image: Screenshot file.
+        camera: Camera of the screenshot.
+        pose: Pose in the game, at the feet or the eye as stated by the caller.
+        pose_source: Where the pose was found, such as ``poses.csv`` or ``PNG texts``.
+        frame: Frame number.
+        tour_id: Name of the tour, if the sidecar file states one.
+        t_s: Time in seconds, if the sidecar file states one.
+    """
 
     image: Path
     camera: Camera
     pose: GamePose  # at the feet or the eye, as it was stated
-    pose_source: str  # "poses.csv", "its PNG text", "its name by {x}_{y}..."
+    pose_source: str  # "poses.csv", "PNG texts", "file name by {x}_{y}..."
     frame: int = 0
     tour_id: str = ""
     t_s: float = 0.0
 
     def camera_to_room(self, block_to_room: np.ndarray) -> np.ndarray:
-        """Return the camera's pose in the room, float64 [4, 4]: feet are lifted to the eye.
+        """Return the camera pose in the room, float64 [4, 4].
 
-        A player is as large as the world's scale says: 1.62 blocks at one block a metre.
+        Positions of the feet are raised to eye height, which is 1.62 blocks at one block per metre
+        and proportional to the scale of the world.
         """
         blocks_per_metre = 1 / float(np.linalg.norm(block_to_room[:3, 0]))
         return self.pose.camera_to_room(block_to_room, eye_height_blocks(blocks_per_metre))
@@ -280,25 +319,27 @@ def read_screenshots(
     pattern: str | None = None,
     vertical_fov_deg: float = 70.0,
 ) -> list[RecordedView]:
-    """Read the screenshots of a folder with their poses, in the order of the sidecar or by name.
+    """Read the screenshots in a folder with their poses, in sidecar order or sorted by name.
 
     Args:
-        folder: PNG files; other files are left alone.
-        at: whether x, y, z is where the feet stand (F3, most mods) or the eye; a line of a sidecar
-            may say its own.
-        poses: a sidecar, JSONL or CSV, with the columns ``image`` (or ``file``), x, y, z, yaw and
-            pitch; pictures that it does not name are left out.
-        pattern: how names hold poses, see ``NamePattern``.
-        vertical_fov_deg: the game's option; a line of a sidecar may say its own.
+        folder: Folder with PNG files. Other files are ignored.
+        at: Reference point of the positions: ``feet`` (as shown by F3 and most mods) or ``eye``. A
+            row of the sidecar file can override it.
+        poses: Sidecar file (JSONL or CSV) with the columns ``image`` (or ``file``), x, y, z, yaw
+            and pitch. Images that it does not list are ignored.
+        pattern: Pattern that extracts poses from file names; see ``NamePattern``.
+        vertical_fov_deg: Field of view option of the game in degrees. A row of the sidecar file can
+            override it.
 
     Raises:
-        UsageError: ``at`` is not given, the pattern is invalid. InputError: the folder has no
-            picture, or no pose for one. DamagedFileError, LimitError: a file is not
-            what it should be.
+        UsageError: If ``at`` is missing or the pattern is not valid.
+        InputError: If the folder has no images, or if an image has no pose.
+        DamagedFileError: If a file is not valid.
+        LimitError: If a file or the folder exceeds a limit.
     """
     if at not in ("feet", "eye"):
         raise UsageError(
-            f"at must be feet (what F3 and most mods tell) or eye (1.62 above it), not {at!r}"
+            f"at must be feet (as shown by F3 and most mods) or eye (1.62 above), got {at!r}"
         )
     source = Path(folder)
     pictures = _pictures(source)
@@ -311,31 +352,31 @@ def read_screenshots(
         facts = read_png_facts(path)
         numbers = read(path, facts)
         if numbers is None:
-            raise InputError(path, f"has no pose: {origin} does not tell x, y, z, yaw and pitch")
+            raise InputError(path, f"no pose found: {origin} must contain x, y, z, yaw and pitch")
         camera = camera_of(facts.width_px, facts.height_px, vertical_fov_deg=vertical_fov_deg)
         try:
             pose = GamePose(*(numbers[name] for name in POSE_FIELDS), at=at)
         except UsageError as error:
-            raise DamagedFileError(path, f"has no pose of the game: {error}") from error
+            raise DamagedFileError(path, f"not a valid game pose: {error}") from error
         views.append(RecordedView(path, camera, pose, origin, frame))
     return views
 
 
 def _pictures(folder: Path) -> list[Path]:
     if not folder.is_dir():
-        raise InputError(folder, "is no folder of screenshots")
+        raise InputError(folder, "not a folder; expected a folder of screenshots")
     found = sorted(path for path in folder.iterdir() if path.suffix.lower() == ".png")
     if not found:
-        raise InputError(folder, "has no screenshot: no .png lies in it")
+        raise InputError(folder, "contains no screenshots (.png files)")
     if len(found) > MAX_PICTURES:
-        raise LimitError(folder, f"has more than {MAX_PICTURES} screenshots")
+        raise LimitError(folder, f"exceeds the limit of {MAX_PICTURES:,} screenshots")
     return found
 
 
 def _sidecar(folder: Path, poses: str | Path | None, pattern: str | None) -> Path | None:
     """Return the file of poses that is named, or that lies beside the pictures."""
     if poses is not None and pattern is not None:
-        raise UsageError("poses and pattern are two ways to tell the poses; give one of them")
+        raise UsageError("poses and pattern cannot be combined; use only one of them")
     if poses is not None:
         named = Path(poses)
         return named if named.is_file() else folder / named
@@ -349,7 +390,7 @@ def _by_sidecar(folder: Path, sidecar: Path, at: At, fov_deg: float) -> list[Rec
     for one in read_tour(sidecar, at=at):
         path = _named(folder, one.image, sidecar)
         if path in known:
-            raise DamagedFileError(sidecar, f"names {one.image} twice")
+            raise DamagedFileError(sidecar, f"lists {one.image} twice")
         known.add(path)
         number = counts.get(one.tour_id, 0)
         counts[one.tour_id] = number + 1
@@ -364,13 +405,17 @@ def _by_sidecar(folder: Path, sidecar: Path, at: At, fov_deg: float) -> list[Rec
 def _named(folder: Path, name: str, sidecar: Path) -> Path:
     """Return the picture that a line names: one in the folder or below it, and nowhere else."""
     if not name:
-        raise DamagedFileError(sidecar, "has a line without image (or file), the picture's name")
+        raise DamagedFileError(
+            sidecar, "contains a row without an image file name (column image or file)"
+        )
     parts = PurePosixPath(name.replace("\\", "/"))
     if parts.is_absolute() or ".." in parts.parts or ":" in name or "\0" in name:
-        raise DamagedFileError(sidecar, f"names {name!r}, which is not below its folder")
+        raise DamagedFileError(
+            sidecar, f"lists {name!r}, which is not inside the folder of screenshots"
+        )
     path = folder.joinpath(*parts.parts)
     if not path.is_file():
-        raise InputError(sidecar, f"names {name}, which is not there")
+        raise InputError(sidecar, f"lists {name}, which does not exist")
     return path
 
 
@@ -382,7 +427,7 @@ def _camera(path: Path, one: TourPose, sidecar: Path, fov_deg: float) -> Camera:
     if (one.camera.width_px, one.camera.height_px) != size:
         stated = f"{one.camera.width_px}x{one.camera.height_px}"
         raise DamagedFileError(
-            sidecar, f"says {stated} of {one.image}, which has {size[0]}x{size[1]}"
+            sidecar, f"states {stated} pixels for {one.image}, which has {size[0]}x{size[1]}"
         )
     return one.camera
 
@@ -393,18 +438,18 @@ Reader = Callable[[Path, PngFacts], dict[str, float] | None]
 def _reader(pictures: list[Path], pattern: str | None) -> tuple[Reader, str]:
     """Return what reads the poses of pictures, and how it is called; the first picture decides."""
     if pattern is not None:
-        return _by_name(pattern), f"its name by {pattern}"
+        return _by_name(pattern), f"file name by {pattern}"
     first = pictures[0]
     facts = read_png_facts(first)
     if _by_text(first, facts) is not None:
-        return _by_text, "its PNG text"
+        return _by_text, "PNG texts"
     for usual in DEFAULT_PATTERNS:
         if _by_name(usual)(first, facts) is not None:
-            return _by_name(usual), f"its name by {usual}"
+            return _by_name(usual), f"file name by {usual}"
     raise InputError(
         first,
-        f"has no pose: no sidecar ({', '.join(SIDECARS)}) lies beside it, its PNG texts tell none, "
-        f"and its name is not like {DEFAULT_PATTERNS[0]}; name a sidecar or a pattern",
+        f"no pose found in a sidecar file ({', '.join(SIDECARS)}), in the PNG texts or in the file "
+        f"name ({DEFAULT_PATTERNS[0]}); add a sidecar file or a pattern",
     )
 
 
@@ -421,5 +466,7 @@ def _by_text(path: Path, facts: PngFacts) -> dict[str, float] | None:
         for name, number in _PAIR.findall(own):
             value = float(number)
             if found.setdefault(name.lower(), value) != value:
-                raise DamagedFileError(path, f"tells {name.lower()} twice in its PNG texts")
+                raise DamagedFileError(
+                    path, f"contains two values for {name.lower()} in its PNG texts"
+                )
     return found if len(found) == len(POSE_FIELDS) else None

@@ -1,9 +1,9 @@
-"""Labelled photo-like images of generated rooms: the data-poor counterpart of block worlds.
+"""Labelled photo-like images of generated rooms, as a substitute for labelled photos.
 
-A room's own voxels of 2 cm are its truth. They become cells of 8 cm by SSCNet's rule, as NYUv2's
-do, and from there on a picture is labelled as one of a block world is: the paper's region, masks
-from the depth as it was cast. The picture is a phone's: marks on the surfaces, soft edges, the
-exposure and noise of a chip. Depth is exact.
+The 2 cm voxels of a room are the ground truth. They are downsampled to 8 cm cells with SSCNet's
+rule, as in NYUv2, and images are then labelled in the same way as images of block worlds: with the
+paper's region and with masks computed from the depth. The images imitate a phone camera: surface
+textures, soft edges, exposure and sensor noise. The depth is exact.
 """
 
 from collections.abc import Iterator
@@ -42,10 +42,17 @@ FINE_CLASSES = (
 
 @dataclass(frozen=True)
 class PhotoRooms:
-    """Which rooms, and how many pictures of them.
+    """The rooms to render for a synthetic photo data set, and the number of images.
+
+    Attributes:
+        rooms: Number of rooms to generate.
+        images: Total number of images.
+        test_share: Fraction of the rooms to use for testing; the last rooms are used.
+        seed: Random seed.
+        camera: Camera of the images.
 
     Raises:
-        UsageError: there are fewer pictures than rooms, or no room is left to train on.
+        UsageError: If fewer images than rooms are requested, or if no room is left for training.
     """
 
     rooms: int = 20
@@ -56,24 +63,29 @@ class PhotoRooms:
 
     def __post_init__(self):
         if not 1 <= self.rooms <= ROOMS_PER_SEED:
-            raise UsageError(f"--rooms is 1 to {ROOMS_PER_SEED}, not {self.rooms}")
+            raise UsageError(f"--rooms must be from 1 to {ROOMS_PER_SEED}, got {self.rooms}")
         if self.images < self.rooms:
-            raise UsageError(f"--images is {self.rooms} or more, one a room, not {self.images}")
+            raise UsageError(
+                f"--images must be at least {self.rooms}, one per room, got {self.images}"
+            )
         if not 0 <= self.test_share < 1 or self.test_rooms >= self.rooms:
-            raise UsageError(f"--test-share {self.test_share:g} leaves no room to train on")
+            raise UsageError(
+                f"--test-share {self.test_share:g} leaves no room for training; choose a "
+                "smaller value"
+            )
 
     @property
     def test_rooms(self) -> int:
-        """How many rooms are kept for the test."""
+        """Number of rooms used for testing."""
         return max(1, round(self.test_share * self.rooms)) if self.test_share else 0
 
     def images_of(self, number: int) -> int:
-        """Return how many pictures a room gives: all the same, the first ones one more."""
+        """Return the number of images of a room. All rooms have the same number, up to one."""
         return self.images // self.rooms + (number < self.images % self.rooms)
 
 
 def photo_samples(plan: PhotoRooms) -> Iterator[OccSample]:
-    """Yield the samples, room by room, one in memory at a time."""
+    """Generate the samples room by room, yielding one at a time."""
     for number in range(plan.rooms):
         is_test = number >= plan.rooms - plan.test_rooms
         room = _room(plan, number)
@@ -81,18 +93,20 @@ def photo_samples(plan: PhotoRooms) -> Iterator[OccSample]:
 
 
 def voxelize_room(room: Room, voxel_m: float = DEFAULT_VOXEL_M) -> SceneVoxels:
-    """Return a room's cells, by the rule that made NYUv2's 8 cm of 2 cm; they know no instances.
+    """Downsample the voxels of a room to larger cells with SSCNet's rule, as in NYUv2.
+
+    The resulting cells have no object numbers.
 
     Args:
-        room: a room or a house.
-        voxel_m: a whole multiple of the room's own voxels.
+        room: Room or house.
+        voxel_m: Cell size in metres. Must be a multiple of the voxel size of the room.
 
     Raises:
-        UsageError: it is none.
+        UsageError: If the cell size is not a multiple of the voxel size.
     """
     factor = round(voxel_m / room.voxel_m)
     if factor < 1 or abs(factor * room.voxel_m - voxel_m) > 1e-9:
-        raise UsageError(f"cells are whole multiples of {room.voxel_m:g} m, not {voxel_m:g}")
+        raise UsageError(f"voxel_m must be a multiple of {room.voxel_m:g} m, got {voxel_m:g}")
     first = np.round(room.origin_m / room.voxel_m).astype(int)
     before = first % factor
     after = -(before + room.labels.shape) % factor
@@ -117,7 +131,7 @@ def _room(plan: PhotoRooms, number: int) -> Room:
     for kind in (*kinds[turn:], *kinds[:turn]):
         with suppress(World2MinecraftError):  # Its furniture found no place here.
             return generate_room(seed, kind=kind, clutter=clutter, shape=None)
-    raise UsageError(f"seed {seed} gives no room of any kind; take another --seed")
+    raise UsageError(f"no room can be generated with seed {seed}; choose another --seed")
 
 
 def _of_room(plan: PhotoRooms, number: int, room: Room, split: str) -> Iterator[OccSample]:

@@ -1,4 +1,4 @@
-"""The types of a data set: the cells of a scene, the labels of an image, and samples."""
+"""The data types of a data set: cells of a scene, labels of an image, and samples."""
 
 from dataclasses import dataclass, field
 
@@ -20,7 +20,11 @@ __all__ = [
 
 @dataclass(frozen=True, order=True)
 class FineClass:
-    """What a cell is made of: a block's id, and the furniture design that it is a part of.
+    """The block and the furniture design that a cell belongs to.
+
+    Attributes:
+        block: Block id without properties, such as ``minecraft:oak_planks``.
+        design: Name of the furniture design, or an empty string.
 
     Example:
         >>> FineClass("minecraft:oak_stairs", "chair_cafe").name
@@ -32,16 +36,21 @@ class FineClass:
 
     @property
     def name(self) -> str:
-        """What counts as one class: the design where there is one, whatever it is made of."""
+        """Name of the fine class: the design if there is one, otherwise the block id."""
         return f"design:{self.design}" if self.design else self.block
 
 
 @dataclass(frozen=True, eq=False)
 class SceneVoxels:
-    """The cells of a whole world, in its room frame: ``labels[x, y, z]``, z up.
+    """The labelled cells of a complete world, along the axes of its room with z up.
 
-    ``fine`` indexes ``fine_classes``, whose first stands for empty cells. ``instance`` is 0 or
-    the object's number in ``scene.npz``.
+    Attributes:
+        labels: Class of each cell (0 to 11 or 255), uint8 [X, Y, Z].
+        fine: Index into ``fine_classes`` for each cell, uint16 [X, Y, Z].
+        instance: Object number of each cell as in ``scene.npz``, or 0, uint16 [X, Y, Z].
+        fine_classes: Fine classes of the world; the first one stands for empty cells.
+        voxel_m: Cell size in metres.
+        origin_m: Minimum corner of cell (0, 0, 0) in metres, float64 [3].
     """
 
     labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
@@ -61,15 +70,26 @@ class SceneVoxels:
         put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
         put(self, "origin_m", checks.floats("origin_m", self.origin_m, (3,)))
         if self.fine.size and int(self.fine.max()) >= len(self.fine_classes):
-            raise ValueError(f"fine goes to {self.fine.max()} of {len(self.fine_classes)} classes")
+            raise ValueError(
+                f"fine must contain indices below {len(self.fine_classes)}, got {self.fine.max()}"
+            )
 
 
 @dataclass(frozen=True, eq=False)
 class OccLabels:
-    """The labels of one image and their masks, all [X, Y, Z] of its region.
+    """The labels and masks of an image, each of shape [X, Y, Z] for the cells of its region.
 
-    Occluded is what is in the frustum, occupied and not hit; unknown what is in the frustum and
-    neither hit nor free nor occupied.
+    A cell is occluded if it is in the frustum and occupied but has no hits. It is unobserved if it
+    is in the frustum and neither occupied nor free and has no hits.
+
+    Attributes:
+        region: Region of the image.
+        labels: Class of each cell (0 to 11 or 255), uint8.
+        fine: Fine class index of each cell, uint16.
+        instance: Object number of each cell, uint16.
+        in_frustum: Whether the cell centre is in front of the camera and inside the image, bool.
+        hits: Number of pixels that see the cell, uint32.
+        free: Whether the cell is empty and crossed by the ray of a pixel, bool.
     """
 
     region: LabelRegion
@@ -96,18 +116,34 @@ class OccLabels:
 
     @property
     def occupied(self) -> np.ndarray:
-        """Bool [X, Y, Z]: cells that hold something."""
+        """Whether each cell is occupied, bool [X, Y, Z]."""
         return (self.labels > 0) & (self.labels != 255)
 
     @property
     def visible(self) -> np.ndarray:
-        """Bool [X, Y, Z]: cells that some pixel sees first."""
+        """Whether each cell is seen by at least one pixel, bool [X, Y, Z]."""
         return self.hits > 0
 
 
 @dataclass(frozen=True, eq=False)
 class OccSample:
-    """One image with all that is known of it."""
+    """An image with its camera, labels and further facts.
+
+    Attributes:
+        key: Unique key SCENE-TOUR-FRAME of letters, digits, ``-`` and ``_``.
+        scene_id: Name of the scene.
+        tour_id: Name of the tour.
+        frame: Frame number within the tour.
+        camera: Camera of the image.
+        camera_to_room: Camera pose in the room, float64 [4, 4].
+        occ: Labels and masks of the region.
+        fine_classes: Fine classes to which ``occ.fine`` refers.
+        colour: Colour image, uint8 [H, W, 3], or None.
+        depth_m: Depth along the camera's z axis in metres, float32 [H, W], or None; 0 for no
+            surface.
+        split: ``train``, ``val``, ``test`` or an empty string.
+        facts: Further facts, such as ``block_to_room``, the pose in the game and the light.
+    """
 
     key: str  # unique in a data set: SCENE-TOUR-FRAME, of letters, digits, - and _
     scene_id: str

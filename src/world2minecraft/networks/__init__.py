@@ -1,5 +1,5 @@
-"""Occupancy networks in PyTorch: data, models, losses, training, scoring and ONNX export.
+"""Occupancy networks in PyTorch: data, models, losses, training, evaluation and ONNX export.
 
-Everything here needs ``pip install 'world2minecraft[train]'``. What is trained leaves as ONNX,
-which ``occupy`` and ``label`` run without torch.
+All modules need ``pip install 'world2minecraft[train]'``. Trained networks are exported as ONNX,
+which the commands ``occupy`` and ``label`` run without PyTorch.
 """

@@ -1,7 +1,7 @@
 """The inputs, targets and outputs of a monocular occupancy network, as tensors of a batch.
 
-Grids are ``[X, Y, Z]`` as everywhere: x right, y forward, z up of the region. A network that was
-published for another order of axes turns them inside.
+Grids have the axes ``[X, Y, Z]`` of the region, as in the whole program: x right, y forward, z up.
+Networks that were published with another axis order convert it internally.
 """
 
 from dataclasses import dataclass, field, fields, replace
@@ -15,10 +15,18 @@ Movable = TypeVar("Movable", "OccInput", "OccTarget")
 
 @dataclass(frozen=True)
 class OccInput:
-    """B pictures of one size, each with the grid before its camera.
+    """A batch of B images of the same size, with the pose of the grid in front of each camera.
 
-    ``camera_to_grid`` carries OpenCV camera metres to metres from the minimum corner of cell
-    (0, 0, 0); the centre of cell i is ``(i + 0.5) * voxel_m``. Depth is along the camera's z.
+    Attributes:
+        image: RGB images with values from 0 to 1, float32 [B, 3, H, W].
+        intrinsics: Camera matrices in pixels of ``image`` with pixel centres at +0.5, float32 [B,
+            3, 3].
+        camera_to_grid: Matrices from OpenCV camera coordinates to the position relative to the
+            minimum corner of cell (0, 0, 0), both in metres, float32 [B, 4, 4]. The centre of cell
+            i is at ``(i + 0.5) * voxel_m``.
+        grid_shape: Number of cells along each axis.
+        voxel_m: Cell size in metres.
+        depth_m: Depth along the camera's z axis in metres, float32 [B, H, W], 0 for none; or None.
     """
 
     image: Tensor  # float32 [B, 3, H, W], RGB, 0 to 1
@@ -29,13 +37,20 @@ class OccInput:
     depth_m: Tensor | None = None  # float32 [B, H, W], 0 where there is none
 
     def to(self, device: torch.device | str) -> "OccInput":
-        """Return the same with its tensors on a device."""
+        """Return a copy with all tensors on the given device."""
         return _to_device(self, device)
 
 
 @dataclass(frozen=True)
 class OccTarget:
-    """What is true of the grids of a batch."""
+    """The ground truth for a batch.
+
+    Attributes:
+        labels: Class of each cell (0 to 11 or 255), int64 [B, X, Y, Z].
+        in_frustum: Whether each cell centre is inside the image, bool [B, X, Y, Z].
+        depth_m: Target depth for a depth branch in metres, float32 [B, H, W], 0 for none; or None.
+            It may differ from the input depth.
+    """
 
     labels: Tensor  # int64 [B, X, Y, Z], 0 to 11 or 255
     in_frustum: Tensor  # bool [B, X, Y, Z]: the cell's centre falls into the picture
@@ -44,16 +59,21 @@ class OccTarget:
     depth_m: Tensor | None = None
 
     def to(self, device: torch.device | str) -> "OccTarget":
-        """Return the same with its tensors on a device."""
+        """Return a copy with all tensors on the given device."""
         return _to_device(self, device)
 
 
 @dataclass(frozen=True)
 class OccOutput:
-    """The output of a network: ``logits`` of the 12 classes, and what its own losses need.
+    """The output of a network: the logits of the 12 classes, and tensors for additional losses.
 
-    ``auxiliary`` holds further logits of the same shape, from earlier layers. ``relations`` are
-    those of MonoScene's context prior, ``depth_logits`` those of a depth branch.
+    Attributes:
+        logits: Class logits of each cell, float32 [B, 12, X, Y, Z].
+        auxiliary: Further logits of the same shape from earlier layers.
+        relations: Relations of MonoScene's context prior, float32 [B, R, mega-voxels, voxels at
+            1/16].
+        depth_logits: Logits of a depth branch, float32 [B, bins, h, w].
+        facts: Scalars to log.
     """
 
     logits: Tensor  # float32 [B, 12, X, Y, Z]

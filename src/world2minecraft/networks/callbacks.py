@@ -1,7 +1,8 @@
-"""A Lightning callback: validation, checkpoints, the best weights and early stopping.
+"""The Lightning callback for training: logging, validation, checkpoints and early stopping.
 
-Files of a run: ``checkpoint.safetensors`` (to go on from), ``weights.safetensors`` (the best by
-mIoU on the validation frames), ``last.safetensors``, ``metrics.csv`` and ``tensorboard/``.
+A run folder contains ``checkpoint.safetensors`` (for resuming), ``weights.safetensors`` (the best
+weights by mIoU on the validation frames), ``last.safetensors``, ``metrics.csv`` and
+``tensorboard/``.
 """
 
 # Not by Lightning's ModelCheckpoint and EarlyStopping: their checkpoints are pickles, which can run
@@ -31,7 +32,19 @@ LOG_EVERY_STEPS = 20  # Mean losses are logged so often.
 
 @dataclass
 class RunState:
-    """Where a run stands; a checkpoint holds it."""
+    """The state of a run that is saved in a checkpoint.
+
+    Attributes:
+        step: Number of completed steps.
+        best_miou: Best validation mIoU so far, or -1.
+        best_step: Step at which it was reached.
+        worse: Number of validations since then.
+        stopped: Whether the run was stopped early.
+        seconds: Elapsed seconds of training and validation over all attempts.
+        cpu_seconds: CPU seconds of this process over all attempts.
+        sums: Sums of losses that are not logged yet.
+        summed: Number of steps in these sums.
+    """
 
     step: int = 0
     best_miou: float = -1.0
@@ -45,7 +58,7 @@ class RunState:
 
 
 class TrainingCallback(lightning.Callback):
-    """Logs losses, validates, saves checkpoints and stops early, after each step of a run."""
+    """A callback that logs losses, validates, saves checkpoints and stops early."""
 
     def __init__(
         self,
@@ -66,7 +79,7 @@ class TrainingCallback(lightning.Callback):
     def on_train_batch_end(
         self, trainer: Any, pl_module: Any, outputs: Any, batch: Any, batch_idx: int
     ) -> None:
-        """Log the losses; validate, save a checkpoint and stop where it is time."""
+        """Log the losses of a step and, when due, validate, save a checkpoint or stop."""
         module: OccupancyModule = pl_module
         state, config = self.state, self._config
         state.step += 1
@@ -85,9 +98,9 @@ class TrainingCallback(lightning.Callback):
         if not math.isfinite(float(module.losses["loss"])):
             rate = learning_rate_at(self._config, self.state.step - 1)
             raise UsageError(
-                f"the loss of step {self.state.step:,} is no number, at a learning rate of "
-                f"{rate:.2g}; train in another --out with a lower --lr, or with --precision 32 "
-                "(the best weights so far are kept)"
+                f"the loss at step {self.state.step:,} is not finite (learning rate {rate:.2g}); "
+                "use a lower --lr or --precision 32 with another --out "
+                "(the best weights are kept)"
             )
 
     def _log_losses(self, module: OccupancyModule) -> None:
@@ -126,6 +139,6 @@ class TrainingCallback(lightning.Callback):
         self._progress("train", state.step, self._config.steps, note)
 
     def finish(self, module: OccupancyModule) -> None:
-        """Write the last weights and close the logger."""
+        """Write the final weights and close the log files."""
         write_weights(self._folder / LAST, module.network, self._config)
         self._logger.finalize()

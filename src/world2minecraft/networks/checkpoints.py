@@ -1,7 +1,7 @@
-"""Weights and checkpoints as safetensors: arrays and texts, no code.
+"""Weights and checkpoints as safetensors files, which contain arrays and text but no code.
 
-A checkpoint holds what the next step depends on: weights, the moments of AdamW, and facts such as
-the step. Data and augmentation follow from the seed and the step, so no generator is kept.
+A checkpoint contains the weights, the moments of AdamW and facts such as the step. Data and
+augmentation are derived from the seed and the step, so random generators need not be saved.
 """
 
 import json
@@ -23,23 +23,35 @@ MODEL, OPTIMISER = "model.", "optimiser."
 
 
 def write_weights(path: Path, network: nn.Module, config: RunConfig) -> None:
-    """Write a network's weights, and the run that they are of. Raises OutputError."""
+    """Write the weights of a network together with the settings of its run.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     write_bytes(path, save(_cpu_tensors(network.state_dict()), {CONFIG: config_text(config)}))
 
 
 def read_weights_config(path: Path) -> RunConfig:
-    """Return the run that weights are of. Raises InputError or DamagedFileError."""
+    """Read the run settings that are stored with weights.
+
+    Raises:
+        InputError: If the file does not exist.
+        DamagedFileError: If the file was not written by ``w2m train``.
+    """
     _, texts = _read(path, with_tensors=False)
     if CONFIG not in texts:
-        raise DamagedFileError(path, "says nothing of its network; it is not of w2m train")
+        raise DamagedFileError(
+            path, "contains no run settings; expected weights written by w2m train"
+        )
     return parse_config(texts[CONFIG], str(path))
 
 
 def load_weights(path: Path, network: nn.Module) -> None:
-    """Put weights into a network of the same kind and size.
+    """Load weights into a network of the same kind and size.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is none, or of another network.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not valid or belongs to another network.
     """
     tensors, _ = _read(path)
     _load_state(path, network, tensors)
@@ -48,7 +60,11 @@ def load_weights(path: Path, network: nn.Module) -> None:
 def write_checkpoint(
     path: Path, network: nn.Module, optimiser: torch.optim.Optimizer, facts: Mapping[str, Any]
 ) -> None:
-    """Write a half-done run. Raises OutputError."""
+    """Write a checkpoint of an unfinished run.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     tensors = {MODEL + name: value for name, value in network.state_dict().items()}
     for number, state in optimiser.state_dict()["state"].items():
         for name, value in state.items():
@@ -57,20 +73,25 @@ def write_checkpoint(
 
 
 def read_facts(path: Path) -> dict[str, Any]:
-    """Return what a checkpoint says of its run. Raises InputError or DamagedFileError."""
+    """Read the facts about the run that are stored in a checkpoint.
+
+    Raises:
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a checkpoint.
+    """
     _, texts = _read(path, with_tensors=False)
     try:
         return dict(json.loads(texts[FACTS]))
     except (KeyError, ValueError, TypeError) as error:
-        raise DamagedFileError(path, "is no checkpoint of w2m train") from error
+        raise DamagedFileError(path, "not a checkpoint of w2m train") from error
 
 
 def load_checkpoint(
     path: Path, network: nn.Module, optimiser: torch.optim.Optimizer | None = None
 ) -> None:
-    """Put a half-done run into its network, and its optimiser if one is given.
+    """Load a checkpoint into a network and, if given, into its optimizer.
 
-    Raises what ``load_weights`` does.
+    Raises the same exceptions as ``load_weights``.
     """
     tensors, _ = _read(path)
     model = {
@@ -101,17 +122,19 @@ def _load_state(path: Path, network: nn.Module, tensors: dict[str, Tensor]) -> N
     )
     if wrong:
         raise DamagedFileError(
-            path, f"is of another network: {wrong[0]} and {len(wrong) - 1} more do not fit"
+            path,
+            f"belongs to another network: {wrong[0]} and {len(wrong) - 1} other tensors "
+            "do not match",
         )
     network.load_state_dict(tensors)
 
 
 def _read(path: Path, *, with_tensors: bool = True) -> tuple[dict[str, Tensor], dict[str, str]]:
     if not path.is_file():
-        raise InputError(path, "is not there; w2m train NET --data DIR --out RUN makes one")
+        raise InputError(path, "not found; create it with w2m train NET --data DIR --out RUN")
     try:
         with safe_open(str(path), framework="pt", device="cpu") as file:
             names = file.keys() if with_tensors else ()
             return {name: file.get_tensor(name) for name in names}, dict(file.metadata() or {})
     except (SafetensorError, OSError, ValueError) as error:
-        raise DamagedFileError(path, f"is no safetensors file ({error})") from error
+        raise DamagedFileError(path, f"not a valid safetensors file ({error})") from error

@@ -1,7 +1,7 @@
-"""The settings of a training run: ``RunConfig``, and its YAML file.
+"""The settings of a training run, and their YAML file.
 
-The same file trains the same network again. Settings that are not there keep their defaults; one
-that nobody knows is refused, with the nearest name.
+The same file always trains the same network. Settings that are omitted have their default values.
+Unknown settings are rejected, with the most similar name as a suggestion.
 """
 
 import math
@@ -19,7 +19,10 @@ MAX_BYTES = 1 << 20
 
 
 class Grid(NamedTuple):
-    """The cells that a network labels: x right, y forward, z up; 4.8 x 4.8 x 2.88 m."""
+    """The grid of cells that a network labels, with x right, y forward and z up.
+
+    All grids cover 4.8 x 4.8 x 2.88 m.
+    """
 
     shape: tuple[int, int, int]
     voxel_m: float
@@ -35,7 +38,11 @@ CLASS_WEIGHTS = ("frequency", "monoscene", "even")
 
 @dataclass(frozen=True)
 class DataSource:
-    """A data set, and how often it is drawn from, beside the others.
+    """A data set, with its relative weight among the training data.
+
+    Attributes:
+        path: Folder of the data set.
+        weight: Relative probability of choosing a frame of this data set.
 
     Example:
         >>> DataSource.parse("sets/NYU:2.5")
@@ -47,15 +54,19 @@ class DataSource:
 
     def __post_init__(self):
         if not self.path:
-            raise UsageError("a data set needs a path; give --data DIR or --data DIR:WEIGHT")
+            raise UsageError(
+                "the path of a data set is empty; expected --data DIR or --data DIR:WEIGHT"
+            )
         if not 0 < self.weight < math.inf:
             raise UsageError(
-                f"the weight of {self.path} must be above 0 and finite, not {self.weight:g}"
+                f"the weight of {self.path} must be above 0 and finite, got {self.weight:g}"
             )
 
     @classmethod
     def parse(cls, text: str) -> "DataSource":
-        """Return what ``DIR`` or ``DIR:WEIGHT`` means; a colon before no number is the path's."""
+        """Parse ``DIR`` or ``DIR:WEIGHT``. A colon that is not followed by a number belongs to the
+        path.
+        """
         path, colon, tail = text.rpartition(":")
         try:
             return cls(path, float(tail)) if colon else cls(text)
@@ -65,7 +76,41 @@ class DataSource:
 
 @dataclass(frozen=True)
 class RunConfig:
-    """A run. Sides are pixels, rates a step, shares from 0 to 1."""
+    """The settings of a training run.
+
+    Attributes:
+        network: Name of the network.
+        data: Data sets with their weights.
+        size: Size of the network: ``tiny``, ``small`` or ``full``.
+        backbone: Image backbone from transformers as ``hf:ID``. An empty string selects the
+            network's own.
+        grid: Cell size, ``0.16`` or ``0.08`` metres.
+        image: Image width and height in pixels.
+        depth: Use of depth: ``taught`` (target of a depth branch), ``given`` (also an input) or
+            ``none``.
+        frames: Maximum number of frames of a scene in a sample. 0 uses the network's default.
+        steps: Number of training steps.
+        batch: Number of samples in a batch.
+        learning_rate: Maximum learning rate.
+        weight_decay: Weight decay.
+        schedule: Learning rate schedule: ``cosine``, ``step`` or ``constant``.
+        warmup_steps: Number of warm-up steps.
+        clip_norm: Maximum norm of the gradients. 0 disables clipping.
+        precision: ``auto``, ``bf16`` or ``32``.
+        flip: Fraction of mirrored frames.
+        jitter: Strength of random colour changes from 0 to 1.
+        class_weights: Class weights of the loss: ``frequency``, ``monoscene`` or ``even``.
+        val_share: Fraction of the training scenes used for validation. 0 validates on the test
+            split.
+        validate_every: Number of steps between two validations.
+        validate_frames: Maximum number of frames for a validation, evenly spaced.
+        patience: Number of validations without improvement before the run stops. 0 never stops
+            early.
+        checkpoint_every: Number of steps between two checkpoints.
+        seed: Random seed.
+        threads: Number of CPU threads. 0 uses all.
+        workers: Number of processes that prepare batches.
+    """
 
     network: str
     data: tuple[DataSource, ...]
@@ -107,27 +152,33 @@ class RunConfig:
         _one_of("precision", self.precision, PRECISIONS)
         _one_of("class_weights", self.class_weights, CLASS_WEIGHTS)
         if not self.data:
-            raise UsageError("nothing to train on; give --data DIR, as w2m dataset build makes one")
+            raise UsageError(
+                "no training data; add --data DIR with a data set from w2m dataset build"
+            )
         if len(self.image) != 2:
-            raise UsageError(f"image is width and height, not {self.image}")
+            raise UsageError(f"image must be a width and a height, got {self.image}")
         for name, (low, high) in _RANGES.items():
             values = getattr(self, name)
             for value in values if isinstance(values, tuple) else (values,):
                 if not low <= value <= high:
-                    raise UsageError(f"{name} must be {low:g} to {high:g}, not {value:g}")
+                    raise UsageError(f"{name} must be from {low:g} to {high:g}, got {value:g}")
 
     @property
     def cells(self) -> Grid:
-        """The grid that ``grid`` names."""
+        """Grid with the cell size ``grid``."""
         return GRIDS[self.grid]
 
     @property
     def fused(self) -> int:
-        """How many frames of a scene a sample has at most."""
+        """Maximum number of frames of a scene in a sample."""
         return self.frames or DEFAULT_FRAMES.get(self.network, 1)
 
     def with_preset(self, name: str) -> "RunConfig":
-        """Return the run with a preset's settings. Raises UnknownNameError."""
+        """Return the settings with those of a preset applied.
+
+        Raises:
+            UnknownNameError: If there is no such preset.
+        """
         _one_of("preset", name, PRESETS)
         return replace(self, **PRESETS[name])
 
@@ -171,7 +222,7 @@ PRESETS: dict[str, dict[str, Any]] = {
 
 
 def config_text(config: RunConfig) -> str:
-    """Return a run as YAML, its settings in their order."""
+    """Format the settings as YAML, in their declared order."""
     plain = asdict(config)
     plain["data"] = [asdict(one) for one in config.data]
     plain["image"] = list(config.image)
@@ -179,34 +230,50 @@ def config_text(config: RunConfig) -> str:
 
 
 def write_config(path: str | Path, config: RunConfig) -> None:
-    """Write a run as YAML. Raises OutputError."""
+    """Write the settings to a YAML file.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     write_text(path, config_text(config))
 
 
 def read_config(path: str | Path) -> RunConfig:
-    """Read a run from YAML.
+    """Read settings from a YAML file.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is no YAML of settings.
-        UnknownNameError: a setting has no such name. UsageError: a value is out of its range.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not YAML with settings.
+        UnknownNameError: If a setting is unknown.
+        UsageError: If a value is out of range.
     """
     return parse_config(read_bytes(path, MAX_BYTES).decode("utf-8", "replace"), str(path))
 
 
 def parse_config(text: str, source: str) -> RunConfig:
-    """Return the run that a YAML text says; ``source`` names it in messages."""
+    """Parse settings from YAML text.
+
+    Args:
+        text: YAML text.
+        source: Name for error messages.
+
+    Raises:
+        DamagedFileError: If the text is not YAML with settings.
+        UnknownNameError: If a setting is unknown.
+        UsageError: If a value is out of range.
+    """
     try:
         plain = load_plain_yaml(text)
     except ValueError as error:
-        raise DamagedFileError(source, f"is no YAML ({error})") from error
+        raise DamagedFileError(source, f"not valid YAML ({error})") from error
     if not isinstance(plain, dict):
-        raise DamagedFileError(source, "holds no settings; write network: NAME, data: ...")
+        raise DamagedFileError(source, "contains no settings; expected network: NAME, data: ...")
     known = {entry.name: entry for entry in fields(RunConfig)}
     for name in plain:
         if name not in known:
             raise UnknownNameError("setting", str(name), known)
     if missing := [name for name in ("network", "data") if name not in plain]:
-        raise DamagedFileError(source, f"says no {', '.join(missing)}")
+        raise DamagedFileError(source, f"missing settings: {', '.join(missing)}")
     return RunConfig(**{name: _value(source, name, plain[name]) for name in plain})
 
 
@@ -219,7 +286,7 @@ def _value(source: str, name: str, value: Any) -> Any:
     if name == "image":
         if isinstance(value, list) and all(type(side) is int for side in value):
             return tuple(value)
-        raise DamagedFileError(source, f"image must be [width, height], not {value!r}")
+        raise DamagedFileError(source, f"image must be [width, height], got {value!r}")
     wanted = _TYPES[name]
     if wanted is str and type(value) in (int, float):
         value = str(value)  # YAML takes 0.16 and 32 for numbers.
@@ -229,7 +296,7 @@ def _value(source: str, name: str, value: Any) -> Any:
         with suppress(ValueError):
             value = float(value)
     if type(value) is not wanted:
-        raise DamagedFileError(source, f"{name} must be {_WORDS[wanted]}, not {value!r}")
+        raise DamagedFileError(source, f"{name} must be {_WORDS[wanted]}, got {value!r}")
     return value
 
 
@@ -237,13 +304,15 @@ def _source(source: str, value: Any) -> DataSource:
     if isinstance(value, str):
         return DataSource.parse(value)
     if not isinstance(value, dict) or not isinstance(value.get("path"), str):
-        raise DamagedFileError(source, f"data must be paths, or path and weight, not {value!r}")
+        raise DamagedFileError(
+            source, f"data must be a list of paths, or of path and weight, got {value!r}"
+        )
     for name in value:
         if name not in ("path", "weight"):
             raise UnknownNameError("setting of data", str(name), ("path", "weight"))
     weight = value.get("weight", 1.0)
     if type(weight) not in (int, float):
-        raise DamagedFileError(source, f"a weight must be a number, not {weight!r}")
+        raise DamagedFileError(source, f"weight must be a number, got {weight!r}")
     return DataSource(value["path"], float(weight))
 
 
@@ -252,7 +321,7 @@ def _one_of(kind: str, name: str, known: Any) -> None:
         raise UnknownNameError(kind, str(name), known)
 
 
-_WORDS = {str: "a text", int: "a whole number", float: "a number"}
+_WORDS = {str: "a string", int: "an integer", float: "a number"}
 _TYPES: dict[str, type] = {
     entry.name: {"str": str, "int": int, "float": float}.get(str(entry.type), entry.type)
     for entry in fields(RunConfig)

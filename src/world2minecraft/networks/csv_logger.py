@@ -1,7 +1,7 @@
-"""Log the metrics of a run to ``metrics.csv`` and to TensorBoard.
+"""Logging of metrics to ``metrics.csv`` and to TensorBoard.
 
-The CSV has a row a figure: step, name, value. It holds no times, so that a run that was stopped and
-went on leaves the same bytes as one that was not.
+The CSV file has a row with step, name and value for each metric. It contains no times, so a run
+that was interrupted and resumed produces the same file as an uninterrupted run.
 """
 
 # Not by Lightning's CSVLogger: it removes the file of an earlier try, whose rows up to the
@@ -21,17 +21,17 @@ HEADER = ("step", "name", "value")
 
 
 class CsvLogger:
-    """Logs the figures of a run, from a step on."""
+    """A logger for the metrics of a run."""
 
     def __init__(self, folder: Path, first_step: int = 0):
-        """Go on after ``first_step``: what an earlier try wrote of later steps is dropped."""
+        """Open the log and discard existing rows of steps after ``first_step``."""
         self._path, self._folder = folder / METRICS, folder / "tensorboard"
         self._rows = [row for row in read_metrics(self._path) if row[0] <= first_step]
         self._first = first_step
         self._board: Any = None
 
     def log_metrics(self, step: int, figures: Mapping[str, float]) -> None:
-        """Log figures of a step; TensorBoard has them at once, the CSV with ``save``."""
+        """Log metrics of a step, to TensorBoard immediately and to the CSV file at the next ``save``."""
         if self._board is None:
             from torch.utils.tensorboard import SummaryWriter  # noqa: PLC0415
 
@@ -41,7 +41,7 @@ class CsvLogger:
             self._board.add_scalar(name, figures[name], step)
 
     def save(self) -> None:
-        """Write the CSV whole."""
+        """Write the complete CSV file."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(HEADER)
@@ -51,17 +51,17 @@ class CsvLogger:
             self._board.flush()
 
     def finalize(self) -> None:
-        """Write the CSV and let TensorBoard's file go."""
+        """Write the CSV file and close the TensorBoard file."""
         self.save()
         if self._board is not None:
             self._board.close()
 
 
 def read_metrics(path: Path) -> list[tuple[int, str, float]]:
-    """Return the rows of a ``metrics.csv``; none where there is no file.
+    """Read the rows of ``metrics.csv``, or return an empty list if the file does not exist.
 
     Raises:
-        DamagedFileError: it holds something else.
+        DamagedFileError: If the file is not valid.
 
     Example:
         >>> read_metrics(Path("nowhere.csv"))
@@ -76,5 +76,5 @@ def read_metrics(path: Path) -> list[tuple[int, str, float]]:
     except ValueError as error:
         raise DamagedFileError(
             path,
-            f"holds no rows of step, name, value ({error}); remove it, and the run goes on",
+            f"must contain rows of step, name, value ({error}); delete the file to resume the run",
         ) from error

@@ -233,7 +233,7 @@ def _crossing(a, b):
 
 @lean
 def nearest_solid(solid, px, py, pz, reach):
-    """Return the nearest solid cell within ``reach`` of a point, or (-1, -1, -1) if there is none."""
+    """Return the nearest solid cell within ``reach`` of a point, or (-1, -1, -1) if none."""
     i, j, k = int(px), int(py), int(pz)
     sx, sy, sz = _side(px - i, reach), _side(py - j, reach), _side(pz - k, reach)
     best, a, b, c = reach * reach, -1, -1, -1

@@ -1,4 +1,4 @@
-"""Statistics of a data set, beside those of the data sets that the paper compares."""
+"""Statistics of a data set, compared with the data sets in the paper."""
 
 from world2minecraft.minecraftocc.statistics.counting import (
     PictureCounts,

@@ -1,8 +1,8 @@
-"""Count a data set, an image at a time, in memory that does not grow with the images.
+"""Counters for the statistics of a data set, which process one image at a time.
 
-Counters of parts of a data set add up to that of the whole: ``merge``. The distinct cells of a
-world are kept as one bit each, in blocks of 32 a side, so that a hundred thousand images take no
-more memory than the worlds that they show.
+Counters for parts of a data set can be merged. The distinct cells of each world are stored as one
+bit per cell in blocks of 32 x 32 x 32 cells, so memory depends only on the size of the worlds, not
+on the number of images.
 """
 
 from collections import Counter, defaultdict
@@ -26,7 +26,7 @@ SIDE = 32
 
 
 class WorldCells:
-    """A growing set of cells of one world."""
+    """A growing set of cells of a world."""
 
     def __init__(self) -> None:
         self._blocks: dict[tuple[int, int, int], np.ndarray] = {}  # bits, uint8 [SIDE**3 / 8]
@@ -34,17 +34,17 @@ class WorldCells:
         self._voxel_m = 0.0
 
     def add(self, region: LabelRegion, chosen: np.ndarray) -> None:
-        """Add the chosen cells of a region.
+        """Add the selected cells of a region.
 
-        Cells of all regions count on one grid, that of the first. A region that is turned by other
-        than quarter turns has each of its cells counted as the nearest of that grid.
+        All cells are counted on the grid of the first region. If a region is not aligned with this
+        grid, each of its cells is rounded to the nearest cell of the grid.
 
         Args:
-            region: of a picture of this world.
-            chosen: bool [X, Y, Z] of it.
+            region: Region of an image in this world.
+            chosen: Whether to add each cell of the region, bool [X, Y, Z].
 
         Raises:
-            ValueError: its cells have another size than those of the regions before.
+            ValueError: If the cell size differs from that of earlier regions.
         """
         places = np.argwhere(chosen)
         if not len(places):
@@ -68,13 +68,13 @@ class WorldCells:
                 self._put((int(low[0]) + at[0], int(low[1]) + at[1], int(low[2]) + at[2]), part)
 
     def merge(self, other: "WorldCells") -> None:
-        """Add the cells of another set of the same world.
+        """Add the cells of another set for the same world.
 
-        Where its grid lies otherwise, as that of regions which turn with the view or of another
-        data set's frames does, its cells count as the nearest of this one's.
+        If the grids are not aligned, each cell of the other set is rounded to the nearest cell of
+        this one.
 
         Raises:
-            ValueError: its cells have another size.
+            ValueError: If the cell sizes differ.
         """
         if other._phase is None:
             return
@@ -90,7 +90,7 @@ class WorldCells:
             self._add_cells(places + np.array(key) * SIDE + steps)
 
     def count(self) -> int:
-        """Return how many cells there are."""
+        """Return the number of distinct cells."""
         return sum(int(np.bitwise_count(bits).sum()) for bits in self._blocks.values())
 
     def _put(self, key: tuple[int, int, int], flags: np.ndarray) -> None:
@@ -103,12 +103,25 @@ class WorldCells:
 
 def _check_size(voxel_m: float, own_m: float) -> None:
     if abs(voxel_m - own_m) > 1e-9:
-        raise ValueError(f"cells of one world must have one size, not {own_m} m and {voxel_m} m")
+        raise ValueError(
+            f"all cells of a world must have the same size, got {own_m} m and {voxel_m} m"
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class PictureCounts:
-    """The numbers of one picture."""
+    """The counts for one image.
+
+    Attributes:
+        scene_id: Name of the scene.
+        split: Split of the image.
+        size_px: Image size, such as ``640x480``.
+        region: Description of the region.
+        class_voxels: Number of cells of each class in the frustum, int64 [12].
+        uncut_voxels: Number of occupied cells in the whole region.
+        fine_pixels: Number of pixels of each fine class by name, or None if unknown.
+        room: Number of the room in the scene, if the sample states it.
+    """
 
     scene_id: str
     split: str
@@ -121,7 +134,7 @@ class PictureCounts:
 
 
 def picture_counts(sample: OccSample) -> PictureCounts:
-    """Return the numbers of a picture from its labels."""
+    """Compute the counts for the image of a sample from its labels."""
     return PictureCounts(
         sample.scene_id,
         sample.split,
@@ -135,14 +148,14 @@ def picture_counts(sample: OccSample) -> PictureCounts:
 
 
 def class_voxels(occ: OccLabels) -> np.ndarray:
-    """Return the cells in the frustum by class, int64 [12]; unknown ones are left out."""
+    """Return the number of cells of each class in the frustum, int64 [12], except unknown cells."""
     return np.bincount(occ.labels[occ.in_frustum], minlength=UNKNOWN + 1)[:CLASS_COUNT]
 
 
 def fine_pixels(occ: OccLabels, classes: tuple[FineClass, ...]) -> dict[str, int] | None:
-    """Return the pixels that see each fine class. Empty cells, the first class, are left out.
+    """Return the number of pixels that see each fine class, without empty cells.
 
-    None where the fine classes are no more than the 12, as those of imported sets are.
+    Returns None if the fine classes are only the 12 classes, as in imported data sets.
     """
     if set(classes) <= set(CLASS_KINDS):
         return None
@@ -155,7 +168,7 @@ def fine_pixels(occ: OccLabels, classes: tuple[FineClass, ...]) -> dict[str, int
 
 
 def region_text(shape: Iterable[int], voxel_m: float) -> str:
-    """Return what a region is, for people.
+    """Return a description of a region for the user.
 
     Example:
         >>> region_text((60, 60, 36), 0.08)
@@ -187,7 +200,7 @@ class _SceneSums:
 
 @dataclass
 class StatisticsCounter:
-    """The sums over the pictures so far."""
+    """Running totals over the images of a data set."""
 
     pictures: int = 0
     uncut_voxels: int = 0
@@ -201,7 +214,7 @@ class StatisticsCounter:
     _regions: Counter[str] = field(default_factory=Counter)
 
     def add(self, counts: PictureCounts) -> None:
-        """Add one picture's numbers."""
+        """Add the counts for one image."""
         self.pictures += 1
         self.uncut_voxels += counts.uncut_voxels
         self.class_voxels += counts.class_voxels
@@ -220,16 +233,16 @@ class StatisticsCounter:
             fine.clear += pixels >= MIN_PIXELS
 
     def add_cells(self, scene_id: str, occ: OccLabels) -> None:
-        """Add which cells of its world a picture holds: those that the paper counts."""
+        """Add the occupied cells in the frustum of an image to the distinct cells of its world."""
         self._cells[scene_id].add(occ.region, occ.occupied & occ.in_frustum)
 
     def set_rooms(self, scene_id: str, rooms: int) -> None:
-        """Set how many rooms a scene has; one without a picture is no scene of the data set."""
+        """Set the number of rooms in a scene. Scenes without images are ignored."""
         if scene_id in self._scenes:
             self._scenes[scene_id].rooms = rooms
 
     def merge(self, other: "StatisticsCounter") -> None:
-        """Add the sums of other pictures of the same data set."""
+        """Add the totals of another counter for the same data set."""
         self.pictures += other.pictures
         self.uncut_voxels += other.uncut_voxels
         self.class_voxels += other.class_voxels
@@ -252,7 +265,7 @@ class StatisticsCounter:
         self._regions += other._regions
 
     def result(self, name: str) -> DatasetStatistics:
-        """Return the statistics so far, under the name of the data set."""
+        """Return the statistics of all images added so far, with the name of the data set."""
         scenes = (self._scene(key) for key in sorted(self._scenes))
         return DatasetStatistics(
             name,
@@ -279,7 +292,7 @@ class StatisticsCounter:
 
 
 def add_sample(counter: StatisticsCounter, sample: OccSample) -> None:
-    """Add a sample to a counter, its distinct cells too."""
+    """Add the counts and the distinct cells of a sample to a counter."""
     counter.add(picture_counts(sample))
     counter.add_cells(sample.scene_id, sample.occ)
 
@@ -287,11 +300,11 @@ def add_sample(counter: StatisticsCounter, sample: OccSample) -> None:
 def count_samples(
     samples: Iterable[OccSample], *, rooms: Mapping[str, int] | None = None
 ) -> StatisticsCounter:
-    """Count samples of any origin, their distinct cells too.
+    """Count samples of any data set, including their distinct cells.
 
     Args:
-        samples: a stream of them; none is kept.
-        rooms: how many rooms each scene has, where that is known.
+        samples: Samples to count, read one at a time.
+        rooms: Number of rooms in each scene, if known.
     """
     counter = StatisticsCounter()
     for sample in samples:

@@ -1,6 +1,6 @@
-"""Compute the statistics of a data set on disk, an image at a time.
+"""Statistics of a data set on disk, computed one image at a time.
 
-A stored one is counted by several processes, and its pictures are not read.
+A data set in our own format is counted by several processes without reading its images.
 """
 
 import json
@@ -39,18 +39,20 @@ def statistics_of(
     jobs: int = 1,
     progress: Progress = no_progress,
 ) -> DatasetStatistics:
-    """Return the statistics of a data set on disk, of ours or of others.
+    """Compute the statistics of a data set in our own format or in a published format.
 
     Args:
-        path: a stored data set, or a folder that ``w2m dataset import`` takes.
-        split: its name; all where None.
-        format: of a folder of others; found out where None.
-        jobs: how many processes count a stored one.
-        progress: called with the images counted so far.
+        path: Data set, or a folder that ``w2m dataset import`` accepts.
+        split: Split to count. None counts all splits.
+        format: Format of the folder. Detected automatically by default.
+        jobs: Number of processes, used only for our own format.
+        progress: Callback that reports the number of images counted so far.
 
     Raises:
-        InputError: it is no data set, or has no such split. DamagedFileError: a sample cannot be
-        read. UsageError: there is no such split or format. WorkerError: a process ended.
+        InputError: If the path is not a data set, or has no images in the split.
+        DamagedFileError: If a sample cannot be read.
+        UsageError: If the split or the format is unknown.
+        WorkerError: If a worker process has exited.
     """
     place = Path(path)
     if format is None and ((place / META).is_file() or not _is_imported(place)):
@@ -58,7 +60,7 @@ def statistics_of(
     found = open_occupancy(place, format)
     keys = found.keys(split)
     if not keys:
-        raise InputError(place, f"has no pictures of the split {split!r}")
+        raise InputError(place, f"contains no images in split {split!r}")
     counter = StatisticsCounter()
     for done, sample in enumerate(found.samples(split)):
         progress("count", done, len(keys))
@@ -74,19 +76,21 @@ def store_statistics(
     jobs: int = 1,
     progress: Progress = no_progress,
 ) -> DatasetStatistics:
-    """Return the statistics of a stored data set, or of one of its splits.
+    """Compute the statistics of a data set in our own format, or of one of its splits.
 
-    Memory does not grow with the number of pictures.
+    Memory use does not depend on the number of images.
 
     Args:
-        path: of the data set.
-        split: its name; all where None.
-        jobs: how many processes count.
-        progress: called with the images counted so far.
+        path: Folder of the data set.
+        split: Split to count. None counts all splits.
+        jobs: Number of processes.
+        progress: Callback that reports the number of images counted so far.
 
     Raises:
-        InputError: it is no data set. DamagedFileError: a sample cannot be read. UsageError: there
-        is no such split. WorkerError: a process ended.
+        InputError: If the folder is not a data set.
+        DamagedFileError: If a sample cannot be read.
+        UsageError: If the split is unknown.
+        WorkerError: If a worker process has exited.
     """
     store = open_store(path)
     keys = store.keys(split)
@@ -94,17 +98,17 @@ def store_statistics(
     progress("count", 0, len(keys))
     for part, pictures in _parts(store, keys, jobs):
         counter.merge(part)
-        progress("count", counter.pictures, len(keys), f"{pictures:,} pictures")
+        progress("count", counter.pictures, len(keys), f"{pictures:,} images")
     for scene_id, rooms in rooms_of(store.folder, store.meta).items():
         counter.set_rooms(scene_id, rooms)
     return counter.result(_named(store.folder, split))
 
 
 def rooms_of(folder: Path, meta: dict[str, Any]) -> dict[str, int]:
-    """Return how many rooms each scene has, of those scenes that tell it.
+    """Return the number of rooms of each scene, for the scenes in which it is known.
 
-    ``dataset.json`` tells it, or the ``house.json`` of a generated house, or else the scene's
-    planned views, each of which names its room.
+    The number is read from ``dataset.json``, from the ``house.json`` of a generated house, or from
+    the scene's planned views, which state their rooms.
     """
     found = {}
     for scene in meta.get("scenes", ()):
@@ -164,7 +168,7 @@ def _parts(
                 task, pictures = tasks.popleft()  # Else every part would be held to the end.
                 yield task.result(), pictures
         except RuntimeError as error:  # A broken pool is one.
-            raise WorkerError(f"a process that counts has ended ({error}); try --jobs 1") from error
+            raise WorkerError(f"a worker process has exited ({error}); try --jobs 1") from error
         finally:
             pool.shutdown(cancel_futures=True)
 

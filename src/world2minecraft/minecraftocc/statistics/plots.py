@@ -1,4 +1,4 @@
-"""Plot the statistics of a data set with matplotlib: classes, fine classes, scenes."""
+"""Matplotlib plots for the statistics of a data set: classes, fine classes and scenes."""
 
 import io
 from collections.abc import Sequence
@@ -25,14 +25,18 @@ MAX_LABEL = 0.08  # Of the axis: the widest step, where there are few.
 
 
 def write_plots(statistics: DatasetStatistics, folder: str | Path) -> list[Path]:
-    """Write the plots of a data set below a folder and return where they lie.
+    """Write the plots for a data set to a folder.
 
-    ``classes.png`` has a bar for each class, with a mark for NYUv2's share; ``fine_classes.png``
-    how often each fine class is seen; ``scenes.png`` the voxels of each scene. Settings of
-    matplotlib on this machine are left out, so that the same statistics give the same bytes.
+    ``classes.png`` has a bar for each class and a mark for its share in NYUv2. ``fine_classes.png``
+    shows how many pixels see each fine class, and ``scenes.png`` the voxels of each scene. Local
+    matplotlib settings are ignored, so the same statistics produce identical files.
+
+    Returns:
+        The paths of the files, sorted by name.
 
     Raises:
-        MissingExtraError: matplotlib is not installed. OutputError: the folder cannot be written.
+        MissingExtraError: If matplotlib is not installed.
+        OutputError: If the folder cannot be written.
     """
     need_matplotlib()
     import matplotlib.style  # noqa: PLC0415  # An extra, and slow to import.
@@ -50,7 +54,11 @@ def write_plots(statistics: DatasetStatistics, folder: str | Path) -> list[Path]
 
 
 def need_matplotlib() -> None:
-    """Check that plots can be drawn, before a set is counted for them. Raises MissingExtraError."""
+    """Check that matplotlib is installed, before a data set is counted.
+
+    Raises:
+        MissingExtraError: If matplotlib is not installed.
+    """
     try:
         import matplotlib.style  # noqa: F401, PLC0415
     except ImportError as error:
@@ -58,10 +66,10 @@ def need_matplotlib() -> None:
 
 
 def class_plot(statistics: DatasetStatistics) -> "Figure":
-    """Draw the share of each class in all voxels, the commonest first."""
+    """Plot the share of each class in all occupied voxels, in descending order."""
     ours, theirs = class_shares(statistics.class_voxels), class_shares(NYU_TRAIN_VOXELS)
     order = sorted(range(len(ours)), key=lambda n: -ours[n])
-    under = f"{statistics.voxels:,} voxels of {statistics.pictures:,} pictures; the line is NYUv2's"
+    under = f"{statistics.voxels:,} voxels in {statistics.pictures:,} images; lines show NYUv2"
     figure, axes = _new_page(f"Classes of {statistics.name}", under, 1.1 + ROW_IN * len(order))
     colours = [tuple(part / 255 for part in CLASS_COLOURS[n + 1]) for n in order]
     rows = np.arange(len(order))
@@ -81,16 +89,16 @@ def class_plot(statistics: DatasetStatistics) -> "Figure":
 
 
 def scene_plot(statistics: DatasetStatistics) -> "Figure":
-    """Draw the voxels of each scene, most first."""
+    """Plot the number of voxels of each scene, in descending order."""
     values = sorted((scene.voxels for scene in statistics.scenes), reverse=True)
     under = f"{len(values):,} scenes; mean {format_count(statistics.voxels_per_scene)} voxels"
-    return _draw_steps(f"Voxels of the scenes of {statistics.name}", under, values, "scenes")
+    return _draw_steps(f"Voxels per scene of {statistics.name}", under, values, "scenes")
 
 
 def fine_plot(statistics: DatasetStatistics) -> "Figure":
-    """Draw the pixels of each fine class that is seen enough, most first, on a log scale."""
+    """Plot the pixels of each frequent fine class in descending order on a log scale."""
     values = [one.pixels for one in statistics.fine or () if one.is_seen_enough]
-    under = f"{len(values):,} fine classes that are seen enough, by their pixels on a log scale"
+    under = f"pixels of {len(values):,} frequent fine classes, log scale"
     return _draw_steps(
         f"Fine classes of {statistics.name}", under, values, "fine classes", log=True
     )

@@ -1,4 +1,4 @@
-"""Published figures of other data sets, with their sources."""
+"""Published statistics of other data sets, with their sources."""
 
 from dataclasses import dataclass
 
@@ -9,8 +9,9 @@ PAPER = "World2Minecraft (ICLR 2026)"
 class PublishedSet:
     """A row of the paper's table of data sets.
 
-    The 13 classes of the first two are the 12 and unknown; the third counts fine ones. The text
-    of the paper names about 1,600 rooms once more, in its appendix.
+    For NYUv2 and OccScanNet, the 13 classes are the 12 classes and unknown; for MinecraftOcc, fine
+    classes are counted. The appendix of the paper states about 1,600 rooms for MinecraftOcc
+    instead.
     """
 
     name: str
@@ -23,7 +24,7 @@ class PublishedSet:
 
     @property
     def voxels_per_scene(self) -> float:
-        """The mean over scenes."""
+        """Mean number of voxels per scene."""
         return self.voxels / self.scenes
 
 
@@ -43,7 +44,7 @@ NYU_TRAIN_VOXELS = (
 
 @dataclass(frozen=True)
 class PublishedQuality:
-    """A row of the paper's table of picture quality, over 100 pictures of each set."""
+    """A row of the paper's table of image quality, measured on 100 images of each data set."""
 
     name: str
     niqe: float

@@ -1,4 +1,4 @@
-"""Statistics as text, as JSON and as the paper's table in LaTeX."""
+"""Statistics formatted as text, as JSON and as the paper's LaTeX table."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -18,12 +18,12 @@ from world2minecraft.minecraftocc.statistics.types import (
 
 HEAD = (
     "data set",
-    "pictures",
+    "images",
     "scenes",
     "rooms",
     "classes",
     "semantic voxels",
-    "voxels a scene",
+    "voxels per scene",
     "resolution",
 )
 SHOWN = 8  # Fine classes at either end of the list.
@@ -37,7 +37,7 @@ _SPECIAL = {
 
 
 def statistics_text(statistics: DatasetStatistics) -> str:
-    """Return the paper's table with the data set below it, and its classes."""
+    """Format the statistics as text: the paper's table with this data set, and its classes."""
     lines = align_columns([HEAD, *_published(), _own_row(statistics)])
     lines += ["", *_detail_lines(statistics), "", *_class_lines(statistics)]
     if statistics.fine:
@@ -46,7 +46,7 @@ def statistics_text(statistics: DatasetStatistics) -> str:
 
 
 def statistics_json(statistics: DatasetStatistics) -> dict[str, Any]:
-    """Return everything, the paper's rows too, as JSON values."""
+    """Return the statistics and the paper's values as a dict for JSON."""
     shares = class_shares(statistics.class_voxels)
     return {
         "name": statistics.name,
@@ -79,7 +79,7 @@ def statistics_json(statistics: DatasetStatistics) -> dict[str, Any]:
 
 
 def statistics_latex(statistics: DatasetStatistics) -> str:
-    """Return the table as the paper prints it, for ``booktabs``."""
+    """Format the table as in the paper, for the LaTeX package ``booktabs``."""
     rows = [*_published(), _own_row(statistics)]
     head = " & ".join(rf"\textbf{{{escape_latex(word.capitalize())}}}" for word in HEAD)
     lines = [rf"\begin{{tabular}}{{l{'r' * (len(HEAD) - 2)}c}}", r"\toprule", head + r" \\"]
@@ -91,13 +91,13 @@ def statistics_latex(statistics: DatasetStatistics) -> str:
 
 
 def class_shares(class_voxels: Sequence[int]) -> list[float]:
-    """Return the share of each of the 11 classes in what is not empty; zeros where nothing is."""
+    """Return the share of each of the 11 occupied classes in all occupied voxels."""
     total = sum(class_voxels[1:])
     return [count / total if total else 0.0 for count in class_voxels[1:]]
 
 
 def align_columns(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return rows as lines, the first column to the left, the others to the right."""
+    """Format rows as aligned lines, the first column to the left and the others to the right."""
     widths = [max(len(row[n]) for row in rows) for n in range(len(rows[0]))]
     return [
         "  ".join(
@@ -109,7 +109,7 @@ def align_columns(rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def escape_latex(text: str) -> str:
-    r"""Return a text as LaTeX takes it.
+    r"""Escape the special characters in a text for LaTeX.
 
     Example:
         >>> print(escape_latex("oak_planks & 5 %"))
@@ -119,7 +119,7 @@ def escape_latex(text: str) -> str:
 
 
 def format_count(number: float) -> str:
-    """Return a number of cells as the paper writes it.
+    """Format a number of cells with a suffix, as in the paper.
 
     Example:
         >>> format_count(23247), format_count(4_700_514), format_count(812)
@@ -174,29 +174,31 @@ def _detail_lines(statistics: DatasetStatistics) -> list[str]:
     """Return what the row of the data set cannot say."""
     uncut = f"{statistics.uncut_voxels:,}"
     lines = [
-        "semantic voxels  as the paper counts: over all pictures, the occupied cells of the region",
-        f"                 ({statistics.region}) whose centres fall into the picture;",
-        f"                 of whole regions {uncut}, as NYUv2's row seems to count",
+        "semantic voxels  counted as in the paper: occupied cells of the region of each image",
+        f"                 ({statistics.region}) whose centres are inside the image;",
+        f"                 {uncut} in the complete regions, as apparently counted for NYUv2",
     ]
     if statistics.distinct_cells is not None:
         share = statistics.voxels / max(statistics.distinct_cells, 1)
         lines.append(
-            f"distinct cells   {statistics.distinct_cells:,} of the worlds themselves; "
-            f"each is in {share:.1f} pictures"
+            f"distinct cells   {statistics.distinct_cells:,} in the worlds, "
+            f"each in {share:.1f} images on average"
         )
     if statistics.fine is None:
-        lines.append("classes          the 12 and unknown; this set names no fine classes")
+        lines.append(
+            "classes          the 12 classes and unknown; this data set has no fine classes"
+        )
     else:
         counted = f"{statistics.fine_classes:,} of {len(statistics.fine):,} fine classes"
-        rule = f"{MIN_PIXELS} pixels in {MIN_PICTURES} pictures or more"
-        lines.append(f"classes          {counted} are seen by {rule};")
+        rule = f"at least {MIN_PIXELS} pixels in {MIN_PICTURES} or more images"
+        lines.append(f"classes          {counted} have {rule}:")
         pieces = sum(one.is_furniture for one in statistics.fine if one.is_seen_enough)
         blocks = (statistics.fine_classes or 0) - pieces
         lines.append(f"                 {blocks:,} blocks, {pieces:,} pieces of furniture;")
         present = len(statistics.classes_present)
-        lines.append(f"                 {present} of the 11 classes that are not empty are there")
+        lines.append(f"                 {present} of the 11 occupied classes are present")
     if statistics.rooms is None:
-        lines.append("rooms            not known of every scene")
+        lines.append("rooms            not known for all scenes")
     if len(statistics.sizes_px) > 1:
         sizes = ", ".join(f"{size} ({count:,})" for size, count in statistics.sizes_px.items())
         lines.append(f"resolutions      {sizes}")
@@ -222,7 +224,7 @@ def _fine_lines(statistics: DatasetStatistics) -> list[str]:
     """Return the fine classes seen most, and those that count and are seen least."""
     counted = [one for one in statistics.fine or () if one.is_seen_enough]
     ends = [counted] if len(counted) <= 2 * SHOWN else [counted[:SHOWN], counted[-SHOWN:]]
-    rows: list[tuple[str, ...]] = [("fine class", "pixels", "pictures")]
+    rows: list[tuple[str, ...]] = [("fine class", "pixels", "images")]
     for part in ends:
         rows += [(one.name, f"{one.pixels:,}", f"{one.pictures:,}") for one in part]
     lines = align_columns(rows)

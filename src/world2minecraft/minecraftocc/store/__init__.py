@@ -1,6 +1,6 @@
 """The store of a data set: WebDataset shards with a Parquet index.
 
-It is written so that a crash costs one sample at most, and read with every size checked.
+A crash during writing loses at most one sample. All sizes are checked during reading.
 """
 
 from world2minecraft.minecraftocc.store.folder import read_classes, read_meta, shard_name

@@ -1,15 +1,15 @@
-"""The folder of a data set: where its files lie, and ``dataset.json`` and ``classes.json``.
+"""The folder layout of a data set, and its files ``dataset.json`` and ``classes.json``.
 
 ::
 
     DIR/
-      dataset.json      what it is: parameters, versions, seed, counts, the sum of all samples
-      classes.json      the 12 classes, and the fine classes by their numbers
-      index.parquet     one row a sample: where it lies, its sums, how many cells of each class
-      README.md         the card that Hugging Face reads: which shards are of which split
-      scenes/           SCENE.json (where it comes from) and SCENE.poses.jsonl (its views)
-      shards/SPLIT/     SCENE-000.tar and so on, WebDataset tars
-      worlds/           the houses, where they were generated for it
+      dataset.json      parameters, versions, seed, counts and the SHA-256 of all samples
+      classes.json      the 12 classes and the numbered fine classes
+      index.parquet     one row per sample: position, checksums and cells of each class
+      README.md         data set card for Hugging Face, which assigns shards to splits
+      scenes/           SCENE.json (survey result) and SCENE.poses.jsonl (views)
+      shards/SPLIT/     WebDataset tar files such as SCENE-000.tar
+      worlds/           houses that were generated for the data set
 """
 
 import re
@@ -42,7 +42,7 @@ MAX_META_BYTES, MAX_FINE = 64 << 20, 65_535
 
 
 def shard_name(split: str, scene_id: str, number: int) -> str:
-    """Return the name of a scene's shard in its data set.
+    """Return the path of a scene's shard inside its data set.
 
     Example:
         >>> shard_name("train", "house_0001", 2)
@@ -52,25 +52,37 @@ def shard_name(split: str, scene_id: str, number: int) -> str:
 
 
 def read_meta(folder: Path, finished: bool = True) -> dict[str, Any]:
-    """Return what ``dataset.json`` holds.
+    """Read ``dataset.json``.
+
+    Args:
+        folder: Folder of the data set.
+        finished: Whether the data set must be complete.
 
     Raises:
-        InputError: there is none, or the data set is not finished. DamagedFileError: it is of
-        another kind.
+        InputError: If the file does not exist, or if the data set is not complete.
+        DamagedFileError: If the file has another format.
     """
     path = folder / META
     if not path.is_file():
-        raise InputError(folder, f"is no data set: it has no {META}; w2m dataset build makes one")
+        raise InputError(
+            folder, f"not a data set: {META} not found; create a data set with w2m dataset build"
+        )
     meta = read_json(path, MAX_META_BYTES)
     if not isinstance(meta, dict) or meta.get("kind") != KIND or meta.get("format") != FORMAT:
-        raise DamagedFileError(path, f"is no {META} of format {FORMAT}")
+        raise DamagedFileError(path, f"not a valid {META} in format {FORMAT}")
     if finished and not meta.get("complete"):
-        raise InputError(folder, "is not finished; run the same w2m dataset build again")
+        raise InputError(
+            folder, "the data set is not complete; run the same w2m dataset build again"
+        )
     return meta
 
 
 def write_classes(folder: Path, table: FineTable) -> None:
-    """Write ``classes.json``. Raises OutputError."""
+    """Write ``classes.json``.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     fine = [
         {"block": one.block, "design": one.design, "name": one.name, "id": number}
         for number, one in enumerate(table.classes)
@@ -79,20 +91,25 @@ def write_classes(folder: Path, table: FineTable) -> None:
 
 
 def read_classes(folder: Path) -> FineTable:
-    """Return the fine classes of a data set. Raises InputError or DamagedFileError."""
+    """Read the fine classes of a data set.
+
+    Raises:
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not valid.
+    """
     path = folder / CLASSES
     raw = read_json(path, MAX_META_BYTES)
     try:
         rows = raw["fine"]
         if len(rows) > MAX_FINE:
-            raise ValueError(f"it has more than {MAX_FINE:,} fine classes")
+            raise ValueError(f"more than {MAX_FINE:,} fine classes")
         return FineTable(tuple(FineClass(str(row["block"]), str(row["design"])) for row in rows))
     except (KeyError, TypeError, ValueError) as error:
-        raise DamagedFileError(path, f"holds no classes ({error})") from error
+        raise DamagedFileError(path, f"not a valid list of classes ({error})") from error
 
 
 def write_card(folder: Path, meta: dict[str, Any]) -> None:
-    """Write the card: which shards Hugging Face takes for which split, and how it was made."""
+    """Write the data set card, which assigns shards to splits on Hugging Face."""
     counts = {split: count for split, count in meta["images"].items() if count}
     files = "".join(
         f"      - split: {split}\n        path: {SHARDS}/{split}/*.tar\n" for split in counts
@@ -101,8 +118,8 @@ def write_card(folder: Path, meta: dict[str, Any]) -> None:
     write_text(
         folder / CARD,
         f"---\nconfigs:\n  - config_name: default\n    data_files:\n{files}---\n"
-        f"# MinecraftOcc data set\n\n{totals} images of {len(meta['scenes'])} scenes, made by "
+        f"# MinecraftOcc data set\n\n{totals} images of {len(meta['scenes'])} scenes, created with "
         f"world2minecraft {meta['versions']['world2minecraft']}.\n\n"
-        "Each sample: picture, depth (16-bit millimetres), occ.npz (labels and masks of its\n"
-        "cells) and json (camera, poses, region). `w2m dataset verify` checks it.\n",
+        "Each sample has an image, depth (16-bit millimetres), occ.npz (labels and masks of its\n"
+        "cells) and json (camera, poses, region). Check the files with `w2m dataset verify`.\n",
     )

@@ -1,7 +1,7 @@
-"""The index of a data set: one row per sample, in a Parquet file.
+"""The Parquet index of a data set, with one row per sample.
 
-It is made from the shards alone, by their headers and their JSON, so that it can be made again at
-any time; pictures are not read.
+The index is built only from the shard headers and JSON members, without decoding images, so it can
+be rebuilt at any time.
 """
 
 import hashlib
@@ -26,7 +26,11 @@ MAX_ROWS, MAX_INDEX_BYTES = 20_000_000, 8 << 30
 
 
 def arrow_modules() -> tuple[Any, Any]:
-    """Return pyarrow and its Parquet module. Raises MissingExtraError where it is not installed."""
+    """Import pyarrow and its Parquet module.
+
+    Raises:
+        MissingExtraError: If pyarrow is not installed.
+    """
     try:
         return import_module("pyarrow"), import_module("pyarrow.parquet")
     except ImportError as error:
@@ -34,7 +38,7 @@ def arrow_modules() -> tuple[Any, Any]:
 
 
 def columns() -> dict[str, str]:
-    """Return the columns by name, with their Arrow types."""
+    """Return the Arrow type of each column by name."""
     return {
         **dict.fromkeys(TEXTS, "string"),
         **dict.fromkeys(WHOLE, "int64"),
@@ -46,14 +50,14 @@ def columns() -> dict[str, str]:
 
 
 def shard_rows(path: Path, name: str) -> list[dict[str, Any]]:
-    """Return the rows of the samples of a shard.
+    """Return the index rows for the samples of a shard.
 
     Args:
-        path: where it lies.
-        name: its name in the data set.
+        path: Shard file.
+        name: Path of the shard inside the data set.
 
     Raises:
-        DamagedFileError: it cannot be read as one, or a sample's JSON is not whole.
+        DamagedFileError: If the shard cannot be read, or if the JSON of a sample is incomplete.
     """
     try:
         with path.open("rb") as stream:
@@ -63,17 +67,21 @@ def shard_rows(path: Path, name: str) -> list[dict[str, Any]]:
     except OSError as error:
         raise DamagedFileError(path, f"cannot be read: {error.strerror or error}") from error
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise DamagedFileError(path, f"holds a sample that tells too little ({error!r})") from error
+        raise DamagedFileError(
+            path, f"contains a sample with incomplete JSON ({error!r})"
+        ) from error
 
 
 def write_index(path: Path, rows: Iterable[list[dict[str, Any]]]) -> str:
-    """Write the rows of shards, a few thousand in memory at a time; return their sum.
+    """Write the index rows of all shards, keeping only a few thousand rows in memory.
 
-    The sum goes over the keys and the sums of all samples in their order: data sets with the same
-    sum hold the same samples.
+    Returns:
+        The SHA-256 of the keys and checksums of all samples in order. Data sets with the same value
+        contain the same samples.
 
     Raises:
-        OutputError: it cannot be written. MissingExtraError: pyarrow is not installed.
+        OutputError: If the file cannot be written.
+        MissingExtraError: If pyarrow is not installed.
     """
     arrow, parquet = arrow_modules()
     schema = arrow.schema([(name, arrow.type_for_alias(kind)) for name, kind in columns().items()])
@@ -92,18 +100,19 @@ def write_index(path: Path, rows: Iterable[list[dict[str, Any]]]) -> str:
 
 
 def index_digest(rows: Iterable[dict[str, Any]]) -> str:
-    """Return the sum of rows, as ``write_index`` does."""
+    """Return the SHA-256 of index rows, as computed by ``write_index``."""
     total = hashlib.sha256()
     _add(total, rows)
     return total.hexdigest()
 
 
 def read_index(path: Path) -> Any:
-    """Return the index as an Arrow table, its size and its types checked before it is read.
+    """Read the index as an Arrow table, after checking its size and types.
 
     Raises:
-        DamagedFileError: it is no index. LimitError: it is too large. MissingExtraError: pyarrow
-        is not installed.
+        DamagedFileError: If the file is not a valid index.
+        LimitError: If the file is too large.
+        MissingExtraError: If pyarrow is not installed.
     """
     arrow, parquet = arrow_modules()
     try:
@@ -111,17 +120,21 @@ def read_index(path: Path) -> Any:
         meta = file.metadata
         size = sum(meta.row_group(n).total_byte_size for n in range(meta.num_row_groups))
         if meta.num_rows > MAX_ROWS or size > MAX_INDEX_BYTES:
-            raise LimitError(path, f"has {meta.num_rows:,} rows of {size:,} bytes; too large")
+            raise LimitError(
+                path, f"too large to be read: {meta.num_rows:,} rows with {size:,} bytes"
+            )
         kinds = {field.name: str(field.type) for field in file.schema_arrow}
         wrong = [name for name, kind in columns().items() if kinds.get(name) != kind]
         if wrong:
-            raise DamagedFileError(path, f"has no column {wrong[0]} of type {columns()[wrong[0]]}")
+            raise DamagedFileError(
+                path, f"does not contain a column {wrong[0]} of type {columns()[wrong[0]]}"
+            )
         table = file.read(columns=list(columns()))
     except (arrow.ArrowException, OSError, ValueError) as error:
-        raise DamagedFileError(path, f"is no index ({str(error).splitlines()[0]})") from error
+        raise DamagedFileError(path, f"not a valid index ({str(error).splitlines()[0]})") from error
     for name in table["shard"].unique().to_pylist():
         if name is None or not SHARD_NAME.fullmatch(name):
-            raise DamagedFileError(path, f"names a shard {name!r}")
+            raise DamagedFileError(path, f"contains the invalid shard name {name!r}")
     return table
 
 

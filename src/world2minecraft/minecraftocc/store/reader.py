@@ -1,7 +1,7 @@
-"""Read a data set on disk: any sample by its key, or all in their order.
+"""Reader for data sets on disk, by sample key or in order.
 
-What is read may come from anywhere: names, places and sizes are checked before anything is opened
-or taken into memory.
+Data sets may come from untrusted sources: names, positions and sizes are checked before a file is
+opened or read into memory.
 """
 
 import io
@@ -28,57 +28,77 @@ MAX_CACHED = 2000  # Keys that a wrong one is compared with.
 
 
 class OccStore:
-    """A finished data set; made by ``open_store``."""
+    """A complete data set, opened with ``open_store``."""
 
     def __init__(self, folder: Path, meta: dict[str, Any], table: FineTable, rows: Any):
-        """Hold what was read; no shard is opened yet."""
+        """Create a reader from metadata that was already read. Shards are opened on demand."""
         self.folder, self.meta, self.table = folder, meta, table
         self._rows = rows
 
     def __len__(self) -> int:
-        """How many samples there are."""
+        """Return the number of samples."""
         return self._rows.num_rows
 
     def __iter__(self) -> Iterator[str]:
-        """Give the keys of all samples."""
+        """Iterate over the keys of all samples."""
         return iter(self._names)
 
     def __contains__(self, key: object) -> bool:
-        """Whether there is a sample of that key."""
+        """Return whether a sample with this key exists."""
         return key in self._places
 
     @property
     def sha256(self) -> str:
-        """The sum of all samples; data sets with the same sum hold the same samples."""
+        """SHA-256 of all samples. Data sets with the same value contain the same samples."""
         return str(self.meta.get("sha256", ""))
 
     def keys(self, split: str | None = None) -> list[str]:
-        """Return the keys of all samples, or of a split, in their order."""
+        """Return the sample keys of a split, or of all splits by default, in order."""
         return [self._names[number] for number in self._numbers(split)]
 
     def index(self) -> dict[str, Any]:
-        """Return the columns of the index, numbers and texts, by name."""
+        """Return the columns of the index as numpy arrays by name."""
         return {name: self._rows[name].to_numpy() for name in self._rows.column_names}
 
     def __getitem__(self, key: str) -> OccSample:
-        """Return a sample with its pictures.
+        """Return a sample with its images.
 
         Raises:
-            UnknownNameError: there is none of that key. DamagedFileError: it cannot be read.
+            UnknownNameError: If there is no sample with this key.
+            DamagedFileError: If the sample cannot be read.
         """
         return self.sample(key)
 
     def sample(self, key: str, pictures: bool = True) -> OccSample:
-        """Return a sample, without its pictures where they are not wanted. Raises as above."""
+        """Return a sample, with or without its images.
+
+        Raises:
+            UnknownNameError: If there is no sample with this key.
+            DamagedFileError: If the sample cannot be read.
+        """
         return self._read(self._place(key), pictures)
 
     def samples(self, split: str | None = None, pictures: bool = True) -> Iterator[OccSample]:
-        """Give the samples, or those of a split, one at a time in their order. Raises as above."""
+        """Iterate over the samples of a split, or of all splits by default, in order.
+
+        Args:
+            split: Split to read.
+            pictures: Whether to read the images too.
+
+        Raises:
+            UsageError: If the split is unknown.
+            DamagedFileError: If a sample cannot be read.
+        """
         for number in self._numbers(split):
             yield self._read(number, pictures)
 
     def members(self, key: str) -> dict[str, bytes]:
-        """Return the files of a sample by kind, as they lie in its shard. Raises as ``sample``."""
+        """Return the raw files of a sample by kind, such as ``json``.
+
+        Raises:
+            UnknownNameError: If there is no sample with this key.
+            DamagedFileError: If the sample cannot be read.
+        """
         stream, found = self._found(self._place(key))
         return {member.kind: _data(stream, member) for member in found.members}
 
@@ -102,7 +122,9 @@ class OccStore:
         splits = self._rows["split"].to_pylist()
         known = sorted(set(splits))
         if split not in known:
-            raise UsageError(f"the splits of {self.folder} are {', '.join(known)}, not {split!r}")
+            raise UsageError(
+                f"{self.folder} has no split {split!r}; known splits: {', '.join(known)}"
+            )
         return [number for number, one in enumerate(splits) if one == split]
 
     def _read(self, number: int, pictures: bool) -> OccSample:
@@ -110,7 +132,10 @@ class OccStore:
         wanted = [one for one in found.members if pictures or one.kind in (LABELS, FACTS)]
         kinds = {member.kind for member in wanted}
         if LABELS not in kinds or sum(kind in kinds for kind in IMAGE_FORMATS) > 1:
-            raise DamagedFileError(self.folder, f"sample {found.key} has files {sorted(kinds)}")
+            raise DamagedFileError(
+                self.folder,
+                f"sample {found.key} has an invalid set of files: {', '.join(sorted(kinds))}",
+            )
         members = {member.kind: _data(stream, member) for member in wanted}
         source = f"{self._at('shard', number)}, sample {found.key}"
         return unpack_sample(members, self.table, source, found.facts)
@@ -120,10 +145,13 @@ class OccStore:
         path = self.folder / self._at("shard", number)
         offset, size = self._at("offset", number), self._at("size", number)
         if offset < 0 or not 0 < size <= MAX_SAMPLE_BYTES:
-            raise DamagedFileError(self.folder / INDEX, f"row {number} has a size of {size:,}")
+            raise DamagedFileError(
+                self.folder / INDEX,
+                f"row {number} has an invalid position or size ({size:,} bytes)",
+            )
         try:
             if path.stat().st_size < offset + size:
-                raise DamagedFileError(path, "ends before its last sample")
+                raise DamagedFileError(path, "truncated: the file ends before its last sample")
             with path.open("rb") as shard:
                 shard.seek(offset)
                 stream = io.BytesIO(shard.read(size))
@@ -131,7 +159,9 @@ class OccStore:
             raise InputError(path, f"cannot be read: {error.strerror or error}") from error
         found = next(stored_samples(stream, size), None)
         if found is None or found.size != size or found.key != self._names[number]:
-            raise DamagedFileError(path, f"holds no sample {self._names[number]} at {offset:,}")
+            raise DamagedFileError(
+                path, f"sample {self._names[number]} not found at byte {offset:,}"
+            )
         return stream, found
 
     def _at(self, column: str, number: int) -> Any:
@@ -139,11 +169,13 @@ class OccStore:
 
 
 def open_store(path: str | Path) -> OccStore:
-    """Open a finished data set.
+    """Open a complete data set.
 
     Raises:
-        InputError: it is none, or not finished. DamagedFileError: a file is not what it should
-        be. LimitError: it is too large. MissingExtraError: pyarrow is not installed.
+        InputError: If the folder is not a data set, or if the data set is not complete.
+        DamagedFileError: If a file is not valid.
+        LimitError: If a file is too large.
+        MissingExtraError: If pyarrow is not installed.
 
     Example::
 

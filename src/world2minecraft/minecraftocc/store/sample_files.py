@@ -1,12 +1,12 @@
-"""A sample as the members of a shard, and back.
+"""Conversion of a sample to the members of a shard, and back.
 
-``KEY.jpg`` (or png, webp), ``KEY.depth.png``, ``KEY.occ.npz`` and, last, ``KEY.json``, which holds
-the checksums of the others: a sample is complete where its JSON is there and its checksums match.
-Without images (labels only) the first two are left out.
+The members are ``KEY.jpg`` (or png, webp), ``KEY.depth.png``, ``KEY.occ.npz`` and finally
+``KEY.json``, which contains the checksums of the others. A sample is complete if its JSON exists
+and the checksums match. Samples with labels only do not have the first two members.
 
-Depth is a grey PNG of 16 bits in whole millimetres, 0 for no depth, 65535 for all that is farther.
-It is compressed here and not by Pillow, which tries five filters on every row: a quarter of the
-time.
+Depth is stored as a 16-bit grey PNG in whole millimetres, with 0 for no depth and 65535 for larger
+depths. It is compressed here instead of by Pillow, which tries five filters for each row and takes
+four times as long.
 """
 
 import hashlib
@@ -44,12 +44,12 @@ CAMERA_KEYS = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 
 
 def encode_colour(colour: np.ndarray, kind: str, quality: int = QUALITY) -> bytes:
-    """Return colour, uint8 [H, W, 3], as a file of a kind of ``IMAGE_FORMATS``."""
+    """Encode a colour image, uint8 [H, W, 3], in one of ``IMAGE_FORMATS``."""
     return colour_bytes(colour, f".{kind}", quality)
 
 
 def encode_depth(depth_m: np.ndarray) -> bytes:
-    """Return depth, float32 [H, W] in metres, as a PNG of 16 bits at deflate level 1."""
+    """Encode a depth map in metres, float32 [H, W], as a 16-bit PNG with fast compression."""
     numbers = depth_numbers(depth_m, PER_METRE)
     height, width = numbers.shape
     rows = np.zeros((height, 1 + 2 * width), np.uint8)
@@ -63,19 +63,33 @@ def encode_depth(depth_m: np.ndarray) -> bytes:
 
 
 def decode_colour(data: bytes, camera: Camera, source: str | Path) -> np.ndarray:
-    """Return the colours, uint8 [H, W, 3], of a file that is as large as its camera says.
+    """Decode a colour image to uint8 [H, W, 3].
+
+    Args:
+        data: Content of the image file.
+        camera: Camera of the image, which defines the expected size.
+        source: Name for error messages.
 
     Raises:
-        DamagedFileError: it is no such picture.
+        DamagedFileError: If the data is not an image of this size.
     """
     return np.array(_open_image(data, camera, source, ("JPEG", "PNG", "WEBP")).convert("RGB"))
 
 
 def decode_depth(data: bytes, camera: Camera, source: str | Path) -> np.ndarray:
-    """Return the depth, float32 [H, W] in metres, of a PNG of ``encode_depth``. Raises as above."""
+    """Decode a PNG written by ``encode_depth`` to depth in metres, float32 [H, W].
+
+    Args:
+        data: Content of the PNG file.
+        camera: Camera of the image, which defines the expected size.
+        source: Name for error messages.
+
+    Raises:
+        DamagedFileError: If the data is not a depth PNG of this size.
+    """
     numbers = np.asarray(_open_image(data, camera, source, ("PNG",)))
     if numbers.ndim != 2:
-        raise DamagedFileError(source, "its depth is no grey picture")
+        raise DamagedFileError(source, "the depth image must be a grey PNG")
     return numbers.astype(np.float32) / np.float32(PER_METRE)
 
 
@@ -88,10 +102,12 @@ def _open_image(
         image = Image.open(io.BytesIO(data), formats=formats)
         if image.size != size:
             actual = "x".join(map(str, image.size))
-            raise DamagedFileError(source, f"a picture is {actual}, not {size[0]}x{size[1]}")
+            raise DamagedFileError(
+                source, f"an image has {actual} pixels, expected {size[0]}x{size[1]}"
+            )
         image.load()
     except (OSError, ValueError, SyntaxError, struct.error, Image.DecompressionBombError) as error:
-        raise DamagedFileError(source, f"a picture cannot be read ({error})") from error
+        raise DamagedFileError(source, f"an image cannot be read ({error})") from error
     return image
 
 
@@ -102,21 +118,28 @@ def _chunk(kind: bytes, data: bytes) -> bytes:
 
 @dataclass(frozen=True)
 class SampleFiles:
-    """How samples become files."""
+    """The file formats of a sample.
+
+    Attributes:
+        image_format: ``jpg``, ``png`` or ``webp``.
+        quality: JPEG and WebP quality from 1 to 100.
+    """
 
     image_format: str = "jpg"
     quality: int = QUALITY
 
     def __post_init__(self):
         if self.image_format not in IMAGE_FORMATS:
-            raise UsageError(f"pictures are {', '.join(IMAGE_FORMATS)}, not {self.image_format!r}")
+            raise UsageError(
+                f"image format must be one of {', '.join(IMAGE_FORMATS)}, got {self.image_format!r}"
+            )
         if not 1 <= self.quality <= 100:
-            raise UsageError(f"a quality is 1 to 100, not {self.quality}")
+            raise UsageError(f"quality must be from 1 to 100, got {self.quality}")
 
 
 @dataclass(frozen=True, eq=False)
 class FineTable:
-    """The fine classes of a whole data set, in the order of their numbers."""
+    """The numbered fine classes of a complete data set."""
 
     classes: tuple[FineClass, ...]
     _numbers: dict[FineClass, int] = field(init=False, repr=False)
@@ -126,17 +149,21 @@ class FineTable:
         object.__setattr__(self, "_numbers", {one: n for n, one in enumerate(self.classes)})
 
     def numbers_of(self, classes: tuple[FineClass, ...]) -> np.ndarray:
-        """Return the numbers here of the classes of a scene, uint16 [N]. Raises KeyError."""
+        """Return the numbers in this table for the fine classes of a scene, uint16 [N].
+
+        Raises:
+            KeyError: If the table does not contain one of the classes.
+        """
         return np.array([self._numbers[one] for one in classes], np.uint16)
 
 
 def pack_sample(sample: OccSample, table: FineTable, files: SampleFiles) -> dict[str, bytes]:
-    """Return the members of a sample by their kinds, in their order.
+    """Encode a sample as the ordered members of a shard, by kind.
 
     Args:
-        sample: with any fine classes that the table holds.
-        table: what ``fine`` counts in afterwards.
-        files: how pictures are packed.
+        sample: Sample to encode. The table must contain its fine classes.
+        table: Fine classes of the data set, to which ``fine`` is converted.
+        files: File formats to use.
     """
     members: dict[str, bytes] = {}
     if sample.colour is not None:
@@ -158,7 +185,7 @@ def pack_sample(sample: OccSample, table: FineTable, files: SampleFiles) -> dict
 
 
 def sample_facts(sample: OccSample) -> dict[str, Any]:
-    """Return what the JSON of a sample tells, but for the sums."""
+    """Return the JSON content for a sample, without checksums."""
     occ, region = sample.occ, sample.occ.region
     facts = {
         "format": FORMAT,
@@ -194,16 +221,16 @@ def unpack_sample(
     source: str | Path,
     facts: dict[str, Any] | None = None,
 ) -> OccSample:
-    """Return the sample that members hold; pictures that are left out are None.
+    """Decode a sample from its shard members. Missing images become None.
 
     Args:
-        members: bytes by kind, ``json`` and ``occ.npz`` among them.
-        table: the data set's fine classes.
-        source: what errors name.
-        facts: of the JSON, where it is parsed already.
+        members: Content of each member by kind, including ``json`` and ``occ.npz``.
+        table: Fine classes of the data set.
+        source: Name for error messages.
+        facts: Content of the JSON, if already parsed.
 
     Raises:
-        DamagedFileError: a member is not what it should be.
+        DamagedFileError: If a member is not valid.
     """
     meta = read_facts(members[FACTS], source) if facts is None else facts
     try:
@@ -225,17 +252,21 @@ def unpack_sample(
             facts=dict(meta.get("facts", {})),
         )
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
-        raise DamagedFileError(source, f"is no sample ({error!r})") from error
+        raise DamagedFileError(source, f"not a valid sample ({error!r})") from error
 
 
 def read_facts(data: bytes, source: str | Path) -> dict[str, Any]:
-    """Return what a sample's JSON tells. Raises DamagedFileError."""
+    """Parse the JSON of a sample.
+
+    Raises:
+        DamagedFileError: If the JSON is not valid.
+    """
     try:
         facts = json.loads(data) if len(data) <= MAX_FACTS_BYTES else None
     except (ValueError, RecursionError) as error:
-        raise DamagedFileError(source, f"is not JSON ({error})") from error
+        raise DamagedFileError(source, f"not valid JSON ({error})") from error
     if not isinstance(facts, dict) or facts.get("format") != FORMAT:
-        raise DamagedFileError(source, f"is no JSON of a sample of format {FORMAT}")
+        raise DamagedFileError(source, f"not the JSON of a sample in format {FORMAT}")
     return facts
 
 
@@ -243,7 +274,7 @@ def _unpack_labels(data: bytes, meta: Any, fine_count: int, source: str | Path) 
     shape = tuple(int(side) for side in meta["shape"])
     cells = int(np.prod(np.array(shape, np.float64)))
     if not 0 < cells <= MAX_CELLS:
-        raise ValueError(f"a region has 1 to {MAX_CELLS:,} cells, not {shape}")
+        raise ValueError(f"a region must have from 1 to {MAX_CELLS:,} cells, got shape {shape}")
     to_room = np.array(meta["region_to_room"], np.float64)
     region = LabelRegion((shape[0], shape[1], shape[2]), meta["voxel_m"], to_room, meta["kind"])
     limit = 4 * cells + 1024
@@ -251,10 +282,15 @@ def _unpack_labels(data: bytes, meta: Any, fine_count: int, source: str | Path) 
     for name in BIT_ARRAYS:
         bits = arrays[name]
         if bits.dtype != np.uint8 or bits.shape != (-(-cells // 8),):
-            raise ValueError(f"{name} is {bits.dtype} {bits.shape}, not the bits of {cells} cells")
+            raise ValueError(
+                f"{name} must contain the packed bits of {cells} cells, got {bits.dtype} "
+                f"{bits.shape}"
+            )
         arrays[name] = np.unpackbits(bits, count=cells).astype(bool).reshape(shape)
     if arrays["fine"].size and int(arrays["fine"].max()) >= fine_count:
-        raise ValueError(f"fine goes to {arrays['fine'].max()} of {fine_count} classes")
+        raise ValueError(
+            f"fine must contain indices below {fine_count}, got {arrays['fine'].max()}"
+        )
     return OccLabels(region, **arrays)
 
 

@@ -1,13 +1,14 @@
-"""Write and read shards: tar files to which samples are appended one by one.
+"""Writer and reader for shards, tar files to which samples are appended one by one.
 
-While it grows it is ``NAME.tar.part``. Each sample is appended in one write and flushed to disk.
-Whoever opens the part again, after any crash, finds the samples that are complete by their
-checksums, cuts off the rest and continues; at the end it is flushed and renamed. So the same
-samples give the same bytes, however often the work was interrupted.
+An unfinished shard is named ``NAME.tar.part``. Each sample is appended in a single write and
+flushed to disk. When the part is opened again after a crash, its complete samples are found by
+their checksums, the rest is truncated, and writing continues. At the end, the file is flushed and
+renamed. Therefore the same samples always produce identical files, however often the work was
+interrupted.
 
-Members are ustar without owners and times, so that bytes depend on content alone: a header of 512
-bytes, the data, and zeros up to the next whole 512. Samples are found by their headers and their
-JSON; images are skipped.
+Members use the ustar format without owners and times, so the file depends only on its content. Each
+member has a header of 512 bytes, followed by its data and zeros up to a multiple of 512 bytes.
+Samples are found by reading headers and JSON only; images are skipped.
 """
 
 import errno
@@ -41,7 +42,14 @@ _POLL_S = 0.05
 
 @dataclass(frozen=True)
 class Member:
-    """Where the data of a member lie in a shard."""
+    """The position of a member's data in a shard.
+
+    Attributes:
+        key: Key of the sample, such as ``house_0001-a-000012``.
+        kind: ``jpg``, ``depth.png``, ``occ.npz`` or ``json``.
+        offset: Position of the data in bytes.
+        size: Size of the data in bytes.
+    """
 
     key: str  # "house_0001-a-000012"
     kind: str  # "jpg", "depth.png", "occ.npz" or "json"
@@ -50,17 +58,17 @@ class Member:
 
     @property
     def end(self) -> int:
-        """Where the next member begins."""
+        """Position of the next member in bytes."""
         return self.offset + self.size + padding(self.size)
 
 
 def padding(size: int) -> int:
-    """Return how many zeros follow so many bytes of data."""
+    """Return the number of zero bytes that follow a member's data of this size."""
     return -size % BLOCK
 
 
 def member_bytes(name: str, data: bytes) -> bytes:
-    """Return a member with its header and its padding.
+    """Return a member's header, data and padding as bytes.
 
     Example:
         >>> len(member_bytes("a.json", b"{}"))
@@ -72,14 +80,24 @@ def member_bytes(name: str, data: bytes) -> bytes:
 
 
 def end_bytes(length: int) -> bytes:
-    """Return what ends a tar of so many bytes: two blocks of zeros, filled up to a record."""
+    """Return the end marker for a tar file of this length.
+
+    It consists of two blocks of zeros, followed by zeros up to a full record.
+    """
     return bytes(2 * BLOCK + -(length + 2 * BLOCK) % RECORD)
 
 
 def member_at(stream: BinaryIO, offset: int, length: int) -> Member | None:
-    """Read the header at an offset of a tar that is ``length`` bytes long.
+    """Read the member header at an offset in a tar file.
 
-    Returns None where there is no whole member of ours: at the end, or where bytes are damaged.
+    Args:
+        stream: Tar file.
+        offset: Position of the header in bytes.
+        length: Length of the tar file in bytes.
+
+    Returns:
+        The member, or None if there is no complete member at this position, which is the case at
+        the end of the file and where it is damaged.
     """
     stream.seek(offset)
     block = stream.read(BLOCK)
@@ -98,7 +116,16 @@ def member_at(stream: BinaryIO, offset: int, length: int) -> Member | None:
 
 @dataclass(frozen=True, eq=False)
 class StoredSample:
-    """A sample in a shard: where it lies, and what its JSON tells."""
+    """A sample in a shard.
+
+    Attributes:
+        key: Key of the sample.
+        offset: Position of the sample in bytes.
+        size: Size of the sample in bytes, including headers.
+        members: Its members.
+        facts: Content of its JSON.
+        facts_sha256: SHA-256 of its JSON.
+    """
 
     key: str
     offset: int
@@ -109,12 +136,12 @@ class StoredSample:
 
 
 def stored_samples(stream: BinaryIO, length: int, checked: bool = False) -> Iterator[StoredSample]:
-    """Give the whole samples from the start of a shard, up to its end or the first that is not.
+    """Yield the samples of a shard up to its end or up to the first incomplete sample.
 
     Args:
-        stream: the shard or its part.
-        length: its size in bytes.
-        checked: whether the sums of all members are compared, not of their JSON alone.
+        stream: Shard, or unfinished part of a shard.
+        length: Size of the file in bytes.
+        checked: Whether to verify the checksums of all members.
     """
     offset = 0
     while (sample := _sample_at(stream, offset, length)) is not None:
@@ -125,7 +152,7 @@ def stored_samples(stream: BinaryIO, length: int, checked: bool = False) -> Iter
 
 
 def has_valid_checksums(stream: BinaryIO, sample: StoredSample) -> bool:
-    """Whether the members of a sample have the checksums that its JSON states."""
+    """Return whether the members of a sample match the checksums in its JSON."""
     checksums = sample.facts.get("sha256")
     others = [member for member in sample.members if member.kind != FACTS]
     if not isinstance(checksums, dict) or set(checksums) != {member.kind for member in others}:
@@ -168,17 +195,18 @@ def _member_digest(stream: BinaryIO, member: Member) -> str:
 
 
 class ShardWriter:
-    """A shard from its first to its last sample; ``done`` are there already when it is opened."""
+    """A writer for a shard, which continues after the ``done`` samples that already exist."""
 
     def __init__(self, path: Path, keys: Sequence[str]):
-        """Open the part of a shard, and cut it to its last whole sample.
+        """Open an unfinished shard and truncate it after its last complete sample.
 
         Args:
-            path: of the finished shard.
-            keys: of all its samples, in their order.
+            path: Path of the finished shard.
+            keys: Keys of all its samples, in order.
 
         Raises:
-            OutputError: it cannot be written. ConflictError: another process writes it.
+            OutputError: If the file cannot be written.
+            ConflictError: If another process is writing the file.
         """
         self.path, self.keys, self.done = path, tuple(keys), 0
         self._part = path.with_name(path.name + PART)
@@ -200,17 +228,20 @@ class ShardWriter:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Close the part; it stays, unless the shard is finished."""
+        """Close the file. An unfinished shard remains as a part."""
         self.close()
 
     def append(self, members: Mapping[str, bytes]) -> None:
-        """Append the next sample and flush it to the disk.
+        """Append the next sample and flush it to disk.
+
+        Args:
+            members: Content of each member by kind, in order.
 
         Raises:
-            OutputError: the disk is full, or the part cannot be written.
+            OutputError: If the disk is full, or if the file cannot be written.
         """
         if self._stream is None or self.done >= len(self.keys):
-            raise ValueError(f"{self.path} has all its samples")
+            raise ValueError(f"{self.path} already contains all its samples")
         key = self.keys[self.done]
         data = b"".join(member_bytes(f"{key}.{kind}", one) for kind, one in members.items())
         with _readable_errors(self.path):
@@ -223,11 +254,15 @@ class ShardWriter:
         self.done += 1
 
     def finish(self) -> None:
-        """End the archive and give it its name. Raises as ``append``."""
+        """Write the end of the tar file and rename it to its final name.
+
+        Raises:
+            OutputError: If the disk is full, or if the file cannot be written.
+        """
         if self._stream is None:
             return
         if self.done != len(self.keys):
-            raise ValueError(f"{self.path} has {self.done} of {len(self.keys)} samples")
+            raise ValueError(f"{self.path} contains only {self.done} of {len(self.keys)} samples")
         with _readable_errors(self.path):
             try:
                 self._write(end_bytes(self._length))
@@ -241,7 +276,7 @@ class ShardWriter:
         self.close()
 
     def close(self) -> None:
-        """Let go of the part."""
+        """Close the file without finishing the shard."""
         if self._stream is not None:
             self._stream.close()
             self._stream = None
@@ -288,7 +323,7 @@ def _open_locked(part: Path) -> FileIO | None:
             return None
         stream.close()
         time.sleep(_POLL_S)
-    raise ConflictError(part, "is being written by another process")
+    raise ConflictError(part, "another process is writing this file; wait until it has finished")
 
 
 def _is_at(handle: int, path: Path) -> bool:
@@ -315,7 +350,7 @@ def _readable_errors(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         if error.errno in (errno.ENOSPC, errno.EDQUOT):
-            reason = "the disk is full; free some space and run the same command again to go on"
+            reason = "the disk is full; free some space and run the same command again to resume"
         else:
             reason = f"cannot be written: {error.strerror or error}"
         raise OutputError(path, reason) from error

@@ -1,4 +1,4 @@
-"""Verify a data set against its index: every file and checksum, and nothing unexpected."""
+"""Verification of a data set: its index, files and checksums, and unexpected files."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -29,7 +29,15 @@ COMPARED = ("key", "offset", "size", "sha256", *(f"cells_{name}" for name in COU
 
 @dataclass(frozen=True)
 class VerifyReport:
-    """What a check has found; ``faults`` is empty where all is well."""
+    """The result of a verification.
+
+    Attributes:
+        samples: Number of samples in the index.
+        shards: Number of shards.
+        bytes: Total size of the shards in bytes.
+        sha256: SHA-256 of all samples.
+        faults: Descriptions of the errors found; empty if the data set is valid.
+    """
 
     samples: int
     shards: int
@@ -39,11 +47,11 @@ class VerifyReport:
 
 
 def verify_store(folder: str | Path, progress: Progress = no_progress) -> VerifyReport:
-    """Read all shards of a finished data set and compare every sum.
+    """Read all shards of a complete data set and verify every checksum.
 
     Raises:
-        InputError: it is no data set, or not finished. DamagedFileError: its index or its
-        ``dataset.json`` cannot be read.
+        InputError: If the folder is not a data set, or if the data set is not complete.
+        DamagedFileError: If the index or ``dataset.json`` cannot be read.
     """
     root = Path(folder)
     meta, table = read_meta(root), read_index(root / INDEX)
@@ -62,13 +70,13 @@ def verify_store(folder: str | Path, progress: Progress = no_progress) -> Verify
 
 def _check_shard(path: Path, name: str, rows: list[dict[str, Any]]) -> list[str]:
     if not path.is_file():
-        return [f"{name}: is not there, with {len(rows)} samples"]
+        return [f"{name}: missing, with {len(rows)} samples"]
     try:
         found = {row["key"]: row for row in shard_rows(path, name)}
     except DamagedFileError as error:
         return [f"{name}: {error.reason}"]
     faults = [
-        f"{name}: sample {row['key']} is {'damaged' if row['key'] in found else 'not there'}"
+        f"{name}: sample {row['key']} is {'damaged' if row['key'] in found else 'missing'}"
         for row in rows
         if any(found.get(row["key"], {}).get(column) != row[column] for column in COMPARED)
     ]
@@ -90,15 +98,15 @@ def _unexpected_files(root: Path, known: Iterable[str]) -> list[str]:
         if path.name not in own and (path.name[0] != "." or LEFTOVER.fullmatch(path.name))
     ]
     strays += [path for path in (root / SHARDS).rglob("*") if path.is_file() and path not in shards]
-    return [f"{path.relative_to(root)}: belongs to no data set" for path in sorted(strays)]
+    return [f"{path.relative_to(root)}: unexpected file" for path in sorted(strays)]
 
 
 def _mismatches(meta: dict[str, Any], rows_of: dict[str, list[dict[str, Any]]]) -> list[str]:
     """Compare the index with what ``dataset.json`` says."""
     faults = []
     if meta.get("shards") != list(rows_of):
-        faults.append(f"{INDEX}: its shards are not those of {META}")
+        faults.append(f"{INDEX}: the shards differ from those in {META}")
     rows = (row for rows in rows_of.values() for row in rows)
     if meta.get("sha256") != index_digest(rows):
-        faults.append(f"{INDEX}: its sum is not that of {META}")
+        faults.append(f"{INDEX}: the checksum differs from that in {META}")
     return faults

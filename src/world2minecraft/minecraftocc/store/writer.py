@@ -1,4 +1,4 @@
-"""Write a data set from samples, and finish one whose shards are there."""
+"""Writer for data sets made from samples, and the final step of a build."""
 
 import platform
 import re
@@ -37,18 +37,18 @@ from world2minecraft.minecraftocc.types import FineClass, OccSample
 MAX_SCENE_ID = 80  # A shard's name, with its number, has 90.
 SHARD_SAMPLES = 100  # About 100 MB at 1920x1129; a download of a shard, a unit of work.
 CONVENTIONS = {
-    "cells": "labels[x, y, z]: x right, y forward, z up of the region; 255 is unknown",
+    "cells": "labels[x, y, z] in region axes: x right, y forward, z up; 255 is unknown",
     "region": "centre of cell (i, j, k) in the room: region_to_room * (i + 0.5) * voxel_m ...",
     "room": "metres, right-handed, z up",
     "camera": "OpenCV: x right, y down, z forward; pixel centres at +0.5",
-    "block": "the game's x east, y up, z south; camera_to_block counts in blocks",
-    "depth": "16 bits, millimetres along the camera's z, 0 nothing, 65535 all that is farther",
-    "masks": "np.unpackbits(mask, count=cells).reshape(shape); hits: pixels that see a cell first",
+    "block": "game axes: x east, y up, z south; camera_to_block is in blocks",
+    "depth": "16 bits, millimetres along the camera's z axis; 0: no depth, 65535: larger depths",
+    "masks": "np.unpackbits(mask, count=cells).reshape(shape); hits: pixels that see the cell",
 }
 
 
 def versions() -> dict[str, str]:
-    """Return the versions that the bytes of a data set depend on."""
+    """Return the program and library versions on which the files of a data set depend."""
     return {
         "world2minecraft": __version__,
         "numpy": np.__version__,
@@ -63,16 +63,19 @@ def finish_store(
     meta: dict[str, Any],
     rows: Iterable[list[dict[str, Any]]],
 ) -> dict[str, Any]:
-    """Write the index, the card and ``dataset.json``, which makes the data set whole.
+    """Write the index, the data set card and ``dataset.json``, which completes the data set.
 
     Args:
-        folder: the data set's.
-        shards: names of all shards, in their order.
-        meta: what ``dataset.json`` holds further; ``images`` and ``scenes`` among it.
-        rows: of ``shard_rows`` of each shard, in the same order.
+        folder: Folder of the data set.
+        shards: Paths of all shards inside the folder, in order.
+        meta: Further content for ``dataset.json``, including ``images`` and ``scenes``.
+        rows: Results of ``shard_rows`` for each shard, in the same order.
+
+    Returns:
+        The content of ``dataset.json``.
 
     Raises:
-        OutputError: a file cannot be written.
+        OutputError: If a file cannot be written.
     """
     total = write_index(folder / INDEX, rows)
     whole = {
@@ -98,27 +101,31 @@ def write_store(
     files: SampleFiles | None = None,
     progress: Progress = no_progress,
 ) -> dict[str, Any]:
-    """Write samples as a new data set; return its ``dataset.json``.
+    """Write samples as a new data set.
 
-    Samples of one scene and split that follow each other share shards. They are read once, one in
-    memory at a time; fine classes are numbered as they come.
+    Consecutive samples with the same scene and split share shards. Samples are read one at a time,
+    and fine classes are numbered in the order in which they appear.
 
     Args:
-        folder: a new one.
-        samples: with keys that are unique, of letters, digits, - and _; the names of their scenes
-            too; ``split`` is train, val, test or left empty.
-        meta: further facts for ``dataset.json``.
-        files: how pictures are packed.
-        progress: called with the samples done so far.
+        folder: New folder for the data set.
+        samples: Samples to write. Keys must be unique; keys and scene names may contain letters,
+            digits, ``-`` and ``_``. ``split`` must be ``train``, ``val``, ``test`` or empty.
+        meta: Further content for ``dataset.json``.
+        files: File formats of the samples.
+        progress: Callback that reports the number of samples written so far.
+
+    Returns:
+        The content of ``dataset.json``.
 
     Raises:
-        ConflictError: there is a data set already, or half of one. UsageError: a name or a split
-        cannot be stored. OutputError: a file cannot be written.
+        ConflictError: If the folder already contains a data set, or an incomplete one.
+        UsageError: If a key, scene name or split is not valid.
+        OutputError: If a file cannot be written.
     """
     target, how = Path(folder), files or SampleFiles()
     arrow_modules()  # Before the work, not after it.
     if (target / META).exists():
-        raise ConflictError(target, "holds a data set already; choose another folder")
+        raise ConflictError(target, "already contains a data set; choose another folder")
     target.mkdir(parents=True, exist_ok=True)
     lock = Lock(target / LOCK, "written")
     lock.acquire()
@@ -126,8 +133,8 @@ def write_store(
         if (target / SHARDS).exists():
             raise ConflictError(
                 target,
-                f"holds {SHARDS}/ of a data set that was not finished; remove that folder, or "
-                "choose another",
+                f"contains {SHARDS}/ of an incomplete data set; delete this folder or choose "
+                "another one",
             )
         return _write_shards(target, samples, dict(meta or {}), how, progress)
     finally:
@@ -174,17 +181,17 @@ def _write_shards(
 def _check_names(sample: OccSample, known: Container[str]) -> None:
     """Refuse what no reader would find again. Raises UsageError."""
     for what, name, most in (
-        ("a sample's key", sample.key, MAX_KEY_LENGTH),
-        ("a scene's name", sample.scene_id, MAX_SCENE_ID),
+        ("sample key", sample.key, MAX_KEY_LENGTH),
+        ("scene name", sample.scene_id, MAX_SCENE_ID),
     ):
         if not re.fullmatch(rf"[A-Za-z0-9_-]{{1,{most}}}", name):
             raise UsageError(
-                f"{what} is 1 to {most} letters of A-Z, a-z, 0-9, - and _, not {name!r}; rename it"
+                f"{what} must be 1 to {most} characters of A-Z, a-z, 0-9, - and _, got {name!r}"
             )
     if sample.key in known:
-        raise UsageError(f"two samples have the key {sample.key!r}; give each one of its own")
+        raise UsageError(f"two samples have the key {sample.key!r}; sample keys must be unique")
     if sample.split not in ("", "train", "val", "test"):
-        raise UsageError(f"a split is train, val, test or left empty, not {sample.split!r}")
+        raise UsageError(f"split must be train, val, test or empty, got {sample.split!r}")
 
 
 def _shard(

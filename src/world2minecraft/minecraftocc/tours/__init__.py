@@ -1,4 +1,4 @@
-"""Tours: smooth walks through the rooms of a world, and the views that are worth taking."""
+"""Tours: smooth walks through the rooms of a world, and the selection of useful views on them."""
 
 from world2minecraft.minecraftocc.tours.planning import plan_views
 from world2minecraft.minecraftocc.tours.pose_files import read_views, view_line, write_views

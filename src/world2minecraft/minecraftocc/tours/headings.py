@@ -1,7 +1,8 @@
-"""Choose where a camera looks along a walk: into the room, along its axes and diagonals.
+"""Choice of the camera heading along a walk: into the room, along its axes and its diagonals.
 
-At each place the room is seen all round in small pictures; each of 24 headings is rated by what a
-camera would see there. The best sequence of headings, in which turning costs, is found exactly.
+At each position, small images are rendered in all directions, and each of 24 headings is rated by
+what the camera would see. The sequence of headings with the highest total rating, with a cost for
+turning, is found exactly by dynamic programming.
 """
 
 import numpy as np
@@ -36,13 +37,13 @@ AXIS, DIAGONAL, FREE = range(len(KINDS))
 def rate_headings(
     scene: BlockScene, eyes: np.ndarray, block_to_room: np.ndarray, rule: TourRule
 ) -> np.ndarray:
-    """Return how good a view each heading gives from each eye, float64 [N, HEADINGS].
+    """Rate the view in each heading from each eye position, float64 [N, HEADINGS].
 
     Args:
-        scene: ``prepare_scene`` of the volume.
-        eyes: float64 [N, 3], world blocks.
-        block_to_room: of the volume, float64 [4, 4].
-        rule: whose camera counts.
+        scene: Scene prepared with ``prepare_scene``.
+        eyes: Eye positions in world block coordinates, float64 [N, 3].
+        block_to_room: Matrix from block coordinates to room coordinates, float64 [4, 4].
+        rule: Tour settings, which define the camera.
     """
     poses = [
         carry_camera(camera_to_block_of_game_pose(eye, yaw_deg, 0.0), block_to_room)
@@ -67,12 +68,12 @@ def rate_headings(
 
 
 def repetition_penalty(eyes: np.ndarray, taken: np.ndarray, blocks_per_metre: float) -> np.ndarray:
-    """Return what each heading loses for views that looked there from nearby, [N, HEADINGS].
+    """Return the penalty of each heading for similar views nearby, float64 [N, HEADINGS].
 
     Args:
-        eyes: float64 [N, 3], world blocks.
-        taken: float64 [M, 5], the views so far: x, y, z, yaw, pitch.
-        blocks_per_metre: of the world.
+        eyes: Eye positions in world block coordinates, float64 [N, 3].
+        taken: Views chosen so far, float64 [M, 5]: x, y, z, yaw and pitch.
+        blocks_per_metre: Scale of the world.
     """
     last = taken[-SEEN_VIEWS:]
     away_m = np.linalg.norm(eyes[:, None] - last[None, :, :3], axis=2) / blocks_per_metre
@@ -85,7 +86,14 @@ def repetition_penalty(eyes: np.ndarray, taken: np.ndarray, blocks_per_metre: fl
 def draw_kinds(
     frames: int, spacing_m: float, wanted: np.ndarray, rng: np.random.Generator
 ) -> np.ndarray:
-    """Return which kind of yaw each frame asks for, int64 [N], in stretches of 1.5 to 4 m."""
+    """Choose a random kind of yaw for each frame, int64 [N], constant over 1.5 to 4 m of the walk.
+
+    Args:
+        frames: Number of frames.
+        spacing_m: Distance between frames in metres.
+        wanted: Weight of each kind of yaw, float64 [3].
+        rng: Random generator.
+    """
     kinds, shares = np.empty(frames, np.int64), np.maximum(wanted, 0.0) + 1e-9
     first = 0
     while first < frames:
@@ -98,9 +106,16 @@ def draw_kinds(
 def best_yaws(
     rated: np.ndarray, kinds: np.ndarray, spacing_m: float, rng: np.random.Generator
 ) -> np.ndarray:
-    """Return the game yaw of each frame, float64 [N] degrees from -180 up to 180.
+    """Return the yaw of each frame in the game, float64 [N] in degrees from -180 to 180.
 
-    Frames of the kinds axis and diagonal look exactly there, but for those that turn between.
+    Frames of the kinds ``axis`` and ``diagonal`` face exactly in these directions, except while
+    turning.
+
+    Args:
+        rated: Rating of each heading, float64 [N, HEADINGS].
+        kinds: Kind of yaw of each frame, int64 [N].
+        spacing_m: Distance between frames in metres.
+        rng: Random generator.
     """
     angle = np.arange(HEADINGS) * (360 // HEADINGS)
     of_kind = np.stack([angle % 90 == 0, angle % 90 == 45, angle % 45 != 0])
@@ -117,7 +132,7 @@ def best_yaws(
 
 
 def smooth_noise(frames: int, spacing_m: float, rng: np.random.Generator) -> np.ndarray:
-    """Return a number for each frame that wanders slowly between about -1 and 1."""
+    """Return a slowly varying random number between about -1 and 1 for each frame."""
     raw = rng.normal(size=frames + 64)
     smooth = gaussian_filter1d(raw, max(1.0, 0.8 / spacing_m))[32 : 32 + frames]
     return np.clip(smooth / max(float(np.std(smooth)), 1e-9) * 0.6, -1, 1)

@@ -1,6 +1,7 @@
-"""Plan views of a volume: walks through all its rooms, and the views of them that are worth it.
+"""Planning of views for a volume: walks through all rooms, and the useful views on them.
 
-Each room is toured walk after walk; of each walk the views that are good and new are kept.
+Each room is visited by repeated walks. Good views of a walk that differ from earlier views are
+kept.
 """
 
 from collections.abc import Iterator
@@ -50,17 +51,17 @@ MIN_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried.
 
 @dataclass(eq=False)
 class YawKindCounts:
-    """How many views of each kind of yaw a whole plan has so far."""
+    """Number of views of each kind of yaw in a plan."""
 
     counts: np.ndarray = field(default_factory=lambda: np.zeros(len(KINDS)))
 
     def missing(self, rule: TourRule, more: int) -> np.ndarray:
-        """Return how many of each kind are missing when so many more are taken, float64 [3]."""
+        """Return how many views of each kind are missing if ``more`` are added, float64 [3]."""
         shares = np.array(rule.yaw_shares) / sum(rule.yaw_shares)
         return shares * (self.counts.sum() + more) - self.counts
 
     def add(self, yaws_deg: np.ndarray) -> None:
-        """Count views."""
+        """Count the kinds of the given yaws."""
         for yaw_deg in yaws_deg:
             self.counts[KINDS.index(kind_of_yaw(float(yaw_deg)))] += 1
 
@@ -90,7 +91,7 @@ class _ChosenViews:
 
 @dataclass(eq=False)
 class RoomTour:
-    """The tour of one room: walk after walk, and the good new views of each."""
+    """The tour of a room: repeated walks, and the good new views of each walk."""
 
     volume: BlockVolume
     scene: BlockScene
@@ -107,11 +108,11 @@ class RoomTour:
 
     @property
     def count(self) -> int:
-        """How many views were found."""
+        """Number of views found."""
         return sum(map(len, self.tours))
 
     def find(self, more: int) -> None:
-        """Find so many more views, or as many as there are."""
+        """Find ``more`` further views, or fewer if the room has no more different views."""
         wanted, vain = self.count + more, 0
         while self.count < wanted and not self.is_done:
             before = self.count
@@ -122,7 +123,7 @@ class RoomTour:
                 self.is_done = self.eased > MAX_EASINGS
 
     def views(self) -> Iterator[PlannedView]:
-        """Give the views found, in their order."""
+        """Yield the views found, in order."""
         for number, tour in enumerate(self.tours):
             for frame, row in enumerate(tour):
                 x, y, z, yaw_deg, pitch_deg, t_s = (float(value) for value in row)
@@ -217,24 +218,25 @@ def plan_views(
     scene: BlockScene | None = None,
     progress: Progress = no_progress,
 ) -> list[PlannedView]:
-    """Return views of the rooms of a volume, tour after tour; the same for the same seed.
+    """Plan views of the rooms in a volume, grouped by tour.
 
-    Fewer come back where the rooms do not give as many that differ.
+    The result depends only on the arguments and the seed. It contains fewer views than requested if
+    the rooms do not have enough different views.
 
     Args:
-        volume: the blocks, with their classes.
-        count: how many views.
-        seed: 0 or more.
-        rule: the camera and all choices.
-        scene: ``prepare_scene`` of the volume, where the caller has it already.
-        progress: called with the views found.
+        volume: Blocks with their classes.
+        count: Number of views.
+        seed: Random seed, 0 or more.
+        rule: Tour settings, including the camera.
+        scene: Result of ``prepare_scene`` for the volume, if already available.
+        progress: Callback that reports the number of views found.
 
     Raises:
-        UsageError: the count is below 1, or nobody can stand anywhere in the volume.
+        UsageError: If the count is below 1, or if the volume has no place for a person to stand.
     """
     how = rule or TourRule()
     if count < 1:
-        raise UsageError(f"a plan has one view or more, not {count}")
+        raise UsageError(f"the number of views must be 1 or more, got {count}")
     solid = collision_grid(volume)
     graph, rooms = _rooms(volume, solid, how)
     ready, kinds = scene or prepare_scene(volume), YawKindCounts()
@@ -258,7 +260,7 @@ def _rooms(
         rooms = find_rooms(volume, graph, solid, rule)
         if sum(room.floor_m2 for room in rooms) >= MIN_FLOOR_M2 or (rooms and slim < 1):
             return graph, rooms
-    raise UsageError("nobody can stand anywhere in this world, so there is no view to plan")
+    raise UsageError("cannot plan views: this world has no place for a person to stand")
 
 
 def _fill(tours: list[RoomTour], count: int, progress: Progress) -> None:

@@ -1,7 +1,8 @@
-"""Tours and screenshots as pose files, a JSON object per line (``rendering.views.pose_file``).
+"""Pose files for tours and screenshots, with one JSON object per line.
 
-Each line names its tour and scene; ``frame`` counts within the tour, and ``room`` and ``kind``
-(axis, diagonal, free) follow the usual keys.
+Each line contains the names of its tour and scene, the ``frame`` number within the tour, and
+``room`` and ``kind`` (axis, diagonal or free) in addition to the keys described in
+``rendering.views.pose_file``.
 """
 
 from collections.abc import Sequence
@@ -22,12 +23,16 @@ from world2minecraft.rendering.views.pose_file import TourPose, read_tour, tour_
 def write_views(
     path: str | Path, views: Sequence[PlannedView], block_to_room: np.ndarray, scene_id: str = ""
 ) -> None:
-    """Write views as a tour file; ``read_views`` gives the same back. Raises OutputError."""
+    """Write views as a tour file, which ``read_views`` reads without loss.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     write_lines(path, [view_line(view, block_to_room, scene_id) for view in views])
 
 
 def view_line(view: PlannedView, block_to_room: np.ndarray, scene_id: str) -> dict[str, Any]:
-    """Return the line of a view."""
+    """Return the line of a tour file for a view, as a dict."""
     shot = Shot(view.camera, view.camera_to_room, view.t_s)
     own: dict[str, Any] = {"scene_id": scene_id, "tour_id": view.tour_id}
     more = {**own, "room": view.room, "kind": view.kind}
@@ -43,13 +48,15 @@ def read_views(
     """Read the views of a tour file.
 
     Args:
-        path: JSONL or CSV. Lines without a ``tour_id`` are one tour, in the order of the lines.
-        block_to_room: of the world that they are views of.
-        camera: of lines that say none; NYU's where left out.
+        path: JSONL or CSV file. Lines without a ``tour_id`` form one tour in line order.
+        block_to_room: Matrix from block coordinates to room coordinates of the world, float64 [4,
+            4].
+        camera: Camera for lines that do not specify their own. Defaults to that of NYUv2.
 
     Raises:
-        InputError: it cannot be read. DamagedFileError: a line is no pose, or there is none.
-        LimitError: it is too large.
+        InputError: If the file cannot be read.
+        DamagedFileError: If a line is not a valid pose, or if the file has no poses.
+        LimitError: If the file is too large.
     """
     eye_blocks = eye_height_blocks(1 / float(np.linalg.norm(block_to_room[:3, 0])))
     views, counts = [], {}
@@ -93,16 +100,17 @@ def _keeps_intrinsics(line: dict[str, Any], camera: Camera) -> bool:
 def write_recorded_views(
     path: str | Path, views: Sequence[RecordedView], block_to_room: np.ndarray, scene_id: str
 ) -> None:
-    """Write screenshots as a tour file: poses at the eye, ``image`` as it lies from there.
+    """Write screenshots as a tour file, with poses at the eye and relative image paths.
 
     Args:
-        path: the file.
-        views: of ``read_screenshots``.
-        block_to_room: of the world that they show.
-        scene_id: what the world is called.
+        path: Output file.
+        views: Result of ``read_screenshots``.
+        block_to_room: Matrix from block coordinates to room coordinates of the world, float64 [4,
+            4].
+        scene_id: Name of the scene.
 
     Raises:
-        OutputError: it cannot be written.
+        OutputError: If the file cannot be written.
     """
     write_lines(path, [_line(view, block_to_room, scene_id, Path(path)) for view in views])
 

@@ -1,9 +1,9 @@
-"""Find the rooms of a volume, and the places in each where one can stand.
+"""Detection of rooms in a volume, and of the positions in each where a person can stand.
 
-The layouts beside a scene (``layout.json``) give the rooms where they hold a place. Else a room is
-a connected region right under a ceiling: there doorways are closed by what is over them, and
-furniture ends below. Where such a region narrows to less than a wide door it is cut in two. Places
-under no ceiling of a room, such as those in a doorway, go to the nearest room.
+If ``layout.json`` exists for the scene, it defines the rooms. Otherwise a room is a connected
+region directly below a ceiling; at this height, doorways are closed by the wall above them and
+furniture does not interfere. Regions are split where they are narrower than a wide door. Positions
+without a ceiling above, such as in doorways, are assigned to the nearest room.
 """
 
 from dataclasses import dataclass
@@ -37,13 +37,13 @@ _APART = 3.0  # A metre of height counts as so many along the floor, where place
 
 
 def find_layouts(path: str | Path) -> tuple[Layout, ...]:
-    """Return the rooms of the run that a place belongs to; none where it is of no run.
+    """Return the room layouts of the run that a path belongs to, or an empty tuple if none.
 
     Args:
-        path: a run's folder, its ``build``, the world in it, or any other place.
+        path: Run folder, its ``build`` folder, its world, or any other path.
 
     Raises:
-        DamagedFileError: its ``layout.json`` is no layout.
+        DamagedFileError: If ``layout.json`` is not a valid layout.
     """
     place = Path(path)
     for folder in (place, place.parent, place.parent.parent):
@@ -54,7 +54,15 @@ def find_layouts(path: str | Path) -> tuple[Layout, ...]:
 
 @dataclass(frozen=True, eq=False)
 class TourRoom:
-    """A room: its places in the graph, its free floor, and how much there is to see."""
+    """A room to visit.
+
+    Attributes:
+        number: Number of the room.
+        places: Indices of its positions in the walk graph, int64 [N].
+        floor_m2: Free floor area in square metres.
+        classes: Number of classes of furniture and objects in the room.
+        objects: Number of objects in the room.
+    """
 
     number: int
     places: np.ndarray  # int64 [N], into the graph
@@ -64,20 +72,20 @@ class TourRoom:
 
     @property
     def worth(self) -> float:
-        """How many views it should get, next to other rooms: by size and by what stands in it."""
+        """Relative number of views for this room, based on its size and contents."""
         return float(np.sqrt(self.floor_m2) * (2 + self.classes) + np.sqrt(self.objects))
 
 
 def find_rooms(
     volume: BlockVolume, graph: WalkGraph, solid: CollisionGrid, rule: TourRule
 ) -> list[TourRoom]:
-    """Return the rooms of a volume in which one can stand, in a fixed order.
+    """Find the rooms of a volume in which a person can stand, in a fixed order.
 
     Args:
-        volume: the blocks.
-        graph: ``walk_graph`` of it.
-        solid: ``solid_of`` of it.
-        rule: names layouts and where one starts.
+        volume: Volume of blocks.
+        graph: Walk graph of the volume.
+        solid: Collision grid of the volume.
+        rule: Tour settings, with optional layouts and start position.
     """
     if not len(graph):
         return []
@@ -254,7 +262,7 @@ def _contents(volume: BlockVolume, cells: np.ndarray, roof: np.ndarray) -> tuple
 
 
 def share_views(rooms: list[TourRoom], count: int) -> list[int]:
-    """Return how many of some views each room gets: by its worth, no view lost.
+    """Distribute a number of views among rooms in proportion to their ``worth``.
 
     Example:
         >>> share_views([], 3)

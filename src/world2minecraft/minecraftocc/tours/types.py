@@ -1,4 +1,4 @@
-"""The rules of a tour, and the views that a plan consists of."""
+"""Data types for tours: the settings of a tour and the planned views."""
 
 from dataclasses import dataclass, field
 
@@ -17,28 +17,40 @@ KINDS = ("axis", "diagonal", "free")
 
 
 def nyu_camera() -> Camera:
-    """Return the camera of NYUv2 as its loaders have it, 640x480, a vertical FOV of 49.6 degrees.
+    """Return the camera of NYUv2: 640x480 pixels, vertical field of view 49.6 degrees.
 
-    Its principal point is (320.5, 240.5), since they count pixel centres as whole numbers.
+    Its principal point is (320.5, 240.5), because the loaders of NYUv2 place pixel centres at whole
+    numbers.
     """
     return NYU_CAMERA
 
 
 def paper_camera() -> Camera:
-    """Return the pictures of the paper, 1920x1129 at the game's usual vertical FOV of 70."""
+    """Return the camera of the paper: 1920x1129 pixels, vertical field of view 70 degrees."""
     focal_px = float(focal_px_of_fov(PAPER_SIZE[1], PAPER_FOV_DEG))
     return Camera(*PAPER_SIZE, focal_px, focal_px, PAPER_SIZE[0] / 2, PAPER_SIZE[1] / 2)
 
 
 @dataclass(frozen=True)
 class TourRule:
-    """How rooms are toured. The numbers are choices, made by looking at sheets of such views.
+    """The settings of a tour. The defaults were chosen by inspecting contact sheets of views.
 
-    ``yaw_shares`` are those of views along the axes, along the diagonals, and of free ones. Half of
-    the walks see from the player's own 1.62 m, the others from ``eye_m``. Views that are nearer
-    to another than ``apart_m`` and look nearly the same way, within ``apart_deg``, are left out.
-    ``start`` is a place in world blocks, such as the spawn; with ``reachable_only`` no room is
-    toured that no way leads to from there. ``layouts`` say the rooms, where they are known.
+    Attributes:
+        camera: Camera of the views.
+        yaw_shares: Relative numbers of views along the axes, along the diagonals and in free
+            directions.
+        eye_m: Minimum and maximum eye height in metres for walks that do not use the player's
+            height.
+        player_share: Fraction of walks at the player's eye height of 1.62 m.
+        pitch_deg: Minimum and maximum pitch in degrees; positive values look down.
+        spacing_m: Minimum distance between frames of a walk in metres.
+        apart_m: Views closer than this in metres are discarded if they also face in similar
+            directions.
+        apart_deg: Maximum angle between similar directions in degrees.
+        light: Light settings for judging the views.
+        start: Start position in world blocks, such as the spawn point.
+        reachable_only: Whether to skip rooms that cannot be reached from ``start``.
+        layouts: Room layouts, if known.
     """
 
     camera: Camera = field(default_factory=nyu_camera)
@@ -56,19 +68,36 @@ class TourRule:
 
     def __post_init__(self):
         if len(self.yaw_shares) != 3 or min(self.yaw_shares) < 0 or sum(self.yaw_shares) <= 0:
-            raise UsageError(f"yaw_shares are three numbers from 0 up, not {self.yaw_shares}")
+            raise UsageError(
+                f"yaw_shares must be three numbers of 0 or more, not all 0, got {self.yaw_shares}"
+            )
         low, high = self.eye_m
         if not 0.3 <= low <= high <= 1.75:
-            raise UsageError(f"eye_m is two heights from 0.3 to 1.75, not {self.eye_m}")
+            raise UsageError(
+                f"eye_m must be two heights from 0.3 to 1.75 in ascending order, got {self.eye_m}"
+            )
         if not -60 <= self.pitch_deg[0] <= self.pitch_deg[1] <= 60:
-            raise UsageError(f"pitch_deg is two angles from -60 to 60, not {self.pitch_deg}")
+            raise UsageError(
+                "pitch_deg must be two angles from -60 to 60 in ascending order, got "
+                f"{self.pitch_deg}"
+            )
         if not 0.05 <= self.spacing_m <= 0.6:
-            raise UsageError(f"spacing_m is from 0.05 to 0.6, not {self.spacing_m:g}")
+            raise UsageError(f"spacing_m must be from 0.05 to 0.6, got {self.spacing_m:g}")
 
 
 @dataclass(frozen=True, eq=False)
 class PlannedView:
-    """One picture to take: the ``frame``-th of a tour. The pose is that of the eye."""
+    """A view to render.
+
+    Attributes:
+        tour_id: Name of the tour.
+        frame: Frame number within the tour.
+        camera: Camera of the view.
+        camera_to_room: Camera pose in the room, float64 [4, 4].
+        pose: Pose of the eye in the game.
+        t_s: Time since the start of the tour in seconds.
+        room: Number of the room.
+    """
 
     tour_id: str
     frame: int
@@ -80,12 +109,12 @@ class PlannedView:
 
     @property
     def kind(self) -> str:
-        """Whether it looks along an ``axis`` of the blocks, a ``diagonal``, or is ``free``."""
+        """Kind of the view's yaw: ``axis``, ``diagonal`` or ``free``."""
         return kind_of_yaw(self.pose.yaw_deg)
 
 
 def kind_of_yaw(yaw_deg: float) -> str:
-    """Return the kind of a yaw: exact multiples of 90 and 45 degrees, and all others.
+    """Return ``axis`` for multiples of 90 degrees, ``diagonal`` for multiples of 45, else ``free``.
 
     Example:
         >>> [kind_of_yaw(yaw) for yaw in (-90, 135, 44.9)]

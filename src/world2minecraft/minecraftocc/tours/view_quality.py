@@ -1,4 +1,4 @@
-"""Assess views by small renderings: whether they are blocked, empty, flat or dark."""
+"""Assessment of views with small renderings, to discard blocked, empty, flat or dark views."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,19 @@ MIN_BRIGHTNESS, MAX_BRIGHTNESS = 0.10, 0.97  # Of 1, the mean of the small pictu
 
 @dataclass(frozen=True, eq=False)
 class ViewQuality:
-    """What is measured on N small pictures, float64 [N] each."""
+    """Measurements of N views on small images, float64 [N] each.
+
+    Attributes:
+        near: Fraction of pixels closer than ``NEAR_M``.
+        middle_m: Median depth in metres.
+        out: Fraction of pixels that show sky or windows.
+        classes: Number of visible classes.
+        things: Fraction of pixels that show furniture and objects.
+        cells: Number of visible blocks.
+        flat: Fraction of pixels that show walls facing in the most frequent direction.
+        plane: Fraction of pixels with any surface facing in the most frequent direction.
+        bright: Mean brightness from 0 to 1.
+    """
 
     near: np.ndarray  # the share of pixels nearer than NEAR_M
     middle_m: np.ndarray  # the median depth
@@ -37,7 +49,7 @@ class ViewQuality:
     bright: np.ndarray  # 0 to 1
 
     def is_good(self, blocks_per_metre: float, labelled: bool) -> np.ndarray:
-        """Return which views are worth a picture, bool [N]."""
+        """Return whether each view is good enough to be used, bool [N]."""
         blocked = (self.near > NEAR_SHARE) | (self.middle_m < CLOSE_M)
         cells = min(MIN_CELLS_LIMIT, MIN_CELLS + blocks_per_metre**2)
         empty = (self.out > OUT_SHARE) | (self.classes < MIN_CLASSES) | (self.cells < cells)
@@ -51,13 +63,13 @@ class ViewQuality:
 def assess_views(
     scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourRule
 ) -> ViewQuality:
-    """Render views small, and measure them.
+    """Render small images of views and measure their quality.
 
     Args:
-        scene: ``prepare_scene`` of a volume.
-        states: the volume's; where nothing is labelled they stand for classes.
-        poses: ``camera_to_room``, float64 [N, 4, 4].
-        rule: the camera and the light.
+        scene: Scene prepared with ``prepare_scene``.
+        states: Block states of the volume, used instead of classes if the volume has no labels.
+        poses: Camera poses in the room, float64 [N, 4, 4].
+        rule: Tour settings, which define the camera and the light.
     """
     outputs = ("colour", "depth", "semantic", "block", "face")
     seen = render_batch(

@@ -1,6 +1,6 @@
-"""Plan a smooth, collision-free walk through a room, from stop to stop over its free floor.
+"""Planning of smooth, collision-free walks through a room, between stops on its free floor.
 
-Stops are spread: each lies far from those before it. Ways keep away from walls where there is room.
+Each stop is chosen far from the previous ones. Paths keep a distance from walls if there is space.
 """
 
 from dataclasses import dataclass
@@ -31,7 +31,13 @@ ROUNDS = 6  # Of taking back what was rounded through something.
 
 @dataclass(frozen=True, eq=False)
 class WalkArea:
-    """The floor of one room: its part of the graph, and what bodies must not meet."""
+    """The floor of a room.
+
+    Attributes:
+        graph: Part of the walk graph inside the room.
+        solid: Collision grid of the volume.
+        corner: Minimum corner of the volume in world blocks.
+    """
 
     graph: WalkGraph
     solid: CollisionGrid
@@ -39,22 +45,26 @@ class WalkArea:
 
     @cached_property
     def part(self) -> np.ndarray:
-        """Int32 [N]: what hangs together."""
+        """Number of the connected part that each position belongs to, int32 [N]."""
         return connected_parts(self.graph)
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Float64 [N]: how much longer a metre counts, the nearer to a wall."""
+        """Factor for path lengths at each position, which increases near walls, float64 [N]."""
         return 1 + NARROW_COST * np.maximum(0.0, 1 - clearance_m(self.graph) / ELBOW_M)
 
     @property
     def cell_m2(self) -> float:
-        """The floor that one place stands for."""
+        """Floor area per position in square metres."""
         return (self.graph.spacing / self.graph.blocks_per_metre) ** 2
 
 
 def plan_walk(area: WalkArea, rng: np.random.Generator) -> np.ndarray:
-    """Return a smooth walk, the feet every ``SAMPLE_M``, float64 [N, 3] in world blocks."""
+    """Plan a smooth random walk.
+
+    Returns:
+        The feet positions every ``SAMPLE_M`` in world block coordinates, float64 [N, 3].
+    """
     stops = _stops(area, rng)
     feet = [area.graph.feet[stops[:1]]]
     for a, b in pairwise(_in_order(area.graph, stops)):
@@ -117,7 +127,7 @@ def _smooth(area: WalkArea, feet: np.ndarray) -> np.ndarray:
 
 
 def fits_at(area: WalkArea, feet: np.ndarray) -> np.ndarray:
-    """Tell where a body fits over what it would step up on, bool [N]."""
+    """Return whether a body fits at each feet position above step height, bool [N]."""
     scale, blocks = area.graph.scale, area.graph.blocks_per_metre
     half = 0.3 * scale - 0.02 * blocks
     heights = (STEP_HEIGHT * scale, HEIGHT * scale)

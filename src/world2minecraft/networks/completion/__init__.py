@@ -1,4 +1,4 @@
-"""The completion network: virtual scans to learn from, the network, its training and export.
+"""The completion network: virtual scans for training, the network, its training and its export.
 
-Samples are made without torch; see docs/completion.md for the commands.
+Samples are created without PyTorch. ``docs/completion.md`` describes the commands.
 """

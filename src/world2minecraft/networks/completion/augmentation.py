@@ -1,6 +1,6 @@
-"""Augment a sample: rotate, mirror, crop, corrupt, drop channels.
+"""Augmentation of samples: rotating, mirroring, cropping, corrupting and dropping channels.
 
-All is drawn from one generator, so that a seed and a step give the same batch.
+All random numbers come from one generator, so a seed and a step determine the batch.
 """
 
 from dataclasses import replace
@@ -17,7 +17,13 @@ NO_HINT, NO_VOTES, NO_COLOUR, NO_OFFSET, NO_HEIGHT, NO_FREE = 0.25, 0.45, 0.2, 0
 
 
 def augment_sample(sample: Sample, rng: np.random.Generator, crop: tuple[int, int, int]) -> Sample:
-    """Return a sample of ``crop`` cells, the truth of what it has not 255."""
+    """Augment a sample randomly and crop it to the given shape.
+
+    Args:
+        sample: Sample to augment.
+        rng: Random generator.
+        crop: Shape of the result in cells. The ground truth outside the sample is 255.
+    """
     sample = rotate_sample(sample, int(rng.integers(4)), bool(rng.integers(2)))
     sample = crop_sample(sample, _window(sample, rng, crop), crop)
     sight = _drop_channels(_corrupt_input(sample.sight, rng), rng)
@@ -25,7 +31,7 @@ def augment_sample(sample: Sample, rng: np.random.Generator, crop: tuple[int, in
 
 
 def rotate_sample(sample: Sample, quarter_turns: int, is_mirrored: bool) -> Sample:
-    """Return a sample turned counter-clockwise from above, after being mirrored along x."""
+    """Optionally mirror a sample along x, then rotate it counter-clockwise, seen from above."""
     order = np.zeros(sample.sight.log_odds.shape, np.int32)
     order.reshape(-1)[sample.sight.at] = np.arange(1, len(sample.sight.at) + 1)
     arrays = [sample.sight.log_odds, sample.truth, order]
@@ -48,7 +54,13 @@ def rotate_sample(sample: Sample, quarter_turns: int, is_mirrored: bool) -> Samp
 
 
 def crop_sample(sample: Sample, start: np.ndarray, shape: tuple[int, int, int]) -> Sample:
-    """Return a window of a sample; ``start`` may be negative, and then there is nothing."""
+    """Crop a sample. Cells outside the sample are unknown.
+
+    Args:
+        sample: Sample to crop.
+        start: First cell of the crop, which may be negative.
+        shape: Shape of the crop in cells.
+    """
     truth = np.full(shape, UNKNOWN, np.uint8)
     old = sample.truth.shape
     first, last = np.maximum(start, 0), np.minimum(start + shape, old)

@@ -1,4 +1,4 @@
-"""Export the completion network as ONNX in half precision, checked against PyTorch."""
+"""ONNX export of the completion network in half precision, with a comparison to PyTorch."""
 
 import io
 from pathlib import Path
@@ -19,10 +19,18 @@ TRIAL_SHAPE = (24, 16, 24)
 
 
 def export_completion(network: CompletionNet, path: Path, about: dict[str, str]) -> float:
-    """Write a network as ONNX and return by how much its logits differ from torch's.
+    """Write a network as ONNX.
 
-    Weights are rounded to half precision first, so that both say the same; what that costs is a
-    matter of scores. ``about`` is written into the file.
+    The weights of a copy are first rounded to half precision, so both versions compute the same
+    result.
+
+    Args:
+        network: Network to export.
+        path: Output file.
+        about: Metadata to store in the file.
+
+    Returns:
+        The largest difference between the logits of PyTorch and ONNX Runtime.
     """
     network = to_half_precision(network).eval()
     data = _store_weights(_onnx_bytes(network), about)
@@ -31,7 +39,7 @@ def export_completion(network: CompletionNet, path: Path, about: dict[str, str])
 
 
 def to_half_precision(network: CompletionNet) -> CompletionNet:
-    """Return a float32 copy of a network, its norms folded, its weights halves' values."""
+    """Return a float32 copy of a network with folded norms and weights rounded to half precision."""
     copy = CompletionNet(network.size)
     copy.load_state_dict(network.state_dict())
     copy.eval()
@@ -79,7 +87,7 @@ def _store_weights(data: bytes, about: dict[str, str]) -> bytes:
 
 @torch.no_grad()
 def parity(network: nn.Module, data: bytes) -> float:
-    """Return the largest difference between torch's and onnxruntime's logits on two shapes."""
+    """Return the largest difference between the logits of PyTorch and ONNX Runtime on two shapes."""
     session = onnxruntime.InferenceSession(data, providers=["CPUExecutionProvider"])
     rng = np.random.default_rng(0)
     worst = 0.0

@@ -1,7 +1,8 @@
-"""The completion network: a 3D U-Net that works at half resolution and predicts at full.
+"""The completion network: a 3D U-Net that works at half resolution and predicts at full resolution.
 
-Two cells a side become one at its entry, so that a room costs an eighth. The last layer sees the
-full cells again beside the features of the body; without it labels came in stripes of two cells.
+Its first layer combines 2 x 2 x 2 cells into one, which reduces the computation by a factor of
+eight. The last layers see the features and the full-resolution cells; without the latter, the
+labels had stripes that were two cells wide.
 """
 
 from dataclasses import dataclass
@@ -23,7 +24,7 @@ MULTIPLE = 8  # Sides of what goes in are whole multiples of this.
 
 @dataclass(frozen=True)
 class CompletionSize:
-    """Channels at a half, a quarter and an eighth of the resolution, and at full."""
+    """Number of channels at a half, a quarter and an eighth of the resolution, and at full resolution."""
 
     half: int = 40
     quarter: int = 72
@@ -35,7 +36,7 @@ TINY = CompletionSize(8, 12, 16, 8)
 
 
 class Block(nn.Module):
-    """Two 3x3x3 convolutions around which the input goes on."""
+    """Two 3x3x3 convolutions with a residual connection."""
 
     def __init__(self, channels: int, dilation: int = 1):
         super().__init__()
@@ -48,12 +49,12 @@ class Block(nn.Module):
         )
 
     def forward(self, x: Tensor) -> Tensor:
-        """Return a tensor of the same shape."""
+        """Apply the block. The result has the shape of the input."""
         return torch.relu(x + self.body(x))
 
 
 class Context(nn.Module):
-    """Adds features of the mean of all cells to each cell."""
+    """A layer that adds features of the mean over all cells to each cell."""
 
     def __init__(self, channels: int):
         super().__init__()
@@ -64,14 +65,15 @@ class Context(nn.Module):
         )
 
     def forward(self, x: Tensor) -> Tensor:
-        """Return a tensor of the same shape."""
+        """Apply the layer. The result has the shape of the input."""
         return x + self.mix(x.mean(dim=(2, 3, 4), keepdim=True))
 
 
 class CompletionNet(nn.Module):
-    """``forward`` takes float [B, CHANNELS, X, Y, Z] and gives logits [B, 12, X, Y, Z].
+    """The completion network.
 
-    Sides are whole multiples of ``MULTIPLE``.
+    It maps float [B, CHANNELS, X, Y, Z] to logits [B, 12, X, Y, Z]. The sides must be multiples of
+    ``MULTIPLE``.
     """
 
     def __init__(self, size: CompletionSize | None = None):
@@ -100,7 +102,7 @@ class CompletionNet(nn.Module):
         self.told = _trusting()
 
     def forward(self, cells: Tensor) -> Tensor:
-        """Return the logits of the 12 classes of each cell."""
+        """Return the class logits of each cell, [B, 12, X, Y, Z]."""
         half = self.half_in(self.enter(cells))
         quarter = self.quarter_in(self.to_quarter(half))
         eighth = self.eighth(self.to_eighth(quarter))

@@ -1,4 +1,4 @@
-"""Batches for the completion network from a folder of sample files that may still grow."""
+"""Batches for the completion network from a folder of sample files, which may still grow."""
 
 from pathlib import Path
 
@@ -17,33 +17,40 @@ REFRESH_EVERY_STEPS = 100  # Steps after which new files are looked for.
 
 
 class SamplePool:
-    """Draws samples of a folder: the kind of look, a room, one of its samples. Files are kept."""
+    """A pool that chooses random samples from files: first the kind of scan, then the room.
+
+    Files are kept in memory after they are read.
+    """
 
     def __init__(self, folder: Path, seeds: range):
-        """Begin with the files of these seeds that are there.
+        """Create a pool with the existing files for the given seeds.
 
         Raises:
-            InputError: there is none.
+            InputError: If there are no such files.
         """
         self.folder, self.seeds = folder, seeds
         self._paths: list[Path] = []
         self._held: dict[Path, dict[str, list[Sample]]] = {}
         self.refresh()
         if not self._paths:
-            raise InputError(folder, "has no samples; run benchmarks.make_completion_samples")
+            raise InputError(
+                folder,
+                "contains no samples for these seeds; create some with "
+                "benchmarks.make_completion_samples",
+            )
 
     def refresh(self) -> None:
-        """Take in files that are new."""
+        """Look for new files."""
         found = sorted(self.folder.glob("*.npz"))
         named = [path for path in found if path.stem.isdecimal()]
         self._paths = [path for path in named if int(path.stem) in self.seeds]
 
     def __len__(self) -> int:
-        """The number of rooms."""
+        """Return the number of rooms."""
         return len(self._paths)
 
     def draw(self, rng: np.random.Generator) -> Sample:
-        """Return one sample; a file that is drawn for the first time is read."""
+        """Return a random sample, reading its file if necessary."""
         kinds = sorted(KIND_WEIGHTS)
         shares = np.array([KIND_WEIGHTS[kind] for kind in kinds])
         kind = str(rng.choice(kinds, p=shares / shares.sum()))
@@ -59,13 +66,18 @@ class SamplePool:
     def batch(
         self, rng: np.random.Generator, count: int, crop: tuple[int, int, int]
     ) -> tuple[Tensor, Tensor, Tensor]:
-        """Return inputs [B, C, X, Y, Z], truth int64 [B, X, Y, Z], and the observed surface."""
+        """Return a random batch of augmented samples.
+
+        Returns:
+            The inputs [B, C, X, Y, Z], the ground truth int64 [B, X, Y, Z], and the mask of
+            observed surfaces bool [B, X, Y, Z].
+        """
         chosen = [augment_sample(self.draw(rng), rng, crop) for _ in range(count)]
         return collate_samples(chosen)
 
 
 def collate_samples(samples: list[Sample]) -> tuple[Tensor, Tensor, Tensor]:
-    """Return samples of one shape as tensors."""
+    """Stack samples of the same shape into tensors, as returned by ``SamplePool.batch``."""
     cells = torch.from_numpy(np.stack([network_input(sample.sight) for sample in samples]))
     truth = torch.from_numpy(np.stack([sample.truth for sample in samples]).astype(np.int64))
     surface = torch.from_numpy(np.stack([sample.sight.log_odds > 0 for sample in samples]))

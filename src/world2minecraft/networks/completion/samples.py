@@ -1,11 +1,12 @@
-"""Make training samples: the input of the completion network for a virtual scan, and the truth.
+"""Training samples for the completion network: the input from a virtual scan, and the ground truth.
 
-Truth is the room's own grid resampled to the cells by the rule that scores reconstructions. It is
-255 beyond the rooms that the scan looked into: nobody can learn what lies behind a wall.
+The ground truth is the grid of the room, resampled to the cells with the rule used for scoring
+reconstructions. It is 255 outside the rooms that the scan has observed, because the space behind a
+wall cannot be learned.
 
-Rooms are of every kind and shape, tidy or cluttered, and houses. Training takes seeds from 10,000
-on, so that no seed of a benchmark (1000 to 1049, 2000 to 2019, 500 to 549 to tune) is ever learnt;
-``held_out`` seeds lie below.
+The samples cover rooms of all kinds and shapes, tidy and cluttered, and houses. Training uses seeds
+from 10,000 upwards, so the seeds of the benchmarks (1000 to 1049 and 2000 to 2019, and 500 to 549
+for tuning) and the ``held_out`` seeds, which are all lower, are never used for training.
 """
 
 from dataclasses import dataclass, replace
@@ -61,7 +62,7 @@ FIELDS = ("log_odds", "at", "hits", "colour", "offset", "votes", "hint")
 
 
 def training_room(seed: int) -> Room:
-    """Return the room or house of a seed; the same seed gives the same bytes."""
+    """Generate the room or house for a seed. The same seed always gives the same result."""
     rng = np.random.default_rng([seed, 11])
     clutter = float(rng.choice([0.0, rng.uniform(0, 1)], p=[0.2, 0.8]))
     if rng.random() < HOUSE_SHARE:
@@ -76,7 +77,16 @@ def training_room(seed: int) -> Room:
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """A sight and its truth."""
+    """A training sample.
+
+    Attributes:
+        sight: Input of the network.
+        truth: Class of each cell (0 to 11 or 255), uint8 [X, Y, Z].
+        kind: Kind of the scan.
+        hinted: Whether the geometric labeller was used, which requires walls along the axes.
+        false_share: Fraction of the occupied input cells with known ground truth that are empty in
+            the ground truth.
+    """
 
     sight: Sight
     truth: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
@@ -86,9 +96,9 @@ class Sample:
 
 
 def make_samples(seed: int) -> list[Sample]:
-    """Return the samples of the room of a seed: the same seed gives the same bytes.
+    """Create the samples for the room of a seed. The same seed always gives the same result.
 
-    There is one a look of ``LOOKS``; those that saw next to nothing are left out.
+    There is one sample for each scan in ``LOOKS``, except for scans that observe almost nothing.
     """
     room = training_room(seed)
     scene = prepare_photos(room)
@@ -117,7 +127,7 @@ def make_sample(
     evidence: FusedEvidence,
     rng: np.random.Generator,
 ) -> Sample:
-    """Return the sample of a fused look."""
+    """Create the sample for a fused scan."""
     grid = remove_floaters(extract_grid(evidence), CleaningParameters())
     hint = hint_of(*GeometricLabeller().traced(grid, evidence)) if look.in_room_axes else None
     truth_to_grid = look.room_to_grid.copy()
@@ -139,7 +149,7 @@ def make_sample(
 
 
 def crop_input(sight: Sight, start: np.ndarray, shape: tuple[int, int, int]) -> Sight:
-    """Return the part of a sight in a box of cells; what it has not is unknown."""
+    """Crop the network input to a box of cells. Cells outside the input are unknown."""
     old = sight.log_odds.shape
     first, last = np.maximum(start, 0), np.minimum(start + shape, old)
     odds = np.zeros(shape, np.int8)
@@ -193,9 +203,10 @@ def _box(
 def mask_seen_rooms(
     room: Room, room_to_grid: np.ndarray, low: np.ndarray, voxel_m: float, log_odds: np.ndarray
 ) -> np.ndarray:
-    """Return the cells of the rooms that were looked into, their shells with them, bool [X, Y, Z].
+    """Return the cells of the rooms that a scan has observed, bool [X, Y, Z].
 
-    A room counts where a twentieth of its cells was seen free.
+    A room with its walls, floor and ceiling is included if at least 5 % of its cells were observed
+    as free.
     """
     shape = log_odds.shape
     middles = (np.moveaxis(np.indices(shape[:2]), 0, -1) + low[:2] + 0.5) * voxel_m
@@ -231,7 +242,7 @@ def _in_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def write_samples(path: Path, samples: list[Sample]) -> None:
-    """Write the samples of one seed to one file."""
+    """Write the samples of a seed to a file."""
     arrays: dict[str, np.ndarray] = {"count": np.array(len(samples))}
     for n, sample in enumerate(samples):
         for name in FIELDS:
@@ -247,16 +258,17 @@ def write_samples(path: Path, samples: list[Sample]) -> None:
 
 
 def read_samples(path: Path) -> list[Sample]:
-    """Read what ``write_samples`` wrote.
+    """Read a file written by ``write_samples``.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is damaged.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not valid.
     """
     arrays = read_npz(path, npz_array_names(path))
     try:
         return _samples_of(arrays)
     except (KeyError, ValueError) as error:
-        raise DamagedFileError(path, f"holds no samples ({error})") from error
+        raise DamagedFileError(path, f"not a valid sample file ({error})") from error
 
 
 def _samples_of(arrays: dict[str, np.ndarray]) -> list[Sample]:

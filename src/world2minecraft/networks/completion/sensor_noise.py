@@ -1,9 +1,10 @@
-"""Noise of virtual scans: drawn once per scan, so strong that a quarter of the surface is false.
+"""Noise of virtual scans, so strong that about a quarter of the observed surface is wrong.
 
-On real single frames 23 % of fused surface cells are empty in the truth: depth errs, poses err,
-scale is wrong, and who labelled them fitted furniture by hand. Here the same comes about by poses
-that are off, depth that is scaled wrongly from frame to frame, and a truth that lies a little
-beside what was seen. ``python -m benchmarks.check_completion`` prints the share.
+In real single frames, 23 % of the fused surface cells are empty in the ground truth, because of
+errors in depth, pose and scale, and because annotators fitted furniture models by hand. Virtual
+scans reproduce this with wrong poses, a wrong depth scale in each frame, and a ground truth that is
+shifted slightly. The noise is random and constant within a scan. ``python -m
+benchmarks.check_completion`` prints the fraction.
 """
 
 from dataclasses import dataclass, replace
@@ -19,11 +20,17 @@ PATCH_SHARE = 1 / 80  # Of the width: 8 px at 640, the patches in which label im
 
 @dataclass(frozen=True)
 class ScanNoise:
-    """What is wrong with one scan.
+    """The noise of a scan.
 
-    ``misfit_m`` is how far the truth lies beside the frame of the scan, ``glass`` the share of
-    window pixels without depth, ``blots`` the mean number of blots without depth in a frame.
-    ``label_error`` is None where the scan has no label images.
+    Attributes:
+        sensor: Noise of the depth sensor.
+        frame_scale: Standard deviation of the depth scale between frames.
+        scan_scale: Factor by which all depths are scaled.
+        misfit_m: Shift between the ground truth and the scan in metres, float64 [3].
+        yaw_error_deg: Rotation between the ground truth and the scan in degrees.
+        glass: Fraction of window pixels without depth.
+        blots: Mean number of blots without depth in a frame.
+        label_error: Fraction of wrong pixels in label images, or None if there are no label images.
     """
 
     sensor: Sensor
@@ -37,7 +44,7 @@ class ScanNoise:
 
 
 def draw_noise(rng: np.random.Generator, kind: str) -> ScanNoise:
-    """Draw the noise of a scan of a kind: a single picture lies farthest beside its truth."""
+    """Choose random noise for a kind of scan. Single images have the largest shift."""
     level = float(rng.uniform(0.05, 1.85))
     sensor = replace(
         SENSORS["rgbd"],
@@ -63,7 +70,7 @@ def draw_noise(rng: np.random.Generator, kind: str) -> ScanNoise:
 def draw_lost_pixels(
     noise: ScanNoise, labels: np.ndarray, depth_m: np.ndarray, rng: np.random.Generator
 ) -> np.ndarray:
-    """Return which pixels lose their depth to glass and to blots, bool [H, W]."""
+    """Choose the pixels that lose their depth because of glass and blots, bool [H, W]."""
     lost = (labels == SemanticClass.WINDOW) & (rng.random(labels.shape) < noise.glass)
     height, width = labels.shape
     rows, columns = np.mgrid[:height, :width]
@@ -75,7 +82,7 @@ def draw_lost_pixels(
 
 
 def corrupt_labels(labels: np.ndarray, error: float, rng: np.random.Generator) -> np.ndarray:
-    """Return a label image of which a share, in patches, says another class."""
+    """Replace the class of random patches in a label image, covering about the fraction ``error``."""
     height, width = labels.shape
     side = max(round(width * PATCH_SHARE), 1)
     shape = (height // side + 1, width // side + 1)

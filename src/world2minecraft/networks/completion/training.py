@@ -1,8 +1,9 @@
-"""Train the completion network, step by step, so that an interrupted run continues where it ended.
+"""Training of the completion network, which can be interrupted and resumed at any step.
 
-Losses are cross entropy of the classes, a Jaccard loss and one of the geometry. The learning rate
-is constant and falls to nothing over the last part, so that a run may be made longer from any state
-before its fall. The result is the running mean of the weights.
+The loss is the sum of the cross entropy of the classes, a Jaccard loss of the classes and a Jaccard
+loss of the occupancy. The learning rate is constant and decreases to zero in the last part of the
+run, so a run can be extended from any state before this part. The result is the running mean of the
+weights.
 """
 
 from collections.abc import Callable
@@ -31,12 +32,12 @@ Report = Callable[[int, dict[str, float], CompletionNet], None]
 
 
 def completion_loss(logits: Tensor, truth: Tensor, surface: Tensor) -> dict[str, Tensor]:
-    """Return the losses by name; their sum is what is trained.
+    """Compute the losses by name. Their sum is minimized.
 
     Args:
-        logits: float [B, 12, X, Y, Z].
-        truth: int64 [B, X, Y, Z], 0 to 11 or 255, which counts for nothing.
-        surface: bool [B, X, Y, Z], the observed occupied cells.
+        logits: Class logits, float [B, 12, X, Y, Z].
+        truth: Class of each cell, int64 [B, X, Y, Z]; 255 is ignored.
+        surface: Mask of observed occupied cells, bool [B, X, Y, Z].
     """
     chosen = (truth != UNKNOWN) & (torch.rand(truth.shape, device=truth.device) < ASKED)
     flat = logits.permute(0, 2, 3, 4, 1)[chosen].float()
@@ -64,7 +65,20 @@ def _jaccard(share: Tensor, wanted: Tensor) -> Tensor:
 
 @dataclass(frozen=True)
 class CompletionRun:
-    """What decides a run, beside its samples."""
+    """The settings of a training run.
+
+    Attributes:
+        steps: Number of steps.
+        batch: Number of samples in a batch.
+        rate: Maximum learning rate.
+        fall: Fraction of the steps in which the learning rate decreases.
+        warm_steps: Number of warm-up steps.
+        decay: Weight decay.
+        mean_of: Decay of the running mean of the weights; 0.99 averages over about 100 steps.
+        seed: Random seed.
+        crop: Shape of the samples in cells.
+        size: Size of the network.
+    """
 
     steps: int = 4000
     batch: int = 4
@@ -79,7 +93,7 @@ class CompletionRun:
 
 
 class Trainer:
-    """A run in progress. One object follows one run."""
+    """A training run in progress."""
 
     def __init__(self, run: CompletionRun, pool: SamplePool):
         self.run, self.pool = run, pool
@@ -94,7 +108,13 @@ class Trainer:
         self.step = 0
 
     def train(self, until: int, report: Report | None = None, every: int = 50) -> None:
-        """Train up to a step; ``report`` is told of losses every so many steps."""
+        """Train up to a step.
+
+        Args:
+            until: Step to stop at.
+            report: Callback that receives the step, the mean losses and the averaged network.
+            every: Number of steps between two reports.
+        """
         sums: dict[str, float] = {}
         while self.step < min(until, self.run.steps):
             if self.step and self.step % REFRESH_EVERY_STEPS == 0:
@@ -124,7 +144,7 @@ class Trainer:
         return {name: float(value.detach()) for name, value in losses.items()}
 
     def learning_rate_at(self, step: int) -> float:
-        """Return the learning rate of a step."""
+        """Return the learning rate at a step."""
         run = self.run
         left = (run.steps - step) / max(run.fall * run.steps, 1)
         return run.rate * min((step + 1) / run.warm_steps, 1.0, max(left, 0.01))
@@ -141,7 +161,7 @@ class Trainer:
                 value.copy_(new[name])
 
     def save(self, folder: Path) -> None:
-        """Write the weights as safetensors and the optimiser's state beside them."""
+        """Write the weights and the optimizer state to a folder."""
         folder.mkdir(parents=True, exist_ok=True)
         for name, network in (("network", self.network), ("mean", self.mean)):
             state = {key: value.contiguous() for key, value in network.state_dict().items()}
@@ -157,7 +177,7 @@ class Trainer:
         write_text(folder / "run.txt", f"{asdict(self.run)}\n")
 
     def resume(self, folder: Path) -> bool:
-        """Go on from what ``save`` wrote; False where there is nothing."""
+        """Load the state written by ``save``. Return False if the folder contains none."""
         if not (folder / "step.txt").is_file():
             return False
         self.network.load_state_dict(load_file(str(folder / "network.safetensors")))

@@ -1,8 +1,8 @@
-"""Virtual scans of rooms: which views are taken, and the evidence that our fusion makes of them.
+"""Virtual scans of rooms: the choice of their views, and the fused evidence.
 
-A *walk* is a share of a person's tour, a *few* is two to six pictures, a *single* is one, as a data
-set of depth frames has it. Walks and fews lie in the room's own axes, as after alignment; most
-singles in those of their camera, as the grids of NYUv2 do.
+A ``walk`` is a part of a person's tour, a ``few`` consists of two to six images, and a ``single``
+is one image, as in data sets of depth frames. Walks and fews use the room axes, as after alignment;
+most singles use the axes of their camera, like the grids of NYUv2.
 """
 
 from dataclasses import dataclass
@@ -32,7 +32,14 @@ TOUR_VIEWS = 40
 
 @dataclass(frozen=True, eq=False)
 class VirtualScan:
-    """One scan of a room: its views, and the frame in which they are fused."""
+    """A scan of a room, with the coordinate system in which it is fused.
+
+    Attributes:
+        kind: ``walk``, ``few`` or ``single``.
+        poses: Camera poses in the room, float64 [F, 4, 4].
+        room_to_grid: Matrix from room coordinates to those of the fused cells, float64 [4, 4].
+        in_room_axes: Whether the fused cells are aligned with the room axes.
+    """
 
     kind: ScanKind
     poses: np.ndarray  # float64 [F, 4, 4], camera_to_room
@@ -41,7 +48,7 @@ class VirtualScan:
 
 
 def draw_scan(kind: ScanKind, tour: np.ndarray, rng: np.random.Generator) -> VirtualScan:
-    """Draw a look from the poses of a tour, float64 [F, 4, 4]."""
+    """Choose a random scan from the camera poses of a tour, float64 [F, 4, 4]."""
     if kind == "walk":
         poses = tour[: int(rng.integers(8, len(tour) + 1))]
     elif kind == "few":
@@ -76,10 +83,10 @@ def _frame(pose: np.ndarray, by_camera: bool, rng: np.random.Generator) -> np.nd
 def fuse_scan(
     room: Room, scene: PhotoScene, look: VirtualScan, noise: ScanNoise, rng: np.random.Generator
 ) -> FusedEvidence:
-    """Return what our fusion makes of a look.
+    """Render the views of a scan with noise and fuse them.
 
     Raises:
-        CaptureError: no view gave any evidence.
+        CaptureError: If no view provides evidence.
     """
     wide = WALK_WIDE_PX if look.kind == "walk" else FEW_WIDE_PX
     focal = FOCAL_SHARE * wide

@@ -1,6 +1,6 @@
-"""Frames for networks: from any occupancy data set to batches, small, mixed and augmented.
+"""Training frames for networks, from data sets to mixed and augmented batches.
 
-``frames`` makes a frame of a sample, ``cache`` stores frames decoded, ``splits`` says which train,
-``sequences`` finds further frames of a scene, ``batches`` draws, augments and stacks frames, and
-``run_data`` opens all sets of a run.
+``frames`` converts samples to frames, ``cache`` stores decoded frames, ``splits`` selects the
+training frames, ``sequences`` finds further frames of a scene, ``batches`` selects, augments and
+stacks frames, and ``training_data`` opens all data sets of a run.
 """

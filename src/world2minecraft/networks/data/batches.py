@@ -1,14 +1,14 @@
-"""Frames as batches: which frame is drawn when, how it is augmented, and the data loaders.
+"""Batches of frames: their random order, their augmentation and the data loaders.
 
-A draw takes a set with a probability in proportion to its weight, whatever its size, and then the
-next frame of that set's own order: each comes once before any comes again. All of it follows from
-the seed, and draw number n is the same whether the draws before it were made or not; so a run that
-was stopped continues at its draw.
+For each frame, a data set is chosen with a probability proportional to its weight, regardless of
+its size. The next frame in the shuffled order of this data set is then used, so each frame is used
+once before any is repeated. Everything is derived from the seed, and each choice is independent of
+the previous ones, so an interrupted run can resume at any position.
 
-A mirrored frame is a frame of the mirrored room: image, depth, principal point, pose and cells turn
-over together, so that a cell still falls on the pixels that show it. The pose stays a rotation:
-camera and grid are mirrored both. ``grid_to_room`` is left as it was: no network is given it, and a
-mirrored frame is of no room.
+A mirrored frame shows the mirrored room: the image, depth, principal point, pose and cells are
+mirrored together, so each cell is still projected to the pixels that show it. The pose remains a
+rotation, because both the camera and the grid are mirrored. ``grid_to_room`` is not changed,
+because networks do not use it and a mirrored frame does not belong to a real room.
 """
 
 from collections.abc import Sequence
@@ -29,14 +29,25 @@ LUMINANCE = np.array([0.299, 0.587, 0.114], np.float32)
 
 
 class Draws(NamedTuple):
-    """The draws of a run, in their order."""
+    """The random choices of frames for a run, in order.
+
+    Attributes:
+        source: Index of the data set, int32 [N].
+        row: Index of the training frame in the data set, int64 [N].
+    """
 
     source: np.ndarray  # int32 [N], which set
     row: np.ndarray  # int64 [N], which of its training frames
 
 
 def plan_draws(sizes: Sequence[int], weights: Sequence[float], count: int, seed: int) -> Draws:
-    """Return ``count`` draws from sets of the given sizes.
+    """Choose ``count`` random frames from data sets of the given sizes.
+
+    Args:
+        sizes: Number of training frames in each data set.
+        weights: Relative weight of each data set.
+        count: Number of frames to choose.
+        seed: Random seed.
 
     Example:
         >>> draws = plan_draws([3], [1.0], 6, 0)
@@ -58,12 +69,12 @@ def plan_draws(sizes: Sequence[int], weights: Sequence[float], count: int, seed:
 
 
 def draw_rng(seed: int, draw: int) -> np.random.Generator:
-    """Return the generator that changes the frame of one draw."""
+    """Return the random generator for the augmentation of a frame."""
     return np.random.default_rng([seed, 2**20, draw])
 
 
 def flip_frame(frame: Frame, voxel_m: float) -> Frame:
-    """Return the frame of the room mirrored left to right, across the middle of its grid."""
+    """Mirror a frame left to right, across the middle of its grid."""
     intrinsics = frame.intrinsics.copy()
     intrinsics[0, 2] = frame.image.shape[1] - intrinsics[0, 2]
     intrinsics[0, 1] = -intrinsics[0, 1]
@@ -81,12 +92,12 @@ def flip_frame(frame: Frame, voxel_m: float) -> Frame:
 
 
 def jitter_colour(image: np.ndarray, strength: float, rng: np.random.Generator) -> np.ndarray:
-    """Return a picture with other brightness, contrast and saturation, in an order by chance.
+    """Change the brightness, contrast and saturation of an image in random order.
 
     Args:
-        image: uint8 [H, W, 3].
-        strength: 0.4 changes each by a factor of 0.6 to 1.4.
-        rng: draws order and factors.
+        image: Colour image, uint8 [H, W, 3].
+        strength: Maximum relative change; 0.4 changes each by a factor of 0.6 to 1.4.
+        rng: Random generator.
     """
     if not strength:
         return image
@@ -111,21 +122,27 @@ def _adjust_colour(values: np.ndarray, kind: int, factor: np.float32) -> np.ndar
 def augment_frame(
     frame: Frame, voxel_m: float, flip: float, jitter: float, rng: np.random.Generator
 ) -> Frame:
-    """Return a frame mirrored with chance ``flip``, its colours changed by ``jitter``."""
+    """Mirror a frame with probability ``flip`` and change its colours with strength ``jitter``."""
     return augment_sequence([frame], voxel_m, flip, jitter, rng)[0]
 
 
 def augment_sequence(
     frames: Sequence[Frame], voxel_m: float, flip: float, jitter: float, rng: np.random.Generator
 ) -> list[Frame]:
-    """Return frames of one grid, all mirrored or none, each in colours of its own."""
+    """Augment frames that share a grid: mirror all or none, and change the colours of each."""
     turn_over = rng.random() < flip
     changed = [replace(one, image=jitter_colour(one.image, jitter, rng)) for one in frames]
     return [flip_frame(one, voxel_m) for one in changed] if turn_over else changed
 
 
 class Batch(NamedTuple):
-    """What a step takes; ``more`` are further frames of the same scenes, in the same grids."""
+    """A training batch.
+
+    Attributes:
+        inputs: Inputs of the network.
+        target: Ground truth.
+        more: Inputs from further frames of the same scenes, with the same grids.
+    """
 
     inputs: OccInput
     target: OccTarget
@@ -133,16 +150,22 @@ class Batch(NamedTuple):
 
 
 class TrainingSet(NamedTuple):
-    """The training frames of one set."""
+    """The training frames of a data set.
+
+    Attributes:
+        frames: All frames of the data set.
+        rows: Indices of the training frames.
+    """
 
     frames: Frames
     rows: list[int]
 
 
 class DrawnDataset(Dataset):
-    """The frames of a run's draws from one on, each changed as its draw says.
+    """A PyTorch data set with the randomly chosen and augmented frames of a run.
 
-    Each is a list: the frame, then those of its scene that are seen with it, if any.
+    Each item is a list with a frame and, for networks that fuse frames, further frames of its
+    scene.
     """
 
     def __init__(
@@ -170,7 +193,7 @@ class DrawnDataset(Dataset):
 
 
 class OrderedDataset(Dataset):
-    """Some rows of a set, in their order and as they are."""
+    """A PyTorch data set with selected frames in order, without augmentation."""
 
     def __init__(self, frames: Frames, rows: Sequence[int]):
         self._frames, self._rows = frames, rows
@@ -183,13 +206,13 @@ class OrderedDataset(Dataset):
 
 
 class FrameCollator:
-    """Makes a batch of frames; a class, so that worker processes can be sent it."""
+    """A collate function that stacks frames into a batch. It is a class so that it can be pickled."""
 
     def __init__(self, grid: Grid, depth: str):
         self._grid, self._depth = grid, depth
 
     def __call__(self, samples: list[list[Frame]]) -> Batch:
-        """Return the frames one upon the other."""
+        """Stack frames into a batch."""
         frames, *others_of_scenes = (list(column) for column in zip(*samples, strict=True))
         target = OccTarget(
             labels=_stack(frames, "labels").long(),
@@ -215,13 +238,13 @@ class FrameCollator:
 def training_loader(
     parts: Sequence[TrainingSet], draws: Draws, config: RunConfig, first_step: int = 0
 ) -> DataLoader:
-    """Return the batches of a run from a step on."""
+    """Return a data loader for the training batches of a run, starting at a step."""
     frames = DrawnDataset(parts, draws, config, first_step * config.batch)
     return _data_loader(frames, config, config.workers)
 
 
 def ordered_loader(frames: Frames, rows: Sequence[int], config: RunConfig) -> DataLoader:
-    """Return batches of some rows in their order; the last may be smaller."""
+    """Return a data loader for selected frames in order. The last batch may be smaller."""
     return _data_loader(OrderedDataset(frames, rows), config, 0)
 
 

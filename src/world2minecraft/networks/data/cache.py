@@ -1,8 +1,9 @@
-"""A cache of decoded frames: images of a run's size and coarse labels, as plain arrays on disk.
+"""A cache of decoded frames: resized images and coarse labels, as plain arrays on disk.
 
-To open a JPEG of 640x480 and to make cells coarser takes longer than a step of a small network; so
-it is done once a set, size and grid. The arrays are mapped, not read: a run holds only the frames
-that it looks at. They lie in the user's cache folder, and are remade where the set has changed.
+Decoding a JPEG of 640x480 pixels and downsampling labels takes longer than a training step of a
+small network, so it is done once for each data set, image size and grid. The arrays are
+memory-mapped, so only the frames that are used occupy memory. They are stored in the user's cache
+folder and created again if the data set changes.
 """
 
 import hashlib
@@ -31,7 +32,12 @@ MAX_DEPTH = 65_535
 
 
 class Frames(Protocol):
-    """Frames of a set by their row."""
+    """Interface of a list of frames.
+
+    Attributes:
+        keys: Sample key of each frame.
+        scenes: Scene name of each frame.
+    """
 
     keys: list[str]
     scenes: list[str]
@@ -41,15 +47,15 @@ class Frames(Protocol):
     def __getitem__(self, row: int) -> Frame: ...
 
     def labels(self, rows: Sequence[int]) -> Iterator[np.ndarray]:
-        """Yield the labels of some frames, uint8 [X, Y, Z]."""
+        """Yield the labels of the given frames, uint8 [X, Y, Z] each."""
         ...
 
 
 class StreamedFrames:
-    """Frames decoded from their samples on each access: slow, but nothing is stored."""
+    """Frames that are decoded from their samples on each access, without a cache."""
 
     def __init__(self, source: ImportedSet, rule: FrameRule):
-        """Find out the scene of each sample, which takes a look at each."""
+        """Read the scene name of each sample."""
         self._source, self._rule = source, rule
         self.keys = source.keys()
         self.scenes = [source[key].scene_id for key in self.keys]
@@ -61,12 +67,12 @@ class StreamedFrames:
         return make_frame(self._source[self.keys[row]], self._rule)
 
     def labels(self, rows: Sequence[int]) -> Iterator[np.ndarray]:
-        """Yield the labels of some frames, uint8 [X, Y, Z]."""
+        """Yield the labels of the given frames, uint8 [X, Y, Z] each."""
         return (self[row].labels for row in rows)
 
 
 class CachedFrames:
-    """Frames of a folder that ``open_cached_frames`` filled."""
+    """Frames from a cache folder created by ``open_cached_frames``."""
 
     def __init__(self, folder: Path):
         self._folder = folder
@@ -80,7 +86,7 @@ class CachedFrames:
         }
 
     def __reduce__(self) -> tuple[type["CachedFrames"], tuple[Path]]:
-        """Let a process that is handed these open the files, where pickle would copy them."""
+        """Pickle only the folder, so that another process opens the files instead of copying arrays."""
         return CachedFrames, (self._folder,)
 
     def __len__(self) -> int:
@@ -102,7 +108,7 @@ class CachedFrames:
         )
 
     def labels(self, rows: Sequence[int]) -> Iterator[np.ndarray]:
-        """Yield the labels of some frames, uint8 [X, Y, Z]."""
+        """Yield the labels of the given frames, uint8 [X, Y, Z] each."""
         return (self._arrays["labels"][row] for row in rows)
 
 
@@ -112,16 +118,17 @@ def open_cached_frames(
     root: Path | None = None,
     progress: Progress = no_progress,
 ) -> CachedFrames:
-    """Return a set's frames from the cache, which is filled first where they are not there.
+    """Open the frames of a data set from the cache, and create the cache if necessary.
 
     Args:
-        source: the set.
-        rule: size of pictures and cells.
-        root: the folder of all caches; in the user's cache folder where None.
-        progress: called for the stage ``frames``.
+        source: Data set.
+        rule: Size of the images and cells.
+        root: Folder for all caches. Defaults to the user's cache folder.
+        progress: Callback that reports progress on the stage ``frames``.
 
     Raises:
-        OutputError: the disk is full. ConflictError: another process fills it.
+        OutputError: If the disk is full.
+        ConflictError: If another process is creating the cache.
     """
     root = user_cache_dir() / "frames" if root is None else root
     folder = root / _identity(source, rule)
@@ -137,7 +144,7 @@ def open_cached_frames(
 
 
 def cache_bytes(count: int, rule: FrameRule) -> int:
-    """Return how many bytes the cache of so many frames takes."""
+    """Return the size in bytes of a cache with ``count`` frames."""
     return sum(
         int(np.prod(shape)) * np.dtype(kind).itemsize
         for shape, kind in _layout(count, rule).values()
@@ -164,7 +171,7 @@ def _fill(source: ImportedSet, rule: FrameRule, folder: Path, progress: Progress
     if need > shutil.disk_usage(folder.parent).free:
         raise OutputError(
             folder,
-            f"needs {need / 1e9:.1f} GB, more than is free; give --cache DIR, or --cache off",
+            f"not enough free disk space for {need / 1e9:.1f} GB; use --cache DIR or --cache off",
         )
     folder.mkdir(exist_ok=True)
     arrays = {

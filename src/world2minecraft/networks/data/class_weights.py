@@ -1,9 +1,9 @@
 """Class frequencies, and the class weights of the loss.
 
-- ``frequency``: ``1 / ln(1.02 + share)`` (Paszke et al. 2016, ENet), scaled so that the 11 classes
-  have mean 1: a rare class counts for more, and the constant bounds by how much.
-- ``monoscene``: 0.05 for empty cells, 1 for all others.
-- ``even``: 1 for all.
+- ``frequency``: ``1 / ln(1.02 + share)`` (Paszke et al. 2016, ENet), scaled to a mean of 1 over the
+  11 occupied classes. Rare classes have larger weights, limited by the constant.
+- ``monoscene``: 0.05 for empty cells, 1 for all other classes.
+- ``even``: 1 for all classes.
 """
 
 from collections.abc import Iterable
@@ -18,7 +18,7 @@ EMPTY_WEIGHT = 0.05  # MonoScene's.
 
 
 def class_counts(grids: Iterable[np.ndarray]) -> np.ndarray:
-    """Return how many cells have each class, int64 [12]; 255 counts nowhere."""
+    """Return the number of cells of each class, int64 [12], ignoring 255."""
     total = np.zeros(256, np.int64)
     for labels in grids:
         total += np.bincount(labels.reshape(-1), minlength=256)
@@ -27,6 +27,13 @@ def class_counts(grids: Iterable[np.ndarray]) -> np.ndarray:
 
 def class_weights(counts: np.ndarray, kind: str) -> np.ndarray:
     """Return the weight of each class, float32 [12].
+
+    Args:
+        counts: Number of cells of each class, int64 [12].
+        kind: ``frequency``, ``monoscene`` or ``even``.
+
+    Raises:
+        UnknownNameError: If the kind is unknown.
 
     Example:
         >>> class_weights(np.array([90, 5, 5] + [0] * 9), "monoscene")[:2].tolist()
