@@ -64,8 +64,9 @@ class DataSource:
 
     @classmethod
     def parse(cls, text: str) -> "DataSource":
-        """Parse ``DIR`` or ``DIR:WEIGHT``. A colon that is not followed by a number belongs to the
-        path.
+        """Parse ``DIR`` or ``DIR:WEIGHT``.
+
+        A colon that is not followed by a number belongs to the path.
         """
         path, colon, tail = text.rpartition(":")
         try:

@@ -31,7 +31,12 @@ class CsvLogger:
         self._board: Any = None
 
     def log_metrics(self, step: int, figures: Mapping[str, float]) -> None:
-        """Log metrics of a step, to TensorBoard immediately and to the CSV file at the next ``save``."""
+        """Log metrics to TensorBoard immediately and to the CSV file at the next ``save``.
+
+        Args:
+            step: Training step.
+            figures: Metrics by name.
+        """
         if self._board is None:
             from torch.utils.tensorboard import SummaryWriter  # noqa: PLC0415
 

@@ -1,4 +1,4 @@
-"""Evaluate a run, weights, an ONNX file or saved predictions on any occupancy data set."""
+"""Evaluation of a run, weights, an ONNX file or saved predictions on an occupancy data set."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -27,19 +27,19 @@ from world2minecraft.networks.scoring import (
 
 @dataclass(frozen=True)
 class Evaluation:
-    """What is scored, and how.
+    """The settings of an evaluation.
 
     Attributes:
-        predicted: a run's folder, weights, an ``.onnx`` file or saved predictions.
-        truth: the data set.
-        split: the part of it to score; None for all.
-        limit: the number of frames at most, spread evenly.
-        protocols: their names; all where empty.
-        order: the axes of saved predictions.
-        classes: the classes of saved predictions.
-        device: auto, cpu or cuda.
-        cache: where decoded frames are cached.
-        seed: of the intervals.
+        predicted: Run folder, weights, ``.onnx`` file, or file or folder with saved predictions.
+        truth: Data set with the ground truth.
+        split: Split to evaluate. None evaluates all frames.
+        limit: Maximum number of frames, evenly spaced.
+        protocols: Names of the protocols. Defaults to all.
+        order: Axis order of saved predictions.
+        classes: Class numbering of saved predictions.
+        device: ``auto``, ``cpu`` or ``cuda``.
+        cache: Cache for decoded frames, as accepted by ``--cache``.
+        seed: Random seed for the confidence intervals.
     """
 
     predicted: Path
@@ -54,7 +54,7 @@ class Evaluation:
     seed: int = 0
 
     def scores(self, progress: Progress = no_progress) -> dict[str, Any]:
-        """Return the scores by protocol, as ``protocol_scores`` does."""
+        """Return the scores of each protocol, in the form of ``protocol_scores``."""
         if self.predicted.suffix == ".onnx":
             return self._of_onnx(progress)
         if is_weights(self.predicted):
@@ -129,25 +129,32 @@ class Evaluation:
         if not (names := scenes_to_score(saved, scenes, self.split)):
             return None
         if self.protocols not in ((), ("embodied",)):
-            raise UsageError(f"{self.predicted} holds whole scenes; use --protocol embodied")
+            raise UsageError(
+                f"{self.predicted} contains predictions for complete scenes; use "
+                "--protocol embodied"
+            )
         return saved_scene_scores(saved, scenes, names, seed=self.seed, progress=progress)
 
 
 def is_weights(path: Path) -> bool:
-    """Return whether a path is a training run or a file of weights."""
+    """Return whether a path is a run folder or a file of weights."""
     return path.suffix == ".safetensors" or (path / "run.yaml").is_file()
 
 
 def needs_torch(path: Path) -> bool:
-    """Return whether scoring a path needs torch: all but saved predictions do."""
+    """Return whether evaluating a path requires PyTorch; only saved predictions do not."""
     return path.suffix == ".onnx" or is_weights(path)
 
 
 def choose_split(requested: str, available: Iterable[str]) -> str | None:
-    """Return the split to score, None for all: test by default, where there is one.
+    """Return the split to evaluate, or None for all frames.
+
+    Args:
+        requested: Requested split, ``all``, or an empty string for ``test`` if available, else all.
+        available: Splits of the data set.
 
     Raises:
-        UsageError: the split has no frame.
+        UsageError: If the requested split has no frames.
     """
     there = set(available)
     if not requested:
@@ -156,5 +163,7 @@ def choose_split(requested: str, available: Iterable[str]) -> str | None:
         return None
     if requested not in there:
         known = ", ".join(sorted(one for one in there if one)) or "none"
-        raise UsageError(f"split {requested!r} has no frame; this data set has {known}; or use all")
+        raise UsageError(
+            f"no frames in split {requested!r}; use all or one of the available splits: {known}"
+        )
     return requested

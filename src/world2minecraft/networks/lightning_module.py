@@ -1,6 +1,6 @@
-"""The Lightning module: the losses, the learning rate and the seed of each training step.
+"""The Lightning module for training: the losses, the learning rate and the seed of each step.
 
-Everything by chance in a step is drawn from the run's seed and the step's number.
+All random numbers of a step are derived from the seed of the run and the step number.
 """
 
 # Not by a scheduler of torch that Lightning steps: its state would have to be kept and restored
@@ -25,7 +25,7 @@ SEED_STRIDE = 1_000_003  # A prime: seeds of two runs meet at no step of the sam
 
 
 def learning_rate_at(config: RunConfig, step: int) -> float:
-    """Return the learning rate of a step, counted from 0.
+    """Return the learning rate at a step, counted from 0.
 
     Example:
         >>> config = RunConfig("iso", ("x",), steps=100, warmup_steps=10, learning_rate=1.0)
@@ -44,7 +44,10 @@ def learning_rate_at(config: RunConfig, step: int) -> float:
 
 
 class OccupancyModule(lightning.LightningModule):
-    """A network with its losses; ``first_step`` is how many steps were done before."""
+    """A network with its losses for training.
+
+    ``first_step`` is the number of steps that earlier attempts have completed.
+    """
 
     def __init__(self, network: nn.Module, config: RunConfig, class_weights: Tensor):
         super().__init__()
@@ -53,7 +56,7 @@ class OccupancyModule(lightning.LightningModule):
         self.losses: dict[str, Tensor] = {}  # The losses of the last step.
 
     def configure_optimizers(self) -> torch.optim.Optimizer:
-        """Return AdamW over all weights that learn."""
+        """Return an AdamW optimizer for all trainable weights."""
         learning = [one for one in self.network.parameters() if one.requires_grad]
         config = self.config
         return torch.optim.AdamW(
@@ -63,12 +66,12 @@ class OccupancyModule(lightning.LightningModule):
     def transfer_batch_to_device(
         self, batch: Any, device: torch.device, dataloader_idx: int
     ) -> Any:
-        """Move a batch; Lightning knows no frozen dataclasses."""
+        """Move a batch to a device, since Lightning does not support frozen dataclasses."""
         more = tuple(one.to(device) for one in batch.more)
         return Batch(batch.inputs.to(device), batch.target.to(device), more)
 
     def on_train_batch_start(self, batch: Batch, batch_idx: int) -> None:
-        """Set the rate and the seed of the step."""
+        """Set the learning rate and the random seed of a step."""
         step = self.first_step + batch_idx
         torch.manual_seed(self.config.seed * SEED_STRIDE + step)
         for group in self.trainer.optimizers[0].param_groups:
@@ -86,7 +89,10 @@ class OccupancyModule(lightning.LightningModule):
 
 
 def to_float32(output: OccOutput) -> OccOutput:
-    """Return an answer in float32: sums over 130,000 cells lose too much in bfloat16."""
+    """Convert a network output to float32.
+
+    Sums over 130,000 cells are inaccurate in bfloat16.
+    """
     return OccOutput(
         **{
             entry.name: _to_float32(getattr(output, entry.name))

@@ -1,11 +1,14 @@
-"""All losses of an occupancy network, each already weighted, so that their sum is minimised.
+"""The losses of an occupancy network. Each is already weighted, and their sum is minimized.
 
-- cross entropy of the classes, and MonoScene's scene-class affinity (SCAL);
-- MonoScene's frustum proportion loss: the classes in each part of the image, hidden or not;
-- the loss of MonoScene's context prior: four relations of coarse cells with mega-voxels;
-- the loss of a depth branch: cross entropy of the bin that a pixel's depth falls into.
+- Cross entropy of the classes, and MonoScene's scene-class affinity loss (SCAL).
+- MonoScene's frustum proportion loss: class proportions in each part of the image, including
+  occluded cells.
+- The loss of MonoScene's context prior: four kinds of relations between coarse cells and
+  mega-voxels.
+- The loss of a depth branch: cross entropy of the depth bin of each pixel.
 
-Cells of 255 count in none. Where nothing is left to count, a loss is 0 and its gradients are 0.
+Cells with the label 255 are ignored. If there is nothing to evaluate, a loss and its gradients are
+0.
 """
 
 import math
@@ -29,12 +32,13 @@ EMPTY_WEIGHT = 0.05  # MonoScene's weight of empty cells in the cross entropy; a
 
 
 def depth_loss(logits: Tensor, depth_m: Tensor) -> Tensor:
-    """Return the mean over the branch's pixels that have a depth within its bins.
+    """Return the mean cross entropy over all pixels with a depth in the range of the bins.
 
     Args:
-        logits: float [B, bins, ceil(H / s), ceil(W / s)], s a power of two.
-        depth_m: float32 [B, H, W], 0 where there is none. A pixel of the branch is to say the least
-            depth of those that it covers, as the nearer hides what is behind.
+        logits: Bin logits, float [B, bins, ceil(H / s), ceil(W / s)], where s is a power of two.
+        depth_m: Depth in metres, float32 [B, H, W]; 0 for none. The target of a pixel in ``logits``
+            is the minimum depth of the pixels that it covers, because nearer surfaces hide those
+            behind.
     """
     scale = 2 ** round(math.log2(depth_m.shape[-1] / logits.shape[-1]))
     near = min_pool_depth(depth_m, scale)
@@ -45,15 +49,15 @@ def depth_loss(logits: Tensor, depth_m: Tensor) -> Tensor:
 
 
 def frustum_loss(logits: Tensor, labels: Tensor, inputs: OccInput) -> Tensor:
-    """Return the mean KL divergence of the classes' shares in 8x8 parts of the pictures.
+    """Return the mean KL divergence of class proportions in 8x8 parts of the images.
 
-    Shares are of the whole batch: the cells that fall into a part in any of its pictures. Only
-    classes that a part truly holds count.
+    Proportions are computed over all cells of the batch that are projected to the same part. Only
+    classes that occur in a part are counted.
 
     Args:
-        logits: float [B, 12, X, Y, Z].
-        labels: int64 [B, X, Y, Z].
-        inputs: where the cells lie in the pictures.
+        logits: Class logits, float [B, 12, X, Y, Z].
+        labels: Class of each cell, int64 [B, X, Y, Z].
+        inputs: Inputs of the network, which define the projection of the cells.
     """
     part = frustum_of_cells(inputs)  # [B, N]
     labels = labels.flatten(1)
@@ -73,7 +77,7 @@ def frustum_loss(logits: Tensor, labels: Tensor, inputs: OccInput) -> Tensor:
 
 
 def frustum_of_cells(inputs: OccInput) -> Tensor:
-    """Return the part of the picture that each cell falls into, int64 [B, N], -1 for none."""
+    """Return the part of the image that each cell is projected to, int64 [B, N], -1 for none."""
     sight = project_cells(inputs)
     height, width = sight.size_px
     column = (sight.pixels[..., 0] * FRUSTA / width).floor().clamp(0, FRUSTA - 1).long()
@@ -87,14 +91,14 @@ def _sums(part: Tensor, values: Tensor) -> Tensor:
 
 
 def relation_loss(logits: Tensor, labels: Tensor) -> Tensor:
-    """Return the binary cross entropy of all relations, each balanced by how rare it is.
+    """Return the binary cross entropy of all relations, each weighted by its rarity.
+
+    A pair is counted if the cell and at least one cell of the mega-voxel are known; the published
+    code treats pairs with unknown cells as unrelated.
 
     Args:
-        logits: float [B, 4, megas, cells], of the grid's quarter.
-        labels: int64 [B, X, Y, Z] of the whole grid.
-
-    A pair counts where the cell is known and a cell of the mega-voxel is too; the published code
-    takes such pairs for unrelated.
+        logits: Relation logits, float [B, 4, megas, cells], at a quarter of the resolution.
+        labels: Class of each cell, int64 [B, X, Y, Z], at full resolution.
     """
     truth, counted = relations_of(coarse_labels(labels))
     truth, weights = truth.float(), counted.float()
@@ -110,17 +114,17 @@ def relation_loss(logits: Tensor, labels: Tensor) -> Tensor:
 
 
 def relations_of(labels: Tensor) -> tuple[Tensor, Tensor]:
-    """Return which relations hold, and which pairs are known.
+    """Return which relations are true, and which pairs are known.
 
-    A relation holds between a cell and a mega-voxel where it holds between the cell and any known
-    one of the mega-voxel's eight: both occupied and alike, both occupied and unlike, both empty,
-    one of them empty.
+    The relations are: both occupied with the same class, both occupied with different classes, both
+    empty, and one empty. A cell has a relation to a mega-voxel if it has this relation to any known
+    cell of the mega-voxel.
 
     Args:
-        labels: int64 [B, X, Y, Z] at the coarsest level.
+        labels: Class of each cell at the coarsest level, int64 [B, X, Y, Z].
 
     Returns:
-        bool [B, 4, M, N], and bool [B, 1, M, N].
+        The relations, bool [B, 4, M, N], and the known pairs, bool [B, 1, M, N].
     """
     eight = _mega_voxel_cells(labels)[:, :, :, None]  # [B, M, 8, 1]
     cells = labels.flatten(1)[:, None, None]  # [B, 1, 1, N]
@@ -134,11 +138,11 @@ def relations_of(labels: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def coarse_labels(labels: Tensor, factor: int = COARSE_FACTOR) -> Tensor:
-    """Return labels of blocks of cells by SSCNet's rule, int64, sides rounded up.
+    """Downsample labels with SSCNet's rule to int64, with sides rounded up.
 
-    A block is not occupied where more than 95 % of its cells are empty or unknown: then it is what
-    more of them are. Else it is the class that most of its occupied cells have. Cells beyond the
-    grid are unknown.
+    If more than 95 % of a block's cells are empty or unknown, the block gets the more frequent of
+    these two labels, otherwise its most frequent occupied class. Cells outside the grid are
+    unknown.
     """
     beyond = [(-int(side)) % factor for side in labels.shape[1:]]
     padded = torch.nn.functional.pad(
@@ -167,12 +171,12 @@ def _mega_voxel_cells(labels: Tensor) -> Tensor:
 
 
 def cross_entropy(logits: Tensor, labels: Tensor, class_weights: Tensor | None = None) -> Tensor:
-    """Return the mean over known cells, weighted by their classes.
+    """Return the weighted mean cross entropy over known cells.
 
     Args:
-        logits: float [B, 12, X, Y, Z].
-        labels: int64 [B, X, Y, Z], 0 to 11 or 255.
-        class_weights: float32 [12]; all 1 where left out.
+        logits: Class logits, float [B, 12, X, Y, Z].
+        labels: Class of each cell (0 to 11 or 255), int64 [B, X, Y, Z].
+        class_weights: Weight of each class, float32 [12]. Defaults to 1 for all.
     """
     known = labels != UNKNOWN
     targets = torch.where(known, labels, torch.zeros_like(labels))
@@ -184,9 +188,10 @@ def cross_entropy(logits: Tensor, labels: Tensor, class_weights: Tensor | None =
 
 
 def semantic_affinity(logits: Tensor, labels: Tensor) -> Tensor:
-    """Return MonoScene's L_scal over classes: soft precision, recall and specificity of each.
+    """Return MonoScene's semantic affinity loss.
 
-    The mean is over the classes that the batch holds, the empty one among them.
+    It consists of the soft precision, recall and specificity of each class, averaged over the
+    classes that occur in the batch, including the empty class.
     """
     known = labels != UNKNOWN
     shares = torch.softmax(logits.float(), dim=1).movedim(1, 0)[:, known]  # [12, N]
@@ -196,7 +201,7 @@ def semantic_affinity(logits: Tensor, labels: Tensor) -> Tensor:
 
 
 def geometric_affinity(logits: Tensor, labels: Tensor) -> Tensor:
-    """Return the same of two classes, where only the occupied one is judged: L_scal of geometry."""
+    """Return MonoScene's geometric affinity loss, computed for occupied against empty cells."""
     known = labels != UNKNOWN
     full = 1 - torch.softmax(logits.float(), dim=1)[:, 0]
     return _affinity(full[known][None], (labels[known] != 0).float()[None])[0]
@@ -221,10 +226,18 @@ def _less_log(part: Tensor, whole: Tensor, counted: Tensor) -> Tensor:
 
 @dataclass(frozen=True)
 class LossWeights:
-    """How much each loss counts; 0 leaves it out. All but the last are 1 as published.
+    """The weights of the losses; 0 disables a loss. All but ``auxiliary`` are 1 as published.
 
-    ``classes`` are the weights of the 12 classes in the cross entropy; None for the published
-    0.05 of empty and 1 of all others.
+    Attributes:
+        cross_entropy: Weight of the cross entropy.
+        semantic: Weight of the semantic affinity loss.
+        geometric: Weight of the geometric affinity loss.
+        frusta: Weight of the frustum proportion loss.
+        relations: Weight of the relation loss.
+        depth: Weight of the depth loss.
+        auxiliary: Weight of the losses for outputs of earlier layers, as in Symphonies.
+        classes: Weights of the 12 classes in the cross entropy. None uses the published weights:
+            0.05 for empty cells and 1 for all other classes.
     """
 
     cross_entropy: float = 1.0
@@ -238,12 +251,12 @@ class LossWeights:
 
     def __post_init__(self):
         if self.classes is not None and len(self.classes) != CLASS_COUNT:
-            raise UsageError(f"there are {CLASS_COUNT} class weights, not {len(self.classes)}")
+            raise UsageError(f"there must be {CLASS_COUNT} class weights, got {len(self.classes)}")
         if self.classes is not None and not all(0 <= weight < torch.inf for weight in self.classes):
-            raise UsageError("class weights are finite and not below 0")
+            raise UsageError("class weights must be finite and 0 or more")
 
     def class_weights(self) -> Tensor:
-        """Return the weights of the classes in the cross entropy, float32 [12]."""
+        """Return the class weights of the cross entropy, float32 [12]."""
         published = (EMPTY_WEIGHT, *([1.0] * (CLASS_COUNT - 1)))
         return torch.tensor(self.classes or published)
 
@@ -254,17 +267,17 @@ def occupancy_losses(
     inputs: OccInput,
     weights: LossWeights | None = None,
 ) -> dict[str, Tensor]:
-    """Return the weighted losses by name; ``sum(found.values())`` is the loss of a step.
+    """Compute the weighted losses by name. Their sum is the loss of a training step.
+
+    Losses that cannot be computed are omitted: the relation and depth losses if the network does
+    not predict relations or depth, and the depth loss if there is no target depth.
 
     Args:
-        output: of the network.
-        target: what is true. Cells of 255 teach nothing.
-        inputs: what the network saw: its cameras cut the frusta, its depth teaches a depth branch
-            where the target has none.
-        weights: how much each counts.
-
-    Losses without an input are left out: relations and depth where the network predicts none of
-    them or, for depth, where none is known.
+        output: Output of the network.
+        target: Ground truth. Cells with the label 255 are ignored.
+        inputs: Inputs of the network. They define the frusta, and their depth is the target of a
+            depth branch if ``target`` has none.
+        weights: Weights of the losses.
     """
     chosen = weights or LossWeights()
     found = _class_losses(output.logits, target.labels, inputs, chosen)

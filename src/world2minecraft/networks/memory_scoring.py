@@ -1,8 +1,8 @@
-"""Score whole scenes by a network with a memory: it fuses all frames, then is scored once.
+"""Evaluation of complete scenes for networks with a memory, which fuse all frames of a scene.
 
-What is true of a scene is put together from its frames' cells of 8 cm, which share a lattice, and
-made coarser where the network's cells are. The network sees the frames one by one in those cells;
-only what it sums up is read at the end.
+The ground truth of a scene is assembled from the 8 cm cells of its frames, which share a lattice,
+and is downsampled if the cells of the network are larger. The network processes the frames one by
+one, and its fused result is evaluated once at the end.
 """
 
 from collections.abc import Sequence
@@ -29,7 +29,13 @@ FINE = GRIDS["0.08"]
 
 
 class SceneTruth(NamedTuple):
-    """What is true of a scene, along the room's axes."""
+    """The ground truth of a scene along the room axes.
+
+    Attributes:
+        labels: Class of each cell (0 to 11 or 255), uint8 [X, Y, Z].
+        seen: Whether each cell is in the view of any frame, bool [X, Y, Z].
+        origin_m: Minimum corner in room coordinates in metres, float64 [3].
+    """
 
     labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
     seen: np.ndarray  # bool [X, Y, Z], in view of any frame
@@ -44,15 +50,19 @@ def memory_scores(
     config: RunConfig,
     progress: Progress = no_progress,
 ) -> tuple[list[FrameScore], str]:
-    """Return the counts of each scene of some rows, or none and the reason why there are none.
+    """Evaluate a network with a memory on the scenes of the given frames.
 
     Args:
-        network: it is left in evaluation.
-        found: the set, for the cells of 8 cm.
-        frames: the same samples as the network sees them.
-        rows: of ``frames``.
-        config: of the network: its cells, and whether it is given depth.
-        progress: called for ``scenes``.
+        network: Network to evaluate. It is left in evaluation mode.
+        found: Data set, from which the 8 cm cells are read.
+        frames: The same samples as frames for the network.
+        rows: Indices of the frames to use.
+        config: Settings of the network, which define its cells and the use of depth.
+        progress: Callback that reports progress on the stage ``scenes``.
+
+    Returns:
+        The counts for each scene and an empty string, or an empty list and the reason why the
+        scenes cannot be evaluated.
     """
     by_scene: dict[str, list[int]] = {}
     for row in rows:
@@ -71,7 +81,11 @@ def memory_scores(
 def assemble_truth(
     found: ImportedSet, keys: Sequence[str], config: RunConfig
 ) -> tuple[SceneTruth | None, str]:
-    """Return what is true of the scene of some frames, in the cells of a run."""
+    """Assemble the ground truth of a scene from its frames, in the cells of a run.
+
+    Returns:
+        The ground truth and an empty string, or None and the reason.
+    """
     boxes = []
     for key in keys:
         sample = found[key]
@@ -95,7 +109,7 @@ def assemble_truth(
 def predict_scene(
     network: Embodied, frames: Frames, rows: Sequence[int], truth: SceneTruth, config: RunConfig
 ) -> np.ndarray:
-    """Return the labels of a scene after the network saw some frames, uint8 [X, Y, Z]."""
+    """Return the predicted labels of a scene after processing its frames, uint8 [X, Y, Z]."""
     x, y, z = truth.labels.shape
     stream = SceneStream(network, (x, y, z), config.cells.shape, config.cells.voxel_m)
     room_to_scene = np.eye(4)
@@ -124,11 +138,11 @@ def add_memory_scores(
     seed: int = 0,
     progress: Progress = no_progress,
 ) -> None:
-    """Add ``embodied memory`` to scores, where the network is one that fuses frames by itself."""
+    """Add the protocol ``embodied memory`` to scores if the network has a memory."""
     if not isinstance(network, Embodied):
         return
     counts, reason = memory_scores(network, found, frames, rows, config, progress)
     if reason:
         scores["left_out"][MEMORY] = reason
     else:
-        scores["protocols"][MEMORY] = summarise_scenes(counts, "; the network fuses them", seed)
+        scores["protocols"][MEMORY] = summarise_scenes(counts, ", fused by the network", seed)

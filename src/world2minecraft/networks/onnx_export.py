@@ -1,13 +1,13 @@
-"""Export a trained network as one ONNX file of the contract in docs/networks-onnx.md.
+"""Export of trained networks as ONNX files in the format described in docs/networks-onnx.md.
 
-It is written only where it answers as the network does: both are given the same image, and no
-logit may differ by more than ``MAX_DIFFERENCE``. Weights may then be compressed; by how much that
-moves the logits is measured, not bounded: whether it may, a score must say.
+A file is written only if its output matches the network: for the same input image, no logit may
+differ by more than ``MAX_DIFFERENCE``. The weights can then be compressed. The resulting change of
+the logits is measured but not limited; whether it is acceptable must be decided by an evaluation.
 
-Only the weights of convolutions and of matrix products are compressed. Biases, norms and what a
-network knows of its grid stay as they are. ``int8`` has one scale per output channel, so that a
-channel of small weights keeps its digits. Activations are never rounded: onnxruntime expands the
-weights as it loads the file, and runs the same float32 network as ever.
+Only the weights of convolutions and matrix products are compressed. Biases, norms and grid
+constants are not changed. ``int8`` uses one scale for each output channel, so channels with small
+weights remain accurate. Activations are never quantized: ONNX Runtime expands the weights when it
+loads the file and runs the network in float32.
 """
 
 import importlib.util
@@ -39,17 +39,20 @@ TURN_DEG = 10.0  # How far the camera of the question looks down.
 
 
 def compress_weights(model: Any, kind: str) -> Any:
-    """Return an ONNX model whose weights are stored as one of ``KINDS``.
+    """Compress the weights of an ONNX model.
 
     Args:
-        model: an ``onnx.ModelProto`` with float32 weights; it is left as it was.
-        kind: ``float`` changes nothing; ``half`` takes half the room, ``int8`` a quarter.
+        model: ``onnx.ModelProto`` with float32 weights, which is not modified.
+        kind: ``float`` (unchanged), ``half`` (half the size) or ``int8`` (a quarter of the size).
+
+    Returns:
+        A model with compressed weights.
 
     Raises:
-        UnknownNameError: there is no such kind.
+        UnknownNameError: If the kind is unknown.
     """
     if kind not in KINDS:
-        raise UnknownNameError("way to store weights", kind, KINDS)
+        raise UnknownNameError("weight format", kind, KINDS)
     result = onnx.ModelProto()
     result.CopyFrom(model)
     axes = _axes_of_weights(result.graph)
@@ -69,11 +72,16 @@ def compress_weights(model: Any, kind: str) -> Any:
 
 
 def quantize_weights(values: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return int8 of the weights' shape, and float32 [C], the scale of each channel.
+    """Quantize weights to int8 with one scale for each channel.
+
+    The error is at most half a scale.
 
     Args:
-        values: float32 weights.
-        axis: of the channels. What comes back times its scale is off by half a scale at most.
+        values: Weights, float32.
+        axis: Axis of the channels.
+
+    Returns:
+        The quantized weights, int8 in the same shape, and the scale of each channel, float32 [C].
 
     Example:
         >>> whole, scales = quantize_weights(np.float32([[0.5, -1.27], [0.0, 0.0]]), 0)
@@ -124,7 +132,16 @@ def _store_int8(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
 
 
 class ExportReport(NamedTuple):
-    """The result of an export, measured on one image."""
+    """The result of an export, measured on one image.
+
+    Attributes:
+        difference: Largest difference of a logit from the network, with uncompressed weights.
+        moved: Largest change of a logit by the compression.
+        moved_mean: Mean change of the logits by the compression.
+        spread: Standard deviation of all logits, for comparison with ``moved_mean``.
+        renamed: Fraction of cells whose class is changed by the compression.
+        size: Size of the file in bytes.
+    """
 
     difference: float  # the most that a logit differs from the network's, weights whole
     moved: float  # the most that storing the weights small moves a logit by
@@ -142,19 +159,20 @@ def export_network(
     weights: str = "float",
     seed: int = 0,
 ) -> ExportReport:
-    """Write a network as ONNX, and return how much the file's answers differ.
+    """Write a network as an ONNX file and measure the differences of its output.
 
     Args:
-        network: maps ``OccInput`` to ``OccOutput``. It is run in evaluation mode, then reset.
-        path: the file.
-        facts: what the file states: its grid, its picture's size, whether it wants depth.
-        weights: float, half or int8: how they are stored (``KINDS``).
-        seed: of the image that both are given.
+        network: Network that maps ``OccInput`` to ``OccOutput``. It is run in evaluation mode, and
+            its mode is then restored.
+        path: Output file.
+        facts: Metadata of the file, such as its grid, its image size and whether it requires depth.
+        weights: Weight format: ``float``, ``half`` or ``int8``.
+        seed: Random seed for the test image.
 
     Raises:
-        OutputError: the file would say something else, or cannot be written.
-        UnknownNameError: weights are not stored so.
-        MissingExtraError: onnx is not installed.
+        OutputError: If the output of the file differs too much, or if the file cannot be written.
+        UnknownNameError: If the weight format is unknown.
+        MissingExtraError: If onnx is not installed.
     """
     _check_onnx()
 
@@ -172,13 +190,15 @@ def export_network(
     if not difference <= MAX_DIFFERENCE:  # Holds for what is no number too.
         raise OutputError(
             path,
-            f"the ONNX file's logits would differ by {difference:.3g} from the network's, and "
-            f"{MAX_DIFFERENCE:g} is the most; no file is written",
+            f"not written: the ONNX logits differ from the network's by {difference:.3g}, "
+            f"the limit is {MAX_DIFFERENCE:g}",
         )
     data = compress_weights(model, weights).SerializeToString()
     stored = whole if weights == "float" else _run_onnx(data, example)
     if not np.isfinite(stored).all():
-        raise OutputError(path, f"weights stored as {weights} would give what is no number")
+        raise OutputError(
+            path, f"not written: weights stored as {weights} produce values that are not finite"
+        )
     write_bytes(Path(path), data)
     return ExportReport(difference, *_logit_change(whole, stored), len(data))
 

@@ -1,9 +1,10 @@
-"""Read saved predictions, ours and those of others, as labels of our order and classes.
+"""Reader for saved predictions from our own and other programs, with conversion to our labels.
 
-A folder of ``KEY.npz``, ``KEY.npy`` or ``KEY.pkl``, or one ``.npz`` with an array a key. A file
-of a single array, or one named ``labels``, is a frame's: uint8 labels, or scores of 12 or 13
-channels, first or last. 13 channels are EmbodiedOcc's and GPOcc's: 0 is ignored, 12 is empty.
-Grids of whole scenes are read in the same forms, by the names of scenes.
+Predictions are a folder with ``KEY.npz``, ``KEY.npy`` or ``KEY.pkl`` files, or a single ``.npz``
+file with one array per key. A file with a single array, or with an array named ``labels``, belongs
+to a single frame. An array contains uint8 labels, or scores with 12 or 13 channels in the first or
+last axis. 13 channels are those of EmbodiedOcc and GPOcc: 0 is ignored and 12 is empty. Grids of
+complete scenes are read in the same formats, with scene names as keys.
 """
 
 import math
@@ -27,19 +28,21 @@ EMBODIED_EMPTY, EMBODIED_CLASSES = 12, 13
 
 
 class SavedPredictions:
-    """Labels by key, read on access."""
+    """Saved predictions, read on access and converted to our labels."""
 
     def __init__(self, path: Path, order: str = "", classes: str = ""):
-        """Find out what is there.
+        """Find the predictions in a folder or file.
 
         Args:
-            path: a folder or a file.
-            order: of ``ORDERS``; by the shape where empty: 60x36x60 is xzy, as NYUv2's files are,
-                60x60x36 is xyz, as EmbodiedOcc and GPOcc compare.
-            classes: ours or embodied; by the number of channels where empty, labels are ours.
+            path: Folder or file.
+            order: Axis order in ``ORDERS``. By default, it is derived from the shape: 60x36x60 is
+                ``xzy`` (as in NYUv2 files) and 60x60x36 is ``xyz`` (as in EmbodiedOcc and GPOcc).
+            classes: ``ours`` or ``embodied``. By default, it is derived from the number of
+                channels, and labels are ``ours``.
 
         Raises:
-            InputError: there are none. UnknownNameError: no such order or classes.
+            InputError: If there are no predictions.
+            UnknownNameError: If the order or the classes are unknown.
         """
         for kind, name, known in (("order", order, ORDERS), ("classes", classes, KINDS)):
             if name and name not in known:
@@ -56,43 +59,47 @@ class SavedPredictions:
                 self._members = names
         elif not path.is_file():
             raise InputError(
-                path, "is not there; give a run, weights, an .onnx or a folder of KEY.npz"
+                path,
+                "not found; expected a run, weights, an .onnx file or a folder of KEY.npz files",
             )
         if path.is_dir() and not self._files:
-            raise InputError(path, "holds no KEY.npz, KEY.npy or KEY.pkl")
+            raise InputError(path, "contains no KEY.npz, KEY.npy or KEY.pkl files")
 
     @property
     def is_single(self) -> bool:
-        """Whether this is one file of one frame, which names no key."""
+        """Whether this is a single file for one frame, without a key."""
         return not self._files and not self._members
 
     def keys(self) -> list[str]:
-        """Return the keys that there are predictions of; none where there is a single one."""
+        """Return the keys of all predictions, or an empty list for a single file without a key."""
         return list(self._files or self._members)
 
     def labels(self, key: str) -> np.ndarray:
-        """Return a frame's labels, uint8 [X, Y, Z], 0 to 11 or 255.
+        """Return the predicted labels of a frame (0 to 11 or 255), uint8 [X, Y, Z].
 
         Raises:
-            InputError: there are none of this key. DamagedFileError: they cannot be understood.
+            InputError: If there is no prediction for this key.
+            DamagedFileError: If the prediction is not valid.
         """
         return self._to_labels(*self._array(key), self._order)
 
     def scene_labels(self, key: str, shape: tuple[int, ...]) -> np.ndarray:
-        """Return the labels of a whole scene, uint8 ``shape``, 0 to 11 or 255.
+        """Return the predicted labels of a complete scene (0 to 11 or 255), uint8 in the given shape.
 
-        Scenes are as long and as low as they are, so their axes are x, y, z unless ``order`` says
-        otherwise. One value a cell in a row, as a network's list of cells has them, is put back.
+        The axis order of scenes cannot be derived from their shape, so it is ``xyz`` unless
+        ``order`` is given. A flat list with one value per cell is reshaped.
 
         Raises:
-            InputError: there are none of this key. DamagedFileError: they have other cells.
+            InputError: If there is no prediction for this key.
+            DamagedFileError: If the prediction has another shape.
         """
         values, path = self._array(key)
         values = _reshape_scene(values, shape)
         labels = self._to_labels(values, path, self._order or "xyz")
         if labels.shape != shape:
             raise DamagedFileError(
-                path, f"has {_sides(labels.shape)} cells of {key}, the truth {_sides(shape)}"
+                path,
+                f"prediction of {key} has {_sides(labels.shape)} cells, expected {_sides(shape)}",
             )
         return labels
 
@@ -101,10 +108,10 @@ class SavedPredictions:
             return _read_frame_array(self.path), self.path
         if self._members:
             if key not in self._members:
-                raise InputError(self.path, f"holds no array {key}")
+                raise InputError(self.path, f"contains no array named {key}")
             return read_npz(self.path, (key,))[key], self.path
         if key not in self._files:
-            raise InputError(self.path, f"holds no {key}.npz, .npy or .pkl")
+            raise InputError(self.path, f"contains no {key}.npz, {key}.npy or {key}.pkl")
         return _read_frame_array(self._files[key]), self._files[key]
 
     def _to_labels(self, values: np.ndarray, path: Path, order: str = "") -> np.ndarray:
@@ -116,17 +123,19 @@ class SavedPredictions:
             classes = "embodied" if values.shape[axis] == EMBODIED_CLASSES else "ours"
             values = values.argmax(axis=axis)
         if values.ndim != 3:
-            raise DamagedFileError(path, f"has an array of {values.shape}, and no grid")
+            raise DamagedFileError(
+                path, f"expected a grid with three axes, got an array of shape {values.shape}"
+            )
         labels = values.astype(np.uint8)
         if not np.array_equal(labels, values):
-            raise DamagedFileError(path, "has values that are no class ids")
+            raise DamagedFileError(path, "contains values that are not class ids")
         if classes == "embodied":
             labels = from_embodied_classes(labels, path)
         if np.any((labels >= CLASS_COUNT) & (labels != UNKNOWN)):
             raise DamagedFileError(
                 path,
-                f"has the class {int(labels[labels != UNKNOWN].max())}; of 13 classes with 12 "
-                "for empty say --classes embodied",
+                f"contains the unknown class {int(labels[labels != UNKNOWN].max())}; for 13 "
+                "classes in which 12 is empty, add --classes embodied",
             )
         return np.ascontiguousarray(labels.transpose(ORDERS[order or _order_of(labels)]))
 
@@ -144,23 +153,33 @@ def _reshape_scene(values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
 
 
 def from_embodied_classes(labels: np.ndarray, path: Path) -> np.ndarray:
-    """Return ours of EmbodiedOcc's own classes: its 0 is unknown, its 12 empty."""
+    """Convert the classes of EmbodiedOcc to ours: 0 becomes unknown (255) and 12 becomes empty (0).
+
+    Raises:
+        DamagedFileError: If there is a class above 12.
+    """
     if labels.max(initial=0) > EMBODIED_EMPTY:
-        raise DamagedFileError(path, f"has the class {labels.max()}; EmbodiedOcc's end at 12")
+        raise DamagedFileError(
+            path, f"contains the class {labels.max()}, but the classes of EmbodiedOcc end at 12"
+        )
     table = np.arange(EMBODIED_CLASSES, dtype=np.uint8)
     table[0], table[EMBODIED_EMPTY] = UNKNOWN, 0
     return table[labels]
 
 
 def grid_of_labels(labels: np.ndarray, path: Path) -> Grid:
-    """Return the grid that has as many cells. Raises DamagedFileError."""
+    """Return the supported grid with the shape of these labels.
+
+    Raises:
+        DamagedFileError: If there is no such grid.
+    """
     for grid in GRIDS.values():
         if grid.shape == labels.shape:
             return grid
     raise DamagedFileError(
         path,
-        f"has {_sides(labels.shape)} cells; 60x60x36 or 30x30x18 as x, y, z are scored (see "
-        "--order)",
+        f"expected 60x60x36 or 30x30x18 cells as x, y, z, got {_sides(labels.shape)}; "
+        "check --order",
     )
 
 
@@ -178,7 +197,9 @@ def _channels(values: np.ndarray, path: Path) -> int:
     for axis in (0, -1):
         if values.shape[axis] in (CLASS_COUNT, EMBODIED_CLASSES):
             return axis
-    raise DamagedFileError(path, f"has scores of {values.shape}; 12 or 13 channels are known")
+    raise DamagedFileError(
+        path, f"expected scores with 12 or 13 channels, got shape {values.shape}"
+    )
 
 
 def _read_frame_array(path: Path) -> np.ndarray:
@@ -189,7 +210,9 @@ def _read_frame_array(path: Path) -> np.ndarray:
     names = npz_array_names(path)
     wanted = next((name for name in NAMES if name in names), names[0] if len(names) == 1 else "")
     if not wanted:
-        raise DamagedFileError(path, f"holds {', '.join(names)}; the grid is named labels")
+        raise DamagedFileError(
+            path, f"contains {', '.join(names)}; the array with the grid must be named labels"
+        )
     return read_npz(path, (wanted,))[wanted]
 
 
@@ -198,4 +221,4 @@ def _find_array(arrays: dict[str, Any], path: Path) -> np.ndarray:
         value = arrays.get(name)
         if isinstance(value, np.ndarray) and math.prod(value.shape) > 1:
             return value
-    raise DamagedFileError(path, "holds no array")
+    raise DamagedFileError(path, "contains no array")

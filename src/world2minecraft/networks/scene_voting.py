@@ -1,8 +1,9 @@
-"""Score whole scenes by single-frame predictions: each frame votes on the cells in its view.
+"""Evaluation of complete scenes with single-frame predictions, by voting.
 
-EmbodiedOcc keeps a memory of a scene and scores it at the end. A network that knows single frames
-has none: here each frame votes for the class that it predicts of the cells in its view, and the
-most frequent counts, the lower id where two are even. The boxes must lie on one lattice of cells.
+EmbodiedOcc keeps a memory of a scene and is evaluated at the end. For networks without a memory,
+each frame votes with its predicted class for each cell in its view. The most frequent class wins,
+or the lowest id in case of a tie. The boxes of the frames must be aligned with a common lattice of
+cells.
 """
 
 from collections.abc import Sequence
@@ -21,7 +22,15 @@ MAX_CELLS = 40_000_000  # Of a scene; its votes take 12 bytes each.
 
 
 class SceneFrame(NamedTuple):
-    """The prediction and the truth of a frame, where it looks."""
+    """The prediction and the ground truth of a frame, with its position in the room.
+
+    Attributes:
+        scene_id: Name of the scene.
+        predicted: Predicted class of each cell, uint8 [X, Y, Z].
+        truth: True class of each cell, uint8 [X, Y, Z].
+        in_view: Whether each cell is in view, bool, packed into eight cells per byte.
+        grid_to_room: Matrix from grid coordinates to room coordinates in metres [4, 4].
+    """
 
     scene_id: str
     predicted: np.ndarray  # uint8 [X, Y, Z]
@@ -33,20 +42,25 @@ class SceneFrame(NamedTuple):
     def pack(
         cls, scene_id: str, predicted: np.ndarray, known: KnownCells, grid_to_room: np.ndarray
     ) -> "SceneFrame":
-        """Keep what scenes are made of."""
+        """Create a frame from a prediction and its ground truth."""
         inside = np.ones(predicted.shape, bool) if known.in_frustum is None else known.in_frustum
         return cls(scene_id, predicted, known.labels, np.packbits(inside), grid_to_room)
 
     @property
     def mask(self) -> np.ndarray:
-        """Bool [X, Y, Z]: what it has in view."""
+        """Whether each cell is in view, bool [X, Y, Z]."""
         return (
             np.unpackbits(self.in_view, count=self.predicted.size).reshape(self.predicted.shape) > 0
         )
 
 
 def scene_scores(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[list[FrameScore], str]:
-    """Return the counts of each scene, or none and the reason why there are none."""
+    """Evaluate the scenes of the given frames by voting.
+
+    Returns:
+        The counts for each scene and an empty string, or an empty list and the reason why the
+        scenes cannot be evaluated.
+    """
     by_scene: dict[str, list[SceneFrame]] = {}
     for frame in frames:
         by_scene.setdefault(frame.scene_id, []).append(frame)
@@ -60,7 +74,14 @@ def scene_scores(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[list[Fra
 
 
 class Lattice(NamedTuple):
-    """The boxes of a scene's frames, along the room's axes, on the cells that they share."""
+    """The boxes of a scene's frames along the room axes, on a common lattice of cells.
+
+    Attributes:
+        grids: Predictions, ground truth and mask of each box.
+        cells: First cell of each box, int [N, 3].
+        shape: Shape of the scene in cells.
+        origin_m: Minimum corner in room coordinates in metres, float64 [3].
+    """
 
     grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]]  # predicted, truth and mask of each box
     cells: np.ndarray  # int [N, 3], where each box begins
@@ -69,23 +90,32 @@ class Lattice(NamedTuple):
 
 
 def align_frames(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[Lattice | None, str]:
-    """Return the boxes of one scene's frames on their lattice, or None and why there is none."""
+    """Align the boxes of a scene's frames with a common lattice.
+
+    Returns:
+        The lattice and an empty string, or None and the reason why the boxes cannot be aligned.
+    """
     scene_id = frames[0].scene_id
     places = [_align_to_axes(frame, voxel_m) for frame in frames]
     if any(place is None for place in places):
-        return None, f"a box of {scene_id} is not along the room's axes"
+        return None, f"a box of {scene_id} is not aligned with the room axes"
     corners = np.array([place[1] for place in places if place is not None])
     steps = (corners - corners[0]) / voxel_m
     if np.abs(steps - np.round(steps)).max() > TOLERANCE_CELLS:
         return None, (
-            f"the boxes of {scene_id} share no lattice of {voxel_m:g} m cells; score at 0.08 m"
+            f"the boxes of {scene_id} are not on a common lattice of {voxel_m:g} m; use "
+            "cells of 0.08 m"
         )
     low = steps.min(axis=0)
     cells = np.round(steps - low).astype(int)
     grids = [place[0] for place in places if place is not None]
     shape = tuple((cells + [grid[0].shape for grid in grids]).max(axis=0).tolist())
     if np.prod(shape, dtype=float) > MAX_CELLS:
-        return None, f"{scene_id} spans {'x'.join(map(str, shape))} cells, which is no home"
+        return (
+            None,
+            f"{scene_id} spans {'x'.join(map(str, shape))} cells, which exceeds the limit "
+            f"of {MAX_CELLS:,}",
+        )
     return Lattice(grids, cells, shape, corners[0] + low * voxel_m), ""
 
 
@@ -106,7 +136,12 @@ def _align_to_axes(
 
 
 def merge_truth(lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
-    """Return a scene's true labels uint8 [X, Y, Z], 255 where no frame knows, and what was seen."""
+    """Merge the ground truth of all frames in a scene.
+
+    Returns:
+        The class of each cell, uint8 [X, Y, Z] with 255 for unknown, and whether it is in the view
+        of any frame, bool [X, Y, Z].
+    """
     labels = np.full(lattice.shape, UNKNOWN, np.uint8)
     seen = np.zeros(lattice.shape, bool)
     for (_, true, mask), first in zip(lattice.grids, lattice.cells, strict=True):

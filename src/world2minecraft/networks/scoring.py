@@ -1,8 +1,8 @@
-"""Score a network, an ONNX file or saved predictions, by any of the protocols.
+"""Evaluation of networks, ONNX files and saved predictions with any of the protocols.
 
-In: predictions of frames and their truth. Out: a dictionary for JSON, also as rows of a LaTeX table
-in the columns of the paper. What a set cannot answer, as ``ssc`` without depth, is left out, with
-the reason.
+Predictions and ground truth of frames are converted to a dict of scores for JSON, and to rows of a
+LaTeX table with the columns of the paper. Protocols that require missing data, such as ``ssc``
+without depth, are left out with the reason.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -36,7 +36,9 @@ MEMORY = "embodied memory"  # The same of a network that fuses frames by itself.
 
 
 def latex_rows(scores: dict[str, Any], name: str) -> str:
-    """Return a comment that names the columns, and a row a protocol, per cent.
+    """Format scores as LaTeX table rows in percent, one for each protocol.
+
+    A comment in the first line names the columns.
 
     Example:
         >>> figures = {"iou": 0.5, "miou": 0.25, "precision": 1.0, "recall": 0.5}
@@ -60,7 +62,14 @@ def _escaped(text: str) -> str:
 
 
 class PredictedFrame(NamedTuple):
-    """One frame: the prediction and the truth of its cells."""
+    """The prediction and the ground truth of a frame.
+
+    Attributes:
+        scene_id: Name of the scene.
+        predicted: Predicted class of each cell, uint8 [X, Y, Z].
+        known: Ground truth and masks.
+        grid_to_room: Matrix from grid coordinates to room coordinates in metres, float64 [4, 4].
+    """
 
     scene_id: str
     predicted: np.ndarray  # uint8 [X, Y, Z]
@@ -75,21 +84,22 @@ def protocol_scores(
     *,
     seed: int = 0,
 ) -> dict[str, Any]:
-    """Score frames by some protocols, or by all that their masks allow.
+    """Evaluate frames with the given protocols, or with all protocols that their masks allow.
 
     Args:
-        frames: one at a time; those of a scene need not follow each other.
-        voxel_m: the side of their cells.
-        protocols: names; all where empty.
-        seed: of the intervals.
+        frames: Frames in any order, read one at a time.
+        voxel_m: Cell size in metres.
+        protocols: Names of the protocols. Defaults to all.
+        seed: Random seed for the confidence intervals.
 
     Returns:
-        ``protocols``: name to what ``summarise`` returns, with ``counts`` and ``reads`` in words;
-        ``left_out``: name to reason.
+        A dict with ``protocols``, which contains the result of ``summarise`` for each protocol with
+        ``counts`` and ``reads`` as descriptions, and ``left_out``, which contains the reason for
+        each omitted protocol.
 
     Raises:
-        UsageError: there is no frame, or a protocol that was requested by name cannot be.
-        UnknownNameError: there is no such protocol.
+        UsageError: If there are no frames, or if a requested protocol cannot be computed.
+        UnknownNameError: If a protocol is unknown.
     """
     chosen = [protocol_named(name) for name in protocols or PROTOCOLS]
     counts: dict[str, list[FrameScore]] = {one.name: [] for one in chosen}
@@ -108,7 +118,7 @@ def protocol_scores(
         if "embodied" in counts and frame.known.in_frustum is not None:
             scenes.append(SceneFrame.pack(*frame))
     if not any(counts.values()):
-        raise UsageError("there is no frame to score")
+        raise UsageError("no frames to evaluate")
     result: dict[str, Any] = {}
     for protocol in chosen:
         if counts[protocol.name] and protocol.name not in left_out:
@@ -119,14 +129,14 @@ def protocol_scores(
         if reason:
             left_out[SCENES] = reason
         else:
-            result[SCENES] = summarise_scenes(by_scene, "; frames vote", seed)
+            result[SCENES] = summarise_scenes(by_scene, ", by votes of the frames", seed)
     return {"protocols": result, "left_out": left_out}
 
 
 def summarise_scenes(counts: list[FrameScore], how: str, seed: int) -> dict[str, Any]:
-    """Return what ``summarise`` does of scenes, with what was counted in words."""
+    """Summarise the counts of scenes, with a description of the counted cells."""
     words = {
-        "counts": f"of each scene those that any of its frames has in view{how}",
+        "counts": f"cells of each scene that are in the view of any frame{how}",
         "reads": PROTOCOLS["embodied"].unknown,
     }
     return summarise(counts, seed=seed) | words
@@ -140,20 +150,20 @@ def saved_scene_scores(
     seed: int = 0,
     progress: Progress = no_progress,
 ) -> dict[str, Any]:
-    """Score saved grids of whole scenes, as EmbodiedOcc's memory leaves them.
+    """Evaluate saved grids of complete scenes, such as those from EmbodiedOcc's memory.
 
     Args:
-        saved: a grid for each scene.
-        scenes: the truth.
-        names: of the scenes to score.
-        seed: of the intervals.
-        progress: called for ``score``.
+        saved: A grid for each scene.
+        scenes: Scenes with their ground truth.
+        names: Names of the scenes to evaluate.
+        seed: Random seed for the confidence intervals.
+        progress: Callback that reports progress on the stage ``score``.
 
     Returns:
-        What ``protocol_scores`` returns, of ``embodied scenes`` alone.
+        A dict as returned by ``protocol_scores``, with only ``embodied scenes``.
 
     Raises:
-        InputError: a grid or a scene is missing, or they have other cells.
+        InputError: If a grid or a scene is missing, or if they differ in shape.
     """
     counts = []
     for done, name in enumerate(names, 1):
@@ -165,7 +175,7 @@ def saved_scene_scores(
 
 
 def scenes_to_score(saved: SavedPredictions, scenes: SceneSet, split: str | None) -> list[str]:
-    """Return the scenes of a split that grids were saved of; none where frames were saved."""
+    """Return the scenes of a split that have saved grids, or an empty list if frames were saved."""
     known = {saved.path.stem} if saved.is_single else set(saved.keys())
     return [name for name, of in scenes.splits.items() if name in known and split in (None, of)]
 
@@ -173,7 +183,7 @@ def scenes_to_score(saved: SavedPredictions, scenes: SceneSet, split: str | None
 def network_predictions(
     frames: Frames, rows: Sequence[int], predicted: Iterator[np.ndarray]
 ) -> Iterator[PredictedFrame]:
-    """Pair what a network says of rows with what is true of them."""
+    """Combine the predictions of a network with the ground truth of the frames."""
     for row, labels in zip(rows, predicted, strict=True):
         frame = frames[row]
         yield PredictedFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
@@ -182,7 +192,10 @@ def network_predictions(
 def onnx_predictions(
     path: Path, frames: Frames, rows: Sequence[int], progress: Progress = no_progress
 ) -> Iterator[PredictedFrame]:
-    """Run an ONNX file over rows. Raises what ``OccupancyNetwork`` raises."""
+    """Run an ONNX file on the given frames.
+
+    Raises the same exceptions as ``OccupancyNetwork``.
+    """
     from world2minecraft.reconstruction.occupancy.onnx_network import OccupancyNetwork  # noqa: PLC0415
 
     network = OccupancyNetwork(path)
@@ -202,39 +215,43 @@ def file_predictions(
     keys: Sequence[str],
     progress: Progress = no_progress,
 ) -> Iterator[PredictedFrame]:
-    """Pair saved predictions with the samples of the same keys.
+    """Combine saved predictions with the ground truth of the samples.
 
     Raises:
-        InputError: a prediction is missing, or a sample has other cells.
+        InputError: If a prediction is missing, or if its shape differs from the sample.
     """
     grid: Grid | None = None
     for done, key in enumerate(keys, 1):
         labels, sample = saved.labels(key), truth[key]
         grid = grid or grid_of_labels(labels, saved.path)
         if labels.shape != grid.shape:
-            raise InputError(saved.path, f"{key} has {labels.shape} cells, others {grid.shape}")
+            raise InputError(
+                saved.path,
+                f"{key} has shape {labels.shape}, but other predictions have {grid.shape}",
+            )
         known = cells_with_masks(sample, grid)
         yield PredictedFrame(sample.scene_id, labels, known, sample.occ.region.region_to_room)
         progress("score", done, len(keys))
 
 
 def keys_to_score(saved: SavedPredictions, truth: ImportedSet, split: str | None) -> list[str]:
-    """Return the keys of a split that there are predictions of.
+    """Return the sample keys of a split that have saved predictions.
 
     Raises:
-        InputError: there are none, or the predictions are of one frame and the truth of many.
+        InputError: If there are none, or if a single prediction is given for several samples.
     """
     keys = truth.keys(split)
     if saved.is_single:
         if len(keys) != 1:
             raise InputError(
                 saved.path,
-                f"is one frame's, and the truth has {len(keys)}; give a folder of KEY.npz",
+                f"contains a single frame, but the data set has {len(keys)}; use a folder "
+                "of KEY.npz files",
             )
         return keys
     known = set(saved.keys())
     found = [key for key in keys if key in known]
     if not found:
         example = f", such as {keys[0]}.npz" if keys else ""
-        raise InputError(saved.path, f"holds no prediction of {truth.path}{example}")
+        raise InputError(saved.path, f"contains no predictions for {truth.path}{example}")
     return found

@@ -1,15 +1,15 @@
-"""Train a network, from its data sets to its scores. The same call continues a stopped run.
+"""Training of a network, from its data sets to its scores. The same call resumes a stopped run.
 
-A run's folder::
+The folder of a run contains::
 
-    run.yaml                 every setting; w2m train --config trains the same again
-    weights.safetensors      the best by mIoU on held-out frames
-    last.safetensors         those of the last step
-    checkpoint.safetensors   what a stopped run goes on from
-    metrics.csv              step, name, value; tensorboard/ has the same
-    scores.json              of the best weights, by every protocol, on the test split
-    scores_last.json         of the last weights, where those were requested
-    run.json                 what differs by nature: times, machine, versions
+    run.yaml                 all settings; w2m train --config repeats the training
+    weights.safetensors      best weights by mIoU on the validation frames
+    last.safetensors         weights of the last step
+    checkpoint.safetensors   state for resuming a stopped run
+    metrics.csv              step, name, value; also written to tensorboard/
+    scores.json              scores of the best weights on the test split, for all protocols
+    scores_last.json         scores of the last weights, if requested
+    run.json                 times, machine and versions, which differ between runs
 """
 
 import logging
@@ -65,7 +65,13 @@ FREE_SETTINGS = ("threads", "workers", "checkpoint_every")
 
 
 class TrainedRun(NamedTuple):
-    """What a run came to."""
+    """The result of a training run.
+
+    Attributes:
+        folder: Folder of the run.
+        state: Final state of the run.
+        data: Data sets of the run.
+    """
 
     folder: Path
     state: RunState
@@ -73,7 +79,10 @@ class TrainedRun(NamedTuple):
 
 
 def build_network(config: RunConfig) -> nn.Module:
-    """Return the network of a run with its first weights. Raises what ``make_network`` does."""
+    """Create the network for a run with its initial weights.
+
+    Raises the same exceptions as ``make_network``.
+    """
     return make_network(
         config.network,
         config.size,
@@ -92,22 +101,25 @@ def train_run(
     cache: CacheLocation | None = None,
     progress: Progress = no_progress,
 ) -> TrainedRun:
-    """Train, or go on with a run of the same settings in the same folder.
+    """Train a network, or resume a run with the same settings in the same folder.
 
     Args:
-        config: the run.
-        folder: of its files.
-        device: auto, cpu or cuda.
-        cache: where decoded frames are kept.
-        progress: called for ``frames`` and ``train``.
+        config: Settings of the run.
+        folder: Folder of the run.
+        device: ``auto``, ``cpu`` or ``cuda``.
+        cache: Cache for decoded frames.
+        progress: Callback that reports progress on the stages ``frames`` and ``train``.
 
     Raises:
-        ConflictError: the folder holds a run of other settings, or another process trains in it.
-        InputError, UsageError: the sets or the settings cannot be used, or the loss came to be no
-        number.
+        ConflictError: If the folder contains a run with other settings, or if another process is
+            training there.
+        InputError: If a data set cannot be used.
+        UsageError: If the settings are not valid, or if the loss is not finite.
     """
     if config.frames > 1 and config.network not in DEFAULT_FRAMES:
-        raise UsageError(f"{config.network} looks at one frame; frames is for embodied")
+        raise UsageError(
+            f"{config.network} processes single frames; frames above 1 is only for embodied"
+        )
     check_folder(config, folder)
     folder.mkdir(parents=True, exist_ok=True)
     lock = Lock(folder / ".lock", "trained")
@@ -126,7 +138,11 @@ def train_run(
 
 
 def check_folder(config: RunConfig, folder: Path) -> None:
-    """Refuse a folder that holds a run of other settings. Raises ConflictError."""
+    """Check that a folder does not contain a run with other settings.
+
+    Raises:
+        ConflictError: If it does.
+    """
     if not (folder / RUN).is_file():
         return
     existing = read_config(folder / RUN)
@@ -138,10 +154,11 @@ def check_folder(config: RunConfig, folder: Path) -> None:
         [_describe_setting(getattr(one, name)) for one in (existing, config)] for name in names
     ]
     differences = ", ".join(
-        f"{name} is {held}, not {wanted}" for name, (held, wanted) in zip(names, texts, strict=True)
+        f"{name} is {held}, requested {wanted}"
+        for name, (held, wanted) in zip(names, texts, strict=True)
     )
     raise ConflictError(
-        folder, f"holds a run of other settings ({differences}); choose another --out"
+        folder, f"contains a run with other settings ({differences}); choose another --out"
     )
 
 
@@ -201,7 +218,7 @@ def _read_state(checkpoint: Path) -> RunState:
     facts = read_facts(checkpoint)
     if facts.keys() != vars(RunState()).keys():
         raise DamagedFileError(
-            checkpoint, "is of another version of w2m train; choose another --out"
+            checkpoint, "written by another version of w2m train; choose another --out"
         )
     return RunState(**facts)
 
@@ -233,11 +250,18 @@ def score_run(
     *,
     last: bool = False,
 ) -> dict[str, Any]:
-    """Score the weights of a run on its test split, by all protocols.
+    """Evaluate the weights of a run on its test split with all protocols.
 
-    The best weights by validation, into scores.json; or the ``last`` step's, which no frame chose,
-    into scores_last.json. A set without a test split is scored on the frames that it was validated
-    on, which flatters: ``split`` states so.
+    The scores of the best weights are written to scores.json, and those of the last step to
+    scores_last.json. Without a test split, the validation frames are used, which gives scores that
+    are too high; ``split`` in the result states which frames were used.
+
+    Args:
+        trained: Result of the training.
+        config: Settings of the run.
+        device: ``auto``, ``cpu`` or ``cuda``.
+        progress: Callback that reports progress on the stage ``score``.
+        last: Whether to evaluate the weights of the last step instead of the best ones.
     """
     data, folder = trained.data, trained.folder
     network = load_trained_network(folder, config, device, last=last)
@@ -260,17 +284,22 @@ def score_run(
 def load_trained_network(
     folder: Path, config: RunConfig, device: str = "auto", *, last: bool = False
 ) -> nn.Module:
-    """Return the network of a run with its best weights, or its last. Raises InputError."""
+    """Load the network of a run with its best or its last weights.
+
+    Raises:
+        InputError: If the weights do not exist.
+    """
     network = build_network(config)
     load_weights(folder / (LAST if last else WEIGHTS), network)
     return network.to(resolve_device(device)).eval()
 
 
 def load_weights_file(path: Path) -> tuple[nn.Module, RunConfig]:
-    """Return the network of a run's folder or of a file of weights, and its settings.
+    """Load the network and the settings from a run folder or a file of weights.
 
     Raises:
-        InputError: there are no weights. DamagedFileError: they are not those of a network.
+        InputError: If there are no weights.
+        DamagedFileError: If the weights are not valid.
     """
     file = path / WEIGHTS if path.is_dir() else path
     config = read_weights_config(file)
@@ -313,7 +342,7 @@ def _write_facts(
 
 
 def describe_hardware(device: torch.device) -> str:
-    """Return what a device is, in words."""
+    """Return a description of a device for the user."""
     if device.type == "cuda":
         return torch.cuda.get_device_name()
     named = platform.processor() or platform.machine()

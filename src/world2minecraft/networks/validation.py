@@ -1,4 +1,4 @@
-"""Predict the labels of frames, and compute the counts that choose the best weights."""
+"""Prediction of labels for frames, and the validation that selects the best weights."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
@@ -17,11 +17,11 @@ from world2minecraft.networks.data.cache import Frames
 
 
 def resolve_precision(precision: str, device: torch.device) -> str:
-    """Return ``bf16`` or ``32``: what ``auto`` means on a device.
+    """Return the precision to use on a device, ``bf16`` or ``32``.
 
-    bfloat16 where the device multiplies it in hardware: new graphics cards, and processors with
-    AMX, on which a step takes a quarter of the time. Without AMX torch 2.13's gradients of 3D
-    convolutions in bfloat16 differ from run to run on a processor, and are not a number at times.
+    ``auto`` selects bfloat16 if the device supports it in hardware: recent GPUs, and CPUs with AMX,
+    which reduces the time of a step to a quarter. On CPUs without AMX, bfloat16 gradients of 3D
+    convolutions in torch 2.13 differ between runs and are sometimes NaN.
     """
     if precision != "auto":
         return precision
@@ -32,15 +32,21 @@ def resolve_precision(precision: str, device: torch.device) -> str:
 
 
 def autocast(precision: str, device: torch.device) -> AbstractContextManager[Any]:
-    """Return the context in which a network computes."""
+    """Return the autocast context in which a network is run."""
     wanted = resolve_precision(precision, device) == "bf16"
     return torch.autocast(device.type, torch.bfloat16, enabled=wanted)
 
 
 def resolve_device(name: str) -> torch.device:
-    """Return what ``auto``, ``cpu`` or ``cuda`` means here. Raises MissingExtraError for no GPU."""
+    """Return the device for ``auto``, ``cpu`` or ``cuda``.
+
+    Raises:
+        MissingExtraError: If ``cuda`` is requested but not available.
+    """
     if name == "cuda" and not torch.cuda.is_available():
-        raise MissingExtraError("training on a GPU, which this torch does not see,", "train")
+        raise MissingExtraError(
+            "training on a GPU, which this installation of torch does not detect,", "train"
+        )
     if name == "auto":
         name = "cuda" if torch.cuda.is_available() else "cpu"
     return torch.device(name)
@@ -55,9 +61,9 @@ def predict_labels(
     progress: Progress = no_progress,
     stage: str = "score",
 ) -> Iterator[np.ndarray]:
-    """Yield the likeliest class of each cell of some frames, uint8 [X, Y, Z], in their order.
+    """Predict the most likely class of each cell for frames, yielding uint8 [X, Y, Z] in order.
 
-    The network is left in the mode that it was in.
+    The mode of the network is restored afterwards.
     """
     device = next(network.parameters()).device
     was_training = network.training
@@ -78,7 +84,7 @@ def predict_labels(
 def validate(
     network: nn.Module, frames: Frames, rows: Sequence[int], config: RunConfig
 ) -> OccupancyCounts:
-    """Return the counts of some frames, by the protocol ``monoscene``."""
+    """Return the counts for the given frames with the protocol ``monoscene``."""
     total = OccupancyCounts()
     predicted = predict_labels(network, frames, rows, config)
     for row, labels in zip(rows, predicted, strict=True):

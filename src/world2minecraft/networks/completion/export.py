@@ -39,7 +39,7 @@ def export_completion(network: CompletionNet, path: Path, about: dict[str, str])
 
 
 def to_half_precision(network: CompletionNet) -> CompletionNet:
-    """Return a float32 copy of a network with folded norms and weights rounded to half precision."""
+    """Return a float32 copy of a network with folded norms and half-precision weights."""
     copy = CompletionNet(network.size)
     copy.load_state_dict(network.state_dict())
     copy.eval()
@@ -87,7 +87,7 @@ def _store_weights(data: bytes, about: dict[str, str]) -> bytes:
 
 @torch.no_grad()
 def parity(network: nn.Module, data: bytes) -> float:
-    """Return the largest difference between the logits of PyTorch and ONNX Runtime on two shapes."""
+    """Return the largest difference between the logits of PyTorch and ONNX Runtime."""
     session = onnxruntime.InferenceSession(data, providers=["CPUExecutionProvider"])
     rng = np.random.default_rng(0)
     worst = 0.0

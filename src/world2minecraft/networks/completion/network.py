@@ -24,7 +24,14 @@ MULTIPLE = 8  # Sides of what goes in are whole multiples of this.
 
 @dataclass(frozen=True)
 class CompletionSize:
-    """Number of channels at a half, a quarter and an eighth of the resolution, and at full resolution."""
+    """The numbers of channels of a completion network.
+
+    Attributes:
+        half: Channels at half resolution.
+        quarter: Channels at a quarter of the resolution.
+        eighth: Channels at an eighth of the resolution.
+        full: Channels at full resolution.
+    """
 
     half: int = 40
     quarter: int = 72

@@ -82,7 +82,7 @@ def draw_lost_pixels(
 
 
 def corrupt_labels(labels: np.ndarray, error: float, rng: np.random.Generator) -> np.ndarray:
-    """Replace the class of random patches in a label image, covering about the fraction ``error``."""
+    """Replace the class of random patches that cover a fraction ``error`` of a label image."""
     height, width = labels.shape
     side = max(round(width * PATCH_SHARE), 1)
     shape = (height // side + 1, width // side + 1)

@@ -206,7 +206,7 @@ class OrderedDataset(Dataset):
 
 
 class FrameCollator:
-    """A collate function that stacks frames into a batch. It is a class so that it can be pickled."""
+    """A picklable collate function that stacks frames into a batch."""
 
     def __init__(self, grid: Grid, depth: str):
         self._grid, self._depth = grid, depth

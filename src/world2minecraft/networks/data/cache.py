@@ -86,7 +86,7 @@ class CachedFrames:
         }
 
     def __reduce__(self) -> tuple[type["CachedFrames"], tuple[Path]]:
-        """Pickle only the folder, so that another process opens the files instead of copying arrays."""
+        """Pickle only the folder, so that other processes open the files themselves."""
         return CachedFrames, (self._folder,)
 
     def __len__(self) -> int:

@@ -1,9 +1,9 @@
-"""Frames: samples at one image size and with labels in cells of one size.
+"""Frames: samples that are converted to a common image size and cell size.
 
-The picture's middle is cropped to the wanted shape and resampled, and the intrinsics follow: a
-point's pixel moves as the picture does. Labels of finer cells are made coarser by SSCNet's rule,
-which made the published 8 cm of 2 cm. A coarse cell is seen where any of its cells is; it is free
-where it is empty, not seen, and a ray went through any.
+The centre of the image is cropped to the required aspect ratio and resampled, and the intrinsics
+are adapted. Fine labels are downsampled with SSCNet's rule, which was also used for the published 8
+cm grids. A coarse cell is seen if any of its fine cells is seen. It is free if it is empty, not
+seen, and a ray crosses any of its fine cells.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,13 @@ SAME_SURFACE = 0.05  # Of the depth: neighbours farther apart are of two surface
 
 @dataclass(frozen=True)
 class FrameRule:
-    """What all frames of a run share."""
+    """The common format of all frames in a run.
+
+    Attributes:
+        grid: Grid of cells.
+        width_px: Image width in pixels.
+        height_px: Image height in pixels.
+    """
 
     grid: Grid
     width_px: int
@@ -34,7 +40,23 @@ class FrameRule:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One frame; grids are [X, Y, Z] of the rule, pixels [H, W]."""
+    """A training frame.
+
+    Attributes:
+        key: Key of the sample.
+        scene_id: Name of the scene.
+        image: Colour image, uint8 [H, W, 3].
+        depth_m: Depth in metres, float32 [H, W]; 0 for none.
+        intrinsics: Camera matrix with pixel centres at +0.5, float32 [3, 3].
+        camera_to_grid: Matrix from camera coordinates to the position relative to the corner of
+            cell (0, 0, 0) in metres, float32 [4, 4].
+        grid_to_room: Matrix from this position to room coordinates, float64 [4, 4].
+        labels: Class of each cell (0 to 11 or 255), uint8 [X, Y, Z].
+        in_frustum: Whether each cell centre is inside the image, bool [X, Y, Z].
+        seen: Whether each cell is seen by a pixel, bool [X, Y, Z].
+        free: Whether each cell is empty and crossed by a ray, bool [X, Y, Z].
+        has_depth: Whether ``seen`` and ``free`` are known.
+    """
 
     key: str
     scene_id: str
@@ -51,21 +73,24 @@ class Frame:
 
     @property
     def known(self) -> KnownCells:
-        """What protocols score against."""
+        """Ground truth and masks for the evaluation protocols."""
         masks = (self.seen, self.free) if self.has_depth else (None, None)
         return KnownCells(self.labels, self.in_frustum, *masks)
 
 
 def make_frame(sample: OccSample, rule: FrameRule) -> Frame:
-    """Return the frame of a sample.
+    """Convert a sample to a frame.
 
     Raises:
-        InputError: it has no picture, its lens distorts, or its cells do not make the grid's.
+        InputError: If the sample has no image, if its camera has lens distortion, or if its cells
+            cannot be converted to the grid.
     """
     if sample.colour is None:
-        raise InputError(sample.key, "has no picture, which networks look at; build with pictures")
+        raise InputError(
+            sample.key, "the sample has no image; build the data set without --labels-only"
+        )
     if any(sample.camera.distortion):
-        raise InputError(sample.key, "its lens distorts; undistort the pictures first")
+        raise InputError(sample.key, "the camera has lens distortion; undistort the images first")
     crop = _Crop(sample.camera, rule)
     known = cells_with_masks(sample, rule.grid)
     grid_to_room = sample.occ.region.region_to_room
@@ -96,10 +121,10 @@ def make_frame(sample: OccSample, rule: FrameRule) -> Frame:
 
 
 def cells_with_masks(sample: OccSample, grid: Grid) -> KnownCells:
-    """Return the truth of a sample in the cells of a grid, pictures or not.
+    """Return the ground truth of a sample in the cells of a grid. The sample needs no image.
 
     Raises:
-        InputError: its cells do not make the grid's.
+        InputError: If the cells of the sample cannot be converted to the grid.
     """
     factor, occ = _factor(sample, grid), sample.occ
     if factor == 1:
@@ -123,8 +148,8 @@ def _factor(sample: OccSample, grid: Grid) -> int:
         have, want = ("x".join(str(side) for side in of) for of in (region.shape, shape))
         raise InputError(
             sample.key,
-            f"its region is {have} cells of {region.voxel_m:g} m, of which no {want} of "
-            f"{voxel_m:g} m are made; build the data set with --voxel 0.08, or choose another grid",
+            f"a region of {have} cells of {region.voxel_m:g} m cannot be converted to {want} cells "
+            f"of {voxel_m:g} m; build the data set with --voxel 0.08 or choose another grid",
         )
     return factor
 

@@ -1,8 +1,8 @@
-"""Sequences: several frames of one scene as one sample, in the grid of the first.
+"""Sequences: several frames of a scene as one sample, in the grid of the first frame.
 
-The others are used in the cells of the first one's grid: their poses are carried into it, and
-nothing is resampled. Chosen are frames of the same scene that look into the box, where there are
-any; how many follows from the step, so that a network learns from one frame as from many.
+The poses of the other frames are transformed to the grid of the first frame; labels are not
+resampled. Frames that look into the grid are preferred. The number of frames depends on the step,
+so a network learns from one frame as well as from several.
 """
 
 from collections.abc import Sequence
@@ -19,12 +19,12 @@ TRIES_PER_FRAME = 4  # Frames that are tried for each that is wanted.
 
 
 class SequenceSampler:
-    """Finds further frames of the scene of a frame.
+    """A sampler that finds further frames of a frame's scene.
 
     Args:
-        frames: of a set.
-        rows: those that may be taken.
-        voxel_m: of their cells.
+        frames: Frames of a data set.
+        rows: Indices of the frames that may be used.
+        voxel_m: Cell size in metres.
     """
 
     def __init__(self, frames: Frames, rows: Sequence[int], voxel_m: float):
@@ -34,9 +34,15 @@ class SequenceSampler:
             self._rows.setdefault(frames.scenes[row], []).append(row)
 
     def sample(self, row: int, frame: Frame, count: int, rng: np.random.Generator) -> list[Frame]:
-        """Return ``count`` frames in the box of ``frame``, which is that of ``row``.
+        """Choose random frames of the same scene and transform them to the grid of ``frame``.
 
-        Those that look into the box come first. A scene of fewer frames gives some of them again.
+        Frames that look into the grid are preferred. Frames are repeated if the scene has too few.
+
+        Args:
+            row: Index of ``frame``.
+            frame: Frame that defines the grid.
+            count: Number of frames to choose.
+            rng: Random generator.
         """
         others = [one for one in self._rows[frame.scene_id] if one != row] or [row]
         order = [others[n] for n in rng.permutation(len(others))]
@@ -52,9 +58,9 @@ class SequenceSampler:
 
 
 def move_to_grid(anchor: Frame, other: Frame) -> Frame:
-    """Return another frame of the scene with its camera in the grid of ``anchor``.
+    """Transform another frame of the scene to the grid of ``anchor``.
 
-    Its labels and masks are those of ``anchor``: they are of the same cells.
+    The result has the labels and masks of ``anchor``, because it has the same cells.
     """
     grid_to_anchor = invert_rigid(anchor.grid_to_room) @ other.grid_to_room
     return replace(
@@ -69,12 +75,12 @@ def move_to_grid(anchor: Frame, other: Frame) -> Frame:
 
 
 def views_grid(frame: Frame, voxel_m: float) -> bool:
-    """Whether what a camera looks at lies over the box: ``LOOK_AHEAD_M`` before it, or itself."""
+    """Return whether the point ``LOOK_AHEAD_M`` in front of a frame's camera is above its grid."""
     sides_m = np.array(frame.labels.shape[:2]) * voxel_m
     at_m = frame.camera_to_grid[:2, 3] + LOOK_AHEAD_M * frame.camera_to_grid[:2, 2]
     return bool(((at_m >= 0) & (at_m <= sides_m)).all())
 
 
 def sequence_length(seed: int, step: int, max_frames: int) -> int:
-    """Return how many frames the samples of a step have, 1 to ``max_frames``, each as likely."""
+    """Return the random number of frames for the samples of a step, from 1 to ``max_frames``."""
     return 1 + int(np.random.default_rng([seed, 2**21, step]).integers(max_frames))

@@ -1,7 +1,8 @@
-"""Split the frames of a set into training, validation and test.
+"""The split of a data set into training, validation and test frames.
 
-A set's own test split is the score's. Of the scenes that train, a share is held out to validate
-on; scenes are chosen by the digest of their name, so that the same set is always split alike.
+The test split of the data set is used for the final score. A fraction of the training scenes is
+held out for validation. Scenes are selected by a hash of their names, so the same data set is
+always split in the same way.
 """
 
 import hashlib
@@ -12,7 +13,13 @@ from world2minecraft.core.errors import UsageError
 
 
 class Split(NamedTuple):
-    """Rows of a set's frames, each in the set's order."""
+    """The frame indices of each split, in the order of the data set.
+
+    Attributes:
+        train: Training frames.
+        val: Validation frames.
+        test: Test frames; empty if the data set has no test split.
+    """
 
     train: list[int]
     val: list[int]
@@ -20,21 +27,22 @@ class Split(NamedTuple):
 
     @property
     def scored(self) -> list[int]:
-        """What a finished network is scored on: the test split, or what it was validated on."""
+        """Frames for the final score: the test split or, without one, the validation split."""
         return self.test or self.val
 
 
 def split_rows(scenes: list[str], splits: list[str], val_share: float, name: str) -> Split:
-    """Split frames.
+    """Split the frames of a data set.
 
     Args:
-        scenes: the scene of each frame.
-        splits: train, test or "" of each.
-        val_share: of the scenes that train; 0 validates on the test split.
-        name: of the set, for messages.
+        scenes: Scene of each frame.
+        splits: Split of each frame: ``train``, ``test`` or an empty string.
+        val_share: Fraction of the training scenes used for validation. 0 validates on the test
+            split.
+        name: Name of the data set for error messages.
 
     Raises:
-        UsageError: there is nothing to train on, or nothing to validate on.
+        UsageError: If there are no frames for training or for validation.
 
     Example:
         >>> split = split_rows(["a", "b", "c"], ["train", "train", "test"], 0.5, "set")
@@ -44,31 +52,35 @@ def split_rows(scenes: list[str], splits: list[str], val_share: float, name: str
     test = [row for row, split in enumerate(splits) if split == "test"]
     pool = [row for row, split in enumerate(splits) if split != "test"]
     if not pool:
-        raise UsageError(f"{name} has no frame to train on, only {len(test)} of its test split")
+        raise UsageError(
+            f"{name} has no training frames, only {len(test)} frames in its test split"
+        )
     if not val_share:
         if not test:
-            raise UsageError(f"{name} has no test split; hold scenes out with --val-share 0.1")
+            raise UsageError(
+                f"{name} has no test split; reserve scenes for validation with --val-share 0.1"
+            )
         return Split(pool, test, test)
     names = sorted({scenes[row] for row in pool}, key=_digest)
     held_out = set(names[: max(1, round(val_share * len(names)))])
     if len(held_out) == len(names):
         raise UsageError(
-            f"{name} has {len(names)} scene to train on, of which none can be held out; add "
-            "scenes, or validate on its test split with --val-share 0"
+            f"{name} has only {len(names)} training scene, so none can be used for validation; add "
+            "scenes, or validate on the test split with --val-share 0"
         )
     train = [row for row in pool if scenes[row] not in held_out]
     return Split(train, [row for row in pool if scenes[row] in held_out], test)
 
 
 def take_evenly(rows: list[int], limit: int) -> list[int]:
-    """Return at most so many of the rows, spread evenly."""
+    """Return at most ``limit`` of the rows, evenly spaced."""
     if len(rows) <= limit:
         return rows
     return [rows[n * len(rows) // limit] for n in range(limit)]
 
 
 def describe_counts(splits: Mapping[str, list[int]]) -> str:
-    """Return counts in words, such as ``80 train, 10 val``."""
+    """Format the number of frames in each split, such as ``80 train, 10 val``."""
     return ", ".join(f"{len(rows):,} {name}" for name, rows in splits.items() if rows)
 
 

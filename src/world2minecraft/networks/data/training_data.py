@@ -1,7 +1,7 @@
-"""Open all data of a run: what it trains on, validates on and is scored on.
+"""The data sets of a run, opened for training, validation and the final score.
 
-The first set is the target: its held-out frames choose the best weights and give the score. The
-others only train.
+The first data set is the target: its validation frames determine the best weights, and its test
+frames the score. The other data sets are used only for training.
 """
 
 from dataclasses import dataclass
@@ -24,20 +24,38 @@ MAX_COUNTED_FRAMES = 1000  # Of each set, for the classes' frequencies; spread e
 
 @dataclass(frozen=True)
 class CacheLocation:
-    """Where decoded frames are kept; nowhere where they are not to be."""
+    """Where decoded frames are cached, if at all.
+
+    Attributes:
+        keep: Whether to cache frames.
+        root: Cache folder. None uses the user's cache folder.
+    """
 
     keep: bool = True
     root: Path | None = None  # The user's cache folder where None.
 
     @classmethod
     def parse(cls, text: str) -> "CacheLocation":
-        """Return what ``--cache`` says: a folder, ``off``, or nothing for the usual place."""
+        """Parse the value of ``--cache``.
+
+        Args:
+            text: Cache folder, ``off``, or an empty string for the default folder.
+        """
         return cls(False) if text == "off" else cls(True, Path(text) if text else None)
 
 
 @dataclass(frozen=True, eq=False)
 class RunData:
-    """The sets of a run."""
+    """The data sets of a run.
+
+    Attributes:
+        parts: Training frames of each data set.
+        weights: Relative weight of each data set.
+        target: Frames of the first data set.
+        split: Split of the first data set.
+        counts: Weighted number of training cells of each class, int64 [12].
+        descriptions: Description of each data set for the user.
+    """
 
     parts: tuple[TrainingSet, ...]
     weights: tuple[float, ...]
@@ -48,18 +66,18 @@ class RunData:
 
 
 def frame_rule(config: RunConfig) -> FrameRule:
-    """Return how the frames of a run are made."""
+    """Return the frame format for a run."""
     return FrameRule(config.cells, *config.image)
 
 
 def open_run_data(
     config: RunConfig, cache: CacheLocation | None = None, progress: Progress = no_progress
 ) -> RunData:
-    """Open the sets of a run and split them.
+    """Open and split the data sets of a run.
 
     Raises:
-        InputError: a set is none, or its frames do not make the run's grid. UsageError: it cannot
-        be split as the run says.
+        InputError: If a data set is not valid, or if its cells cannot be converted to the grid.
+        UsageError: If a data set cannot be split as required.
     """
     rule, place = frame_rule(config), cache or CacheLocation()
     parts, splits, descriptions = [], [], []
@@ -87,7 +105,7 @@ def open_run_data(
 def open_frames(
     found: ImportedSet, rule: FrameRule, place: CacheLocation, progress: Progress = no_progress
 ) -> Frames:
-    """Return the frames of a set, from the cache where one is kept."""
+    """Open the frames of a data set, from the cache if it is enabled."""
     if not place.keep:
         return StreamedFrames(found, rule)
     return open_cached_frames(found, rule, place.root, progress)

@@ -1,1 +1,1 @@
-"""Layers: backbones, projection and lifting, attention, 3D blocks and U-Nets, heads."""
+"""Network layers: backbones, projection, attention, 3D blocks, U-Nets and heads."""

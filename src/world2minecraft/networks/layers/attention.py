@@ -1,7 +1,7 @@
 """Multi-head attention, and deformable attention on maps and volumes.
 
-Works on maps and volumes alike, by ``sample_grid``, so that no compiled operator is needed. Places
-are shares of each axis, 0 to 1, in the order of the axes.
+Values are sampled with ``sample_grid``, so no compiled operator is required. Positions are given as
+fractions of each axis from 0 to 1, in axis order.
 """
 
 from collections.abc import Sequence
@@ -13,13 +13,13 @@ from world2minecraft.networks.layers.projection import sample_grid
 
 
 class DeformableAttention(nn.Module):
-    """Queries gather values at places of their own choice around a reference.
+    """Attention in which each query samples values at learned positions around a reference.
 
     Args:
-        channels: of queries and values.
-        heads: each with its own places; they share the channels out.
-        levels: how many maps or volumes there are.
-        points: how many places each head picks in each of them.
+        channels: Number of channels of queries and values.
+        heads: Number of heads, which share the channels and have their own sampling positions.
+        levels: Number of maps or volumes.
+        points: Number of sampling positions of each head in each level.
         axes: 2 for maps, 3 for volumes.
     """
 
@@ -34,7 +34,16 @@ class DeformableAttention(nn.Module):
         nn.init.normal_(self.shift.bias, std=1.0)  # Cells: heads begin by looking elsewhere each.
 
     def forward(self, queries: Tensor, places: Tensor, values: Sequence[Tensor]) -> Tensor:
-        """Return [B, Q, C] for queries [B, Q, C] with places [B, Q, axes] in maps [B, C, ...]."""
+        """Attend to maps or volumes.
+
+        Args:
+            queries: Queries [B, Q, C].
+            places: Reference positions of the queries [B, Q, axes], from 0 to 1.
+            values: Maps or volumes [B, C, ...], one for each level.
+
+        Returns:
+            Tensor [B, Q, C].
+        """
         batch, count = int(queries.shape[0]), int(queries.shape[1])
         shape = (batch, count, self.heads, self.levels, self.points)
         weights = self.weigh(queries).view(*shape[:3], -1).softmax(dim=-1).view(shape)
@@ -44,7 +53,7 @@ class DeformableAttention(nn.Module):
             here = self._gathered(value, places, shifts[:, :, :, level], weights[:, :, :, level])
             found = here if found is None else found + here
         if found is None:
-            raise ValueError("attention needs one map or more")
+            raise ValueError("attention needs at least one map")
         return self.out(found)
 
     def _gathered(self, value: Tensor, places: Tensor, shifts: Tensor, weights: Tensor) -> Tensor:
@@ -62,7 +71,7 @@ class DeformableAttention(nn.Module):
 
 
 class MultiHeadAttention(nn.Module):
-    """Plain attention of several heads over what is not in space."""
+    """Standard multi-head attention without positions."""
 
     def __init__(self, channels: int, heads: int):
         super().__init__()
@@ -74,7 +83,7 @@ class MultiHeadAttention(nn.Module):
         self.value, self.out = nn.Linear(channels, channels), nn.Linear(channels, channels)
 
     def forward(self, queries: Tensor, keys: Tensor, values: Tensor) -> Tensor:
-        """Return [B, Q, C] for queries [B, Q, C], keys and values [B, K, C]."""
+        """Return [B, Q, C] for queries [B, Q, C], keys [B, K, C] and values [B, K, C]."""
         query, key, value = (
             layer(given).unflatten(2, (self.heads, -1)).transpose(1, 2)
             for layer, given in ((self.query, queries), (self.key, keys), (self.value, values))
@@ -84,7 +93,7 @@ class MultiHeadAttention(nn.Module):
 
 
 class FeedForward(nn.Module):
-    """What follows each attention: added, normalised, and two layers of each query by itself."""
+    """The part of a transformer layer after attention: residual, norms and a two-layer MLP."""
 
     def __init__(self, channels: int, widening: int = 4):
         super().__init__()
@@ -96,6 +105,6 @@ class FeedForward(nn.Module):
         )
 
     def forward(self, queries: Tensor, found: Tensor) -> Tensor:
-        """Return [B, Q, C] of queries and what their attention found."""
+        """Return [B, Q, C] for queries and the result of their attention, both [B, Q, C]."""
         queries = self.first(queries + found)
         return self.second(queries + self.path(queries))

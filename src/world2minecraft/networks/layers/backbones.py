@@ -1,9 +1,9 @@
-"""Backbones, which turn an image into features: our own small network, or one of transformers.
+"""Image backbones: our own small network, or a model from transformers.
 
-Feature maps of a transformers backbone, of whatever strides, are resized to the strides that the
-decoder expects: the first of them at 1/4, the last at 1/32 (a vision transformer's are all at 1/14
-or so). At 1/2 a kernel of our own looks at the image. The library's image processors are not used,
-as they need torchvision.
+The feature maps of a transformers backbone are resized to the strides that the decoder expects,
+from 1/4 for the first to 1/32 for the last, whatever their own strides are (a vision transformer
+has about 1/14 for all). An additional convolution provides features at 1/2. The image processors of
+the library are not used, because they require torchvision.
 """
 
 import re
@@ -32,11 +32,11 @@ PREFIX = "hf:"
 
 
 class HuggingFaceEncoder(nn.Module):
-    """A backbone by its name in a model hub, or from a folder.
+    """A backbone from transformers, loaded from the Hugging Face hub or from a folder.
 
     Raises:
-        MissingExtraError: transformers is not installed.
-        InputError: the backbone cannot be had.
+        MissingExtraError: If transformers is not installed.
+        InputError: If the backbone cannot be loaded.
     """
 
     def __init__(self, model: str, widths: BackboneWidths):
@@ -52,7 +52,7 @@ class HuggingFaceEncoder(nn.Module):
         )
 
     def forward(self, picture: Tensor) -> list[Tensor]:
-        """Return five maps, at 1/2 to 1/32, for a normalised picture [B, 3, H, W]."""
+        """Return five feature maps at 1/2 to 1/32 for normalized images [B, 3, H, W]."""
         sides = [[-(-int(side) // stride) for side in picture.shape[2:]] for stride in STRIDES]
         wanted = [max(round(int(s) / self.multiple), 1) * self.multiple for s in picture.shape[2:]]
         maps = self.network(pixel_values=_resize(picture, wanted)).feature_maps
@@ -75,7 +75,7 @@ def _load_model(model: str) -> Any:
     except ImportError:
         raise MissingExtraError("a backbone of transformers", "hf") from None
     if not Path(model).is_dir() and not MODEL_NAME.fullmatch(model):
-        raise InputError(model, "neither a folder nor the name of a model, ORG/NAME")
+        raise InputError(model, "not a folder and not a valid model name; expected ORG/NAME")
     transformers.utils.logging.disable_progress_bar()
     try:
         config = transformers.AutoConfig.from_pretrained(model)
@@ -86,7 +86,7 @@ def _load_model(model: str) -> Any:
         return kind.from_pretrained(model, config=config, dtype=torch.float32, use_safetensors=True)
     except (OSError, ValueError, KeyError) as error:
         reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
-        raise InputError(model, f"no backbone of transformers: {reason}") from None
+        raise InputError(model, f"cannot be loaded as a transformers backbone: {reason}") from None
 
 
 def _feature_channels(config: Any) -> list[int]:
@@ -106,16 +106,18 @@ def _size_multiple(config: Any) -> int:
 
 
 def make_backbone(name: str | None, size: str, channels: int, scales: Sequence[int]) -> UNet2D:
-    """Return a network from pictures to maps of one width.
+    """Create a network that maps images to feature maps with the same number of channels.
 
     Args:
-        name: None for our own, or ``hf:ID_OR_FOLDER``.
-        size: one of ``WIDTHS``: how wide our own is, and the decoder of either.
-        channels: of each map.
-        scales: which maps are wanted, of 1, 2, 4, 8 and 16.
+        name: None for our own backbone, or ``hf:ID_OR_FOLDER``.
+        size: Size in ``WIDTHS``, which defines our own backbone and the decoder.
+        channels: Number of channels of each feature map.
+        scales: Scales of the feature maps to return, from 1, 2, 4, 8 and 16.
 
     Raises:
-        UsageError: the name is neither. MissingExtraError, InputError: of transformers.
+        UsageError: If the name is not valid.
+        MissingExtraError: If transformers is required but not installed.
+        InputError: If the backbone cannot be loaded.
     """
     widths, norm = WIDTHS[size], NORMS[size]
     encoder = make_encoder(name, widths, norm)
@@ -123,10 +125,13 @@ def make_backbone(name: str | None, size: str, channels: int, scales: Sequence[i
 
 
 def make_encoder(name: str | None, widths: BackboneWidths, norm: Norm) -> nn.Module:
-    """Return a network from normalised pictures to maps at 1/2 to 1/32; see ``make_backbone``."""
+    """Create a network that maps normalized images to feature maps at 1/2 to 1/32.
+
+    Raises the same exceptions as ``make_backbone``.
+    """
     if name is None:
         return Encoder(widths, norm)
     if not name.startswith(PREFIX):
-        raise UsageError(f"a backbone is {PREFIX}ORG/NAME or {PREFIX}FOLDER, not {name!r}")
+        raise UsageError(f"backbone must be {PREFIX}ORG/NAME or {PREFIX}FOLDER, got {name!r}")
 
     return HuggingFaceEncoder(name.removeprefix(PREFIX), widths)

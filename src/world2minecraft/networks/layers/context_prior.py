@@ -1,8 +1,9 @@
-"""MonoScene's context prior: relations between voxels and mega-voxels (CVPR 2022, 3.4).
+"""MonoScene's context prior: relations between voxels and mega-voxels (CVPR 2022, section 3.4).
 
-The coarsest cells are gathered into mega-voxels of 2x2x2. For each relation a matrix states how far
-each cell has it with each mega-voxel; by that matrix the mega-voxels' features come to the cells.
-The relations are supervised: alike, unlike, both empty, one empty (see ``losses.relation_loss``).
+The coarsest cells are grouped into mega-voxels of 2x2x2 cells. For each kind of relation, a matrix
+describes how strongly each cell is related to each mega-voxel, and is used to pass features from
+mega-voxels to cells. The relations are supervised: same class, different class, both empty, one
+empty (see ``losses.relation_loss``).
 """
 
 import torch
@@ -15,13 +16,13 @@ RELATIONS = 4
 
 
 class ContextPrior(nn.Module):
-    """Brings to each coarse cell what it is related to.
+    """A layer that adds features of related mega-voxels to each coarse cell.
 
     Args:
-        channels: of the coarsest cells.
-        shape: of their grid, which must be known beforehand; sides of 2 or more.
-        norm: how layers are normalised.
-        reaches: the dilations of what looks around first.
+        channels: Number of channels of the coarsest cells.
+        shape: Shape of their grid. Each side must be at least 2.
+        norm: Kind of normalization.
+        reaches: Dilations of the first convolutions.
     """
 
     def __init__(
@@ -45,7 +46,7 @@ class ContextPrior(nn.Module):
         )
 
     def forward(self, cells: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the cells [B, C, X, Y, Z], and the relations' logits [B, 4, megas, cells]."""
+        """Return the cells [B, C, X, Y, Z] and the relation logits [B, 4, megas, cells]."""
         wide = self.reaches(cells)
         megas = self.gather(wide).flatten(2)  # [B, 2 C, M]
         logits = torch.stack([relation(wide).flatten(2) for relation in self.relations], dim=1)
@@ -55,7 +56,7 @@ class ContextPrior(nn.Module):
 
 
 def mega_shape(shape: tuple[int, int, int]) -> tuple[int, int, int]:
-    """Return how many mega-voxels of 2x2x2 whole cells a grid has along each axis.
+    """Return the number of complete 2x2x2 mega-voxels along each axis of a grid.
 
     >>> mega_shape((15, 15, 9))
     (7, 7, 4)

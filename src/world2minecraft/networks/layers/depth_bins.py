@@ -1,4 +1,4 @@
-"""Depth in linearly increasing bins (LID), and a branch that predicts it."""
+"""Linearly increasing depth bins (LID), and a network branch that predicts them."""
 
 from itertools import pairwise
 
@@ -15,7 +15,7 @@ BEYOND_M = 1e6  # Stands for no depth among depths of which the least is sought.
 
 
 def bin_edges_m(bins: int) -> list[float]:
-    """Return the edges of bins from 0 to 10 m, each wider than the last by the same step.
+    """Return the edges of depth bins from 0 to 10 m, with linearly increasing widths.
 
     >>> bin_edges_m(4)
     [0.0, 1.0, 3.0, 6.0, 10.0]
@@ -24,37 +24,37 @@ def bin_edges_m(bins: int) -> list[float]:
 
 
 def bin_coordinate(depth_m: Tensor, bins: int) -> Tensor:
-    """Return where depths lie among the bins, as a real number: k at the lower edge of bin k.
+    """Return the continuous bin index of each depth, which is k at the lower edge of bin k.
 
-    Between edges it grows as the edges' own rule does, so that it is smooth.
+    Between the edges, the index follows the same formula and is therefore smooth.
     """
     scaled = depth_m.clamp(min=0) * (bins * (bins + 1) / MAX_DEPTH_M)
     return torch.sqrt(scaled + 0.25) - 0.5
 
 
 def bin_of(depth_m: Tensor, bins: int) -> tuple[Tensor, Tensor]:
-    """Return the bin of each depth, int64, and whether it has one: above 0 and below 10 m."""
+    """Return the bin of each depth, int64, and whether the depth is between 0 and 10 m."""
     known = (depth_m > 0) & (depth_m < MAX_DEPTH_M)
     place = bin_coordinate(torch.where(known, depth_m, torch.zeros_like(depth_m)), bins)
     return place.floor().long().clamp(0, bins - 1), known
 
 
 def bin_centers_m(bins: int, like: Tensor) -> Tensor:
-    """Return the depth in the middle of each bin, [bins], of the type of ``like``."""
+    """Return the depth at the centre of each bin in metres, [bins], with the dtype of ``like``."""
     edges = bin_edges_m(bins)
     middles = [(near + far) / 2 for near, far in pairwise(edges)]
     return torch.tensor(middles, device=like.device, dtype=like.dtype)
 
 
 def min_pool_depth(depth_m: Tensor, scale: int) -> Tensor:
-    """Return the least depth that is not 0 of each block of pixels; 0 where there is none.
+    """Return the minimum non-zero depth of each block of pixels, or 0 if there is none.
 
     Args:
-        depth_m: float32 [B, H, W].
-        scale: the side of a block, pixels.
+        depth_m: Depth in metres, float32 [B, H, W].
+        scale: Side length of a block in pixels.
 
     Returns:
-        [B, ceil(H / scale), ceil(W / scale)].
+        Tensor [B, ceil(H / scale), ceil(W / scale)].
     """
     far = torch.where(depth_m > 0, depth_m, torch.full_like(depth_m, BEYOND_M))
     near = -nn.functional.max_pool2d(-far[:, None], scale, ceil_mode=True)[:, 0]
@@ -62,18 +62,18 @@ def min_pool_depth(depth_m: Tensor, scale: int) -> Tensor:
 
 
 class DepthBranch(nn.Module):
-    """Says of each pixel of a map how likely its surface lies in each bin.
+    """A branch that predicts the depth bin of each pixel in a feature map.
 
-    It sees the map, the depth that is given (0 where none is), and how wide the camera's pixels
-    are, by which it weighs its channels.
+    Its inputs are the map, the input depth (0 where there is none), and the angular pixel size of
+    the camera, which is used to weight its channels.
 
     Args:
-        given: channels of the map.
-        inner: its own channels.
-        bins: how many there are from 0 to 10 m.
-        scale: of the map.
-        norm: how layers are normalised.
-        blocks: how many residual blocks it has.
+        given: Number of channels of the map.
+        inner: Number of internal channels.
+        bins: Number of bins from 0 to 10 m.
+        scale: Scale of the map.
+        norm: Kind of normalization.
+        blocks: Number of residual blocks.
     """
 
     def __init__(
@@ -96,14 +96,14 @@ class DepthBranch(nn.Module):
         return self.say(self.deepen(values * weights[:, :, None, None]))
 
     def given(self, values: Tensor, inputs: OccInput) -> Tensor:
-        """Return the depth that is given, [B, 1, h, w], as a share of 10 m; 0 where none is."""
+        """Return the input depth as a fraction of 10 m, [B, 1, h, w], or 0 where there is none."""
         if inputs.depth_m is None:
             return torch.zeros_like(values[:, :1])
         return min_pool_depth(inputs.depth_m, self.scale)[:, None].to(values.dtype) / MAX_DEPTH_M
 
 
 def known_depth(logits: Tensor, inputs: OccInput, scale: int) -> Tensor:
-    """Return the depth of each pixel of a map, [B, h, w]: what is given, else what is expected."""
+    """Return the input depth of each pixel in a map or, without it, the expected depth, [B, h, w]."""
     shares = torch.softmax(logits.float(), dim=1)
     middles = bin_centers_m(int(logits.shape[1]), shares)
     expected = (shares * middles[:, None, None]).sum(dim=1)
@@ -114,14 +114,14 @@ def known_depth(logits: Tensor, inputs: OccInput, scale: int) -> Tensor:
 
 
 def weight_by_depth(shares: Tensor, sight: CellProjection, scale: int) -> Tensor:
-    """Return what a depth branch says of each cell, [B, C, N].
+    """Sample the values of a depth branch at the position of each cell, [B, C, N].
+
+    Values are interpolated between pixels and bins, and are 0 outside them.
 
     Args:
-        shares: [B, C, bins, h, w], any C values of each bin of each pixel.
-        sight: where the cells lie.
-        scale: of the map.
-
-    Between pixels and bins values are mixed; beyond them they are 0.
+        shares: Any C values for each bin of each pixel, [B, C, bins, h, w].
+        sight: Projection of the cells into the image.
+        scale: Scale of the map.
     """
     bins = int(shares.shape[2])
     rows, columns = sight.pixels[..., 1] / scale, sight.pixels[..., 0] / scale

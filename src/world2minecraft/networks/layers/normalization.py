@@ -1,14 +1,15 @@
-"""Normalised convolutions of two and three dimensions, with group or batch normalisation.
+"""Normalized 2D and 3D convolutions, with group or batch normalization.
 
-``batch`` is what the papers use, on many GPUs. ``group`` does not depend on what else is in the
-batch, which on two CPU cores is one or two images. Its gradient is computed in float32: torch's own
-gradient of bfloat16 with the channels last takes a CPU three times as long and is less exact.
+The papers use ``batch`` on many GPUs. ``group`` does not depend on the other items of a batch,
+which on two CPU cores contains only one or two images. Its gradient is computed in float32, because
+PyTorch's own bfloat16 gradient for channels-last tensors takes three times as long on a CPU and is
+less accurate.
 
-Dilated convolutions are trained as plain ones. A CPU takes ten times as long for the gradient of a
-dilated 3x3x3 kernel as for that of a plain one (43 ms of one core against 4, [4, 32, 30, 30, 18] in
-bfloat16). Cells that lie a whole number of dilations apart never meet the others: each such phase
-is a small grid of its own, and over all of them, laid side by side in the batch, the kernel is a
-plain one. Same result, same weights.
+Dilated convolutions are trained as ordinary convolutions. On a CPU, the gradient of a dilated 3x3x3
+kernel takes ten times as long as that of an ordinary one (43 ms instead of 4 ms on one core for [4,
+32, 30, 30, 18] in bfloat16). Cells whose distance is a multiple of the dilation never interact with
+other cells, so each such phase is a small grid of its own. If all phases are stacked in the batch,
+an ordinary convolution gives the same result with the same weights.
 """
 
 from typing import Any, Literal
@@ -22,7 +23,7 @@ GROUPS = 4  # Of channels; the small networks have 8 to 32.
 
 
 class DilatedConv3d(nn.Conv3d):
-    """A convolution of stride 1 that keeps the shape; weights are those of ``nn.Conv3d``."""
+    """A 3D convolution that preserves the shape (stride 1), with the weights of ``nn.Conv3d``."""
 
     def forward(self, input: Tensor) -> Tensor:
         """Return [B, D, X, Y, Z] for [B, C, X, Y, Z]."""
@@ -37,9 +38,9 @@ class DilatedConv3d(nn.Conv3d):
 
 
 def split_phases(cells: Tensor, steps: tuple[int, ...]) -> Tensor:
-    """Return each family of cells as a grid of its own, [B * i * j * k, C, X / i, Y / j, Z / k].
+    """Split a grid into its phases, [B * i * j * k, C, X / i, Y / j, Z / k].
 
-    Sides that the steps do not divide are filled up with zeros, as a padded convolution does.
+    Sides that are not multiples of the steps are padded with zeros, as in a padded convolution.
     """
     over = [-side % step for side, step in zip(cells.shape[2:], steps, strict=True)]
     cells = functional.pad(cells, (0, over[2], 0, over[1], 0, over[0]))
@@ -51,7 +52,7 @@ def split_phases(cells: Tensor, steps: tuple[int, ...]) -> Tensor:
 
 
 def merge_phases(cells: Tensor, steps: tuple[int, ...], sides: tuple[int, ...]) -> Tensor:
-    """Return the grid [B, C, *sides] whose families these are: the inverse of ``split_phases``."""
+    """Merge phases into a grid [B, C, *sides]. This is the inverse of ``split_phases``."""
     i, j, k = steps
     many, channels, x, y, z = cells.shape
     batch = many // (i * j * k)
@@ -61,10 +62,10 @@ def merge_phases(cells: Tensor, steps: tuple[int, ...], sides: tuple[int, ...]) 
 
 
 class GroupNorm(nn.GroupNorm):
-    """``nn.GroupNorm`` with the same weights, quicker to train in bfloat16."""
+    """``nn.GroupNorm`` with the same weights, but faster training in bfloat16."""
 
     def forward(self, input: Tensor) -> Tensor:
-        """Return [B, C, ...] of the same shape and dtype."""
+        """Return a tensor [B, C, ...] of the same shape and dtype as the input."""
         layout, trains = _layout(input), self.training and torch.is_grad_enabled()
         if input.dtype != torch.bfloat16 or layout == torch.contiguous_format or not trains:
             return super().forward(input)
@@ -106,12 +107,12 @@ def _sizes(values: Tensor) -> tuple[int, int, int]:
 
 
 def norm2d(kind: Norm, channels: int) -> nn.Module:
-    """Return a normalisation of [B, C, H, W]."""
+    """Create a normalization layer for tensors [B, C, H, W]."""
     return nn.BatchNorm2d(channels) if kind == "batch" else _grouped(channels)
 
 
 def norm3d(kind: Norm, channels: int) -> nn.Module:
-    """Return a normalisation of [B, C, X, Y, Z]."""
+    """Create a normalization layer for tensors [B, C, X, Y, Z]."""
     return nn.BatchNorm3d(channels) if kind == "batch" else _grouped(channels)
 
 
@@ -123,7 +124,7 @@ def _grouped(channels: int) -> GroupNorm:
 def conv2d(
     in_channels: int, out_channels: int, kind: Norm, *, kernel: int = 3, stride: int = 1
 ) -> nn.Sequential:
-    """Return a convolution of pictures with its normalisation; nothing is cut off afterwards."""
+    """Create a 2D convolution with normalization, without an activation."""
     conv = nn.Conv2d(in_channels, out_channels, kernel, stride, kernel // 2, bias=False)
     return nn.Sequential(conv, norm2d(kind, out_channels))
 
@@ -131,7 +132,7 @@ def conv2d(
 def conv3d(
     in_channels: int, out_channels: int, kind: Norm, *, kernel: int = 3, dilation: int = 1
 ) -> nn.Module:
-    """Return a convolution of cells with its normalisation; nothing is cut off afterwards."""
+    """Create a 3D convolution with normalization, without an activation."""
     around = dilation * (kernel // 2)
     conv = DilatedConv3d(
         in_channels, out_channels, kernel, padding=around, dilation=dilation, bias=False

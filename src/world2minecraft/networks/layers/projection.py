@@ -1,14 +1,14 @@
-"""Project cells into an image, and lift features: each cell takes those of its pixel (FLoSP).
+"""Projection of cells into an image, and lifting of image features to cells (FLoSP).
 
-The arithmetic is that of the data set's frustum masks: the centre of a cell is carried into the
-camera, divided by its depth, and lies in the pixel that holds the point. Pixel (i, j) spans
-[i, i + 1) x [j, j + 1). Occlusion is ignored: a feature is laid on all cells of its ray, and the 3D
-layers have to find out which of them it belongs to.
+The projection is the same as for the frustum masks of the data sets: the centre of a cell is
+transformed to camera coordinates, divided by its depth, and assigned to the pixel that contains the
+point. Pixel (i, j) spans [i, i + 1) x [j, j + 1). Occlusion is ignored: each feature is assigned to
+all cells along its ray, and the 3D layers must learn to which of them it belongs.
 
-``sample_grid`` reads values between the cells of maps and volumes: coordinates are in cells, cell i
-spans [i, i + 1), and beyond the centres of the outermost cells values fade to 0. PyTorch has a
-kernel for this; ONNX of opset 17 has it for maps alone, so that volumes are exported as sums over
-the eight cells around.
+``sample_grid`` interpolates the values of maps and volumes. Coordinates are in cells, cell i spans
+[i, i + 1), and values fade to 0 outside the centres of the outermost cells. PyTorch has a kernel
+for this, but ONNX opset 17 supports it only for maps, so for volumes a sum over the eight
+surrounding cells is exported.
 """
 
 from collections.abc import Mapping
@@ -24,11 +24,11 @@ MIN_DEPTH_M = 1e-3  # Cells nearer than that, or behind, are in no picture.
 
 
 def sample_grid(values: Tensor, places: Tensor) -> Tensor:
-    """Return what lies at places, mixed linearly from the cells around: [B, C, N].
+    """Sample a map or volume at given positions with linear interpolation, [B, C, N].
 
     Args:
-        values: [B, C, H, W] or [B, C, X, Y, Z].
-        places: [B, N, 2] or [B, N, 3], in the order of the axes of ``values``.
+        values: Map [B, C, H, W] or volume [B, C, X, Y, Z].
+        places: Positions in cells, [B, N, 2] or [B, N, 3], in the axis order of ``values``.
     """
     if values.ndim == 5 and torch.onnx.is_in_onnx_export():
         return sample_corners(values, places)
@@ -41,7 +41,7 @@ def sample_grid(values: Tensor, places: Tensor) -> Tensor:
 
 
 def sample_corners(values: Tensor, places: Tensor) -> Tensor:
-    """Return the same as ``sample_grid`` of volumes, by what any runtime can do."""
+    """Sample a volume like ``sample_grid``, using only operations that are available in ONNX."""
     sides = [int(side) for side in values.shape[2:]]
     low = torch.floor(places - 0.5)
     after = places - 0.5 - low  # [B, N, 3], the share of the later cell.
@@ -56,17 +56,24 @@ def sample_corners(values: Tensor, places: Tensor) -> Tensor:
             number = cell if number is None else number * sides[axis] + cell
             weight = part if weight is None else weight * part
         if number is None or weight is None:
-            raise ValueError("a volume has three axes")
+            raise ValueError("values must be a volume with three axes")
         here = flat.gather(2, number[:, None].expand(-1, flat.shape[1], -1)) * weight[:, None]
         found = here if found is None else found + here
     if found is None:
-        raise ValueError("a volume has eight corners")
+        raise ValueError("values must be a volume with eight corners")
     return found
 
 
 @dataclass(frozen=True)
 class CellProjection:
-    """Where the N cells of a grid lie in their pictures, in C order."""
+    """The projection of the N cells of a grid into the images of a batch, in C order.
+
+    Attributes:
+        pixels: Pixel coordinates u (right) and v (down), float32 [B, N, 2].
+        depth_m: Depth along the camera's z axis in metres, float32 [B, N].
+        inside: Whether the cell is in front of the camera and inside the image, bool [B, N].
+        size_px: Image height and width in pixels.
+    """
 
     pixels: Tensor  # float32 [B, N, 2]: u to the right, v down
     depth_m: Tensor  # float32 [B, N], along the camera's z
@@ -75,7 +82,7 @@ class CellProjection:
 
 
 def project_cells(inputs: OccInput) -> CellProjection:
-    """Return where the centres of all cells lie in the pictures of a batch."""
+    """Project the centres of all cells into the images of a batch."""
     height, width = int(inputs.image.shape[-2]), int(inputs.image.shape[-1])
     in_camera = cells_in_camera(inputs)
     depth = in_camera[..., 2]
@@ -89,7 +96,7 @@ def project_cells(inputs: OccInput) -> CellProjection:
 
 
 def cells_in_camera(inputs: OccInput) -> Tensor:
-    """Return the centres of all cells in the camera's axes, float32 [B, N, 3], metres."""
+    """Return the centres of all cells in camera coordinates in metres, float32 [B, N, 3]."""
     centers = cell_centers_m(inputs.grid_shape, inputs.voxel_m, inputs.camera_to_grid)
     turn, place = inputs.camera_to_grid[:, :3, :3], inputs.camera_to_grid[:, :3, 3]
     # A turn's inverse is its transpose.
@@ -97,15 +104,22 @@ def cells_in_camera(inputs: OccInput) -> Tensor:
 
 
 def transform_points(places: Tensor, turn: Tensor) -> Tensor:
-    """Return places [B, N, 3] turned by [B, 3, 3], whatever precision layers work in.
+    """Rotate points [B, N, 3] by matrices [B, 3, 3] in full precision.
 
-    Matrix products are rounded to half precision where training is mixed: to some ten pixels.
+    With mixed precision, matrix products would be rounded to half precision, with errors of about
+    ten pixels.
     """
     return (places[:, :, None] * turn[:, None]).sum(dim=-1)
 
 
 def cell_centers_m(shape: tuple[int, int, int], voxel_m: float, like: Tensor) -> Tensor:
-    """Return the centres of a grid's cells from its corner, [N, 3], of the type of ``like``."""
+    """Return the cell centres of a grid relative to its corner in metres, [N, 3].
+
+    Args:
+        shape: Shape of the grid.
+        voxel_m: Cell size in metres.
+        like: Tensor that defines the device and dtype of the result.
+    """
     sides = [(torch.arange(n, device=like.device, dtype=like.dtype) + 0.5) for n in shape]
     places = torch.stack(torch.meshgrid(*sides, indexing="ij"), dim=-1)
     return places.reshape(-1, 3) * voxel_m
@@ -114,21 +128,21 @@ def cell_centers_m(shape: tuple[int, int, int], voxel_m: float, like: Tensor) ->
 def lift_features(
     features: Mapping[int, Tensor], sight: CellProjection, shape: tuple[int, int, int]
 ) -> Tensor:
-    """Return the sum over scales of the feature at each cell's pixel, [B, C, X, Y, Z].
+    """Sum the features at the pixel of each cell over all scales, [B, C, X, Y, Z].
+
+    Cells outside the image get zeros.
 
     Args:
-        features: of each scale s the map [B, C, ceil(H / s), ceil(W / s)].
-        sight: where the cells lie.
-        shape: of the grid.
-
-    Cells outside of the picture get zeros.
+        features: For each scale s, a map [B, C, ceil(H / s), ceil(W / s)].
+        sight: Projection of the cells.
+        shape: Shape of the grid.
     """
     found = None
     for scale, values in features.items():
         here = values.flatten(2).gather(2, _places(sight, scale, values))
         found = here if found is None else found + here
     if found is None:
-        raise ValueError("lifting needs the features of one scale or more")
+        raise ValueError("features must contain at least one scale")
     return (found * sight.inside[:, None]).unflatten(2, shape)
 
 

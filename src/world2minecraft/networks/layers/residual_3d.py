@@ -1,10 +1,10 @@
 """3D blocks: dimensional decomposition residual blocks (DDR, CVPR 2019), ASPP and the class head.
 
-A DDR block replaces a 3x3x3 kernel by three kernels of one axis each: the first runs along z, the
-second along y, the third along x, each seeing what those before it found. Shortcuts between them
-are plain where the grid stays; where it is halved they are pooled and carried by kernels of one
-cell. The published code owns such kernels in the blocks that halve nothing too, where nothing flows
-through them: here they are left out.
+A DDR block replaces a 3x3x3 kernel by three kernels along one axis each: the first along z, the
+second along y, the third along x, each with the results of the previous ones as input. Shortcut
+connections are the identity if the grid keeps its size; if it is halved, they use pooling and 1x1x1
+kernels. The published code also creates such kernels in blocks that do not halve the grid, where
+they have no effect; they are omitted here.
 """
 
 from collections.abc import Sequence
@@ -17,13 +17,13 @@ from world2minecraft.networks.layers.normalization import DilatedConv3d, Norm, c
 
 
 class DDRBlock(nn.Module):
-    """A bottleneck of DDR: a quarter of the channels, three axes, and back.
+    """A DDR bottleneck block: reduction to a quarter of the channels, three axes, and expansion.
 
     Args:
-        channels: what comes in.
-        norm: how layers are normalised.
-        dilation: of the three kernels.
-        halve: the grid is halved and the channels are doubled.
+        channels: Number of input channels.
+        norm: Kind of normalization.
+        dilation: Dilation of the three kernels.
+        halve: Whether to halve the grid and double the channels.
     """
 
     def __init__(self, channels: int, norm: Norm, *, dilation: int = 1, halve: bool = False):
@@ -55,12 +55,12 @@ class DDRBlock(nn.Module):
 
 
 def ddr_blocks(channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)) -> nn.Sequential:
-    """Return blocks with growing reach."""
+    """Create a sequence of DDR blocks with the given dilations."""
     return nn.Sequential(*(DDRBlock(channels, norm, dilation=reach) for reach in dilations))
 
 
 class Upsample3d(nn.Module):
-    """Doubles the sides of a grid, or one less where that is what was halved before."""
+    """A layer that doubles the sides of a grid, up to one cell."""
 
     def __init__(self, channels: int, out_channels: int, norm: Norm):
         super().__init__()
@@ -68,7 +68,7 @@ class Upsample3d(nn.Module):
         self.norm = norm3d(norm, out_channels)
 
     def forward(self, cells: Tensor, sides: Sequence[int]) -> Tensor:
-        """Return [B, C', ...] of these sides, each twice what came in or one less."""
+        """Return [B, C', *sides]. Each side must be twice the input side, or one less."""
         wanted = [int(side) for side in sides]
         return torch.relu(self.norm(self.up(cells, output_size=wanted)))
 
@@ -105,7 +105,7 @@ def _axis_conv(axis: int, channels: int, norm: Norm, dilation: int, stride: int)
 
 
 class ASPP(nn.Module):
-    """Pairs of 3x3x3 kernels of several dilations, summed and added to what came in."""
+    """Pairs of 3x3x3 convolutions with several dilations, added to the input."""
 
     def __init__(self, channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)):
         super().__init__()
@@ -119,7 +119,7 @@ class ASPP(nn.Module):
         )
 
     def forward(self, cells: Tensor) -> Tensor:
-        """Return [B, C, X, Y, Z] of the same shape."""
+        """Apply the layer. The result has the shape of the input."""
         found = cells
         for branch in self.branches:
             found = found + branch(cells)
@@ -127,7 +127,7 @@ class ASPP(nn.Module):
 
 
 class SegmentationHead(nn.Module):
-    """From features of cells to the logits of the 12 classes."""
+    """A head that maps cell features to the logits of the 12 classes."""
 
     def __init__(self, channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)):
         super().__init__()
@@ -136,5 +136,5 @@ class SegmentationHead(nn.Module):
         self.classes = nn.Conv3d(channels, CLASS_COUNT, 3, padding=1)
 
     def forward(self, cells: Tensor) -> Tensor:
-        """Return float [B, 12, X, Y, Z]."""
+        """Return the class logits [B, 12, X, Y, Z]."""
         return self.classes(self.reaches(torch.relu(self.enter(cells))))

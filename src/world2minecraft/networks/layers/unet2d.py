@@ -1,8 +1,8 @@
 """Our own 2D backbone: a residual encoder down to 1/32, and MonoScene's decoder.
 
-The papers take EfficientNet-B7, trained on ImageNet, whose taps are 32, 48, 80, 224 and 2560
-channels wide. Size ``full`` has taps of the same widths and so the same decoder; the stages between
-them are plain pairs of 3x3 kernels, untrained.
+The papers use EfficientNet-B7 trained on ImageNet, whose feature maps have 32, 48, 80, 224 and 2560
+channels. The size ``full`` has the same numbers of channels and therefore the same decoder; its
+encoder stages consist of ordinary pairs of 3x3 convolutions and are not pretrained.
 """
 
 from collections.abc import Sequence
@@ -20,10 +20,13 @@ MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
 
 @dataclass(frozen=True)
 class BackboneWidths:
-    """How wide and deep a backbone is.
+    """The width and depth of a backbone.
 
-    ``taps`` are the channels at 1/2, 1/4, 1/8, 1/16 and 1/32, ``blocks`` the residual blocks that
-    lead to each, ``inner`` the channels of the last stage before it is widened to its tap.
+    Attributes:
+        taps: Number of channels at 1/2, 1/4, 1/8, 1/16 and 1/32.
+        blocks: Number of residual blocks before each of them.
+        inner: Number of channels of the last stage before it is expanded.
+        decoder: Number of decoder channels at 1/32, which is halved at each following step.
     """
 
     taps: tuple[int, int, int, int, int]
@@ -33,7 +36,7 @@ class BackboneWidths:
 
 
 class Encoder(nn.Module):
-    """From a picture to features at 1/2, 1/4, 1/8, 1/16 and 1/32."""
+    """An encoder that maps images to features at 1/2, 1/4, 1/8, 1/16 and 1/32."""
 
     def __init__(self, widths: BackboneWidths, norm: Norm):
         super().__init__()
@@ -48,7 +51,7 @@ class Encoder(nn.Module):
         self.widen = conv2d(widths.inner, widths.taps[4], norm, kernel=1) if wider else None
 
     def forward(self, picture: Tensor) -> list[Tensor]:
-        """Return five maps for a normalised picture [B, 3, H, W]."""
+        """Return five feature maps for normalized images [B, 3, H, W]."""
         found = []
         for stage in self.stages:
             picture = stage(picture)
@@ -59,7 +62,7 @@ class Encoder(nn.Module):
 
 
 class Decoder(nn.Module):
-    """From the taps back up, giving maps of one width at the scales that are asked for."""
+    """A decoder that maps encoder features to feature maps at the requested scales."""
 
     def __init__(
         self,
@@ -84,7 +87,7 @@ class Decoder(nn.Module):
                 self.give[str(scale)] = nn.Conv2d(narrow, out_channels, 1)
 
     def forward(self, picture: Tensor, taps: Sequence[Tensor]) -> dict[int, Tensor]:
-        """Return for each scale s a map [B, C, ceil(H / s), ceil(W / s)]."""
+        """Return a map [B, C, ceil(H / s), ceil(W / s)] for each scale s."""
         values, found = self.enter(taps[4]), {}
         skips = {"16": taps[3], "8": taps[2], "4": taps[1], "2": taps[0], "1": picture}
         for name, step in self.steps.items():
@@ -95,26 +98,26 @@ class Decoder(nn.Module):
 
 
 class UNet2D(nn.Module):
-    """From a picture of 0 to 1 to maps of one width at several scales."""
+    """A network that maps images with values from 0 to 1 to feature maps at several scales."""
 
     def __init__(self, encoder: nn.Module, decoder: Decoder):
         super().__init__()
         self.encoder, self.decoder = encoder, decoder
 
     def forward(self, picture: Tensor) -> dict[int, Tensor]:
-        """Return for each scale s a map [B, C, ceil(H / s), ceil(W / s)] of [B, 3, H, W]."""
+        """Return a map [B, C, ceil(H / s), ceil(W / s)] for each scale s of images [B, 3, H, W]."""
         picture = normalize_image(picture)
         return self.decoder(picture, self.encoder(picture))
 
 
 def normalize_image(picture: Tensor) -> Tensor:
-    """Return a picture of 0 to 1 with ImageNet's mean and spread taken out."""
+    """Normalize images with values from 0 to 1 with the mean and standard deviation of ImageNet."""
     mean, spread = (torch.tensor(v, device=picture.device)[:, None, None] for v in (MEAN, STD))
     return ((picture - mean) / spread).to(picture.dtype)
 
 
 class ResidualBlock(nn.Module):
-    """Two kernels of 3x3 and a shortcut."""
+    """Two 3x3 convolutions with a residual connection."""
 
     def __init__(self, channels: int, norm: Norm):
         super().__init__()
@@ -123,7 +126,7 @@ class ResidualBlock(nn.Module):
         )
 
     def forward(self, values: Tensor) -> Tensor:
-        """Return [B, C, H, W] of the same shape."""
+        """Apply the block. The result has the shape of the input."""
         return torch.relu(values + self.path(values))
 
 

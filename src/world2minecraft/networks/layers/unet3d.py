@@ -1,6 +1,7 @@
-"""The 3D U-Net of MonoScene, with its context prior and its head.
+"""MonoScene's 3D U-Net with its context prior and its head.
 
-At 60x60x36 cells of 0.08 m the quarter is what the paper calls 1/16: 15x15x9.
+For 60x60x36 cells of 0.08 m, a quarter of the resolution is the level called 1/16 in the paper:
+15x15x9.
 """
 
 from torch import Tensor, nn
@@ -16,14 +17,14 @@ from world2minecraft.networks.layers.residual_3d import (
 
 
 class UNet3D(nn.Module):
-    """From features of cells to their logits.
+    """A network that maps cell features to class logits.
 
     Args:
-        channels: of the cells that come in; twice and four times as many below.
-        shape: of the grid; only the context prior needs it.
-        norm: how layers are normalised.
-        reaches: the dilations of its blocks and of its head.
-        context: whether there is a context prior.
+        channels: Number of input channels, which is doubled at each coarser level.
+        shape: Shape of the grid, needed only by the context prior.
+        norm: Kind of normalization.
+        reaches: Dilations of the blocks and the head.
+        context: Whether to use a context prior.
     """
 
     def __init__(
@@ -45,7 +46,7 @@ class UNet3D(nn.Module):
         self.head = SegmentationHead(channels, norm, reaches)
 
     def forward(self, cells: Tensor) -> tuple[Tensor, Tensor | None]:
-        """Return logits [B, 12, X, Y, Z], and those of the relations where they are asked for."""
+        """Return class logits [B, 12, X, Y, Z], and relation logits or None."""
         half = self.down(cells)
         quarter, relations = self.down_again(half), None
         if self.context is not None:
@@ -55,7 +56,7 @@ class UNet3D(nn.Module):
 
 
 def coarsest_shape(shape: tuple[int, int, int]) -> tuple[int, int, int]:
-    """Return the sides of a grid that was halved twice, rounded up each time.
+    """Return the shape of a grid after halving it twice, rounded up each time.
 
     >>> coarsest_shape((60, 60, 36)), coarsest_shape((30, 30, 18))
     ((15, 15, 9), (8, 8, 5))

@@ -1,7 +1,7 @@
-"""Monocular occupancy networks: the published ones, on shared layers, in plain PyTorch.
+"""Monocular occupancy networks: reimplementations of published networks with shared layers.
 
-A network is one file that holds a class made of ``(size, grid_shape, voxel_m, backbone)`` whose
-``forward`` turns an ``OccInput`` into an ``OccOutput``, and one line of ``NETWORKS``.
+Each network is a module with a class that is created from ``(size, grid_shape, voxel_m, backbone)``
+and whose ``forward`` maps an ``OccInput`` to an ``OccOutput``, and has one entry in ``NETWORKS``.
 """
 
 from world2minecraft.networks.models.factory import NETWORKS, SIZES, make_network

@@ -1,19 +1,19 @@
-"""The embodied network: frame after frame adds to the evidence of a scene, which is then read.
+"""The embodied network, which accumulates evidence for a scene from frames and then reads it.
 
-Each frame alone predicts, for the cells before it, how likely they are occupied (log-odds), what
-they are (votes), and further features; a gate weighs each cell. All that is added, by the gate, to
-the ``SceneEvidence`` so far. A second network reads the sums and answers: it may complete and
-correct, but its answer is never written back. So nothing is ever forgotten, and the same frames
-give the same scene in any order.
+For the cells in front of the camera, each frame predicts how likely they are occupied (log-odds),
+their class (votes), and further features; a gate weights each cell. The gated values are added to
+the ``SceneEvidence``. A second network predicts the classes from the sums. It can complete and
+correct the scene, but its result is never written back. Therefore nothing is forgotten, and the
+result does not depend on the order of the frames.
 
-It stands in for EmbodiedOcc (Wu et al., 2024) and differs from it throughout: cells in place of
-Gaussians, sums in place of a filter whose gain is 0.5, no scene size that must be known by the
-network, no compiled operator. There a Gaussian that was refined once is half frozen, and the order
-of frames shows in the result. Written from the paper alone.
+The network is an alternative to EmbodiedOcc (Wu et al., 2024), written from the paper alone. It
+uses cells instead of Gaussians and sums instead of a filter with a gain of 0.5, and requires
+neither a fixed scene size nor compiled operators. In EmbodiedOcc, Gaussians that were refined once
+change only half as much, so the result depends on the order of the frames.
 
-``SceneStream`` adds a stream of frames to one scene's grid. The window of cells of a frame lies
-before its camera, turned to it by quarter turns, on the scene's own cells: so nothing is resampled
-when its evidence is added.
+``SceneStream`` adds a stream of frames to the grid of a scene. The window of a frame is in front of
+its camera, rotated by quarter turns and aligned with the cells of the scene, so its evidence is
+added without resampling.
 """
 
 import math
@@ -44,35 +44,38 @@ BELOW_M = 1.6  # How far under a camera its box begins: the floor under a person
 
 @dataclass(frozen=True)
 class SceneEvidence:
-    """Sums of gated evidence: weight, log-odds, votes of 12 classes, and learned features.
+    """Sums of gated evidence: weight, log-odds, votes for 12 classes, and learned features.
 
-    As only sums are kept, the order of frames does not matter, and no frame takes anything away
-    that another has given: weights and votes only grow.
+    Because only sums are stored, the order of the frames does not matter, and no frame removes the
+    evidence of another: weights and votes only increase.
+
+    Attributes:
+        values: The sums, float [B, 2 + 12 + K, X, Y, Z].
     """
 
     values: Tensor  # float [B, 2 + 12 + K, X, Y, Z]
 
     @property
     def weight(self) -> Tensor:
-        """The summed weight of each cell, [B, X, Y, Z]; 0 where no frame looked."""
+        """Summed weight of each cell, [B, X, Y, Z]; 0 if no frame has observed it."""
         return self.values[:, 0]
 
     @property
     def log_odds(self) -> Tensor:
-        """How sure it is that each cell is occupied, [B, X, Y, Z]."""
+        """Summed log-odds that each cell is occupied, [B, X, Y, Z]."""
         return self.values[:, ODDS_AT]
 
     @property
     def votes(self) -> Tensor:
-        """The class votes of each cell, [B, 12, X, Y, Z]."""
+        """Summed class votes of each cell, [B, 12, X, Y, Z]."""
         return self.values[:, VOTES_AT:FEATURES_AT]
 
     def __add__(self, other: "SceneEvidence") -> "SceneEvidence":
-        """Return what both say together, of the same cells."""
+        """Return the combined evidence for the same cells."""
         return SceneEvidence(self.values + other.values)
 
     def readable(self) -> Tensor:
-        """Return channels of bounded size, whatever the number of frames."""
+        """Return the evidence as channels with a bounded range, independent of the number of frames."""
         weight = self.values[:, :1]
         odds = torch.tanh(self.values[:, ODDS_AT:VOTES_AT] / 4)
         means = self.values[:, VOTES_AT:] / (weight + 1e-3)
@@ -81,7 +84,18 @@ class SceneEvidence:
 
 @dataclass(frozen=True)
 class SizeConfig:
-    """What a size decides."""
+    """The hyperparameters of a network size.
+
+    Attributes:
+        channels: Number of channels of a cell while a frame is processed.
+        features: Number of features that are stored for each cell.
+        reading: Number of channels of the network that reads the scene.
+        depth_channels: Number of channels of the depth branch.
+        bins: Number of depth bins.
+        picture: Size of the image backbone in ``WIDTHS``.
+        reaches: Dilations of the 3D blocks.
+        turns: Whether scenes are rotated by random quarter turns in training.
+    """
 
     channels: int  # of a cell while a frame is processed
     features: int  # that are kept of a cell
@@ -101,7 +115,7 @@ SIZE_CONFIGS = {
 
 
 class Embodied(nn.Module):
-    """Frames to evidence, sums of evidence to classes."""
+    """The embodied network, which maps frames to evidence and sums of evidence to classes."""
 
     def __init__(
         self,
@@ -129,11 +143,14 @@ class Embodied(nn.Module):
         )
 
     def forward(self, inputs: OccInput, more: Sequence[OccInput] = ()) -> OccOutput:
-        """Return what each frame of a batch says, by itself or with others, and its depth.
+        """Predict the grids of a batch from their frames, alone or with further frames.
 
         Args:
-            inputs: the frames.
-            more: further frames of their scenes, each with its camera in the same grids.
+            inputs: Frames that define the grids.
+            more: Further frames of the same scenes, with camera poses in the same grids.
+
+        Returns:
+            The class logits, and the depth logits of ``inputs``.
         """
         evidence, depth_logits = self.observe(inputs)
         for other in more:
@@ -150,7 +167,7 @@ class Embodied(nn.Module):
         return quarters[int(torch.randint(len(quarters), ()))]
 
     def observe(self, inputs: OccInput) -> tuple[SceneEvidence, Tensor]:
-        """Return the evidence of each frame alone, in its own grid, and its depth logits."""
+        """Return the evidence of each frame in its own grid, and its depth logits."""
         features, sight = self.picture(inputs.image), project_cells(inputs)
         depth_logits = self.depth(features[DEPTH_SCALE], inputs)
         shares = torch.softmax(depth_logits, dim=1)
@@ -168,20 +185,27 @@ class Embodied(nn.Module):
         return SceneEvidence(evidence), depth_logits
 
     def read(self, evidence: SceneEvidence) -> Tensor:
-        """Return logits [B, 12, X, Y, Z] of a box of cells; see ``SceneStream`` for scenes."""
+        """Return class logits [B, 12, X, Y, Z] for a box of cells. Use ``SceneStream`` for scenes."""
         return self.read_cells(self.enter(evidence.readable()))[0]
 
 
 @dataclass(frozen=True)
 class FrameWindow:
-    """The box of cells before a camera: quarter turns, and where its lowest cell lies."""
+    """The box of cells in front of a camera.
+
+    Attributes:
+        quarters: Number of counter-clockwise quarter turns seen from above; 0 faces along the y
+            axis of the scene.
+        low: Minimum corner of the rotated box in scene cells.
+        shape: Shape of the box before rotation: right, forward, up.
+    """
 
     quarters: int  # counter-clockwise from above; 0 looks along the scene's y
     low: tuple[int, int, int]  # cells of the scene: the corner of the turned box
     shape: tuple[int, int, int]  # in the frame's own order: right, forward, up
 
     def box_to_scene(self, voxel_m: float) -> Tensor:
-        """Return 4x4: metres from the box's own minimum corner to metres of the scene."""
+        """Return the matrix from box coordinates to scene coordinates in metres [4, 4]."""
         right, ahead, _ = self.shape
         matrix = torch.eye(4, dtype=torch.float64)
         cosine, sine = ((1, 0), (0, 1), (-1, 0), (0, -1))[self.quarters]
@@ -197,7 +221,14 @@ class FrameWindow:
 def window_in_front(
     camera_to_scene: Tensor, shape: tuple[int, int, int], voxel_m: float
 ) -> FrameWindow:
-    """Return the box before a camera [4, 4], metres from the minimum corner of the scene's grid."""
+    """Return the box of cells in front of a camera.
+
+    Args:
+        camera_to_scene: Camera pose relative to the minimum corner of the scene grid in metres [4,
+            4].
+        shape: Shape of the box: right, forward, up.
+        voxel_m: Cell size in metres.
+    """
     ahead_x, ahead_y = (float(value) for value in camera_to_scene[:2, 2])
     quarters = round(math.atan2(-ahead_x, ahead_y) / (math.pi / 2)) % 4
     right, ahead, _ = shape
@@ -213,13 +244,13 @@ def window_in_front(
 
 
 class SceneStream:
-    """Adds frames to the evidence of one scene, and reads it.
+    """A stream of frames that adds their evidence to a scene and predicts its classes.
 
     Args:
-        network: an embodied network; it is put into evaluation.
-        scene_shape: X, Y, Z of the scene.
-        box_shape: of the box before each camera: cells to the right, forward and up.
-        voxel_m: the cells' side, metres.
+        network: Embodied network, which is put into evaluation mode.
+        scene_shape: Shape of the scene in cells [X, Y, Z].
+        box_shape: Shape of the box in front of each camera in cells: right, forward, up.
+        voxel_m: Cell size in metres.
     """
 
     def __init__(
@@ -236,7 +267,7 @@ class SceneStream:
 
     @property
     def evidence(self) -> SceneEvidence:
-        """The evidence so far."""
+        """Evidence of all frames added so far."""
         return SceneEvidence(self._values)
 
     @torch.no_grad()
@@ -247,13 +278,14 @@ class SceneStream:
         camera_to_scene: Tensor,
         depth_m: Tensor | None = None,
     ) -> None:
-        """Look at a frame.
+        """Add the evidence of a frame.
 
         Args:
-            image: float32 [3, H, W], 0 to 1.
-            intrinsics: [3, 3].
-            camera_to_scene: [4, 4], metres from the minimum corner of the scene's grid.
-            depth_m: float32 [H, W], 0 where there is none.
+            image: RGB image with values from 0 to 1, float32 [3, H, W].
+            intrinsics: Camera matrix [3, 3].
+            camera_to_scene: Camera pose relative to the minimum corner of the scene grid in metres
+                [4, 4].
+            depth_m: Depth in metres, float32 [H, W], 0 for none; or None.
         """
         window = window_in_front(camera_to_scene, self.box_shape, self.voxel_m)
         scene_to_box = torch.linalg.inv(window.box_to_scene(self.voxel_m))
@@ -271,10 +303,11 @@ class SceneStream:
 
     @torch.no_grad()
     def logits(self) -> Tensor:
-        """Return float32 [12, X, Y, Z] of the whole scene.
+        """Return the class logits of the whole scene, float32 [12, X, Y, Z].
 
-        It is read in boxes as large as those of the frames, which is what the network knows, each
-        overlapping the next by half; the nearer to a middle, the more it counts.
+        The scene is read in overlapping boxes of the same shape as those of the frames, for which
+        the network was trained. Each box overlaps the next by half, and cells near the centre of a
+        box have a larger weight.
         """
         sides = [max(w, b) for w, b in zip(self._values.shape[2:], self.box_shape, strict=True)]
         missing = [side - have for side, have in zip(sides, self._values.shape[2:], strict=True)]

@@ -1,4 +1,4 @@
-"""Make a network by its name and size, with its initial weights."""
+"""Creation of networks by name and size, with initial weights."""
 
 import torch
 from torch import nn
@@ -30,21 +30,22 @@ def make_network(
     backbone: str | None = None,
     seed: int = 0,
 ) -> nn.Module:
-    """Return a network that maps ``OccInput`` to ``OccOutput``, with weights of a seed.
+    """Create a network that maps ``OccInput`` to ``OccOutput``, with initial weights.
 
     Args:
-        name: one of ``NETWORKS``.
-        size: tiny (tests), small (two CPU cores, cells of 0.16 m) or full (the published widths).
-        grid_shape: X, Y, Z of the grids that it will see.
-        voxel_m: their cells, metres.
-        backbone: None for our own, or ``hf:ID_OR_FOLDER`` for a backbone of transformers.
-        seed: of the weights that are not loaded.
+        name: Name of a network in ``NETWORKS``.
+        size: ``tiny`` (for tests), ``small`` (for two CPU cores and cells of 0.16 m) or ``full``
+            (the published width).
+        grid_shape: Shape of the grids in cells [X, Y, Z].
+        voxel_m: Cell size in metres.
+        backbone: None for our own backbone, or ``hf:ID_OR_FOLDER`` for one from transformers.
+        seed: Random seed for weights that are not pretrained.
 
     Raises:
-        UnknownNameError: there is no such network or size.
-        UsageError: a grid that is too small, or a backbone that cannot be understood.
-        MissingExtraError: the backbone needs transformers, which is not installed.
-        InputError: the backbone cannot be had.
+        UnknownNameError: If there is no such network or size.
+        UsageError: If the grid is too small, or if the backbone name is not valid.
+        MissingExtraError: If the backbone requires transformers, which is not installed.
+        InputError: If the backbone cannot be loaded.
 
     Example:
         >>> net = make_network("monoscene", "tiny", grid_shape=(30, 30, 18), voxel_m=0.16)
@@ -54,9 +55,11 @@ def make_network(
     if size not in SIZES:
         raise UnknownNameError("size of a network", size, SIZES)
     if len(grid_shape) != 3 or min(grid_shape) < MIN_SIDE:
-        raise UsageError(f"a grid has three sides of {MIN_SIDE} cells or more, not {grid_shape}")
+        raise UsageError(
+            f"grid_shape must be three sides of at least {MIN_SIDE} cells, got {grid_shape}"
+        )
     if not voxel_m > 0:
-        raise UsageError(f"cells are larger than 0 m, not {voxel_m}")
+        raise UsageError(f"voxel_m must be above 0, got {voxel_m}")
     kind = NETWORKS.load(name)
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(seed)

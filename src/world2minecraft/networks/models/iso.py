@@ -1,11 +1,11 @@
-"""ISO (Yu et al., ECCV 2024): MonoScene with features weighted by predicted depth.
+"""ISO (Yu et al., ECCV 2024): MonoScene with image features weighted by predicted depth.
 
-A depth branch predicts for each pixel how likely its surface lies in each of 64 bins; where a cell
-takes its pixel's feature, it takes it by the likelihood of its own depth besides (dual projection).
+A depth branch predicts for each pixel the probability of 64 depth bins. The feature that a cell
+receives from its pixel is weighted by the probability of the cell's depth (dual projection).
 
-What differs from the paper: the depth that the branch looks at is whatever the input has (of a
-sensor, of stereo, of a network, or none), not that of one frozen ZoeDepth inside the model; the
-branch works on the map at 1/4. All else as in ``monoscene``.
+Differences from the paper: the input of the depth branch is the depth in the input (from a sensor,
+stereo or a network, or none) instead of that of a frozen ZoeDepth inside the model, and the branch
+works on the map at 1/4. All other parts are as in ``monoscene``.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,14 @@ DEPTH_SCALE = 4
 
 @dataclass(frozen=True)
 class SizeConfig:
-    """What a size decides."""
+    """The hyperparameters of a network size.
+
+    Attributes:
+        channels: Number of channels of a cell in the full grid.
+        depth_channels: Number of channels of the depth branch.
+        bins: Number of depth bins.
+        reaches: Dilations of the 3D blocks.
+    """
 
     channels: int  # of a cell at the full grid
     depth_channels: int
@@ -41,7 +48,7 @@ SIZE_CONFIGS = {
 
 
 class Iso(nn.Module):
-    """MonoScene with a depth branch that gates what is lifted."""
+    """MonoScene with a depth branch that weights the lifted features."""
 
     def __init__(
         self,
@@ -59,7 +66,7 @@ class Iso(nn.Module):
         self.cells = UNet3D(chosen.channels, grid_shape, norm, reaches=chosen.reaches)
 
     def forward(self, inputs: OccInput) -> OccOutput:
-        """Return logits [B, 12, X, Y, Z], those of the relations and those of depth."""
+        """Return class logits [B, 12, X, Y, Z], relation logits and depth logits."""
         features, sight = self.picture(inputs.image), project_cells(inputs)
         depth_logits = self.depth(features[DEPTH_SCALE], inputs)
         likely = weight_by_depth(torch.softmax(depth_logits, dim=1)[:, None], sight, DEPTH_SCALE)

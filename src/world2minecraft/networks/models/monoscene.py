@@ -1,12 +1,13 @@
-"""MonoScene (Cao and de Charette, CVPR 2022): features lifted along rays, refined in 3D.
+"""MonoScene (Cao and de Charette, CVPR 2022): image features lifted along rays and refined in 3D.
 
-A 2D U-Net gives maps at 1, 1/2, 1/4 and 1/8; each cell takes the sum of what lies at its pixel
-(FLoSP); a 3D U-Net with a context prior names the cells.
+A 2D U-Net computes feature maps at 1, 1/2, 1/4 and 1/8. Each cell receives the sum of the features
+at its pixel (FLoSP). A 3D U-Net with a context prior predicts the classes of the cells.
 
-What differs from the paper: the picture's encoder is our own, or one of transformers, in place of
-EfficientNet-B7 (the decoder's widths are the published ones); the kernels of a block run along z,
-y, x of a grid with z last, where the published NYU grid has y last; maps are enlarged without
-aligning corners. ``small`` and ``tiny`` normalise in groups, as they see few pictures at once.
+Differences from the paper: the image encoder is our own or one from transformers instead of
+EfficientNet-B7 (the decoder has the published width); the kernels of a block are applied along z, y
+and x of a grid with z last, while the published NYU grid has y last; maps are upsampled without
+aligning corners. ``small`` and ``tiny`` use group normalization, because their batches contain few
+images.
 """
 
 from dataclasses import dataclass
@@ -23,7 +24,12 @@ SCALES = (1, 2, 4, 8)
 
 @dataclass(frozen=True)
 class SizeConfig:
-    """What a size decides."""
+    """The hyperparameters of a network size.
+
+    Attributes:
+        channels: Number of channels of a cell in the full grid.
+        reaches: Dilations of the 3D blocks.
+    """
 
     channels: int  # of a cell at the full grid
     reaches: tuple[int, ...] = (1, 2, 3)  # dilations
@@ -33,7 +39,7 @@ SIZE_CONFIGS = {"tiny": SizeConfig(16, (2,)), "small": SizeConfig(32), "full": S
 
 
 class MonoScene(nn.Module):
-    """Picture to cells by FLoSP, cells to classes by a 3D U-Net."""
+    """The MonoScene network: features are lifted to cells with FLoSP and refined by a 3D U-Net."""
 
     def __init__(
         self,
@@ -48,7 +54,7 @@ class MonoScene(nn.Module):
         self.cells = UNet3D(chosen.channels, grid_shape, NORMS[size], reaches=chosen.reaches)
 
     def forward(self, inputs: OccInput) -> OccOutput:
-        """Return logits [B, 12, X, Y, Z] and those of the relations."""
+        """Return class logits [B, 12, X, Y, Z] and relation logits."""
         features = self.picture(inputs.image)
         logits, relations = self.cells(
             lift_features(features, project_cells(inputs), inputs.grid_shape)

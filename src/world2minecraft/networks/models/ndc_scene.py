@@ -1,16 +1,16 @@
-"""NDC-Scene (Yao et al., ICCV 2023): depth is found in the camera's own space, then resampled.
+"""NDC-Scene (Yao et al., ICCV 2023): a depth volume in camera space that is resampled to cells.
 
-``DepthVolume`` grows a volume of pixels and depths out of the image. Its first axis is depth in
-bins that grow linearly, its others are the image's. It begins at 1/32 with an eighth of the bins,
-taken out of the channels of the coarsest map; each step doubles all three axes, and lays the
-image's map of that scale over the depths at which it belongs. Cells read the volume where they lie
-in the camera, at four scales; then come MonoScene's 3D U-Net and context prior.
+``DepthVolume`` expands the image into a volume of depths and pixels. Its first axis is linearly
+increasing depth bins, the others are those of the image. It starts at 1/32 with an eighth of the
+bins, computed from the channels of the coarsest map. Each step doubles all three axes and adds the
+image features of that scale to the depths where they belong. The cells sample the volumes of four
+scales at their camera coordinates. MonoScene's 3D U-Net and context prior follow.
 
-What differs from the paper, and written from the paper alone: the encoder is our own or one of
-transformers; depth runs in bins that grow linearly to 10 m; pixels give their features to depths by
-one gate each, where the paper's depth-adaptive attention has several heads; the finest volume is at
+The network is written from the paper alone, with these differences: the encoder is our own or one
+from transformers; the depth bins increase linearly up to 10 m; one gate for each pixel assigns
+features to depths instead of depth-adaptive attention with several heads; the finest volume is at
 1/4 of the image with 128 bins. The published 3D part has 133.5 M parameters, fewer than
-MonoScene's; 180 channels, with the same layers, come nearest to it.
+MonoScene's; with the same layers, 180 channels are the closest match.
 """
 
 from collections.abc import Mapping, Sequence
@@ -33,14 +33,14 @@ STEPS = (16, 8, 4)  # The scales after 1/32.
 
 
 class DepthVolume(nn.Module):
-    """From a picture's maps to volumes at 1/32, 1/16, 1/8 and 1/4.
+    """A network that maps image feature maps to volumes at 1/32, 1/16, 1/8 and 1/4.
 
     Args:
-        in_channels: channels of the coarsest map.
-        map_channels: channels of the maps at 1/16, 1/8 and 1/4.
-        channels: of the volumes at 1/32, 1/16, 1/8 and 1/4.
-        bins: of depth at 1/4; an eighth of them at 1/32.
-        norm: how layers are normalised.
+        in_channels: Number of channels of the coarsest map.
+        map_channels: Number of channels of the maps at 1/16, 1/8 and 1/4.
+        channels: Numbers of channels of the volumes at 1/32, 1/16, 1/8 and 1/4.
+        bins: Number of depth bins at 1/4. The volume at 1/32 has an eighth of them.
+        norm: Kind of normalization.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class DepthVolume(nn.Module):
         )
 
     def forward(self, coarsest: Tensor, maps: Mapping[int, Tensor]) -> dict[int, Tensor]:
-        """Return for each scale a volume [B, C, bins, h, w]."""
+        """Return a volume [B, C, bins, h, w] for each scale."""
         volume = self.start(coarsest).unflatten(1, (-1, self.first))
         found = {32: volume}
         for scale, step in zip(STEPS, self.steps, strict=True):
@@ -64,7 +64,7 @@ class DepthVolume(nn.Module):
 
 
 class VolumeToCells(nn.Module):
-    """Reads the volumes of all scales at the cells of the world, and sums them."""
+    """A layer that samples the volumes of all scales at the positions of cells and sums them."""
 
     def __init__(self, channels: Sequence[int], out_channels: int):
         super().__init__()
@@ -79,13 +79,13 @@ class VolumeToCells(nn.Module):
     def forward(
         self, volumes: Mapping[int, Tensor], sight: CellProjection, shape: tuple[int, int, int]
     ) -> Tensor:
-        """Return [B, C, X, Y, Z]; cells out of the picture or beyond the last bin are all alike."""
+        """Return cell features [B, C, X, Y, Z]. Cells outside the volumes all have the same features."""
         found = None
         for scale, volume in volumes.items():
             here = self.carry[str(scale)](weight_by_depth(volume, sight, scale))
             found = here if found is None else found + here
         if found is None:
-            raise ValueError("cells are read from one volume or more")
+            raise ValueError("volumes must contain at least one volume")
         return found.unflatten(2, shape)
 
 
@@ -111,7 +111,15 @@ class _UpsampleStep(nn.Module):
 
 @dataclass(frozen=True)
 class SizeConfig:
-    """What a size decides."""
+    """The hyperparameters of a network size.
+
+    Attributes:
+        channels: Number of channels of a cell in the full grid.
+        picture: Number of channels of the image feature maps.
+        volumes: Numbers of channels of the volumes at 1/32, 1/16, 1/8 and 1/4.
+        bins: Number of depth bins at 1/4.
+        reaches: Dilations of the 3D blocks.
+    """
 
     channels: int  # of a cell at the full grid
     picture: int  # of the picture's maps
@@ -128,7 +136,7 @@ SIZE_CONFIGS = {
 
 
 class NdcScene(nn.Module):
-    """Picture to a volume of depths, volume to cells, cells to classes."""
+    """The NDC-Scene network, which maps images to depth volumes, cells and classes."""
 
     def __init__(
         self,
@@ -146,7 +154,7 @@ class NdcScene(nn.Module):
         self.cells = UNet3D(chosen.channels, grid_shape, norm, reaches=chosen.reaches)
 
     def forward(self, inputs: OccInput) -> OccOutput:
-        """Return logits [B, 12, X, Y, Z] and those of the relations."""
+        """Return class logits [B, 12, X, Y, Z] and relation logits."""
         picture = normalize_image(inputs.image)
         taps = self.picture.encoder(picture)
         volumes = self.volume(taps[4], self.picture.decoder(picture, taps))

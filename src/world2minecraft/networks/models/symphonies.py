@@ -1,14 +1,15 @@
-"""Symphonies (Jiang et al., CVPR 2024): instances carry what they see from the image to cells.
+"""Symphonies (Jiang et al., CVPR 2024): instance queries that connect image features and cells.
 
-Cells of twice the size that the depth says are surface look at the image first (voxel proposal).
-Three layers follow: in each, instances look at the image, cells query them, they look at cells.
-Each layer gives an answer of its own in training; the last one is that of the network.
+Cells of twice the size that contain a surface according to the depth first attend to the image
+(voxel proposal). In each of the three following layers, instances attend to the image, cells attend
+to instances, and instances attend to cells. In training, each layer has its own output; the output
+of the last layer is that of the network.
 
-What differs from the paper: the instance queries are learned vectors with learned places in the
-image, where the paper takes queries, places and maps of a MaskDINO that was trained on COCO, with
-its ResNet-50; maps are at 1/4, 1/8 and 1/16 of our own backbone. Depth that is not given comes
-from a depth branch like ISO's. Attention of the grid is of three axes; the published code folds z
-into x and uses a kernel of two. Any number of images may be in a batch.
+Differences from the paper: the instance queries are learned vectors with learned image positions,
+instead of the queries, positions and maps of a MaskDINO with ResNet-50 that was trained on COCO;
+the maps are those of our own backbone at 1/4, 1/8 and 1/16. If there is no input depth, it is
+predicted by a depth branch as in ISO. Attention on the grid uses three axes, while the published
+code folds z into x and uses a two-dimensional kernel. A batch can contain any number of images.
 """
 
 from collections.abc import Sequence
@@ -40,9 +41,19 @@ LAYERS = 3
 
 @dataclass(frozen=True)
 class Stage:
-    """Where queries and cells stand, the same for all layers.
+    """The positions and embeddings of queries and cells, which are the same for all layers.
 
-    Q instance queries, N cells in C order of a grid [X, Y, Z].
+    There are Q instance queries and N cells of a grid [X, Y, Z] in C order.
+
+    Attributes:
+        maps: Feature map of each level, [B, C, h, w].
+        query_pixel: Image positions of the queries as fractions (row, column), [B, Q, 2].
+        query_cell: Grid positions of the queries as fractions, [B, Q, 3].
+        query_mark: Embeddings of the queries, [1, Q, C].
+        cell_place: Grid positions of the cells as fractions, [B, N, 3].
+        cell_mark: Embeddings of the cells, [1, N, C].
+        in_view: Whether each cell is inside the image, bool [B, N].
+        shape: Shape of the grid.
     """
 
     maps: Sequence[Tensor]  # [B, C, h, w] of each level
@@ -56,14 +67,14 @@ class Stage:
 
 
 class SymphonyLayer(nn.Module):
-    """Five attentions in turn; the last layer's instances need not look again.
+    """A Symphonies layer with five attention blocks, of which the last layer omits two.
 
     Args:
-        channels: of queries and cells.
-        heads: of each attention.
-        levels: of the picture's maps.
-        points: places per head and map; twice as many in the grid.
-        again: whether instances look at the cells and at each other in the end.
+        channels: Number of channels of queries and cells.
+        heads: Number of attention heads.
+        levels: Number of image feature maps.
+        points: Number of sampling positions per head and map. The grid has twice as many.
+        again: Whether instances finally attend to the cells and to each other.
     """
 
     def __init__(self, channels: int, heads: int, levels: int, points: int, *, again: bool):
@@ -79,7 +90,7 @@ class SymphonyLayer(nn.Module):
             self.after_again = nn.ModuleList(FeedForward(channels, 2) for _ in range(2))
 
     def forward(self, cells: Tensor, queries: Tensor, stage: Stage) -> tuple[Tensor, Tensor]:
-        """Return cells [B, N, C] and queries [B, Q, C]; cells out of view stay as they are."""
+        """Return updated cells [B, N, C] and queries [B, Q, C]. Cells outside the image are unchanged."""
         marked = queries + stage.query_mark
         queries = self.after[0](queries, self.look(marked, stage.query_pixel, stage.maps))
         marked = queries + stage.query_mark
@@ -97,13 +108,23 @@ class SymphonyLayer(nn.Module):
 
 
 def to_grid(cells: Tensor, shape: tuple[int, int, int]) -> Tensor:
-    """Return [B, C, X, Y, Z] of cells [B, N, C]."""
+    """Reshape cells [B, N, C] to a grid [B, C, X, Y, Z]."""
     return cells.transpose(1, 2).unflatten(2, shape)
 
 
 @dataclass(frozen=True)
 class SizeConfig:
-    """What a size decides."""
+    """The hyperparameters of a network size.
+
+    Attributes:
+        channels: Number of channels of queries and cells.
+        heads: Number of attention heads.
+        queries: Number of instance queries.
+        points: Number of sampling positions per head and map.
+        depth_channels: Number of channels of the depth branch.
+        bins: Number of depth bins.
+        picture: Size of the image backbone in ``WIDTHS``.
+    """
 
     channels: int
     heads: int
@@ -122,7 +143,7 @@ SIZE_CONFIGS = {
 
 
 class Symphonies(nn.Module):
-    """Instance queries between a picture and cells."""
+    """The Symphonies network, with instance queries between the image and the cells."""
 
     def __init__(
         self,
@@ -155,7 +176,7 @@ class Symphonies(nn.Module):
         self.classes = nn.Conv3d(channels, CLASS_COUNT, 1)
 
     def forward(self, inputs: OccInput) -> OccOutput:
-        """Return logits [B, 12, X, Y, Z], those of depth, and in training those of the layers."""
+        """Return class logits [B, 12, X, Y, Z], depth logits and, in training, logits of all layers."""
         maps = self.picture(inputs.image)
         depth_logits = self.depth(maps[DEPTH_SCALE], inputs)
         depth_m = known_depth(depth_logits, inputs, DEPTH_SCALE).detach()
