@@ -31,7 +31,7 @@ def test_verify_prints_one_json_document(data, tmp_path, capsys):
     assert found["samples"] == 2 and found["faults"] == []
     (tmp_path / "data" / "stray.txt").write_text("x")
     assert cli.run(["dataset", "verify", data, "--json"]) == 3
-    assert json.loads(capsys.readouterr().out)["faults"] == ["stray.txt: belongs to no data set"]
+    assert json.loads(capsys.readouterr().out)["faults"] == ["stray.txt: unexpected file"]
 
 
 def test_json_takes_the_file_that_follows_it():

@@ -118,7 +118,7 @@ def test_samples_without_pictures_are_shown_too(made):
         (
             ["export", "{npz}", "--format", "npz", "--out", "{out}", "--split", "test"],
             2,
-            "there is no sample to export in test",
+            "no samples to export in split test",
         ),
         (["import", "{npz}", "--out", "{out}", "--split", "val"], 2, "has no sample in val"),
         (["import", "{out}", "--out", "{out}"], 3, "not found"),

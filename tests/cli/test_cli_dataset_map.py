@@ -38,5 +38,5 @@ def test_mistakes_have_their_exit_codes(tmp_path, capsys):
     bad = tmp_path / "bad.yaml"
     bad.write_text("name: m\nkinds: 3\n")
     assert cli.run(["dataset", "map", "--map", str(bad)]) == 3
-    assert "kinds must be keys with values, not 3" in capsys.readouterr().err
+    assert "kinds must be a mapping with text keys, got 3" in capsys.readouterr().err
     assert cli.run(["dataset", "map", "Oak Planks"]) == 2

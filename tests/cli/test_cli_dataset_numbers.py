@@ -39,7 +39,7 @@ def test_quality_prints_the_papers_rows_and_writes_json(tmp_path, capsys):
     words = ["dataset", "quality", str(tmp_path), "--sample", "2", "--variant", "own"]
     assert run([*words, "--resize", "none", "--json", str(tmp_path / "q.json")]) == 0
     text = capsys.readouterr().out
-    assert "9.97" in text and "274,305" in text and "note: LV depends on the kernel" in text
+    assert "9.97" in text and "274,305" in text and "note: LV changes by hundreds" in text
     assert "from   2 of 3 images" in text
     assert json.loads((tmp_path / "q.json").read_text())["rows"][0]["pictures"] == 2
 
@@ -47,10 +47,14 @@ def test_quality_prints_the_papers_rows_and_writes_json(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "said"),
     [
-        (["stats", "{tmp}"], 3, "is no data set: it has no dataset.json; w2m dataset build makes"),
-        (["stats", "{data}", "--split", "val"], 2, "the splits of"),
-        (["quality", "{tmp}/none"], 3, "is no folder of pictures and no data set"),
-        (["quality", "{data}"], 3, "has labels alone, no picture"),
+        (
+            ["stats", "{tmp}"],
+            3,
+            "not a data set: dataset.json not found; create a data set",
+        ),
+        (["stats", "{data}", "--split", "val"], 2, "has no split 'val'; known splits"),
+        (["quality", "{tmp}/none"], 3, "not a data set and not a folder of images"),
+        (["quality", "{data}"], 3, "has labels but no image"),
         *(
             (["quality", "{tmp}", "--resize", text], 2, "--resize is WIDTHxHEIGHT")
             for text in ("640", "x480", "axb", "640x480x2", "")

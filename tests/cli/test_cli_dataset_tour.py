@@ -79,9 +79,9 @@ def test_screenshots_become_a_tour_file(world, tmp_path, capsys):
     ("words", "code", "text"),
     [
         (["--at", "feet"], 2, "--at, --poses and --pattern need --screenshots DIR"),
-        (["--screenshots", "."], 2, "--at feet, as F3 and most mods show, or --at eye"),
-        (["--screenshots", "none", "--at", "eye"], 3, "is no folder of screenshots"),
-        (["--count", "0"], 2, "a plan has one view or more, not 0"),
+        (["--screenshots", "."], 2, "--at feet (as shown by F3 and most mods) or --at eye"),
+        (["--screenshots", "none", "--at", "eye"], 3, "expected a folder of screenshots"),
+        (["--count", "0"], 2, "the number of views must be 1 or more, got 0"),
         (["--camera", "nyy"], 2, "no camera is named 'nyy'; did you mean 'nyu'?"),
     ],
 )

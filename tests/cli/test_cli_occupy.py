@@ -86,7 +86,7 @@ def test_a_grid_of_another_world_is_refused():
     room = PredictedCells(
         *(np.zeros((4, 4, 4), kind) for kind in ("u1", "f4", "?")), 0.08, np.zeros(3)
     )
-    with pytest.raises(InputError, match="is it of another world"):
+    with pytest.raises(InputError, match="does not overlap the captured area"):
         resample_to_grid(room, np.eye(4), GridPlace(np.array([50.0, 0, 0]), np.eye(4)))
 
 
@@ -141,11 +141,19 @@ def test_a_capture_becomes_the_cells_of_its_room(capture, tmp_path, capsys):
     [
         (["nowhere", "--grid", "GRID"], 3, "not found; give a depth PNG, a photo or a capture"),
         (["DEPTH"], 2, "is a depth picture; add --grid, which places its cells"),
-        (["PHOTO", "--grid", "GRID"], 3, "is a photo; give its depth picture, or a network"),
-        (["DEPTH", "--grid", "GRID", "--predictor", "mono:NET"], 3, "mono needs the photo"),
+        (["PHOTO", "--grid", "GRID"], 3, "this is a photo, expected a depth image"),
+        (["DEPTH", "--grid", "GRID", "--predictor", "mono:NET"], 3, "mono needs a photo"),
         (["PHOTO", "--grid", "GRID", "--predictor", "mano:NET"], 2, "did you mean 'mono'"),
-        (["PHOTO", "--grid", "GRID", "--predictor", "mono:SMALL"], 2, "says 8x8x8 cells of 0.16 m"),
-        (["PHOTO", "--grid", "GRID", "--predictor", "mono:DEEP"], 2, "wants depth; give a network"),
+        (
+            ["PHOTO", "--grid", "GRID", "--predictor", "mono:SMALL"],
+            2,
+            "grid of 8x8x8 cells",
+        ),
+        (
+            ["PHOTO", "--grid", "GRID", "--predictor", "mono:DEEP"],
+            2,
+            "requires depth; choose a",
+        ),
         (["CAPTURE", "--colour", "PHOTO"], 2, "--colour needs one depth picture"),
         (["PHOTO"], 3, "--predictor mono"),
         (["EMPTY"], 3, "EMPTY"),

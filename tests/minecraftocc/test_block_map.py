@@ -356,9 +356,9 @@ def test_remapping_by_nyu_keeps_what_is_by_nyu():
 
 
 def test_remapping_refuses_what_does_not_fit():
-    with pytest.raises(UsageError, match="one shape"):
+    with pytest.raises(UsageError, match="the same shape"):
         remap_labels(np.zeros(3, np.uint8), np.zeros(2, np.uint16), FINE, PAPER)
-    with pytest.raises(UsageError, match="fine goes to 9, there are 7 classes"):
+    with pytest.raises(UsageError, match="indices below 7, the number of classes; got 9"):
         remap_labels(np.zeros(1, np.uint8), np.full(1, 9, np.uint16), FINE, PAPER)
 
 
@@ -394,28 +394,30 @@ def test_json_holds_every_block_and_rule(tmp_path):
 
 
 BAD = {
-    "[]": "a block map must be keys with values, not []",
-    "a: 1": "a block map has no 'a'; it has: name, about, extends, blocks, words, kinds, whole, "
-    "other, structure, apart, sheets, plates, rules, designs, unless_known, entities",
-    "about: x": "a block map needs a name, such as name: mine",
-    "{name: m, extends: lyu}": "extends must be one of nyu, paper, not 'lyu'",
-    "{name: m, blocks: {stone: rock}}": "block stone is 'rock', which is none of empty, ceiling, "
-    "floor, wall, window, chair, bed, sofa, table, tvs, furn, objs",
-    "{name: m, kinds: {k: [a]}}": "kind k has no rules; add k under rules",
-    "{name: m, rules: {k: [wall]}}": "rules speak of k, which is no kind; kinds: ",
-    "{name: m, rules: {wall: [wall]}}": "rules speak of wall, which is a class; give the kind "
-    "another name",
+    "[]": "a block map must be a mapping with text keys, got []",
+    "a: 1": "a block map contains the unknown key 'a'; known keys: name, about, extends, blocks, "
+    "words, kinds, whole, other, structure, apart, sheets, plates, rules, designs, unless_known, entities",
+    "about: x": "the block map has no name; add a line such as name: mine",
+    "{name: m, extends: lyu}": "extends must be one of nyu, paper, got 'lyu'",
+    "{name: m, blocks: {stone: rock}}": "block stone must be one of empty, ceiling, "
+    "floor, wall, window, chair, bed, sofa, table, tvs, furn, objs; got 'rock'",
+    "{name: m, kinds: {k: [a]}}": "kind k has no rules; add an entry for k under rules",
+    "{name: m, rules: {k: [wall]}}": "rules contains the unknown kind k; known kinds: ",
+    "{name: m, rules: {wall: [wall]}}": "rules contains wall, which is the name of a "
+    "class; rename the kind",
     "{name: m, kinds: {k: [a]}, rules: {k: [{class: wall, where: [floor]}]}}": "the last rule of "
-    "k must hold everywhere: a class without where",
-    "{name: m, kinds: {k: [a]}, rules: {k: [k]}}": "rules of k come round to k again",
+    "k must be unconditional: give only a class, without where",
+    "{name: m, kinds: {k: [a]}, rules: {k: [k]}}": "the rules of k include the rules of k "
+    "twice; remove one of the references",
     "{name: m, kinds: {k: [a]}, rules: {k: [{class: wall, top_m: 3}, wall]}}": "top_m of k must "
-    "be two numbers, such as [0.3, 0.6], not 3",
+    "be a minimum and a maximum, such as [0.3, 0.6], got 3",
     "{name: m, extends: nyu, kinds: {k: [a]}, rules: {k: [{class: wall, where: [up]}, wall]}}":
-    "where of k is 'up', which is none of floor, ceiling, wall, inside, outside, under_floor, "
+    "where of k must be one of floor, ceiling, wall, inside, outside, under_floor, "
     "wall_line, over_ceiling, open_floor, air_above, air_below, on_floor, at_wall, "
-    "under_ceiling, turned, coarse, in_row, climbs",
-    "{name: m, words: [{words: {a: wall}}]}": "words need namespaces, such as namespaces: [my_mod]",
-    "{name: m, kinds: {k: a}}": "kind k must be a list of 8192 at most, not 'a'",
+    "under_ceiling, turned, coarse, in_row, climbs; got 'up'",
+    "{name: m, words: [{words: {a: wall}}]}":
+    "words must have namespaces, such as namespaces: [my_mod]",
+    "{name: m, kinds: {k: a}}": "kind k must be a list with at most 8192 items, got 'a'",
 }  # fmt: skip
 
 
@@ -431,16 +433,16 @@ def test_a_bad_map_is_reported_in_one_line(tmp_path, text, told):
 def test_invalid_large_or_aliased_yaml_is_refused(tmp_path):
     path = tmp_path / "bad.yaml"
     path.write_text("a: [1\n")
-    with pytest.raises(InputError, match="is not YAML"):
+    with pytest.raises(InputError, match="not valid YAML"):
         read_block_map(path)
     path.write_text("name: &n m\nabout: *n\n")
-    with pytest.raises(InputError, match=r"is not YAML \(aliases \(\*name\) are not read\)"):
+    with pytest.raises(InputError, match=r"not valid YAML \(aliases \(\*name\) are not read\)"):
         read_block_map(path)
     path.write_text("name: !!python/object:os.system x")
-    with pytest.raises(InputError, match="is not YAML"):
+    with pytest.raises(InputError, match="not valid YAML"):
         read_block_map(path)
     path.write_text("[" * 5000)
-    with pytest.raises(InputError, match="is not YAML"):
+    with pytest.raises(InputError, match="not valid YAML"):
         read_block_map(path)
     path.write_text("#" * (300 << 10))
     with pytest.raises(LimitError):

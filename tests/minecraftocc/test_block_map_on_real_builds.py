@@ -71,7 +71,7 @@ def test_a_house_in_the_country_is_found_and_its_ground_is_floor(tmp_path):
     write_blocks(made.volume(), tmp_path / "country", WriteOptions(spawn=(8, 70, 8)))
     source = open_scene_source(tmp_path / "country")
     volume = source.volume()
-    assert "taking what looks built" in source.notes()[0]
+    assert "using the detected buildings" in source.notes()[0]
     x, y, z = (a - b for a, b in zip((40, 67, 60), volume.corner, strict=True))
     assert min(x, y, z) >= 0
     told = volume.semantic[x : x + 12, y : y + 8, z : z + 10]

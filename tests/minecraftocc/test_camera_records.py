@@ -85,14 +85,14 @@ def test_the_slips_are_what_the_record_says():
     ours, theirs = (np.array(one)[:3, :3] for one in (right["camera_to_block"], paper["E"]))
     np.testing.assert_allclose(theirs, ours.T, atol=1e-9)
     assert paper["K"][0][0] / right["K"][0][0] == pytest.approx(1920 / 1129)
-    assert "too long by W / H" in paper["conventions"]["K"]
-    assert "world to camera" in paper["conventions"]["E"]
+    assert "too large by the factor W / H" in paper["conventions"]["K"]
+    assert "world-to-camera" in paper["conventions"]["E"]
 
 
 def test_errors_say_what_to_do():
-    with pytest.raises(UsageError, match="undistort the picture first"):
+    with pytest.raises(UsageError, match="undistort the image first"):
         camera_record(Camera(9, 9, 5.0, 5.0, 4.0, 4.0, (0.1, 0, 0, 0, 0)), np.eye(4), ROOM)
-    with pytest.raises(UsageError, match="make it without paper_compat"):
+    with pytest.raises(UsageError, match="use a record without paper_compat"):
         camera_from_record(record(paper_compat=True))
     for wrong in (
         {},

@@ -286,7 +286,7 @@ def test_another_plan_in_the_same_folder_is_refused(made, worlds):
         (plan_of(worlds, 9), "set of scenes or number of images"),
         (plan_of(worlds, recipe=replace(RECIPE, pictures=False)), "pictures"),
     ):
-        with pytest.raises(ConflictError, match=f"holds a data set of another .*{what}"):
+        with pytest.raises(ConflictError, match=f"contains a data set with a different .*{what}"):
             build(made[0], plan)
 
 
@@ -360,9 +360,9 @@ def test_too_few_views_are_reported_and_refused_for_a_preset(worlds, tmp_path, m
     )
     report = build(tmp_path / "data", plan_of(worlds, 9))
     assert report.images == {"train": 2, "test": 2}
-    assert report.notes[0].startswith("The train scenes give 2 views worth a picture, not 7; take")
+    assert report.notes[0].startswith("The train scenes have only 2 usable views for 7 images; add")
     with pytest.raises(
-        UsageError, match="the train scenes give 2 views worth a picture, not 6,100"
+        UsageError, match="the train scenes have only 2 usable views for 6,100 images"
     ):
         build(tmp_path / "more", plan_of(worlds, None, preset="8k"))
 
@@ -390,31 +390,35 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
     (tmp_path / "data/shards/stray.txt").write_text("x")
     assert cli.run(["dataset", "verify", data]) == 3
     out, err = capsys.readouterr()
-    assert "fault: shards/stray.txt: belongs to no data set" in out
+    assert "fault: shards/stray.txt: unexpected file" in out
     assert "has 1 fault; delete the shards that are listed" in err
 
 
 @pytest.mark.parametrize(
     ("words", "line", "code"),
     [
-        ([], "a data set needs a scene: give --houses", 2),
-        (["--houses", "0", "--images", "5"], "--houses must be 1 or more, not 0", 2),
-        (["--houses", "2", "--world", "x"], "--houses are generated; give them without", 2),
-        (["--tour", "t.jsonl", "--screenshots", "d"], "exclude each other; give one", 2),
+        ([], "no scenes; add --houses", 2),
+        (["--houses", "0", "--images", "5"], "--houses must be 1 or more, got 0", 2),
+        (["--houses", "2", "--world", "x"], "--houses cannot be combined with --worlds", 2),
+        (["--tour", "t.jsonl", "--screenshots", "d"], "cannot be combined; use only one", 2),
         (
             ["--houses", "2", "--screenshots", "gone", "--at", "eye"],
-            "gone: is no folder of screenshots",
+            "gone: not a folder; expected a folder of screenshots",
             3,
         ),
         (["--world", "gone"], "gone: not found", 3),
-        (["--worlds", "gone"], "gone: is not a folder of worlds", 3),
+        (["--worlds", "gone"], "gone: not a folder; --worlds needs", 3),
         (["--houses", "2", "--camera", "nyuu"], "no camera is named 'nyuu'; did you mean 'nyu'", 2),
         (["--houses", "2", "--size", "big"], "--size is WIDTHxHEIGHT in pixels", 2),
         (["--houses", "2", "--voxel", "big"], "--voxel is metres, such as 0.08, or block", 2),
         (["--houses", "2", "--region", "cube"], "no kind of region is named 'cube'", 2),
-        (["--houses", "2", "--image-format", "gif"], "pictures are jpg, png, webp, not 'gif'", 2),
+        (
+            ["--houses", "2", "--image-format", "gif"],
+            "one of jpg, png, webp, got 'gif'",
+            2,
+        ),
         (["--houses", "2", "--engine", "dask"], "no engine is named 'dask'; known: pool, ray", 2),
-        (["--houses", "2", "--jobs", "0"], "jobs may be 1 to 1024, not 0", 2),
+        (["--houses", "2", "--jobs", "0"], "jobs must be from 1 to 1024, got 0", 2),
         (["--preset", "9k"], "no preset is named '9k'", 2),
     ],
 )

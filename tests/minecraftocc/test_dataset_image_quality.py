@@ -56,13 +56,13 @@ def test_means_are_over_pictures_and_each_size_has_a_row():
     shrunk = [laplacian_variance(resize_and_crop(one, (150, 100)), 5) for one in pictures.values()]
     assert small.laplacian[5] == pytest.approx(np.mean(shrunk))
     assert small.niqe["own"] is None and small.without_niqe == 3  # One patch of 96 is too few.
-    assert "note: 3 pictures are too small or too flat for NIQE." in quality_text(report)
+    assert "note: 3 images are too small or too uniform for NIQE." in quality_text(report)
 
 
 def test_the_table_stands_below_the_papers_with_its_caveats():
     report = measure_quality("houses", ["a"], lambda _: noise(4), [OWN])
     lines = quality_text(report).splitlines()
-    head = "data set  size  pictures  NIQE own  NIQE skvideo  PIQE  LV k=1  LV k=5"
+    head = "data set  size  images  NIQE own  NIQE skvideo  PIQE  LV k=1  LV k=5"
     assert " ".join(lines[0].split()) == " ".join(head.split())
     assert " ".join(lines[3].split()) == "MinecraftOcc (paper) ? 100 - 9.97 45.23 - 274,305"
     assert lines[4].startswith("houses") and "300x200" in lines[4]
@@ -84,13 +84,13 @@ def test_a_sample_is_the_same_for_its_seed_in_any_order_of_keys():
     assert sample_keys(keys, 99, 0) == keys
     assert set(sample_keys(keys, 10, 3, lambda key: key < "k20")) <= set(keys[:20])
     assert len(sample_keys(keys, 10, 3, lambda key: key < "k20")) == 10
-    with pytest.raises(UsageError, match="--sample must be 1 or more, not 0"):
+    with pytest.raises(UsageError, match="--sample must be 1 or more, got 0"):
         sample_keys(keys, 0, 0)
 
 
 @pytest.mark.parametrize("size", [(640, 0), (99_999, 1)])
 def test_a_size_out_of_range_is_refused(size):
-    with pytest.raises(UsageError, match="--resize must be 1 to 16,384 pixels, not"):
+    with pytest.raises(UsageError, match="--resize must be from 1 to 16,384 pixels per side, got"):
         check_size(size)
 
 
@@ -127,9 +127,9 @@ def test_a_store_gives_its_pictures(tmp_path):
 
 
 def test_what_has_no_pictures_is_told(tmp_path):
-    with pytest.raises(InputError, match="holds no pictures"):
+    with pytest.raises(InputError, match="no image files found"):
         open_pictures(tmp_path)
-    with pytest.raises(InputError, match="is no folder of pictures and no data set"):
+    with pytest.raises(InputError, match="not a data set and not a folder of images"):
         open_pictures(tmp_path / "none")
     write_store(tmp_path / "data", [sample(occ=occ_labels())])
     source = open_pictures(tmp_path / "data")

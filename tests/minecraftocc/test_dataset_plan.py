@@ -81,12 +81,12 @@ def test_a_plan_is_json():
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ({"scenes": [], "images": 3}, "a data set needs a scene: give --houses, --worlds"),
-        ({"images": 1}, "--images is one for each of 2 scenes or more"),
-        ({"images": None}, "not no number"),
-        ({"images": 9, "preset": "8k"}, "says how many images; leave out --images"),
-        ({"scenes": house_scenes(1), "preset": "8k"}, "give it two scenes or more"),
-        ({"images": 9, "test_share": 1.0}, "--test-share is 0 or more and below 1"),
+        ({"scenes": [], "images": 3}, "no scenes; add --houses, --worlds"),
+        ({"images": 1}, r"--images must be from 2 \(one per scene\)"),
+        ({"images": None}, "got none"),
+        ({"images": 9, "preset": "8k"}, "sets the number of images; remove --images"),
+        ({"scenes": house_scenes(1), "preset": "8k"}, "needs at least two scenes"),
+        ({"images": 9, "test_share": 1.0}, "--test-share must be at least 0 and below 1"),
     ],
 )
 def test_what_does_not_go_together_is_told(words, text):
@@ -106,7 +106,7 @@ def test_scenes_of_one_name_get_names_of_their_own():
 
 def test_a_world_that_is_given_twice_is_refused():
     """Under two names it would be trained on and tested on."""
-    with pytest.raises(UsageError, match="a/../a/house is given twice; give each world once"):
+    with pytest.raises(UsageError, match="a/../a/house is listed twice; list each world only once"):
         source_scenes([Path("a/house"), Path("b"), Path("a/../a/house")])
 
 

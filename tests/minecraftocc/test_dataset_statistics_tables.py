@@ -202,7 +202,7 @@ def test_processes_count_what_one_counts(store, monkeypatch):
 
 
 def test_a_missing_store_or_split_is_reported(store, tmp_path):
-    with pytest.raises(InputError, match="is no data set"):
+    with pytest.raises(InputError, match="not a data set"):
         store_statistics(tmp_path / "nothing")
     with pytest.raises(UsageError, match="the splits of .* are test, train, not 'val'"):
         store_statistics(store[0], "val")

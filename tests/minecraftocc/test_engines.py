@@ -50,15 +50,15 @@ def test_a_killed_worker_is_replaced_and_reported(tmp_path):
     with open_engine("pool", 2) as engine:
         found = dict(engine.run(tasks.die_once, [tmp_path / "mark"], lambda _: None))
     assert found == {0: "went on"}
-    assert engine.notes == ["A worker ended by signal 9; another went on where it was."]
+    assert engine.notes == ["A worker exited by signal 9; another worker resumed its task."]
 
 
 def test_an_item_that_kills_every_worker_is_reported():
     with open_engine("pool", 2) as engine, pytest.raises(WorkerError) as caught:
         list(engine.run(tasks.die, [1], print))
     assert str(caught.value) == (
-        "3 workers in turn have ended with code 7 over part 1 of 1; is memory short? "
-        "Try fewer --jobs, then run the same command again to go on"
+        "3 workers in a row exited with code 7 on part 1 of 1, possibly for lack of memory; "
+        "run the same command with fewer --jobs to resume"
     )
 
 
@@ -101,5 +101,5 @@ def is_alive(pid):
 def test_invalid_engine_options():
     with pytest.raises(UnknownNameError, match="did you mean 'pool'"):
         open_engine("poll", 2)
-    with pytest.raises(UsageError, match="jobs may be 1 to 1024, not 0"):
+    with pytest.raises(UsageError, match="jobs must be from 1 to 1024, got 0"):
         open_engine("pool", 0)

@@ -145,7 +145,7 @@ def test_a_resized_camera_sees_the_same():
 def test_depth_of_another_size_is_refused(world):
     volume, _, voxels = world
     (pose,) = poses_in(volume, 1, 2)
-    with pytest.raises(ValueError, match=r"depth of \(3, 4\) is not of a camera with \(72, 96\)"):
+    with pytest.raises(ValueError, match=r"the shape of the camera, \(72, 96\), got \(3, 4\)"):
         label_image(
             voxels, region_in(voxels, pose, RULE), CAMERA, pose, np.zeros((3, 4), np.float32)
         )

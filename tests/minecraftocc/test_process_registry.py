@@ -62,7 +62,7 @@ def test_a_process_that_does_not_end_is_reported(tmp_path, straggler):
     with pytest.raises(ConflictError) as caught:
         wait_for_others(tmp_path, patience_s=0.1)
     assert str(caught.value) == (
-        f"{tmp_path}: a process of an earlier run is still at work here; end it first"
+        f"{tmp_path}: in use by a process of an earlier run; stop that process and try again"
     )
 
 

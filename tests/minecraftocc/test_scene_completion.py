@@ -71,7 +71,7 @@ def test_what_is_no_grid_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"SSCNet \.bin"):
         read_grid_place(tmp_path / "none.bin")
     (tmp_path / "short.bin").write_bytes(b"1234")
-    with pytest.raises(DamagedFileError, match="3 numbers of origin"):
+    with pytest.raises(DamagedFileError, match="does not contain an origin"):
         read_grid_place(tmp_path / "short.bin")
     head = np.concatenate([np.zeros(3), np.full(16, 7)]).astype("<f4")
     (tmp_path / "bent.bin").write_bytes(head.tobytes())
@@ -129,7 +129,7 @@ def test_what_is_no_depth_is_refused(depth_m, tmp_path):
     with pytest.raises(CaptureError, match="try --depth-code"):
         depth_of_png(tmp_path, np.full((4, 4), 30_000, np.uint16), "mm")
     away = GridPlace(np.array([50.0, 0.0, 0.0]), POSE)
-    with pytest.raises(CaptureError, match="nothing of the grid"):
+    with pytest.raises(CaptureError, match="no part of the grid"):
         complete_frame(depth_m, away, model=Empty())  # type: ignore[arg-type]
 
 

@@ -135,7 +135,7 @@ def test_a_foreign_world_is_looked_through_for_what_is_built(foreign):
     assert volume.states.shape == (10, 5, 8) and volume.corner == (1, 61, 1)
     (note,) = source.notes()
     assert note == (
-        "this world has no scene.json: taking what looks built, --box -2 46 -2 18 82 18"
+        "this world has no scene.json; using the detected buildings: --box -2 46 -2 18 82 18"
     )
     assert {CLASS_NAMES[n] for n in np.unique(volume.semantic)} >= {"floor", "wall", "bed"}
 
@@ -165,7 +165,9 @@ def test_a_world_where_nothing_is_built_is_read_around_its_spawn(tmp_path):
     write_blocks(made.volume(), tmp_path / "wild", WriteOptions(spawn=(8, 70, 8)))
     box, told = find_built_box(tmp_path / "wild")
     assert box == (-56, 38, -56, 72, 166, 72)
-    assert told.startswith("nothing in this world looks built, so the blocks around its spawn")
+    assert told.startswith(
+        "no buildings found in this world; using the blocks around the spawn point"
+    )
 
 
 @pytest.mark.parametrize(
@@ -199,9 +201,9 @@ def test_names_of_scenes(tmp_path):
 
 
 def test_mistakes_are_told(tmp_path, foreign):
-    with pytest.raises(InputError, match="is not there"):
+    with pytest.raises(InputError, match="not found"):
         open_scene_source(tmp_path / "none")
-    with pytest.raises(UsageError, match="a box is x0 y0 z0 x1 y1 z1, each second corner beyond"):
+    with pytest.raises(UsageError, match="a box must be x0 y0 z0 x1 y1 z1 with x0 < x1"):
         open_scene_source(foreign, box=(1, 2, 3, 1, 5, 6))
     with pytest.raises(UsageError, match="above 0 and up to 64, not 0"):
         open_scene_source(foreign, blocks_per_metre=0)

@@ -41,7 +41,7 @@ def test_cells_are_occupied_where_four_of_64_voxels_are():
 
 
 def test_cells_are_whole_voxels():
-    with pytest.raises(UsageError, match="whole multiples of 0.02 m, not 0.05"):
+    with pytest.raises(UsageError, match="a multiple of 0.02 m, got 0.05"):
         voxelize_room(generate_room(7, kind="bed"), 0.05)
 
 
@@ -71,7 +71,7 @@ def test_another_kind_of_room_is_tried_where_one_fails(monkeypatch):
         raise World2MinecraftError("no")
 
     monkeypatch.setattr(photo_rooms, "generate_room", unable)
-    with pytest.raises(UsageError, match="seed 42000 gives no room of any kind"):
+    with pytest.raises(UsageError, match="no room can be generated with seed 42000"):
         next(photo_samples(PhotoRooms(1, 1, 0, 2, CAMERA)))
 
 
@@ -93,9 +93,9 @@ def test_the_same_seed_gives_the_same_set(samples):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ((0, 5), "--rooms is 1 to 1000, not 0"),
-        ((5, 3), "--images is 5 or more, one a room, not 3"),
-        ((1, 3, 0.5), "--test-share 0.5 leaves no room to train on"),
+        ((0, 5), "--rooms must be from 1 to 1000, got 0"),
+        ((5, 3), "--images must be at least 5, one per room, got 3"),
+        ((1, 3, 0.5), "--test-share 0.5 leaves no room for training"),
     ],
 )
 def test_a_plan_that_cannot_be_is_refused(words, text):

@@ -233,7 +233,10 @@ def test_a_small_place_gives_the_views_it_has():
 
 @pytest.mark.parametrize(
     ("count", "text"),
-    [(0, "a plan has one view or more, not 0"), (5, "nobody can stand anywhere in this world")],
+    [
+        (0, "the number of views must be 1 or more, got 0"),
+        (5, "cannot plan views: this world has no place"),
+    ],
 )
 def test_plans_that_cannot_be(count, text):
     full = box(np.ones((3, 3, 0), int), np.ones((3, 3, 0), int))
@@ -244,10 +247,19 @@ def test_plans_that_cannot_be(count, text):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ({"yaw_shares": (0, 0, 0)}, "yaw_shares are three numbers from 0 up, not (0, 0, 0)"),
-        ({"eye_m": (1.5, 1.2)}, "eye_m is two heights from 0.3 to 1.75, not (1.5, 1.2)"),
-        ({"pitch_deg": (-70, 0)}, "pitch_deg is two angles from -60 to 60, not (-70, 0)"),
-        ({"spacing_m": 2.0}, "spacing_m is from 0.05 to 0.6, not 2"),
+        (
+            {"yaw_shares": (0, 0, 0)},
+            "numbers of 0 or more, not all 0, got (0, 0, 0)",
+        ),
+        (
+            {"eye_m": (1.5, 1.2)},
+            "0.3 to 1.75 in ascending order, got (1.5, 1.2)",
+        ),
+        (
+            {"pitch_deg": (-70, 0)},
+            "-60 to 60 in ascending order, got (-70, 0)",
+        ),
+        ({"spacing_m": 2.0}, "spacing_m must be from 0.05 to 0.6, got 2"),
     ],
 )
 def test_rules_that_make_no_sense(words, text):

@@ -112,7 +112,7 @@ def test_quarter_turns_of_a_world_turn_its_cells():
 
 def test_errors_say_what_to_do(monkeypatch):
     volume = room_of_things()
-    with pytest.raises(UsageError, match=r"a cell is 0.01 m or more, not 0.001"):
+    with pytest.raises(UsageError, match=r"voxel_m must be at least 0.01 m, got 0.001"):
         voxelize_scene(volume, voxel_m=0.001)
     monkeypatch.setattr(module, "MAX_CELLS", 1000)
     with pytest.raises(UsageError, match=r"cells of 0.08 m take 0 GB; 1,000 cells are allowed"):

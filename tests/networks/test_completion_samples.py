@@ -66,7 +66,7 @@ def test_a_file_without_samples_is_reported(tmp_path):
     with pytest.raises(DamagedFileError, match="is not a readable .npz"):
         read_samples(path)
     write_npz(path, {"count": np.array(1)})
-    with pytest.raises(DamagedFileError, match="holds no samples"):
+    with pytest.raises(DamagedFileError, match="not a valid sample file"):
         read_samples(path)
 
 

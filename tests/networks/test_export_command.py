@@ -41,7 +41,7 @@ def test_compressed_weights_report_how_far_logits_move(run, capsys):
     assert f"{out}: monoscene-tiny, {out.stat().st_size / 1e6:.1f} MB; " in said
     assert "weights as int8 move a logit by " in said and f"w2m evaluate occupancy {out}" in said
     assert cli.run(["export", str(run), "--out", str(out), "--weights", "int4"]) == 2
-    assert "no way to store weights is named 'int4'; did you mean 'int8'" in capsys.readouterr().err
+    assert "no weight format is named 'int4'; did you mean 'int8'" in capsys.readouterr().err
 
 
 def test_what_is_no_weights_is_refused(tmp_path, capsys):

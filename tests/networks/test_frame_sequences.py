@@ -163,6 +163,6 @@ def test_the_embodied_network_trains_on_sequences_by_itself(tmp_path):
     assert losses and np.isfinite(losses).all()
     assert read_config(tmp_path / "run" / "run.yaml").frames == 0
     odd = replace(config, network="monoscene", frames=3)
-    with pytest.raises(UsageError, match="monoscene looks at one frame; frames is for embodied"):
+    with pytest.raises(UsageError, match="monoscene processes single frames"):
         train_run(odd, tmp_path / "odd", device="cpu", cache=cache)
     assert not (tmp_path / "odd").exists()

@@ -187,7 +187,7 @@ def test_half_precision_is_judged_in_single():
 
 @pytest.mark.parametrize(
     ("classes", "text"),
-    [((1.0,) * 11, "there are 12 class weights, not 11"), ((-1.0,) + (1.0,) * 11, "finite")],
+    [((1.0,) * 11, "there must be 12 class weights, got 11"), ((-1.0,) + (1.0,) * 11, "finite")],
 )
 def test_bad_class_weights(classes, text):
     with pytest.raises(UsageError, match=text):

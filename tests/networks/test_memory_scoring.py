@@ -103,7 +103,7 @@ def test_a_run_is_scored_on_scenes_by_its_own_memory(tmp_path):
     scores = score_run(trained, config, "cpu")
     found = scores["protocols"][MEMORY]
     assert found["frames"] == 1 and 0 <= found["micro"]["iou"] <= 1
-    assert "the network fuses them" in found["counts"]
+    assert "fused by the network" in found["counts"]
     assert MEMORY in json.loads((tmp_path / "run" / "scores.json").read_text())["protocols"]
     other = {"protocols": {}, "left_out": {}}
     add_memory_scores(other, torch.nn.Identity(), *[None] * 4)  # type: ignore[arg-type]

@@ -58,7 +58,7 @@ def test_what_a_set_cannot_answer_is_left_out_or_refused():
     assert set(scores["protocols"]) == {"monoscene", "iso", "embodied"}
     with pytest.raises(UsageError, match="protocol visible needs seen, free"):
         protocol_scores(dark, 0.08, ["visible"])
-    with pytest.raises(UsageError, match="there is no frame to score"):
+    with pytest.raises(UsageError, match="no frames to evaluate"):
         protocol_scores([], 0.08)
 
 
@@ -98,11 +98,11 @@ def test_a_scene_is_the_same_however_its_boxes_are_turned():
 
 def test_boxes_off_the_lattice_make_no_scene():
     found, reason = scene_scores([scene_frame([2]), scene_frame([2], (0.5, 0, 0))], 0.08)
-    assert not found and "share no lattice of 0.08 m cells" in reason
+    assert not found and "not on a common lattice of 0.08 m" in reason
     turn = np.eye(4)
     turn[:2, :2] = [[0.8, -0.6], [0.6, 0.8]]
     found, reason = scene_scores([scene_frame([2])._replace(grid_to_room=turn)], 0.08)
-    assert not found and "not along the room's axes" in reason
+    assert not found and "not aligned with the room axes" in reason
 
 
 LABELS = SAMPLES[0].occ.labels
@@ -121,7 +121,7 @@ def test_saved_predictions_of_all_kinds_are_read_as_ours(tmp_path):
     for key in ("plain", "nyu", "scores"):
         np.testing.assert_array_equal(saved.labels(key), LABELS, err_msg=key)
     np.testing.assert_array_equal(saved.labels("ours"), LABELS % 12)
-    with pytest.raises(DamagedFileError, match="say --classes embodied"):
+    with pytest.raises(DamagedFileError, match="add --classes embodied"):
         saved.labels("embodied")
     embodied = SavedPredictions(tmp_path / "embodied.pkl", classes="embodied")
     np.testing.assert_array_equal(embodied.labels("any"), LABELS)
@@ -138,10 +138,10 @@ def test_what_cannot_be_read_is_named(tmp_path):
     saved = SavedPredictions(tmp_path / "all.npz")
     truth = toy_set(tmp_path, 6, 3)
     assert keys_to_score(saved, truth, None) == ["room_0-t0-00000"]
-    with pytest.raises(InputError, match="holds no prediction of"):
+    with pytest.raises(InputError, match="contains no predictions for"):
         keys_to_score(saved, truth, "test")
     write_npz(tmp_path / "one.npz", {"labels": LABELS})
-    with pytest.raises(InputError, match="is one frame's, and the truth has 6"):
+    with pytest.raises(InputError, match="contains a single frame, but the data set has 6"):
         keys_to_score(SavedPredictions(tmp_path / "one.npz"), truth, None)
 
 
@@ -174,7 +174,7 @@ def test_train_and_evaluate_from_the_command_line(store, tmp_path, monkeypatch, 
     assert "monoscene" in out.out and "ceiling" in out.out
     assert rows.read_text().startswith("% method & IoU")
     code, out = told(["train", "toy", "--data", store, "--out", run, "--cache", "off"], capsys)
-    assert code == 3 and "holds a run of other settings" in out.err
+    assert code == 3 and "contains a run with other settings" in out.err
 
 
 def test_onnx_files_and_saved_predictions_from_the_command_line(store, tmp_path, capsys):
@@ -227,7 +227,7 @@ def test_single_files_and_folders_of_bins_are_scored(tmp_path, capsys):
     ("words", "code", "text"),
     [
         (["train"], 2, "no network; give its name, such as w2m train monoscene --data DIR"),
-        (["train", "monoscene"], 2, "nothing to train on; give --data DIR"),
+        (["train", "monoscene"], 2, "no training data; add --data DIR"),
         (["train", "x", "--data", "d", "--image", "big"], 2, "--image is WIDTHxHEIGHT"),
         (["train", "x", "--data", "d", "--preset", "8"], 2, "no preset is named '8'"),
         (["evaluate", "occupancy", "gone", "."], 3, "gone: not found"),

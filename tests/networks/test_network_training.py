@@ -117,7 +117,7 @@ def test_a_loss_that_is_no_number_ends_a_run(store, cache, tmp_path, monkeypatch
             return OccOutput(said.logits * (float("nan") if self.calls > 4 else 1.0))
 
     monkeypatch.setattr(training, "make_network", lambda *_, **__: Lost())
-    told = "the loss of step 5 is no number, at a learning rate of .*; train in another --out"
+    told = r"the loss at step 5 is not finite \(learning rate .*\); use a lower --lr"
     with pytest.raises(UsageError, match=told):
         trained(toy_config(store), tmp_path / "run", cache)
     assert read_facts(tmp_path / "run" / "checkpoint.safetensors")["step"] == 3
@@ -127,7 +127,7 @@ def test_a_loss_that_is_no_number_ends_a_run(store, cache, tmp_path, monkeypatch
 def test_foreign_files_in_a_run_folder_are_reported(whole, store, cache, tmp_path):
     shutil.copytree(whole, tmp_path / "run")
     (tmp_path / "run/metrics.csv").write_text("step;name;value\n1;train_loss;2.0\n")
-    with pytest.raises(DamagedFileError, match=r"metrics.csv: holds no rows .*; remove it"):
+    with pytest.raises(DamagedFileError, match=r"metrics.csv: must contain rows .*; delete"):
         read_metrics(tmp_path / "run/metrics.csv")
     write_checkpoint(
         tmp_path / "run/checkpoint.safetensors",
@@ -135,7 +135,7 @@ def test_foreign_files_in_a_run_folder_are_reported(whole, store, cache, tmp_pat
         torch.optim.AdamW(network.parameters()),
         {"step": 3, "mood": "good"},
     )
-    with pytest.raises(DamagedFileError, match="is of another version of w2m train; choose anoth"):
+    with pytest.raises(DamagedFileError, match="written by another version of w2m train; choose"):
         trained(toy_config(store), tmp_path / "run", cache)
 
 
@@ -149,7 +149,7 @@ def test_a_finished_run_is_left_as_it_is(whole, store, cache):
 
 
 def test_a_folder_of_another_run_is_refused(whole, store, cache):
-    with pytest.raises(ConflictError, match=r"holds a run of other settings \(steps is 6, not 9\)"):
+    with pytest.raises(ConflictError, match=r"other settings \(steps is 6, requested 9\)"):
         trained(toy_config(store, steps=9), whole, cache)
 
 
@@ -205,12 +205,12 @@ def test_best_weights_make_the_network_again(whole, store):
     network = load_trained_network(whole, config, "cpu")
     assert not network.training
     other = toy_network.Toy(width=5)
-    with pytest.raises(DamagedFileError, match="is of another network"):
+    with pytest.raises(DamagedFileError, match="belongs to another network"):
         load_weights(whole / "weights.safetensors", other)
-    with pytest.raises(InputError, match="w2m train NET --data DIR --out RUN makes one"):
+    with pytest.raises(InputError, match="create it with w2m train NET --data DIR --out RUN"):
         load_weights(whole / "nothing.safetensors", other)
     (whole.parent / "odd.safetensors").write_bytes(b"no weights at all")
-    with pytest.raises(DamagedFileError, match="is no safetensors file"):
+    with pytest.raises(DamagedFileError, match="not a valid safetensors file"):
         load_weights(whole.parent / "odd.safetensors", other)
 
 

@@ -103,8 +103,8 @@ def test_larger_sizes_can_be_made(name, size):
         ({"name": "monoscen"}, UnknownNameError, "no network is named 'monoscen'; did you mean"),
         ({"size": "large"}, UnknownNameError, "no size of a network is named 'large'"),
         ({"grid_shape": (30, 30, 4)}, UsageError, "three sides of 8 cells or more"),
-        ({"voxel_m": 0.0}, UsageError, "cells are larger than 0 m, not 0.0"),
-        ({"backbone": "resnet"}, UsageError, "a backbone is hf:ORG/NAME or hf:FOLDER, not"),
+        ({"voxel_m": 0.0}, UsageError, "voxel_m must be above 0, got 0.0"),
+        ({"backbone": "resnet"}, UsageError, "backbone must be hf:ORG/NAME or hf:FOLDER, got"),
     ],
 )
 def test_what_cannot_be_made_says_so(words, error, text):

@@ -50,17 +50,17 @@ GOLDEN = {
         UnknownNameError,
         "no setting is named 'step'; did you mean 'steps'?",
     ),
-    "network: iso": (DamagedFileError, "run.yaml: says no data"),
-    "[]": (DamagedFileError, "run.yaml: holds no settings; write network: NAME, data: ..."),
+    "network: iso": (DamagedFileError, "run.yaml: missing settings: data"),
+    "[]": (DamagedFileError, "run.yaml: contains no settings; expected network: NAME, data: ..."),
     "network: iso\ndata: a\nsteps: many": (
         DamagedFileError,
-        "run.yaml: steps must be a whole number, not 'many'",
+        "run.yaml: steps must be an integer, got 'many'",
     ),
     "network: iso\ndata: a\nsteps: true": (
         DamagedFileError,
-        "run.yaml: steps must be a whole number, not True",
+        "run.yaml: steps must be an integer, got True",
     ),
-    "network: iso\ndata: a\nsteps: 0": (UsageError, "steps must be 1 to 1e+08, not 0"),
+    "network: iso\ndata: a\nsteps: 0": (UsageError, "steps must be from 1 to 1e+08, got 0"),
     "network: iso\ndata: a\ngrid: 0.8": (
         UnknownNameError,
         "no grid is named '0.8'; did you mean '0.08'?",
@@ -69,14 +69,14 @@ GOLDEN = {
         UnknownNameError,
         "no setting of data is named 'wait'; did you mean 'weight'?",
     ),
-    "network: iso\ndata: a:0": (UsageError, "the weight of a must be above 0 and finite, not 0"),
+    "network: iso\ndata: a:0": (UsageError, "the weight of a must be above 0 and finite, got 0"),
     "network: iso\ndata: a:inf": (
         UsageError,
-        "the weight of a must be above 0 and finite, not inf",
+        "the weight of a must be above 0 and finite, got inf",
     ),
     "network: iso\ndata: []": (
         UsageError,
-        "nothing to train on; give --data DIR, as w2m dataset build makes one",
+        "no training data; add --data DIR with a data set from w2m dataset build",
     ),
 }
 
@@ -90,7 +90,7 @@ def test_invalid_settings_are_reported(text):
 
 
 def test_invalid_yaml_is_reported_in_one_line():
-    with pytest.raises(DamagedFileError, match="is no YAML") as caught:
+    with pytest.raises(DamagedFileError, match="not valid YAML") as caught:
         parse_config("a: [", "run.yaml")
     assert "\n" not in str(caught.value)
 

@@ -128,9 +128,9 @@ def test_what_a_memory_ignores_counts_as_occupied(truth, tmp_path):
 def test_other_cells_are_refused(truth, tmp_path):
     (tmp_path / f"{NAMES[0]}.npy").write_bytes(npy(np.zeros((5, 13, 4), np.uint8)))
     saved = SavedPredictions(tmp_path / f"{NAMES[0]}.npy")
-    with pytest.raises(DamagedFileError, match="has 5x13x4 cells of scene0000_00, the truth 6x13"):
+    with pytest.raises(DamagedFileError, match="scene0000_00 has 5x13x4 cells, expected 6x13"):
         saved.scene_labels(NAMES[0], SHAPE)
-    with pytest.raises(InputError, match="holds no scene with a global_occ_package"):
+    with pytest.raises(InputError, match="no scene found that has both a global_occ_package"):
         open_scenes(tmp_path)
 
 
@@ -145,4 +145,4 @@ def test_scenes_are_scored_from_the_command_line(truth, tmp_path, capsys):
     said = capsys.readouterr().out
     assert SCENES in said and "100.00" in said
     assert w2m([*words, "--classes", "embodied", "--protocol", "iso"]) == 2
-    assert "holds whole scenes; use --protocol embodied" in capsys.readouterr().err
+    assert "complete scenes; use --protocol embodied" in capsys.readouterr().err

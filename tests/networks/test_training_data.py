@@ -95,11 +95,11 @@ def test_scenes_are_in_one_part_alone_and_the_test_split_is_kept():
 
 def test_a_split_that_cannot_be_says_why():
     assert split_rows(["a", "b"], ["train", "test"], 0, "set").val == [1]
-    with pytest.raises(UsageError, match="has no test split; hold scenes out with --val-share"):
+    with pytest.raises(UsageError, match="reserve scenes for validation with --val-share"):
         split_rows(["a", "b"], ["", ""], 0, "set")
-    with pytest.raises(UsageError, match="1 scene to train on, of which none can be held out"):
+    with pytest.raises(UsageError, match="only 1 training scene, so none can be used"):
         split_rows(["a", "b"], ["", "test"], 0.1, "set")
-    with pytest.raises(UsageError, match="has no frame to train on, only 1 of its test split"):
+    with pytest.raises(UsageError, match="has no training frames, only 1 frames in its test split"):
         split_rows(["b"], ["test"], 0.1, "set")
     assert take_evenly(list(range(10)), 3) == [0, 3, 6]
 

@@ -84,7 +84,7 @@ class SavedPredictions:
         return self._to_labels(*self._array(key), self._order)
 
     def scene_labels(self, key: str, shape: tuple[int, ...]) -> np.ndarray:
-        """Return the predicted labels of a complete scene (0 to 11 or 255), uint8 in the given shape.
+        """Return the predicted labels of a complete scene, uint8 in the given shape.
 
         The axis order of scenes cannot be derived from their shape, so it is ``xyz`` unless
         ``order`` is given. A flat list with one value per cell is reshaped.

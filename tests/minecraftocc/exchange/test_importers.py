@@ -89,7 +89,7 @@ def test_masks_are_made_of_the_depth(made, folders):
     free = found.occ.free
     assert free.any() and not found.occ.labels[free].any()
     assert not (free & ~found.occ.in_frustum).any()
-    assert found.facts["hits"] == "first seen, by depth"
+    assert found.facts["hits"] == "first surface, from depth"
 
 
 def test_without_depth_the_masks_are_empty_with_a_note(folders, tmp_path):
@@ -98,7 +98,7 @@ def test_without_depth_the_masks_are_empty_with_a_note(folders, tmp_path):
     sample = open_occupancy(tmp_path / "nyu")[KEY]
     assert not sample.occ.hits.any() and not sample.occ.free.any()
     assert sample.occ.in_frustum.any()
-    assert sample.facts["hits"] == "none: there is no depth"
+    assert sample.facts["hits"] == "none, because there is no depth"
 
 
 def test_a_picture_of_another_shape_is_refused(folders, tmp_path):
@@ -107,7 +107,7 @@ def test_a_picture_of_another_shape_is_refused(folders, tmp_path):
     shutil.copytree(folders / "nyu", tmp_path / "nyu")
     picture = tmp_path / "nyu" / "NYUtrain" / f"{KEY}_color.jpg"
     Image.open(picture).resize((640, 360)).save(picture)
-    with pytest.raises(DamagedFileError, match="is 640x360; NYUv2's pictures are 640x480"):
+    with pytest.raises(DamagedFileError, match=r"aspect ratio of NYUv2 \(640x480\), got 640x360"):
         open_occupancy(tmp_path / "nyu")[KEY]
     Image.open(picture).resize((320, 240)).save(picture)
     assert open_occupancy(tmp_path / "nyu")[KEY].colour.shape == (480, 640, 3)
@@ -123,7 +123,7 @@ def test_preprocessed_labels_may_lie_elsewhere(folders, tmp_path):
     shutil.copytree(folders / "nyu" / "base", tmp_path / "pre" / "base")
     for file in (tmp_path / "depthbin" / "NYUtrain").glob("*.bin"):
         file.write_bytes(b"")  # As after --short-bin: only its name is looked at.
-    with pytest.raises(DamagedFileError, match="has 0 bytes"):
+    with pytest.raises(DamagedFileError, match="0 bytes is not a possible file size"):
         open_occupancy(tmp_path / "depthbin")[KEY]
     found = open_occupancy(tmp_path / "depthbin", labels=tmp_path / "pre")
     assert found[KEY].occ.labels.any()
@@ -143,20 +143,26 @@ def test_a_hostile_pickle_in_a_data_set_is_refused(folders, tmp_path):
     shutil.copytree(folders / "embodied" / "occscannet", tmp_path / "o")
     path = tmp_path / "o" / "gathered_data" / "scene0000_00" / "00000.pkl"
     path.write_bytes(b"cos\nsystem\n(S'touch hostile'\ntR.")
-    with pytest.raises(DamagedFileError, match=r"names os\.system, which no array needs"):
+    with pytest.raises(DamagedFileError, match=r"refers to os\.system, which is not allowed"):
         next(iter(open_occupancy(tmp_path / "o")))
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"target_1_4": np.zeros((60, 60, 35), np.uint8)}, "has labels (60, 60, 35) of uint8"),
-        ({"target_1_4": np.full((60, 60, 36), 12, np.uint8)}, "no class ids 0 to 11 or 255"),
-        ({"cam_pose": np.zeros((4, 4))}, "no rotation and shift"),
-        ({"cam_pose": np.full((4, 4), np.nan)}, "has a camera pose of (4, 4)"),
-        ({"voxel_origin": "here"}, "has no numbers for voxel origin"),
-        ({"intrinsic": np.zeros((4, 4))}, "has an intrinsic that is no camera"),
-        ({"intrinsic": np.zeros(3)}, "has a matrix of (0,)"),
+        ({"target_1_4": np.zeros((60, 60, 35), np.uint8)}, "got uint8 (60, 60, 35)"),
+        (
+            {"target_1_4": np.full((60, 60, 36), 12, np.uint8)},
+            "class ids from 0 to 11, or 255",
+        ),
+        ({"cam_pose": np.zeros((4, 4))}, "the camera pose is not a rigid transform"),
+        (
+            {"cam_pose": np.full((4, 4), np.nan)},
+            "pose must be a (4, 4) array of finite numbers",
+        ),
+        ({"voxel_origin": "here"}, "the voxel origin does not consist of numbers"),
+        ({"intrinsic": np.zeros((4, 4))}, "intrinsic is not a valid camera matrix"),
+        ({"intrinsic": np.zeros(3)}, "the matrix must be a (3, 3) array of finite numbers"),
     ],
 )
 def test_broken_frames_are_named(change, words, folders, tmp_path):
@@ -203,7 +209,7 @@ def test_a_hostile_npz_is_refused(folders, tmp_path):
 
 
 def test_wrong_folders_are_named(tmp_path, folders):
-    with pytest.raises(InputError, match="is no occupancy data set"):
+    with pytest.raises(InputError, match="not an occupancy data set"):
         open_occupancy(tmp_path)
     with pytest.raises(InputError, match="not found"):
         open_occupancy(tmp_path / "none")

@@ -149,12 +149,13 @@ def test_other_cameras_are_resampled(name, tmp_path):
     [
         (
             Camera(640, 480, 700.0, 700.0, 320, 240),
-            f"{KEY}: the camera sees 49.1 x 37.8 degrees, the format wants 63.3 x 49.6; make the "
-            "pictures with a wider field of view, or export to occscannet or npz",
+            f"{KEY}: the camera covers 49.1 x 37.8 degrees, but the format needs 63.3 x 49.6; use "
+            "a wider field of view, or export to occscannet or npz",
         ),
         (
             Camera(320, 240, 200.0, 200.0, 160, 120, (0.1, 0, 0, 0, 0)),
-            f"{KEY}: the lens distorts; render or undistort the pictures without it",
+            f"{KEY}: the camera has lens distortion; undistort the images or render them "
+            "without it",
         ),
     ],
 )
@@ -170,7 +171,7 @@ def test_splits_go_to_their_folders(tmp_path):
     assert (tmp_path / "NYUtest" / "a-test.bin").is_file()
     assert (tmp_path / "base" / "NYUtest" / "a-test.pkl").is_file()
     assert (tmp_path / "NYUtrain" / "a-none.bin").is_file()
-    assert "1 samples have no split and lie in NYUtrain" in report.notes
+    assert "1 samples have no split and were written to NYUtrain" in report.notes
 
 
 def test_an_export_goes_on_where_it_stopped(made, tmp_path):
@@ -192,7 +193,7 @@ def test_the_same_samples_give_the_same_bytes(made, tmp_path):
 
 def test_other_choices_do_not_mix_in_one_folder(made, tmp_path):
     export_samples([made], "nyu", tmp_path)
-    with pytest.raises(ConflictError, match="holds an export with unknown 'keep'"):
+    with pytest.raises(ConflictError, match="contains an export with unknown 'keep'"):
         export_samples([made], "nyu", tmp_path, ExportRule(unknown="empty"))
     with pytest.raises(ConflictError, match="format 'nyu'"):
         export_samples([made], "npz", tmp_path)
@@ -223,7 +224,7 @@ def test_a_short_bin_has_its_head_alone(made, tmp_path):
 def test_invalid_requests_are_refused(made, tmp_path):
     with pytest.raises(UnknownNameError, match="did you mean 'nyu'"):
         export_samples([made], "nyuu", tmp_path)
-    with pytest.raises(UsageError, match="no sample to export in test"):
+    with pytest.raises(UsageError, match="no samples to export in split test"):
         export_samples([made], "nyu", tmp_path, split="test")
     with pytest.raises(UnknownNameError, match="choice of unknown cells"):
         ExportRule(unknown="none")
@@ -240,7 +241,7 @@ def test_a_data_set_that_was_made_anew_is_not_taken_for_exported(made, tmp_path)
     for _ in range(2):
         report = export_samples(a_set("one"), "npz", tmp_path / "out")
     assert report.passed_over == 1
-    with pytest.raises(ConflictError, match="holds an export of another data set, or of this one"):
+    with pytest.raises(ConflictError, match="an export of another data set or of an earlier"):
         export_samples(a_set("other"), "npz", tmp_path / "out")
 
 

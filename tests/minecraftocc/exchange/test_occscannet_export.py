@@ -115,7 +115,7 @@ def test_all_frames_of_a_scene_share_one_world(flat):
 def test_a_region_turned_with_the_view_has_a_world_of_its_own(tmp_path):
     made = synthetic.sample(turn_deg=30.0, target_m=(0.5, 4.0, 0.9))
     report = export_samples([made], "occscannet", tmp_path)
-    assert any("turned with the view" in note for note in report.notes)
+    assert any("rotated with the view" in note for note in report.notes)
     loaded = page_loader.load_occscannet(tmp_path, "gathered_data/scene0000_00/00000.pkl")
     assert np.array_equal(loaded.target, made.occ.labels)
     visible = made.occ.visible & loaded.in_view
@@ -123,7 +123,7 @@ def test_a_region_turned_with_the_view_has_a_world_of_its_own(tmp_path):
     at = made.facts["first_seen"][v, u]
     met = made.occ.labels.reshape(-1)[at[at >= 0]]
     assert np.mean(loaded.target[visible][at >= 0] == met) > 0.8  # Cut aslant, cells overlap.
-    with pytest.raises(InputError, match="scene packages lie along the room's axes"):
+    with pytest.raises(InputError, match="scene packages need regions along the"):
         export_samples([made], "embodied", tmp_path / "e")
 
 
@@ -233,8 +233,7 @@ def test_a_scene_too_large_for_the_official_operation_is_named(made, tmp_path, m
     )
     report = export_samples(made[:2], "embodied", tmp_path)
     assert report.notes == [
-        "1 scenes are larger than 60x60x36 cells, which EmbodiedOcc's own operation holds: "
-        "scene0000_00"
+        "1 scenes exceed 60x60x36 cells, the limit of EmbodiedOcc's own code: scene0000_00"
     ]
 
 

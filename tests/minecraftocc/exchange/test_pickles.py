@@ -142,18 +142,20 @@ def test_hostile_and_broken_pickles_are_refused(name, tmp_path, monkeypatch):
 def test_a_refusal_names_the_file_and_what_it_wanted():
     with pytest.raises(DamagedFileError) as caught:
         parse_pickle(HOSTILE["eval"], "x.pkl")
-    assert str(caught.value) == ("x.pkl: names builtins.eval, which no array needs; it is not read")
+    assert str(caught.value) == (
+        "x.pkl: refers to builtins.eval, which is not allowed; the file was not read"
+    )
 
 
 def test_a_list_that_holds_itself_is_refused():
     looped: list = []
     looped.append(looped)
-    with pytest.raises(DamagedFileError, match="holds a list"):
+    with pytest.raises(DamagedFileError, match="contains an unsupported list"):
         parse_pickle(pickle.dumps({"x": looped}))
 
 
 def test_a_program_of_many_steps_is_refused():
-    with pytest.raises(DamagedFileError, match="steps"):
+    with pytest.raises(DamagedFileError, match="operations"):
         parse_pickle(b"\x80\x03(" + b"N0" * 150_000 + b"t.")
 
 
@@ -166,7 +168,7 @@ def test_missing_and_large_files_are_named(tmp_path):
 
 
 def test_values_of_other_kinds_are_not_written():
-    with pytest.raises(TypeError, match="no set"):
+    with pytest.raises(TypeError, match="cannot pickle a set"):
         dump_pickle({"x": {1}})
-    with pytest.raises(TypeError, match="no array of object"):
+    with pytest.raises(TypeError, match="cannot pickle an array of object"):
         dump_pickle({"x": np.array([None])})

@@ -92,12 +92,12 @@ def _with(pairs):
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (b"", "has 0 bytes, which no SSCNet .bin has"),
-        (bytes(80), "has 80 bytes, which no SSCNet .bin has"),
-        (bytes(76), "holds 0 voxels of 8,294,400; it is no SSCNet .bin"),
-        (_with([[0, 7]]), "holds 7 voxels of 8,294,400; it is no SSCNet .bin"),
-        (_with([[0, 2**32 - 1]] * 9), "voxels of 8,294,400; it is no SSCNet .bin"),
-        (_with([[37, 8_294_400]]), "holds the class 37; it is no SSCNet .bin"),
+        (b"", "not a valid SSCNet .bin: 0 bytes is not a possible file size"),
+        (bytes(80), "not a valid SSCNet .bin: 80 bytes is not a possible file size"),
+        (bytes(76), "not a valid SSCNet .bin: contains 0 voxels, expected 8,294,400"),
+        (_with([[0, 7]]), "not a valid SSCNet .bin: contains 7 voxels, expected 8,294,400"),
+        (_with([[0, 2**32 - 1]] * 9), "voxels, expected 8,294,400"),
+        (_with([[37, 8_294_400]]), "contains the unknown class code 37"),
     ],
 )
 def test_broken_bins_are_refused(data, words, tmp_path):

@@ -89,7 +89,7 @@ def test_the_same_samples_give_the_same_files(made, tmp_path, monkeypatch):
 
 
 def test_a_folder_with_a_data_set_is_left_alone(made):
-    with pytest.raises(ConflictError, match="holds a data set already"):
+    with pytest.raises(ConflictError, match="already contains a data set"):
         write_store(made, samples())
 
 
@@ -100,7 +100,7 @@ def test_an_unfinished_data_set_is_recognised(tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         write_store(tmp_path, stopped(), files=PNG)
-    with pytest.raises(ConflictError, match="holds shards/ of a data set that was not finished"):
+    with pytest.raises(ConflictError, match="contains shards/ of an incomplete data set"):
         write_store(tmp_path, samples(2), files=PNG)
     shutil.rmtree(tmp_path / "shards")
     write_store(tmp_path, samples(2), files=PNG)
@@ -110,11 +110,11 @@ def test_an_unfinished_data_set_is_recognised(tmp_path):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ({"key": "my.frame"}, "a sample's key is 1 to 90 letters of A-Z, a-z, 0-9, - and _, not "
-         "'my.frame'; rename it"),
-        ({"key": "k" * 91}, "a sample's key is 1 to 90 letters"),
-        ({"scene_id": "room 1"}, "a scene's name is 1 to 80 letters .* not 'room 1'; rename it"),
-        ({"split": "tset"}, "a split is train, val, test or left empty, not 'tset'"),
+        ({"key": "my.frame"}, "sample key must be 1 to 90 characters of A-Z, a-z, 0-9, - and _, "
+         "got 'my.frame'"),
+        ({"key": "k" * 91}, "sample key must be 1 to 90 characters"),
+        ({"scene_id": "room 1"}, "scene name must be 1 to 80 characters .* got 'room 1'"),
+        ({"split": "tset"}, "split must be train, val, test or empty, got 'tset'"),
     ],
 )  # fmt: skip
 def test_names_that_no_reader_would_find_are_refused(tmp_path, words, text):
@@ -199,9 +199,9 @@ def test_what_is_missing_and_what_is_too_much_is_named(copied):
     shard.write_bytes(shard.read_bytes()[:5000])
     faults = verify_store(copied).faults
     assert faults[:3] == (
-        "note.txt: belongs to no data set",
-        "shards/train/other.tar.part: belongs to no data set",
-        "shards/train/house_0001-001.tar: is not there, with 3 samples",
+        "note.txt: unexpected file",
+        "shards/train/other.tar.part: unexpected file",
+        "shards/train/house_0001-001.tar: missing, with 3 samples",
     )
     assert "shards/test/house_0002-001.tar: sample house_0002-a-000106 is not there" in faults
 
@@ -209,13 +209,16 @@ def test_what_is_missing_and_what_is_too_much_is_named(copied):
 def test_an_index_of_other_samples_is_found(copied, tmp_path):
     write_store(tmp_path / "other", samples(7, ("house_0001",)), files=PNG)
     shutil.copy(tmp_path / "other/index.parquet", copied)
-    assert "index.parquet: its sum is not that of dataset.json" in verify_store(copied).faults
+    assert (
+        "index.parquet: the checksum differs from that in dataset.json"
+        in verify_store(copied).faults
+    )
 
 
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (lambda d: (d / "dataset.json").unlink(), "is no data set: it has no dataset.json"),
+        (lambda d: (d / "dataset.json").unlink(), "not a data set: dataset.json not found"),
         (lambda d: (d / "dataset.json").write_text("[]"), "is no dataset.json of format 1"),
         (lambda d: edit(d / "dataset.json", complete=False), "is not finished; run the same"),
         (lambda d: (d / "classes.json").write_text("{}"), "holds no classes"),

@@ -155,7 +155,7 @@ def broken(**changes):
     [
         ({"format": 2}, "no JSON of a sample of format 1"),
         ({"region__shape": [10**6, 10**6, 10**6]}, "a region has 1 to 16,777,216 cells"),
-        ({"region__shape": [5, 4, 4]}, "must have shape|not the bits of 80 cells"),
+        ({"region__shape": [5, 4, 4]}, "must have shape|the packed bits of 80 cells"),
         ({"region__shape": [0, 4, 3]}, "a region has 1 to"),
         ({"region__shape": "abc"}, "is no sample"),
         ({"region__voxel_m": -1}, "voxel_m must be above 0"),
@@ -181,7 +181,7 @@ def test_no_json_at_all():
 
 def test_fine_numbers_beyond_the_table_are_refused():
     members = pack_sample(sample(1), TABLE, SampleFiles())
-    with pytest.raises(DamagedFileError, match="fine goes to 2 of 1 classes"):
+    with pytest.raises(DamagedFileError, match="fine must contain indices below 1, got 2"):
         unpack_sample(members, FineTable((AIR,)), "here")
 
 

@@ -106,7 +106,7 @@ def test_a_full_disk_is_one_line_and_costs_nothing(tmp_path, whole, step, monkey
             patch.setattr(shard, "_stream", HalfFull(shard._stream))
         with pytest.raises(OutputError) as caught:
             shard.append(FILES[2])
-    told = "the disk is full; free some space and run the same command again to go on"
+    told = "the disk is full; free some space and run the same command again to resume"
     assert str(caught.value) == f"{tmp_path / 'a.tar'}: {told}"
     assert (tmp_path / "a.tar.part").read_bytes() == before
     assert write(tmp_path / "a.tar") == 2
@@ -145,7 +145,7 @@ def test_two_processes_do_not_write_one_shard(tmp_path, whole, monkeypatch):
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as other:
         assert other.stdout.readline() == "held\n"
         monkeypatch.setattr(shard_module, "PATIENCE_S", 0.2)
-        with pytest.raises(ConflictError, match="is being written by another process"):
+        with pytest.raises(ConflictError, match="another process is writing this file"):
             write(tmp_path / "a.tar")
         other.kill()
     monkeypatch.undo()

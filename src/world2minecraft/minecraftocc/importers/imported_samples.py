@@ -200,9 +200,7 @@ def checked_numbers(values: Any, shape: tuple[int, ...], what: str, name: Path) 
     except (TypeError, ValueError) as error:
         raise DamagedFileError(name, f"the {what} does not consist of numbers") from error
     if numbers.shape != shape or not np.isfinite(numbers).all():
-        raise DamagedFileError(
-            name, f"the {what} must be finite numbers of shape {shape}, got shape {numbers.shape}"
-        )
+        raise DamagedFileError(name, f"the {what} must be a {shape} array of finite numbers")
     return numbers
 
 

@@ -103,7 +103,7 @@ class DepthBranch(nn.Module):
 
 
 def known_depth(logits: Tensor, inputs: OccInput, scale: int) -> Tensor:
-    """Return the input depth of each pixel in a map or, without it, the expected depth, [B, h, w]."""
+    """Return the input depth of each pixel in a map, else the expected depth, [B, h, w]."""
     shares = torch.softmax(logits.float(), dim=1)
     middles = bin_centers_m(int(logits.shape[1]), shares)
     expected = (shares * middles[:, None, None]).sum(dim=1)

@@ -75,7 +75,7 @@ class SceneEvidence:
         return SceneEvidence(self.values + other.values)
 
     def readable(self) -> Tensor:
-        """Return the evidence as channels with a bounded range, independent of the number of frames."""
+        """Return the evidence as channels with a bounded range, for any number of frames."""
         weight = self.values[:, :1]
         odds = torch.tanh(self.values[:, ODDS_AT:VOTES_AT] / 4)
         means = self.values[:, VOTES_AT:] / (weight + 1e-3)
@@ -185,7 +185,7 @@ class Embodied(nn.Module):
         return SceneEvidence(evidence), depth_logits
 
     def read(self, evidence: SceneEvidence) -> Tensor:
-        """Return class logits [B, 12, X, Y, Z] for a box of cells. Use ``SceneStream`` for scenes."""
+        """Return class logits [B, 12, X, Y, Z] for a box; use ``SceneStream`` for scenes."""
         return self.read_cells(self.enter(evidence.readable()))[0]
 
 

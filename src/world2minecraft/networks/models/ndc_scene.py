@@ -79,7 +79,7 @@ class VolumeToCells(nn.Module):
     def forward(
         self, volumes: Mapping[int, Tensor], sight: CellProjection, shape: tuple[int, int, int]
     ) -> Tensor:
-        """Return cell features [B, C, X, Y, Z]. Cells outside the volumes all have the same features."""
+        """Return cell features [B, C, X, Y, Z], all equal for cells outside the volumes."""
         found = None
         for scale, volume in volumes.items():
             here = self.carry[str(scale)](weight_by_depth(volume, sight, scale))

@@ -90,7 +90,10 @@ class SymphonyLayer(nn.Module):
             self.after_again = nn.ModuleList(FeedForward(channels, 2) for _ in range(2))
 
     def forward(self, cells: Tensor, queries: Tensor, stage: Stage) -> tuple[Tensor, Tensor]:
-        """Return updated cells [B, N, C] and queries [B, Q, C]. Cells outside the image are unchanged."""
+        """Return updated cells [B, N, C] and queries [B, Q, C].
+
+        Cells outside the image are not changed.
+        """
         marked = queries + stage.query_mark
         queries = self.after[0](queries, self.look(marked, stage.query_pixel, stage.maps))
         marked = queries + stage.query_mark
@@ -176,7 +179,10 @@ class Symphonies(nn.Module):
         self.classes = nn.Conv3d(channels, CLASS_COUNT, 1)
 
     def forward(self, inputs: OccInput) -> OccOutput:
-        """Return class logits [B, 12, X, Y, Z], depth logits and, in training, logits of all layers."""
+        """Return class logits [B, 12, X, Y, Z] and depth logits.
+
+        In training, the logits of the earlier layers are returned too.
+        """
         maps = self.picture(inputs.image)
         depth_logits = self.depth(maps[DEPTH_SCALE], inputs)
         depth_m = known_depth(depth_logits, inputs, DEPTH_SCALE).detach()
