@@ -396,7 +396,8 @@ def test_json_holds_every_block_and_rule(tmp_path):
 BAD = {
     "[]": "a block map must be a mapping with text keys, got []",
     "a: 1": "a block map contains the unknown key 'a'; known keys: name, about, extends, blocks, "
-    "words, kinds, whole, other, structure, apart, sheets, plates, rules, designs, unless_known, entities",
+    "words, kinds, whole, other, structure, apart, sheets, plates, rules, designs, unless_known, "
+    "entities",
     "about: x": "the block map has no name; add a line such as name: mine",
     "{name: m, extends: lyu}": "extends must be one of nyu, paper, got 'lyu'",
     "{name: m, blocks: {stone: rock}}": "block stone must be one of empty, ceiling, "

@@ -203,7 +203,7 @@ def test_what_is_missing_and_what_is_too_much_is_named(copied):
         "shards/train/other.tar.part: unexpected file",
         "shards/train/house_0001-001.tar: missing, with 3 samples",
     )
-    assert "shards/test/house_0002-001.tar: sample house_0002-a-000106 is not there" in faults
+    assert "shards/test/house_0002-001.tar: sample house_0002-a-000106 is missing" in faults
 
 
 def test_an_index_of_other_samples_is_found(copied, tmp_path):
