@@ -403,9 +403,9 @@ BAD = {
     "{name: m, blocks: {stone: rock}}": "block stone must be one of empty, ceiling, "
     "floor, wall, window, chair, bed, sofa, table, tvs, furn, objs; got 'rock'",
     "{name: m, kinds: {k: [a]}}": "kind k has no rules; add an entry for k under rules",
-    "{name: m, rules: {k: [wall]}}": "rules contains the unknown kind k; known kinds: ",
-    "{name: m, rules: {wall: [wall]}}": "rules contains wall, which is the name of a "
-    "class; rename the kind",
+    "{name: m, rules: {k: [wall]}}": "rules has an entry for the unknown kind k; known kinds: ",
+    "{name: m, rules: {wall: [wall]}}": "rules has an entry for wall, which is the "
+    "name of a class; rename the kind",
     "{name: m, kinds: {k: [a]}, rules: {k: [{class: wall, where: [floor]}]}}": "the last rule of "
     "k must be unconditional: give only a class, without where",
     "{name: m, kinds: {k: [a]}, rules: {k: [k]}}": "the rules of k include the rules of k "

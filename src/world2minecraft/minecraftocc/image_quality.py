@@ -293,7 +293,7 @@ def quality_json(report: QualityReport) -> dict[str, Any]:
 
 
 def _niqe(picture: np.ndarray, models: Sequence[NiqeModel]) -> dict[str, float]:
-    """Return NIQE by model; what models have in common is computed once."""
+    """Return NIQE by model name, computing shared features only once."""
     if has_patches(picture):
         manners = {model.manner for model in models}
         features = {manner: patch_features(picture, manner)[0] for manner in manners}
@@ -320,7 +320,7 @@ def _mean(values: Sequence[float]) -> float | None:
 
 
 def _shown_variants(report: QualityReport) -> tuple[str, ...]:
-    """Return the variants that have a column: what is measured, and what the paper's is like."""
+    """Return the NIQE variants to show: the measured ones and the probable one of the paper."""
     more = () if PAPER_VARIANT in report.variants else (PAPER_VARIANT,)
     return (*report.variants, *more)
 

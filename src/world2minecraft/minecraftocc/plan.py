@@ -265,7 +265,7 @@ def _check(scenes: Sequence[SceneSpec], images: int | None, preset: str, test_sh
 
 
 def _test_scenes(scenes: int, share: float) -> int:
-    """Return how many scenes are for testing: one at least, and one at least is not."""
+    """Return the number of test scenes: at least one, and at least one less than all scenes."""
     return min(max(round(scenes * share), 1 if share else 0), scenes - 1)
 
 
@@ -274,7 +274,7 @@ def _chance(seed: int, name: str) -> bytes:
 
 
 def _share_evenly(names: list[str], images: int) -> dict[str, int]:
-    """Share images evenly; the first scenes get one more where they do not come out even."""
+    """Distribute images evenly among scenes. The first scenes get the remainder."""
     if not names:
         return {}
     each, more = divmod(images, len(names))

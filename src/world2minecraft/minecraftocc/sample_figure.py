@@ -126,7 +126,7 @@ def _panels(sample: OccSample) -> list[tuple[str, np.ndarray, bool]]:
 
 
 def _depth_colours(sample: OccSample, size: tuple[int, int]) -> tuple[np.ndarray, float]:
-    """Return depth as colours, holes plain, and what the far end of the ramp stands for."""
+    """Return the depth as colours, with plain holes, and the depth of the last colour."""
     depth_m = sample.depth_m
     known = None if depth_m is None else np.isfinite(depth_m) & (depth_m > 0)
     if depth_m is None or known is None or not known.any():
@@ -140,7 +140,7 @@ def _depth_colours(sample: OccSample, size: tuple[int, int]) -> tuple[np.ndarray
 
 
 def _from_above(sample: OccSample) -> np.ndarray:
-    """Return the region from above, uint8 [Y, X, 3] with forward up; unseen columns are paler."""
+    """Return the top view of the region, uint8 [Y, X, 3], with paler unseen columns."""
     labels = sample.occ.labels
     shown = (labels > 1) & (labels != UNKNOWN)  # 1 is the ceiling.
     top = labels.shape[2] - 1 - np.argmax(shown[:, :, ::-1], axis=2)
@@ -157,7 +157,7 @@ def _from_above(sample: OccSample) -> np.ndarray:
 def _place_panel(
     sheet: Sheet, pixels: np.ndarray, corner: tuple[float, float], smooth: bool
 ) -> tuple[tuple[float, float], float]:
-    """Put a picture into its panel as large as it fits; return its corner and its scale."""
+    """Scale an image to fit its panel, draw it, and return its corner and its scale."""
     width, height = PANEL_PX
     scale = min(width / pixels.shape[1], height / pixels.shape[0])
     size = (pixels.shape[1] * scale, pixels.shape[0] * scale)
@@ -168,7 +168,7 @@ def _place_panel(
 
 
 def _draw_view(sheet: Sheet, sample: OccSample, corner: tuple[float, float], scale: float) -> None:
-    """Draw, over the region from above, what the middle row of the image sees of it."""
+    """Draw the field of view of the image's middle row over the top view of the region."""
     region, camera = sample.occ.region, sample.camera
     camera_to_region = _camera_to_region(sample)
     edges = np.array([[-camera.cx_px, 0], [camera.width_px - camera.cx_px, 0]]) / camera.fx_px
@@ -218,7 +218,7 @@ def _colour_labels(labels: np.ndarray) -> np.ndarray:
 
 
 def _dilate(mask: np.ndarray) -> np.ndarray:
-    """Return a mask with the cells that touch it by a face."""
+    """Return a mask dilated by the cells that share a face with it."""
     wide = mask.copy()
     for axis in range(3):
         ahead = [slice(None)] * 3

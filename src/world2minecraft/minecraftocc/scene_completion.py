@@ -103,7 +103,7 @@ def read_grid_place(path: Path) -> GridPlace:
 
 
 def _rigid(pose: np.ndarray) -> np.ndarray:
-    """Return a pose in float64 whose turn is one: float32 leaves it off by 1e-7."""
+    """Return a pose in float64 with an exact rotation, since float32 has errors of 1e-7."""
     result = pose.astype(np.float64)
     u, _, v = np.linalg.svd(result[:3, :3])
     result[:3, :3] = u @ v
@@ -194,7 +194,7 @@ def complete_frame(
 
 
 def _in_grid(points: PointEvidence, world_to_grid: np.ndarray) -> FusedEvidence:
-    """Return the evidence of one view on exactly the grid's cells, unseen ones unknown."""
+    """Resample the evidence of a view to exactly the cells of the grid."""
     evidence = EvidenceMap(world_to_grid)
     evidence.add(points)
     fused = evidence.fused()

@@ -109,7 +109,7 @@ def _name(state: str) -> str:
 def _built_sections(
     world: Path, spawn: tuple[int, int]
 ) -> tuple[dict[tuple[int, int, int], int], bool]:
-    """Return the built kinds of each section that has some, nearest regions first."""
+    """Return the number of built block kinds in each chunk section, nearest regions first."""
     found: dict[tuple[int, int, int], int] = {}
     known: dict[bytes, str] = {}
     built: dict[str, bool] = {}
@@ -134,7 +134,7 @@ def _is_built_cached(state: str, built: dict[str, bool]) -> bool:
 
 
 def _distance(region: Path, spawn: tuple[int, int]) -> tuple[float, str]:
-    """Return how far a region's middle is from the spawn, in chunks."""
+    """Return the distance between the centre of a region and the spawn point in chunks."""
     numbers = re.fullmatch(r"r\.(-?\d+)\.(-?\d+)\.mca", region.name)
     x, z = (int(n) * 32 + 16 for n in numbers.groups()) if numbers else (1 << 20, 1 << 20)
     return float(np.hypot(x - spawn[0], z - spawn[1])), region.name
@@ -143,9 +143,9 @@ def _distance(region: Path, spawn: tuple[int, int]) -> tuple[float, str]:
 def _main_build(
     sections: dict[tuple[int, int, int], int], spawn: tuple[int, int, int]
 ) -> Iterable[tuple[int, int, int]]:
-    """Return the sections of the build that is meant: near the spawn if any is, else the largest.
+    """Return the sections of the main build: one near the spawn point, else the largest one.
 
-    Sections that touch, or have one between them, are one build.
+    Sections that touch, or that have only one section between them, belong to the same build.
     """
     places = np.array(sorted(sections))
     low = places.min(axis=0)

@@ -190,7 +190,11 @@ class NamePattern:
 
 
 def _template_regex(text: str) -> str:
-    """Return the regex of a template. Raises UsageError."""
+    """Convert a template to a regular expression.
+
+    Raises:
+        UsageError: If the template is not valid.
+    """
     if text.count("*") > MAX_WILD:
         raise UsageError(f"pattern {text!r} may contain * at most {MAX_WILD} times")
     parts, known, before = [], set(), ""
@@ -217,7 +221,11 @@ def _template_regex(text: str) -> str:
 
 
 def _check_regex(text: str) -> str:
-    """Return a regex as it is, when it is quick on every name. Raises UsageError."""
+    """Check that a regular expression is valid and fast for every name.
+
+    Raises:
+        UsageError: If it is not.
+    """
     try:
         tree = import_module("re._parser").parse(text)
     except (re.error, RecursionError, OverflowError) as error:
@@ -241,7 +249,7 @@ def _check_regex(text: str) -> str:
 
 
 def _regex_parts(tree: Any, inside: bool = False) -> Iterator[tuple[str, bool, bool]]:
-    """Give what a parsed regex is made of: its name, whether it is repeated, whether it is wild."""
+    """Yield the parts of a parsed pattern: name, whether repeated, whether a wildcard."""
     for code, value in tree:
         name = str(code)
         if name.endswith("_REPEAT"):
@@ -259,7 +267,7 @@ def _regex_parts(tree: Any, inside: bool = False) -> Iterator[tuple[str, bool, b
 
 
 def _matches_anything(body: Any) -> bool:
-    """Whether what is repeated takes more than figures, dots and signs."""
+    """Return whether a repeated part can match more than digits, dots and signs."""
     if len(body) != 1:
         return True
     code, value = body[0]
@@ -271,7 +279,7 @@ def _matches_anything(body: Any) -> bool:
 
 
 def _is_numeric(kind: str, argument: Any) -> bool:
-    """Whether a part of a set is of figures, dots or signs."""
+    """Return whether a part of a character set contains only digits, dots or signs."""
     if kind == "LITERAL":
         return chr(argument) in "+-.0123456789"
     if kind == "RANGE":
@@ -374,7 +382,7 @@ def _pictures(folder: Path) -> list[Path]:
 
 
 def _sidecar(folder: Path, poses: str | Path | None, pattern: str | None) -> Path | None:
-    """Return the file of poses that is named, or that lies beside the pictures."""
+    """Return the given sidecar file, or the one in the folder of screenshots."""
     if poses is not None and pattern is not None:
         raise UsageError("poses and pattern cannot be combined; use only one of them")
     if poses is not None:
@@ -403,7 +411,7 @@ def _by_sidecar(folder: Path, sidecar: Path, at: At, fov_deg: float) -> list[Rec
 
 
 def _named(folder: Path, name: str, sidecar: Path) -> Path:
-    """Return the picture that a line names: one in the folder or below it, and nowhere else."""
+    """Return the path of an image listed in a row, which must be inside the folder."""
     if not name:
         raise DamagedFileError(
             sidecar, "contains a row without an image file name (column image or file)"
@@ -436,7 +444,7 @@ Reader = Callable[[Path, PngFacts], dict[str, float] | None]
 
 
 def _reader(pictures: list[Path], pattern: str | None) -> tuple[Reader, str]:
-    """Return what reads the poses of pictures, and how it is called; the first picture decides."""
+    """Return the function that reads poses, chosen for the first image, and its description."""
     if pattern is not None:
         return _by_name(pattern), f"file name by {pattern}"
     first = pictures[0]
@@ -459,7 +467,7 @@ def _by_name(pattern: str) -> Reader:
 
 
 def _by_text(path: Path, facts: PngFacts) -> dict[str, float] | None:
-    """Return the pose that the texts of a PNG tell: five keywords, or pairs such as ``x=1.5``."""
+    """Return the pose in the texts of a PNG: five keywords, or pairs such as ``x=1.5``."""
     found: dict[str, float] = {}
     for keyword, text in facts.texts:
         own = f"{keyword}={text.strip()}" if keyword.lower() in POSE_FIELDS else text

@@ -80,7 +80,7 @@ class PhotoRooms:
         return max(1, round(self.test_share * self.rooms)) if self.test_share else 0
 
     def images_of(self, number: int) -> int:
-        """Return the number of images of a room. All rooms have the same number, up to one."""
+        """Return the number of images of a room, which differs by at most one between rooms."""
         return self.images // self.rooms + (number < self.images % self.rooms)
 
 
@@ -123,7 +123,7 @@ def voxelize_room(room: Room, voxel_m: float = DEFAULT_VOXEL_M) -> SceneVoxels:
 
 
 def _room(plan: PhotoRooms, number: int) -> Room:
-    """Return a room of any kind and shape, more or less tidy; where one kind fails, the next."""
+    """Generate a room of random kind, shape and clutter, trying the next kind if one fails."""
     seed = FIRST_SEED + ROOMS_PER_SEED * plan.seed + number
     clutter = float(np.random.default_rng([seed, 5]).uniform(0, MAX_CLUTTER))
     kinds = sorted(KINDS)

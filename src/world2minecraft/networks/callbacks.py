@@ -94,7 +94,7 @@ class TrainingCallback(lightning.Callback):
         self._report(state.sums)
 
     def _check_finite(self, module: OccupancyModule) -> None:
-        """End a run whose loss is no number: its weights are none any more, and never will be."""
+        """Stop a run whose loss is not finite, since its weights cannot recover."""
         if not math.isfinite(float(module.losses["loss"])):
             rate = learning_rate_at(self._config, self.state.step - 1)
             raise UsageError(

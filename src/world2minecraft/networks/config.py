@@ -279,7 +279,11 @@ def parse_config(text: str, source: str) -> RunConfig:
 
 
 def _value(source: str, name: str, value: Any) -> Any:
-    """Return a YAML value as the setting's type. Raises DamagedFileError."""
+    """Convert a YAML value to the type of a setting.
+
+    Raises:
+        DamagedFileError: If the value has another type.
+    """
     if name == "data":
         return tuple(
             _source(source, one) for one in (value if isinstance(value, list) else [value])

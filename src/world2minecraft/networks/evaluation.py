@@ -120,7 +120,7 @@ class Evaluation:
         return self._scored(file_predictions(saved, self.truth, keys, progress), grid.voxel_m)
 
     def _of_scenes(self, saved: SavedPredictions, progress: Progress) -> dict[str, Any] | None:
-        """Return the scores of grids of whole scenes; None where no file is a scene's."""
+        """Return the scores of saved scene grids, or None if there are no scene files."""
         if self.truth.format != "embodied":
             return None
         from world2minecraft.minecraftocc.importers.embodied import open_scenes  # noqa: PLC0415

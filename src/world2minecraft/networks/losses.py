@@ -164,7 +164,7 @@ def _block_sums(values: Tensor, factor: int) -> Tensor:
 
 
 def _mega_voxel_cells(labels: Tensor) -> Tensor:
-    """Return the eight cells of each whole mega-voxel, [B, M, 8]."""
+    """Return the eight cells of each complete mega-voxel, [B, M, 8]."""
     x, y, z = (int(side) // 2 * 2 for side in labels.shape[1:])
     blocks = labels[:, :x, :y, :z].reshape(-1, x // 2, 2, y // 2, 2, z // 2, 2)
     return blocks.permute(0, 1, 3, 5, 2, 4, 6).reshape(len(labels), -1, 8)
@@ -208,7 +208,10 @@ def geometric_affinity(logits: Tensor, labels: Tensor) -> Tensor:
 
 
 def _affinity(shares: Tensor, truth: Tensor) -> Tensor:
-    """Return [K] minus log precision, recall and specificity; what has nothing to count is 0."""
+    """Return the summed negative logs of precision, recall and specificity, [K].
+
+    Terms without any cells are 0.
+    """
     met = (shares * truth).sum(dim=1)
     absent = 1 - truth
     precision = _less_log(met, shares.sum(dim=1), truth.sum(dim=1))

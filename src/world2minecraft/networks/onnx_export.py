@@ -96,7 +96,7 @@ def quantize_weights(values: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndar
 
 
 def _axes_of_weights(graph: Any) -> dict[str, int]:
-    """Return the axis of output channels for each tensor that is weights, and nothing else."""
+    """Return the axis of output channels for each tensor that is used only as weights."""
     axes, elsewhere = {}, set()
     for node in graph.node:
         for place, name in enumerate(node.input):
@@ -210,7 +210,7 @@ def _logit_change(whole: np.ndarray, stored: np.ndarray) -> tuple[float, float, 
 
 
 class _Named(nn.Module):
-    """The network with the inputs and the output of the contract."""
+    """A wrapper that gives a network the inputs and the output of the ONNX format."""
 
     def __init__(self, network: nn.Module, facts: NetworkFacts):
         super().__init__()
@@ -223,7 +223,7 @@ class _Named(nn.Module):
         camera_to_grid: Tensor,
         depth_m: Tensor | None = None,
     ) -> Tensor:
-        """Return logits [1, 12, X, Y, Z]."""
+        """Return the class logits, [1, 12, X, Y, Z]."""
         facts = self.facts
         inputs = OccInput(
             image, intrinsics, camera_to_grid, facts.grid_shape, facts.voxel_m, depth_m
@@ -237,7 +237,7 @@ def _check_onnx() -> None:
 
 
 def _export_traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -> Any:
-    """Return the network as an ``onnx.ModelProto``."""
+    """Return the traced network as an ``onnx.ModelProto``."""
     import onnx  # noqa: PLC0415
 
     given = _by_name(example)
@@ -278,7 +278,7 @@ def _by_name(example: OccInput) -> dict[str, Tensor]:
 
 
 def _random_inputs(facts: NetworkFacts, rng: np.random.Generator) -> OccInput:
-    """Return a picture of noise by a camera in the middle of the grid's near side."""
+    """Return a random image with a camera at the centre of the near side of the grid."""
     width, height = facts.image_size_px
     lens = np.array([[0.81 * width, 0, width / 2], [0, 0.81 * width, height / 2], [0, 0, 1]])
     sides_m = np.array(facts.grid_shape) * facts.voxel_m

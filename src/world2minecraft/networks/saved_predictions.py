@@ -141,7 +141,7 @@ class SavedPredictions:
 
 
 def _reshape_scene(values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Return labels [X, Y, Z] or scores [C, X, Y, Z], where values are some form of these."""
+    """Reshape values to labels [X, Y, Z] or scores [C, X, Y, Z] if their shape allows it."""
     if values.ndim in (2, 3, 5) and values.shape[0] == 1 != shape[0]:
         values = values[0]  # A batch of one.
     cells = math.prod(shape)
@@ -188,7 +188,7 @@ def _sides(shape: tuple[int, ...]) -> str:
 
 
 def _order_of(labels: np.ndarray) -> str:
-    """Return the order in which the box is as low as it is: a side of 0.6 of the others is z."""
+    """Return the axis order in which the shortest side is z."""
     low = labels.shape.index(min(labels.shape))
     return "xzy" if low == 1 else "xyz"
 

@@ -122,7 +122,7 @@ def align_frames(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[Lattice 
 def _align_to_axes(
     frame: SceneFrame, voxel_m: float
 ) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], np.ndarray] | None:
-    """Return predictions, truth and mask along the room's axes, and their corner in the room."""
+    """Return the predictions, ground truth and mask along the room axes, and their corner."""
     turn_deg = np.degrees(np.arctan2(frame.grid_to_room[1, 0], frame.grid_to_room[0, 0]))
     quarters = round(turn_deg / 90)
     if abs(turn_deg - 90 * quarters) > TOLERANCE_DEG:

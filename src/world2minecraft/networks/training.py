@@ -212,7 +212,7 @@ def _fit(
 
 
 def _read_state(checkpoint: Path) -> RunState:
-    """Return where a run stands; at its beginning where there is no checkpoint."""
+    """Read the state of a run, or return the initial state without a checkpoint."""
     if not checkpoint.is_file():
         return RunState()
     facts = read_facts(checkpoint)
@@ -224,7 +224,7 @@ def _read_state(checkpoint: Path) -> RunState:
 
 
 def _finish_again(config: RunConfig, folder: Path, device: torch.device, state: RunState) -> None:
-    """Write what comes after the last checkpoint, of a run that was ended between the two."""
+    """Write the final files of a run that was interrupted after its last checkpoint."""
     network = build_network(config)
     load_checkpoint(folder / CHECKPOINT, network)
     write_weights(folder / LAST, network, config)
@@ -232,7 +232,7 @@ def _finish_again(config: RunConfig, folder: Path, device: torch.device, state: 
 
 
 class _CheckpointLoader(lightning.Callback):
-    """Puts a checkpoint into network and optimiser, once both are on their device."""
+    """A callback that loads a checkpoint once the network and the optimizer are on their device."""
 
     def __init__(self, folder: Path):
         self._path = folder / CHECKPOINT
@@ -355,7 +355,7 @@ def describe_hardware(device: torch.device) -> str:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep Lightning's advice on worker processes and devices off the screen."""
+    """Suppress Lightning's messages about worker processes and devices."""
     loud = [logging.getLogger(name) for name in ("lightning.pytorch", "lightning.fabric")]
     levels = [one.level for one in loud]
     for one in loud:

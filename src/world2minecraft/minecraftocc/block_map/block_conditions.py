@@ -155,7 +155,7 @@ def segment_pieces(
 
 
 def _merge_tall_neighbours(parts: np.ndarray, count: int, tall: int) -> tuple[np.ndarray, int]:
-    """Join tall things that touch and are of one height: the doors of a wardrobe of two woods."""
+    """Join tall adjacent pieces of the same height, such as the doors of a two-colour wardrobe."""
     low, high = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
     for number, box in enumerate(ndimage.find_objects(parts), 1):
         if box is not None:
@@ -263,7 +263,7 @@ def _at_wall(context: "Context") -> np.ndarray:
 
 
 def _under_ceiling(context: "Context") -> np.ndarray:
-    """Blocks that hang: a gapless column of blocks over them ends at a ceiling."""
+    """Return the blocks that hang from a ceiling in a column without gaps."""
     above = context.condition("ceiling") & context.building
     hangs, layers = np.zeros_like(above), above.shape[1]
     for layer in range(layers - 2, -1, -1):
@@ -273,7 +273,7 @@ def _under_ceiling(context: "Context") -> np.ndarray:
 
 
 def _same_kind_beside(context: "Context", rises: tuple[int, ...]) -> np.ndarray:
-    """Return where a block of the same kind lies beside, so much higher or lower."""
+    """Return whether a horizontal neighbour, at one of the given rises, is of the same kind."""
     kinds = context.kinds
     steps = [(x, rise, z) for x, z in SIDES for rise in rises]
     near = [shift(kinds, *step) == kinds for step in steps]
@@ -292,7 +292,7 @@ def _under_floor(context: "Context") -> np.ndarray:
 
 
 def _wall_line(context: "Context") -> np.ndarray:
-    """Return where a wall goes on: at the height of a ceiling or of the floor over it."""
+    """Return the blocks that continue a wall above or below."""
     reach = max(1, round(UNDER_M * context.scale))
     wall, outside = context.condition("wall"), context.condition("outside") & context.building
     result = np.zeros_like(wall)
@@ -401,7 +401,7 @@ class Context:
         return _in_span(self.pieces.measures[name], span)
 
     def _at_m(self, at: np.ndarray) -> np.ndarray:
-        """Return how high over their floor blocks stand, in metres."""
+        """Return the height of blocks above their floor in metres."""
         layer = np.unravel_index(at, self.kinds.shape)[1]
         return (layer - self.zones.ground.ravel()[at] - 1) / self.scale
 
@@ -419,7 +419,7 @@ class Context:
         return self._found[name]
 
     def _are(self, names: frozenset[str] | tuple[str, ...]) -> np.ndarray:
-        """Return which kinds are among names, bool [kinds]."""
+        """Return whether the name of each kind is in ``names``, bool [kinds]."""
         return np.array([name in names for name in self.names])
 
 

@@ -112,7 +112,7 @@ def parse_block_map(raw: Any) -> BlockMap:
 
 
 def _resolve_extends(keys: dict[str, Any]) -> dict[str, Any]:
-    """Return the keys of a map before those of the one it begins from."""
+    """Return the keys of a map, completed with those of the map that it extends."""
     if "extends" not in keys:
         return keys
     if keys["extends"] not in MAPS:
@@ -131,7 +131,7 @@ def _resolve_extends(keys: dict[str, Any]) -> dict[str, Any]:
 
 
 def _merge_words(own: list[Any], under: list[Any]) -> list[Any]:
-    """Return words before other words; those of the same namespaces become one table."""
+    """Merge word tables, with precedence for ``own``, and combine tables of the same namespaces."""
     result = list(own)
     for other in under:
         same = next(
@@ -168,16 +168,16 @@ def _check_kinds(kinds: Iterable[str], rules: Iterable[str]) -> None:
     for kind in rules:
         if kind in CLASS_NAMES:
             raise ValueError(
-                f"rules contains {kind}, which is the name of a class; rename the kind"
+                f"rules has an entry for {kind}, which is the name of a class; rename the kind"
             )
         if kind not in kinds:
             raise ValueError(
-                f"rules contains the unknown kind {kind}; known kinds: {', '.join(kinds)}"
+                f"rules has an entry for the unknown kind {kind}; known kinds: {', '.join(kinds)}"
             )
 
 
 def _rules(kind: str, table: dict[str, Any], kinds: Iterable[str]) -> tuple[Rule, ...]:
-    """Return the rules of a kind; a kind's name alone stands for its rules."""
+    """Return the rules of a kind, with names of other kinds replaced by their rules."""
     rules: list[Rule] = []
     visited, left = {kind}, [*_list(f"rules of {kind}", table[kind])]
     while left:

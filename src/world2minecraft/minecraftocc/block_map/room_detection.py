@@ -67,7 +67,7 @@ def next_above(filled: np.ndarray) -> np.ndarray:
 
 
 def _standable(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool) -> np.ndarray:
-    """Return the blocks that a person can stand on, under a roof where builds have one."""
+    """Return the blocks on which a person can stand, indoors if the build has a roof."""
     head = max(2, int(np.ceil(HEADROOM_M * scale - 1e-6)))
     layers = np.arange(building.shape[1], dtype=np.int32)[None, :, None]
     room = over.astype(np.int32) - layers - 1
@@ -76,12 +76,12 @@ def _standable(building: np.ndarray, over: np.ndarray, scale: float, roofed: boo
 
 
 def _is_roofed(building: np.ndarray, over: np.ndarray, scale: float) -> bool:
-    """Whether the build is closed above; one that is open is looked into from there."""
+    """Return whether the build has a roof, instead of being open at the top."""
     return int(_standable(building, over, scale, True).sum()) >= FLOOR_M2 * scale**2
 
 
 def _enclosed(building: np.ndarray, scale: float) -> np.ndarray:
-    """Return the blocks that see something on all four sides, one metre over them."""
+    """Return the blocks that are enclosed on all four sides one metre above them."""
     up = max(1, round(scale))
     result = np.ones(building.shape, bool)
     for axis in (0, 2):
@@ -94,7 +94,7 @@ def _enclosed(building: np.ndarray, scale: float) -> np.ndarray:
 
 
 def _floors(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool):
-    """Yield the layers that are floors, from below, with the columns one can stand on there."""
+    """Yield the floor layers from bottom to top, with the columns in which a person can stand."""
     stands = _standable(building, over, scale, roofed)
     min_size = max(2, FLOOR_M2 * scale**2)
     below: list[tuple[int, np.ndarray]] = []
@@ -113,7 +113,7 @@ def _floors(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool):
 def _is_furniture(
     part: np.ndarray, level: int, below: list[tuple[int, np.ndarray]], scale: float
 ) -> bool:
-    """Whether a flat top stands beside a larger floor: a bed, a counter, a landing."""
+    """Return whether a flat surface belongs to furniture or a landing beside a larger floor."""
     if part.sum() > FURNITURE_M2 * scale**2:
         return False
     rim = ndimage.binary_dilation(part, iterations=max(1, round(scale / 2)))
@@ -133,7 +133,7 @@ def _add_storey(
     scale: float,
     roofed: bool,
 ) -> None:
-    """Set the zones of the rooms over one floor."""
+    """Set the zones of the rooms above a floor."""
     tops = _ceilings(patch, over[:, level], level, scale, building.shape[1])
     walls, hung = _walls(building, level, tops)
     ground_layer = building[:, level] & ~walls
@@ -154,7 +154,7 @@ def _add_storey(
 def _ceilings(
     patch: np.ndarray, over: np.ndarray, level: int, scale: float, max_layer: int
 ) -> np.ndarray:
-    """Return the layer of the ceiling over each column, from the nearest stretch of one, int."""
+    """Return the ceiling layer of each column, taken from the nearest flat ceiling part, int."""
     plateaus = np.zeros(patch.shape, bool)
     min_size = max(3, PLATEAU_M2 * scale**2)
     for layer in np.unique(over[patch]).tolist():
@@ -170,7 +170,7 @@ def _ceilings(
 
 
 def _walls(building: np.ndarray, level: int, tops: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the columns of walls, and those of lintels between two walls, bool [X, Z]."""
+    """Return the columns of walls, and those of lintels between two walls, bool [X, Z] each."""
     layers = np.arange(building.shape[1])[None, :, None]
     between = (layers > level) & (layers < tops[:, None, :])
     share = (building & between).sum(1) / np.maximum(between.sum(1), 1)
@@ -182,7 +182,7 @@ def _walls(building: np.ndarray, level: int, tops: np.ndarray) -> tuple[np.ndarr
 
 
 def _between(hung: np.ndarray, walls: np.ndarray, axis: int) -> np.ndarray:
-    """Whether a run of hanging columns along an axis ends at walls on both sides."""
+    """Return whether each run of hanging columns along an axis ends at walls on both sides."""
     result = np.ones(hung.shape, bool)
     for flip in (slice(None), slice(None, None, -1)):
         h, w = (np.swapaxes(one, 0, axis)[flip] for one in (hung, walls))
@@ -194,7 +194,7 @@ def _between(hung: np.ndarray, walls: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _lowest_hanging(building: np.ndarray, tops: np.ndarray) -> np.ndarray:
-    """Return the lowest layer of what hangs without a gap under a ceiling, int [X, 1, Z]."""
+    """Return the lowest layer that hangs from the ceiling without gaps, int [X, 1, Z]."""
     layers = np.arange(building.shape[1])[None, :, None]
     gaps = np.where(~building & (layers < tops[:, None, :]), layers, -1)
     return gaps.max(1, keepdims=True) + 1
@@ -203,7 +203,7 @@ def _lowest_hanging(building: np.ndarray, tops: np.ndarray) -> np.ndarray:
 def _region(
     patch: np.ndarray, mask: np.ndarray, building: np.ndarray, level: int, scale: float
 ) -> np.ndarray:
-    """Return the columns of rooms: those one can stand on, and those under furniture there."""
+    """Return the columns of rooms: the walkable ones, and those below furniture."""
     head = level + max(2, int(np.ceil(HEADROOM_M * scale - 1e-6)))
     roof = building[:, head : level + 2 + round(ROOF_M * scale)].any(1)
     return np.asarray(ndimage.binary_propagation(patch & mask & roof, mask=mask & roof)) | patch

@@ -96,7 +96,7 @@ def allocate_views(scenes: Iterable[SceneSpec], look: CountViews) -> list[SceneS
 def _further_requests(
     requested: dict[str, SceneSpec], found: dict[str, int], split: str, wanted: int
 ) -> list[SceneSpec]:
-    """Return the scenes of a split that may have more, with what to ask them for next."""
+    """Return the scenes of a split that may have more views, with their next requested numbers."""
     mine = [scene for scene in requested.values() if scene.split == split]
     short = wanted - sum(found[scene.scene_id] for scene in mine)
     rich = [scene for scene in mine if found[scene.scene_id] >= scene.images]
@@ -230,7 +230,7 @@ def remove_leftovers(folder: Path) -> None:
 
 
 def _finished_report(folder: Path) -> BuildReport | None:
-    """Return the report of a data set of which all files are there; what they hold is not read."""
+    """Return the report of a complete data set, or None. The contents of files are not checked."""
     meta = read_meta(folder, finished=False)
     shards = meta.get("shards") if meta.get("complete") else None
     if not shards or not all((folder / name).is_file() for name in (*shards, INDEX, CLASSES)):
@@ -241,7 +241,7 @@ def _finished_report(folder: Path) -> BuildReport | None:
 
 @dataclass(eq=False)
 class _Build:
-    """A build at work."""
+    """A build in progress."""
 
     folder: Path
     plan: DatasetPlan
@@ -251,7 +251,7 @@ class _Build:
     notes: list[str] = field(default_factory=list)
 
     def run(self) -> BuildReport:
-        """Look at the scenes, make the shards, write the index."""
+        """Survey the scenes, render the shards and write the index."""
         facts: dict[str, SceneFacts] = {}
         if needs_warm_up():
             first = SceneTask(str(self.folder), self.plan.scenes[0], self.plan.recipe)
@@ -289,7 +289,7 @@ class _Build:
         )
 
     def _look(self, facts: dict[str, SceneFacts], scenes: list[SceneSpec]) -> list[int]:
-        """Look at scenes; return how many views each has."""
+        """Survey scenes and return the number of views found in each of them."""
         tasks = [SceneTask(str(self.folder), scene, self.plan.recipe) for scene in scenes]
         found = [0] * len(tasks)
         for number, (fact, seconds) in self.engine.run(
@@ -301,10 +301,10 @@ class _Build:
         return found
 
     def _settled(self, scenes: list[SceneSpec]) -> tuple[SceneSpec, ...]:
-        """Check that there are as many views as requested; leave scenes without any out.
+        """Remove scenes without views, and check that there are enough views.
 
         Raises:
-            UsageError: a preset's numbers cannot be kept.
+            UsageError: If there are too few views for a preset, or none.
         """
         for split, wanted in self.plan.images.items():
             found = sum(scene.images for scene in scenes if scene.split == split)
@@ -321,7 +321,7 @@ class _Build:
         return tuple(scene for scene in scenes if scene.images)
 
     def _ticker(self, stage: str, total: int) -> Callable[[int], None]:
-        """Return what counts images as they are done, and tells of their rate."""
+        """Return a function that counts finished images and reports progress and speed."""
         done, began, first = 0, time.monotonic(), 0
         self.progress(stage, 0, total)
 
@@ -343,7 +343,11 @@ class _Build:
 
 
 def _refuse_duplicate_worlds(scenes: Sequence[SceneSpec], facts: Mapping[str, SceneFacts]) -> None:
-    """Raise UsageError where a world, under two names, is both trained and tested on."""
+    """Check that no world is used for both training and testing under two names.
+
+    Raises:
+        UsageError: If a world is used in both splits.
+    """
     first: dict[str, SceneSpec] = {}
     for scene in scenes:
         twin = first.setdefault(facts[scene.scene_id].digest, scene)
@@ -355,7 +359,7 @@ def _refuse_duplicate_worlds(scenes: Sequence[SceneSpec], facts: Mapping[str, Sc
 
 
 def _differences(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
-    """Name what two plans differ in."""
+    """Return the names of the settings in which two plans differ."""
     old, new = before.get("recipe", {}), now["recipe"]
     wrong = [key for key in new if old.get(key) != _as_json(new[key])]
     if before.get("scenes") != _as_json(now["scenes"]):
@@ -364,7 +368,7 @@ def _differences(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
 
 
 def _as_json(value: Any) -> Any:
-    """Return a value as it comes back from JSON."""
+    """Return a value as it would be read back from JSON."""
     return json.loads(json.dumps(value))
 
 

@@ -77,7 +77,7 @@ def load_screenshot(path: Path, camera: Camera) -> np.ndarray:
 
 
 def _with_unique_names(views: list[PlannedView]) -> list[PlannedView]:
-    """Give tours names that keys may hold, and number frames again where two are the same."""
+    """Make tour names valid in sample keys, and renumber frames if names are not unique."""
     plain = [
         replace(
             view, tour_id=re.sub(r"[^A-Za-z0-9_]+", "_", view.tour_id)[:MAX_TOUR_NAME] or "t000"

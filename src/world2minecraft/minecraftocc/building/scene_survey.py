@@ -204,7 +204,7 @@ def _make_survey(
 
 
 def _generate_house(target: Path, seed: int, number: int) -> None:
-    """Write a generated house, whole or not at all."""
+    """Generate a house and write it atomically."""
     if target.exists():
         return
     part = target.with_name(f".{target.name}.part")
@@ -214,7 +214,7 @@ def _generate_house(target: Path, seed: int, number: int) -> None:
 
 
 def _scene_hour(path: Path) -> float:
-    """Return the hour that a scene says it is lit at; noon where it says none."""
+    """Return the time of day stated by a scene, or noon by default."""
     for place in (path, path / "build", path.parent):
         if (place / "scene.json").is_file():
             scene = read_json(place / "scene.json")

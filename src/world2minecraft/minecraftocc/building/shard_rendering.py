@@ -113,7 +113,7 @@ class SampleRenderer:
         }
 
     def _as_printed(self, view: PlannedView) -> dict[str, Any]:
-        """Return K and E as the paper prints them; they do not meet the image."""
+        """Return K and E as printed in the paper, which do not match the image."""
         record = camera_record(
             view.camera, view.camera_to_room, self.block_to_room, paper_compat=True
         )

@@ -60,7 +60,7 @@ class ErrorMessage:
 
 
 class _ParentGone(BaseException):
-    """The one who gave the order is gone."""
+    """Raised in a worker whose parent process has exited."""
 
 
 def run_worker(pipe: Connection) -> None:
@@ -98,7 +98,7 @@ def limit_threads() -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process with its parent, in the middle of whatever it does."""
+    """Wait for the parent process to exit, then exit immediately."""
     parent = parent_process()
     if parent is not None:
         parent.join()
@@ -114,7 +114,7 @@ def _execute(order: WorkItem, tick: Callable[[int], None]) -> ResultMessage | Er
 
 @dataclass(eq=False)
 class _Worker:
-    """A worker process, its pipe and its item."""
+    """A worker process with its pipe and its current item."""
 
     process: BaseProcess
     pipe: Connection
@@ -191,7 +191,7 @@ class PoolEngine:
                 worker.number = number
 
     def _receive(self, worker: _Worker) -> ProgressMessage | ResultMessage | ErrorMessage | None:
-        """Return a worker's message; None where it has died."""
+        """Return the next message of a worker, or None if it has died."""
         try:
             return worker.pipe.recv()
         except (EOFError, OSError):
@@ -216,7 +216,7 @@ class PoolEngine:
 
 
 def _start_worker() -> _Worker:
-    """Start a worker: a new interpreter on every system, so that all behave alike."""
+    """Start a worker with a new interpreter, so that all systems behave alike."""
     # Late: a worker reads this file too, and begins faster without the renderer.
     from world2minecraft.rendering.batch.workers import ignore_interrupts  # noqa: PLC0415
 

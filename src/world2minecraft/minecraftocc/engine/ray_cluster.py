@@ -92,7 +92,7 @@ class RayEngine:
 
 
 def _call_task(task: Callable[[Any, Callable[[int], None]], Any], item: Any) -> tuple[Any, int]:
-    """Call a task; return its result, and how many images it told of."""
+    """Call a task and return its result and the number of images that it reported."""
     limit_threads()
     ticks: list[int] = []
     return task(item, ticks.append), sum(ticks)

@@ -85,7 +85,7 @@ class EmbodiedExporter:
         return lines
 
     def _write_scene(self, scene: str, rows: list[NamedSample]) -> None:
-        """Write the masks of a scene's frames, then its package: that says it is finished."""
+        """Write the masks of a scene's frames, then its package, which marks it as finished."""
         frames = [self._stored(row) for row in rows]
         grid = SceneGrid.around([frame.origin_m for frame in frames], DEFAULT_VOXEL_M)
         if any(side > most for side, most in zip(grid.shape, OFFICIAL_CELLS, strict=True)):
@@ -104,7 +104,7 @@ class EmbodiedExporter:
         write_bytes(self._package_path(scene), self._package(grid, labels, seen, rows))
 
     def _sweep_masks(self, scene: str, rows: list[NamedSample]) -> None:
-        """Take away the masks of frames that are no longer taken: they are of another grid."""
+        """Delete masks of frames that are no longer used, because they refer to another grid."""
         taken = {self._mask_path(row) for row in rows}
         for path in self._mask_path(rows[0]).parent.glob(f"{scene}_*_new.pkl"):
             if path not in taken:
@@ -152,7 +152,7 @@ def _split_of(rows: list[NamedSample]) -> str:
 
 
 def _evenly(rows: list[NamedSample], count: int) -> list[NamedSample]:
-    """Return ``count`` frames from the first to the last, or all where they are fewer."""
+    """Return ``count`` evenly spaced rows, or all rows if there are fewer."""
     if not count or len(rows) <= count:
         return rows
     chosen = np.linspace(0, len(rows) - 1, count).round().astype(int)

@@ -109,7 +109,7 @@ def export_samples(
 def _entries(
     samples: Iterable[OccSample] | KeyedSamples, split: str | None
 ) -> tuple[Iterator[tuple[str, Callable[[], OccSample]]], int]:
-    """Return keys with how to read their samples, and how many there are (0 = not known)."""
+    """Return the keys with functions that read their samples, and their number (0 if unknown)."""
     if isinstance(samples, KeyedSamples):
         keys = list(samples.keys(split))
         store = samples
@@ -120,7 +120,7 @@ def _entries(
 
 
 def _exporter(format: str, root: Path, rule: ExportRule) -> Exporter:
-    """Return the exporter of a format; only its own module is imported."""
+    """Create the exporter for a format, importing only its module."""
     if format == "nyu":
         from world2minecraft.minecraftocc.exporters.nyu import NyuExporter  # noqa: PLC0415
 
@@ -145,13 +145,13 @@ def _exporter(format: str, root: Path, rule: ExportRule) -> Exporter:
 
 
 def _claim(root: Path, choices: dict[str, Any], sha256: str) -> None:
-    """Write down what was chosen, or check that it is what was chosen before.
+    """Record the options of an export, or check that they match those of the existing export.
 
     Args:
-        root: the folder.
-        choices: the format and its rule.
-        sha256: the sum of the data set, "" where it has none: samples of another set may have the
-            same keys, and would be passed over as finished.
+        root: Output folder.
+        choices: Format and options.
+        sha256: SHA-256 of the data set, or an empty string if unknown. Samples of another data set
+            may have the same keys and would be skipped as finished.
     """
     record = root / RECORD
     whole = {**choices, SOURCE: sha256} if sha256 else choices

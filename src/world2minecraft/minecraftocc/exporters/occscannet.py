@@ -114,7 +114,7 @@ class OccScanNetExporter:
         return [f"{count} {words}" for words, count in texts.items() if count]
 
     def _box(self, sample: OccSample) -> LabelledBox:
-        """Return the box along the room's axes, so that all frames of a scene share one world."""
+        """Return the box along the room axes, so that all frames of a scene share one world."""
         box = room_box(sample)
         if box is None:
             if self._only_room:

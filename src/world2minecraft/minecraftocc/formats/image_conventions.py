@@ -156,7 +156,7 @@ class Resampler:
 def _span(
     source_focal: float, source_centre: float, focal: float, centre: float, side_px: int
 ) -> tuple[float, float]:
-    """Return where the target's pixels begin in the source's, and how far they reach."""
+    """Return the start and the length of the target image in source pixels."""
     scale = source_focal / focal
     return source_centre - centre * scale, side_px * scale
 

@@ -327,7 +327,11 @@ class PickleMachine:
 
 
 def _reduce(name: str, arguments: tuple[Any, ...]) -> Any:
-    """Return what a call stands for, or refuse the arguments."""
+    """Return the value that a call describes.
+
+    Raises:
+        PickleRefused: If the arguments are not supported.
+    """
     match name, arguments:
         case "reconstruct", (GlobalName(name="ndarray"), (0,), _):
             return ArrayValue()
@@ -396,7 +400,7 @@ def _encode_int(value: int) -> bytes:
 
 
 def _encode_array(values: np.ndarray) -> bytes:
-    """An array is made empty, then given its shape, its dtype and its bytes in C order."""
+    """Encode an array: create it empty, then set its shape, its dtype and its bytes in C order."""
     if values.dtype.kind not in KINDS:
         raise TypeError(f"cannot pickle an array of {values.dtype} for the published loaders")
     little = values.astype(values.dtype.newbyteorder("<"), order="C", copy=False)
@@ -464,7 +468,7 @@ def _key(key: Any) -> str:
 
 
 def _plain(value: Any, depth: int = 0) -> Any:
-    """Return a value of ours as one of Python's or numpy's; lists lie at most three deep."""
+    """Convert an internal value to a Python or numpy value, with at most three levels of lists."""
     if isinstance(value, ArrayValue) and value.values is not None:
         return value.values
     if value is None or isinstance(value, (bool, int, float, str, bytes, np.ndarray, np.generic)):

@@ -76,7 +76,7 @@ def read_bin(path: str | Path) -> SscnetFrame:
 
 
 def _expand_runs(pairs: np.ndarray) -> np.ndarray:
-    """Return the codes, uint8 [8294400], of runs whose sum is checked first."""
+    """Expand runs to codes, uint8 [8294400], after checking their total length."""
     voxels, total = int(np.prod(FINE_SHAPE)), int(pairs[:, 1].sum(dtype=np.uint64))
     if total != voxels:
         raise ValueError(f"contains {total:,} voxels, expected {voxels:,}")

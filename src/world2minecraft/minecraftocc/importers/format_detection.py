@@ -24,7 +24,7 @@ def _is_store(path: Path) -> bool:
 
 
 def _open_store(path: Path) -> ImportedSet:
-    """Open a data set of ours; only then what reads it is loaded."""
+    """Open a data set in our own format, importing its reader only when needed."""
     from world2minecraft.minecraftocc.store import open_store  # noqa: PLC0415
 
     store = open_store(path)

@@ -219,7 +219,7 @@ def _checked_origin(found: ImportedFrame) -> np.ndarray:
 
 
 def _orthonormal_pose(found: ImportedFrame) -> np.ndarray:
-    """Return the pose with its rotation exactly orthonormal."""
+    """Return the camera pose with an exactly orthonormal rotation."""
     pose = checked_numbers(found.camera_to_world, (4, 4), "camera pose", found.name)
     left, _, right = np.linalg.svd(pose[:3, :3])
     turn = left @ right
@@ -258,7 +258,7 @@ def _labels_with_masks(
 
 
 def _hits(found: ImportedFrame, region: LabelRegion, camera_to_region: np.ndarray) -> np.ndarray:
-    """Count the pixels whose point, a little behind its depth, lies in each occupied cell."""
+    """Count the pixels whose point, moved slightly behind its depth, is in each occupied cell."""
     if found.depth_m is None:
         return np.zeros(region.shape, np.uint32)
     behind = np.where(found.depth_m > 0, found.depth_m + np.float32(INTO_CELL * region.voxel_m), 0)

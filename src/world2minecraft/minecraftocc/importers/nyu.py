@@ -34,7 +34,7 @@ SAME_SHAPE = 0.01  # So far a picture's sides may be from 4:3 and still be one m
 
 @dataclass(frozen=True)
 class _Place:
-    """Where one frame's files are."""
+    """The location of a frame's files."""
 
     name: str
     folder: Path  # of its pictures and its .bin
@@ -75,7 +75,7 @@ def open_nyu(path: Path, labels: Path | None = None) -> ImportedSet:
 
 
 def _split_of(folder: Path) -> str:
-    """Return the split in a folder's name: SSCNet's are NYUCADtest, SUNCGtrain_1 and such."""
+    """Return the split in a folder name, such as NYUCADtest or SUNCGtrain_1 of SSCNet."""
     if folder.name in FOLDERS:
         return FOLDERS[folder.name]
     return next((split for split in ("train", "test") if split in folder.name.lower()), "")
@@ -89,7 +89,7 @@ def _folders(path: Path) -> list[Path]:
 
 
 def _names(folder: Path, path: Path, labels: Path | None) -> list[str]:
-    """Return the frames of a folder, which the loaders list by their ``.bin``."""
+    """Return the frame names of a folder, given by its ``.bin`` files or else by pickles."""
     names = {file.stem for file in folder.glob("*.bin")}
     if not names:
         for base in _bases(folder, path, labels):
@@ -98,7 +98,7 @@ def _names(folder: Path, path: Path, labels: Path | None) -> list[str]:
 
 
 def _bases(folder: Path, path: Path, labels: Path | None) -> list[Path]:
-    """Return where pickles of a folder may lie, the likeliest first."""
+    """Return the possible folders of pickles, the most likely first."""
     roots = [labels / "base", labels] if labels is not None else []
     roots += [folder.parent / "base", path / "base", folder.parent / "preprocess" / "base"]
     return [root / folder.name for root in roots if (root / folder.name).is_dir()]
@@ -134,7 +134,7 @@ def _read(key: str, place: _Place) -> OccSample:
 
 
 def _labels(place: _Place) -> tuple[np.ndarray, np.ndarray, np.ndarray, Path]:
-    """Return the stored 8 cm labels, the origin, the pose, and the file that held them."""
+    """Return the 8 cm labels, the origin, the camera pose and the file with the labels."""
     if place.labels is None:
         path = place.folder / f"{place.name}.bin"
         frame = read_bin(path)

@@ -63,7 +63,7 @@ def open_occscannet(path: Path) -> ImportedSet:
 
 
 def _listed(path: Path, split: str) -> set[str]:
-    """Return the frames that any list of a split names."""
+    """Return the frames that are contained in any list file of a split."""
     found: set[str] = set()
     for name in LISTS[split]:
         file = path / name
@@ -121,7 +121,7 @@ def read_frame(root: Path, name: str, labels: Any = None) -> ImportedFrame:
 
 
 def _camera(stored: Any, colour: np.ndarray | None, path: Path) -> Camera:
-    """Return the 640x480 camera; the stored matrix is that of the picture as it lies there."""
+    """Return the 640x480 camera. The stored matrix refers to the original image size."""
     numbers = np.asarray(stored)
     matrix = checked_numbers(numbers[:3, :3] if numbers.ndim == 2 else [], (3, 3), "matrix", path)
     height, width = (HEIGHT_PX, WIDTH_PX) if colour is None else colour.shape[:2]

@@ -95,20 +95,20 @@ def fill_slab(tables, boxes, standing, lattice, slab, scratch):
 
 @inlined
 def _overlaps(low, high, cell, lattice):
-    """Return whether a span meets a cell that is shrunk on both sides."""
+    """Return whether an interval overlaps a cell that is shrunk on both sides."""
     step, slack = lattice.step, lattice.slack
     return high > cell * step + slack and low < (cell + 1) * step - slack
 
 
 @inlined
 def _overlap_length(low, high, cell, step):
-    """Return the length that a span has in a cell."""
+    """Return the length of an interval inside a cell."""
     return max(min(high, (cell + 1) * step) - max(low, cell * step), 0.0)
 
 
 @njit
 def _add_aligned_box(low, high, at, base, lattice, scratch):
-    """Add an aligned box, relative to ``at``, to a block's cells."""
+    """Add the volume of an axis-aligned box, relative to ``at``, to the cells of a block."""
     step = lattice.step
     x0, x1 = at[0] + low[0], at[0] + high[0]
     y0, y1 = at[1] + low[1], at[1] + high[1]
@@ -129,7 +129,7 @@ def _add_aligned_box(low, high, at, base, lattice, scratch):
 
 @njit
 def _add_box(boxes, n, at, base, lattice, scratch):
-    """Add an element's box to a block's cells."""
+    """Add the volume of an element's box to the cells of a block."""
     if boxes.straight[n]:
         _add_aligned_box(boxes.low[n], boxes.high[n], at, base, lattice, scratch)
         return
@@ -146,7 +146,7 @@ def _add_box(boxes, n, at, base, lattice, scratch):
 
 @njit
 def _claim_block_cells(base, who, step, slab, scratch):
-    """Let a block have the cells that it fills more than others so far, and empty ``scratch``."""
+    """Assign cells to a block where it fills more than earlier owners, and clear ``scratch``."""
     size = scratch.shape[0]
     for a in range(size):
         for b in range(size):
@@ -175,7 +175,7 @@ def _claim_cell(i, j, k, who, filled, step, slab):
 
 @njit
 def _fill_standing(boxes, n, who, lattice, slab):
-    """Let an element that stands anywhere have the cells that it fills most of so far."""
+    """Assign cells to a display entity where it fills more than earlier owners."""
     start, step = lattice.start, lattice.step
     near, past = np.zeros(3, np.int64), np.zeros(3, np.int64)
     for axis in range(3):
@@ -241,14 +241,14 @@ def rotated_box_volume(centre, half, x, y, z, lattice):
 
 @inlined
 def _face_normal(half, edge):
-    """Return the normal of the two sides that an edge of a box leads to; it may lean."""
+    """Return the normal of the two faces that an edge vector of a box leads to, not normalized."""
     p, q = half[(edge + 1) % 3], half[(edge + 2) % 3]
     return p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]
 
 
 @inlined
 def _separating_axis(half, number):
-    """Return one of the 15 axes that may part a cell and a box."""
+    """Return one of the 15 possible separating axes of a cell and a box."""
     if number < 3:
         x, y = 1.0 if number == 0 else 0.0, 1.0 if number == 1 else 0.0
         return x, y, 1.0 - x - y

@@ -64,7 +64,7 @@ def floor_under(voxels: SceneVoxels, camera_to_room: np.ndarray, around_m: float
 
 
 def _floor_counts(voxels: SceneVoxels, at: np.ndarray, away: int, layers: int) -> np.ndarray:
-    """Return how many cells of the lowest ``layers`` are floor, of the columns around a place."""
+    """Return the number of floor cells per layer below ``layers`` in nearby columns."""
     low, high = np.maximum(at - away, 0), np.maximum(at + away + 1, 0)
     part = voxels.labels[low[0] : high[0], low[1] : high[1], :layers]
     return np.count_nonzero(part == SemanticClass.FLOOR, axis=(0, 1))

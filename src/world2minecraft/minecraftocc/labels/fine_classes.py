@@ -93,7 +93,7 @@ def _checked(
 
 
 def _pairs_there(volume: BlockVolume, codes: np.ndarray | None, count: int) -> np.ndarray:
-    """Return the pairs, int64 [K, 2], of palette entry and design that some cell has."""
+    """Return the pairs of palette entry and design that occur in the volume, int64 [K, 2]."""
     states = volume.states.reshape(-1)
     if codes is None:
         rows = np.flatnonzero(np.bincount(states, minlength=1))

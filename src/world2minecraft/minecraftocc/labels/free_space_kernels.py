@@ -81,7 +81,7 @@ def mark_free(labels, cells_to_camera, image, tiles, ends, free):
 
 @inlined
 def _projected_bounds(intrinsics, sizes, x, y, z):
-    """Return left, right, top and bottom, in pixels, of a box around a cell before the camera."""
+    """Return pixel bounds (left, right, top, bottom) of a cell in front of the camera."""
     off = 1.0 / (z * (z - sizes[2]))
     wide = intrinsics[0] * (sizes[0] * z + abs(x) * sizes[2]) * off
     high = intrinsics[1] * (sizes[1] * z + abs(y) * sizes[2]) * off
@@ -100,7 +100,7 @@ def _transform(matrix, x, y, z):
 
 @inlined
 def _outside_frustum(cells_to_camera, intrinsics, width, height, x, y, z):
-    """Return whether a cell lies wholly beyond one side of what the camera sees."""
+    """Return whether a cell is completely outside one side of the camera frustum."""
     low_u, high_u, low_v, high_v = 0.0, 0.0, 0.0, 0.0
     for axis in range(3):
         ex, ey, ez = (
@@ -137,9 +137,9 @@ def ray_crosses_cell(image, u, v, i, j, k):
 
 @inlined
 def _pixels(shape, box):
-    """Return the first and last column and row of the pixels whose middles lie in a box.
+    """Return the first and last column and row of the pixels whose centres are in a box.
 
-    Rounding must not lose a pixel, nor may a number be too large to be whole.
+    Margins avoid losing pixels by rounding, and limits avoid integer overflow.
     """
     left, right = min(max(box[0] - 1e-6, 0.0), 1e6), max(min(box[1] + 1e-6, 1e6), -1.0)
     top, bottom = min(max(box[2] - 1e-6, 0.0), 1e6), max(min(box[3] + 1e-6, 1e6), -1.0)
@@ -151,7 +151,7 @@ def _pixels(shape, box):
 
 @lean
 def _any_tile_deeper(tiles, shape, box, nearest):
-    """Return whether a tile that a box covers has a ray that ends beyond ``nearest``."""
+    """Return whether a tile that a box covers contains a depth beyond ``nearest``."""
     u0, u1, v0, v1 = _pixels(shape, box)
     if u1 < u0 or v1 < v0:
         return False
@@ -164,10 +164,10 @@ def _any_tile_deeper(tiles, shape, box, nearest):
 
 @lean
 def _any_ray_crosses(image, tiles, box, i, j, k, nearest):
-    """Return whether some pixel's ray crosses a cell; nothing of it is nearer than ``nearest``.
+    """Return whether the ray of any pixel crosses a cell whose minimum depth is ``nearest``.
 
-    Only pixels count that ``box`` (left, right, top, bottom) surrounds, and of those no tile whose
-    rays all end before the cell.
+    Only pixels inside ``box`` (left, right, top, bottom) are tested, except for tiles whose rays
+    all end before the cell.
     """
     depth = image.depth
     u0, u1, v0, v1 = _pixels(depth.shape, box)
@@ -188,10 +188,9 @@ def _any_ray_crosses(image, tiles, box, i, j, k, nearest):
 
 @lean
 def _corner_bounds(cells_to_camera, intrinsics, ends, i, j, k):
-    """Return left, right, top and bottom, in pixels, of what of a cell is before the camera.
+    """Return pixel bounds (left, right, top, bottom) of the part of a cell in front of the camera.
 
-    What is nearer than ``CROSSED_M`` is cut off: a ray that is in the cell there alone is not long
-    enough in it.
+    The part closer than ``CROSSED_M`` is cut off, because rays are too short there to count.
     """
     box = (np.inf, -np.inf, np.inf, -np.inf)
     for corner in range(8):

@@ -144,7 +144,7 @@ def unknown_cells(occ: OccLabels) -> np.ndarray:
 
 
 class _ImageView:
-    """An image's camera and its region, in the numbers that the kernels read."""
+    """The camera and the region of an image, in the form that the kernels use."""
 
     def __init__(
         self,
@@ -170,7 +170,7 @@ class _ImageView:
         self.cells_to_camera = np.ascontiguousarray(cells_to_camera)
 
     def hits(self, cells_wanted: bool) -> tuple[np.ndarray, np.ndarray]:
-        """Return the hits of each cell, and the cell of each pixel where that is wanted."""
+        """Return the hits of each cell and, if requested, the cell of each pixel."""
         box = (
             self.region if is_on_cells(self.region, self.voxels) else _box(self.region, self.voxels)
         )
@@ -211,7 +211,7 @@ def is_on_cells(region: LabelRegion, voxels: SceneVoxels) -> bool:
 
 
 def _to_cells_of(origin_m: np.ndarray, voxel_m: float, region: LabelRegion) -> np.ndarray:
-    """Return float64 [3, 4]: a region's cells to those of an upright grid of the room."""
+    """Return the matrix from region cells to the cells of an upright room grid, float64 [3, 4]."""
     to_cells = region.region_to_room[:3].copy()
     to_cells[:, :3] *= region.voxel_m
     to_cells[:, 3] -= origin_m
@@ -219,14 +219,14 @@ def _to_cells_of(origin_m: np.ndarray, voxel_m: float, region: LabelRegion) -> n
 
 
 def _camera_to_cells(region: LabelRegion, camera_to_room: np.ndarray) -> np.ndarray:
-    """Return float64 [3, 4]: a camera, in cells of a region."""
+    """Return the matrix from camera coordinates to region cells, float64 [3, 4]."""
     cells_to_room = region.region_to_room.copy()
     cells_to_room[:3, :3] *= region.voxel_m
     return np.ascontiguousarray((invert(cells_to_room) @ camera_to_room)[:3])
 
 
 def _box(region: LabelRegion, voxels: SceneVoxels) -> LabelRegion:
-    """Return the box of the scene's own cells around a region that is none of them."""
+    """Return the box of scene cells that encloses a region which is not aligned with them."""
     ends = np.stack(np.meshgrid(*([0, side] for side in region.shape)), -1).reshape(-1, 3)
     ends = apply(region.region_to_room, ends * region.voxel_m)
     low = np.floor((ends.min(axis=0) - voxels.origin_m) / voxels.voxel_m)
@@ -240,7 +240,7 @@ def _box(region: LabelRegion, voxels: SceneVoxels) -> LabelRegion:
 def _resample_hits(
     region: LabelRegion, fine: np.ndarray, box: LabelRegion, hits: np.ndarray, cells: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the hits, and the pixels' cells, of a region whose cells are samples of a box's."""
+    """Convert the hits and pixel cells of a box to a region that samples the box."""
     source = np.empty(region.shape, np.int32)
     to_box = _to_cells_of(box.region_to_room[:3, 3], box.voxel_m, region)
     source_cells(to_box, np.array(box.shape), source)
@@ -257,11 +257,12 @@ def _resample_hits(
 
 
 def _nearest_occupied(fine: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return the number of the cell nearest to each place that holds something, -1 for none.
+    """Return the flat index of the nearest occupied cell of each position, or -1 for none.
 
     Args:
-        fine: uint16 [X, Y, Z], not 0 where a cell holds something.
-        places: float64 [N, 3], in cells; the cell of each and those around it are searched.
+        fine: Non-zero for occupied cells, uint16 [X, Y, Z].
+        places: Positions in cells, float64 [N, 3]. The cell of each position and its neighbours are
+            searched.
     """
     best, gathered = np.full(len(places), np.inf), np.full(len(places), -1, np.int64)
     for step in np.ndindex(3, 3, 3):

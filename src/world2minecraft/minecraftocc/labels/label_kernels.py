@@ -158,9 +158,9 @@ def count_hits(solid, image, around, reach, memo, hits, cells):
 
 @lean
 def _cell_seen(solid, ax, ay, az, bx, by, bz, reach, memo):
-    """Return the number of the cell that a short way from a to b meets, -1 for none counted.
+    """Return the index of the cell that a short line from a to b meets, or -1 for none.
 
-    ``memo`` is filled with what surely meets the same, as ``count_hits`` says.
+    ``memo`` is filled with the boxes of lines that meet the same cell, see ``count_hits``.
     """
     sx, sy, sz = solid.shape
     memo[0] = np.inf
@@ -190,7 +190,7 @@ def _cell_seen(solid, ax, ay, az, bx, by, bz, reach, memo):
 
 @inlined
 def _narrow(memo, axis, at, reach):
-    """Narrow a span of ``memo`` to the places that are near to the same neighbours as ``at``."""
+    """Narrow an interval of ``memo`` to positions close to the same neighbours as ``at``."""
     low, high = np.floor(at) + reach, np.floor(at) + 1.0 - reach
     if at < low:
         memo[axis + 3] = low
@@ -226,7 +226,7 @@ def first_entered(solid, ax, ay, az, bx, by, bz):
 
 @inlined
 def _crossing(a, b):
-    """Return where, from 0 to 1, a way from a to b crosses a border of cells; infinity for none."""
+    """Return where (0 to 1) a line from a to b crosses a cell border, or infinity for none."""
     first, last = int(a), int(b)
     return np.inf if first == last else (max(first, last) - a) / (b - a)
 
@@ -256,7 +256,7 @@ def nearest_solid(solid, px, py, pz, reach):
 
 @inlined
 def _side(at, reach):
-    """Return to which neighbour a place in a cell is near: -1, 1, or 0 for none."""
+    """Return the neighbour that a position in a cell is close to: -1, 1, or 0 for none."""
     if at < reach:
         return -1
     return 1 if at > 1.0 - reach else 0
@@ -264,7 +264,7 @@ def _side(at, reach):
 
 @inlined
 def _aside(at, step):
-    """Return how far a place in a cell is from the neighbour at a step."""
+    """Return the distance of a position in a cell to the neighbour at a step."""
     if step == 0:
         return 0.0
     return 1.0 - at if step > 0 else at

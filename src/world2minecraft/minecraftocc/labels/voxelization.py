@@ -94,7 +94,7 @@ def solid_boxes(tables: SceneTables, metres_per_block: float) -> SolidBoxes:
 
 @dataclass(frozen=True)
 class _Lattice:
-    """Cells along the block axes, and how they lie in the room."""
+    """A lattice of cells along the block axes, with its position in the room."""
 
     start: np.ndarray  # float64 [3], minimum corner in the scene's grid of blocks
     step: float  # blocks
@@ -104,7 +104,7 @@ class _Lattice:
     flips: tuple[bool, bool, bool]  # whether a block axis runs against it
 
     def in_block_axes(self, values: np.ndarray) -> np.ndarray:
-        """Return a view of room-ordered values in block axes."""
+        """Return a view of an array in room axis order, reordered to block axes."""
         turned = np.transpose(values, self.axes)
         return turned[tuple(slice(None, None, -1 if flip else None) for flip in self.flips)]
 
@@ -153,7 +153,7 @@ def _lattice(
     voxel_m: float | None,
     within_m: Sequence[Sequence[float]] | None,
 ) -> tuple[_Lattice, float]:
-    """Lay cells over a scene: on whole multiples of their size, or on its blocks."""
+    """Create the lattice of a scene, aligned to multiples of the cell size or to its blocks."""
     grid_to_room = np.linalg.inv(scene.room_to_grid)
     side = 1 / scene.cells_per_metre
     turn = grid_to_room[:3, :3] / side
@@ -198,7 +198,7 @@ def _checked_shape(shape: np.ndarray, voxel_m: float) -> tuple[int, int, int]:
 def _fill_lattice(
     volume: BlockVolume, scene: BlockScene, lattice: _Lattice, names: FineClassMap
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return labels, fine classes and objects of a lattice's cells, in room order."""
+    """Return the labels, fine classes and object numbers of all cells, in room axis order."""
     labels = np.zeros(lattice.shape, np.uint8)
     fine, instance = (np.zeros(lattice.shape, np.uint16) for _ in range(2))
     views = [lattice.in_block_axes(values) for values in (labels, fine, instance)]
@@ -221,7 +221,7 @@ def _slab_owners(
     first: int,
     shape: tuple[int, int, int],
 ) -> np.ndarray:
-    """Return who has each cell of a slab, int32, as ``Slab`` numbers them."""
+    """Return the owner of each cell in a slab, int32, numbered as in ``Slab``."""
     tables = scene.tables
     standing = np.flatnonzero((tables.traits[:, FLAGS] & ABSOLUTE > 0) & boxes.there)
     side = int(np.ceil((1 + 2 * SEARCH_MARGIN) / lattice.step)) + 1
@@ -240,7 +240,7 @@ def _slab_owners(
 def _describe_owners(
     owner: np.ndarray, volume: BlockVolume, scene: BlockScene, names: FineClassMap
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return label, fine class and object of each owner; without a class it is unknown."""
+    """Return the label (unknown if unclassified), fine class and object number of each owner."""
     is_cell = owner >= 0
     cells, things = owner[is_cell], -2 - owner[~is_cell]
     labels = np.empty(len(owner), np.uint8)

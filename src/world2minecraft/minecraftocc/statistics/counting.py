@@ -58,7 +58,7 @@ class WorldCells:
         self._add_cells(np.rint(centers - phase).astype(np.int64))
 
     def _add_cells(self, cells: np.ndarray) -> None:
-        """Add cells, int64 [N, 3], of this set's grid."""
+        """Add cells of this set's grid, int64 [N, 3]."""
         low, high = cells.min(axis=0) // SIDE, cells.max(axis=0) // SIDE + 1
         flags = np.zeros((high - low) * SIDE, np.bool_)
         flags[tuple((cells - low * SIDE).T)] = True
@@ -192,7 +192,7 @@ class _SceneSums:
     rooms_seen: set[int | None] = field(default_factory=set)  # As pictures state.
 
     def count_rooms(self) -> int | None:
-        """Return the rooms as told, or else those of the pictures if each tells its own."""
+        """Return the stated number of rooms, else the number of rooms stated by images."""
         if self.rooms is not None or None in self.rooms_seen:
             return self.rooms
         return len(self.rooms_seen)

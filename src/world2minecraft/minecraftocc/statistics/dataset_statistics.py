@@ -126,7 +126,7 @@ def rooms_of(folder: Path, meta: dict[str, Any]) -> dict[str, int]:
 
 
 def _rooms_of_house(path: Path) -> int | None:
-    """Return how many rooms a generated house has; None where there is none."""
+    """Return the number of rooms in a generated house, or None if there is no house file."""
     try:
         return len(read_json(path, MAX_VIEWS_BYTES)["rooms"])
     except (InputError, KeyError, TypeError):
@@ -134,7 +134,7 @@ def _rooms_of_house(path: Path) -> int | None:
 
 
 def _rooms_of_views(path: Path) -> int | None:
-    """Return how many rooms the views of a tour file name; None where one names none."""
+    """Return the number of rooms in the views of a tour file, or None if a view has no room."""
     try:
         lines = read_bytes(path, MAX_VIEWS_BYTES).splitlines()
         rooms = [json.loads(line)["room"] for line in lines if line.strip()]
@@ -155,7 +155,7 @@ def _is_imported(place: Path) -> bool:
 def _parts(
     store: OccStore, keys: Sequence[str], jobs: int
 ) -> Iterator[tuple[StatisticsCounter, int]]:
-    """Give the counters of parts of the data set, in their order."""
+    """Yield the counters for parts of the data set, in order."""
     parts = [keys[start : start + PART] for start in range(0, len(keys), PART)]
     if jobs <= 1 or len(parts) <= 1:
         for part in parts:
@@ -174,6 +174,6 @@ def _parts(
 
 
 def _count(folder: str, keys: Sequence[str]) -> StatisticsCounter:
-    """Count some pictures, in a process of their own."""
+    """Count samples in a worker process."""
     store = open_store(folder)
     return count_samples(store.sample(key, pictures=False) for key in keys)

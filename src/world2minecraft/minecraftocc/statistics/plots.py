@@ -107,7 +107,7 @@ def fine_plot(statistics: DatasetStatistics) -> "Figure":
 def _draw_steps(
     title: str, under: str, values: Sequence[int], what: str, log: bool = False
 ) -> "Figure":
-    """Draw values that fall from left to right as an area, with lines at round numbers."""
+    """Draw descending values as an area with grid lines at round numbers."""
     figure, axes = _new_page(title, under, HEIGHT_IN)
     axes.stairs(values, np.arange(len(values) + 1), fill=True, color=OURS, baseline=int(log))
     axes.set_xlim(0, max(len(values), 1 / MAX_LABEL))

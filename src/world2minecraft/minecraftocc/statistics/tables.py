@@ -171,7 +171,7 @@ def _or_dash(count: int | None, about: str = "") -> str:
 
 
 def _detail_lines(statistics: DatasetStatistics) -> list[str]:
-    """Return what the row of the data set cannot say."""
+    """Return details of the data set that do not fit into the table."""
     uncut = f"{statistics.uncut_voxels:,}"
     lines = [
         "semantic voxels  counted as in the paper: occupied cells of the region of each image",
@@ -221,7 +221,7 @@ def _class_lines(statistics: DatasetStatistics) -> list[str]:
 
 
 def _fine_lines(statistics: DatasetStatistics) -> list[str]:
-    """Return the fine classes seen most, and those that count and are seen least."""
+    """Return the most and the least frequent of the counted fine classes."""
     counted = [one for one in statistics.fine or () if one.is_seen_enough]
     ends = [counted] if len(counted) <= 2 * SHOWN else [counted[:SHOWN], counted[-SHOWN:]]
     rows: list[tuple[str, ...]] = [("fine class", "pixels", "images")]

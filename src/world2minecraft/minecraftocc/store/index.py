@@ -144,7 +144,7 @@ def _add(total: Any, rows: Iterable[dict[str, Any]]) -> None:
 
 
 def _batches(rows: Iterable[list[dict[str, Any]]]) -> Iterator[list[dict[str, Any]]]:
-    """Give the rows of shards in batches of nearly one size, whatever the shards hold."""
+    """Combine the rows of shards into batches of similar size."""
     batch: list[dict[str, Any]] = []
     for some in rows:
         batch += some

@@ -96,7 +96,7 @@ def decode_depth(data: bytes, camera: Camera, source: str | Path) -> np.ndarray:
 def _open_image(
     data: bytes, camera: Camera, source: str | Path, formats: tuple[str, ...]
 ) -> Image.Image:
-    """Decode a picture, its size compared before any memory is taken."""
+    """Decode an image, checking its size before its pixels are decoded."""
     size = (camera.width_px, camera.height_px)
     try:
         image = Image.open(io.BytesIO(data), formats=formats)
@@ -295,7 +295,7 @@ def _unpack_labels(data: bytes, meta: Any, fine_count: int, source: str | Path) 
 
 
 def _count_cells(occ: OccLabels) -> dict[str, int]:
-    """Return how many cells are what; see ``OccLabels``."""
+    """Return the number of cells of each kind; see ``OccLabels``."""
     inside = occ.in_frustum
     occluded = inside & occ.occupied & ~occ.visible
     known = occ.occupied | occ.free | occ.visible

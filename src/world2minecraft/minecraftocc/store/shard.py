@@ -300,7 +300,7 @@ class ShardWriter:
             os.fsync(self._stream.fileno())
 
     def _cut(self) -> None:
-        """Take back what was written of a sample; the next opening would do it too."""
+        """Remove a partially written sample, as reopening the part would do too."""
         if self._stream is not None:
             try:
                 os.ftruncate(self._stream.fileno(), self._length)
@@ -310,7 +310,7 @@ class ShardWriter:
 
 
 def _open_locked(part: Path) -> FileIO | None:
-    """Open a part for this process alone; None where it has become a shard meanwhile."""
+    """Open a part exclusively, or return None if another process has finished the shard."""
     until = time.monotonic() + PATIENCE_S
     while time.monotonic() < until:
         handle = os.open(part, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o644)
@@ -334,7 +334,7 @@ def _is_at(handle: int, path: Path) -> bool:
 
 
 def _flush_folder(folder: Path) -> None:
-    """Flush a folder's names, where the system lets one."""
+    """Flush the entries of a folder to disk, if the system supports it."""
     if os.name != "nt":
         handle = os.open(folder, os.O_RDONLY)
         try:
@@ -345,7 +345,7 @@ def _flush_folder(folder: Path) -> None:
 
 @contextmanager
 def _readable_errors(path: Path) -> Iterator[None]:
-    """Turn errors of the system into one line that says what to do."""
+    """Convert system errors to messages that state the next step."""
     try:
         yield
     except OSError as error:

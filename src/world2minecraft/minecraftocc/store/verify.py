@@ -89,7 +89,7 @@ def _check_shard(path: Path, name: str, rows: list[dict[str, Any]]) -> list[str]
 
 
 def _unexpected_files(root: Path, known: Iterable[str]) -> list[str]:
-    """Name files that belong to no data set: parts, leftovers, shards that no row is in."""
+    """Describe unexpected files: parts, temporary files, and shards that are not in the index."""
     shards = {root / name for name in known}
     own = {META, CLASSES, INDEX, CARD, LOCK, CREW, SHARDS, SCENES, WORLDS}
     strays = [
@@ -102,7 +102,7 @@ def _unexpected_files(root: Path, known: Iterable[str]) -> list[str]:
 
 
 def _mismatches(meta: dict[str, Any], rows_of: dict[str, list[dict[str, Any]]]) -> list[str]:
-    """Compare the index with what ``dataset.json`` says."""
+    """Compare the index with ``dataset.json``."""
     faults = []
     if meta.get("shards") != list(rows_of):
         faults.append(f"{INDEX}: the shards differ from those in {META}")

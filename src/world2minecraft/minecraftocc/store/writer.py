@@ -179,7 +179,11 @@ def _write_shards(
 
 
 def _check_names(sample: OccSample, known: Container[str]) -> None:
-    """Refuse what no reader would find again. Raises UsageError."""
+    """Check that the names of a sample can be stored and read again.
+
+    Raises:
+        UsageError: If a name or the split is not valid.
+    """
     for what, name, most in (
         ("sample key", sample.key, MAX_KEY_LENGTH),
         ("scene name", sample.scene_id, MAX_SCENE_ID),
@@ -200,7 +204,7 @@ def _shard(
     batch: list[tuple[str, dict[str, bytes]]],
     names: list[str],
 ) -> str:
-    """Write a shard of packed samples; return its name."""
+    """Write a shard of encoded samples and return its name."""
     number = 0
     while (name := shard_name(*place, number)) in names:
         number += 1

@@ -140,7 +140,7 @@ def smooth_noise(frames: int, spacing_m: float, rng: np.random.Generator) -> np.
 
 @njit
 def _best_sequence(rating, cost, max_turn):
-    """Return the headings, int64 [N], with the highest sum of ratings less the cost of turns."""
+    """Return the headings, int64 [N], with the highest sum of ratings minus the cost of turns."""
     frames, count = rating.shape
     best, came = rating[0].copy(), np.zeros((frames, count), np.int64)
     for n in range(1, frames):

@@ -68,12 +68,12 @@ class YawKindCounts:
 
 @dataclass(eq=False)
 class _ChosenViews:
-    """The views of one room so far."""
+    """The views of a room chosen so far."""
 
     poses: list[np.ndarray] = field(default_factory=list)  # [N, 5]: x, y, z, yaw, pitch
 
     def are_new(self, rows: np.ndarray, apart_blocks: float, apart_deg: float) -> np.ndarray:
-        """Return which rows, float64 [N, 5], are neither a view taken nor like an earlier row."""
+        """Return whether each row, float64 [N, 5], differs from chosen views and earlier rows."""
         known = np.concatenate([*self.poses, rows]) if self.poses else rows
         first = len(known) - len(rows)
         result = np.ones(len(rows), bool)
@@ -139,7 +139,7 @@ class RoomTour:
                 )
 
     def _walk(self, wanted: int) -> None:
-        """Take one walk, and of its views what is good and new."""
+        """Plan a walk and keep its good new views."""
         rng = np.random.default_rng([self.seed, self.room.number, self.walks])
         self.walks += 1
         rows = self._poses(wanted, rng)
@@ -159,7 +159,7 @@ class RoomTour:
                 self.kinds.add(tour[:, 3])
 
     def _poses(self, wanted: int, rng: np.random.Generator) -> np.ndarray:
-        """Return the poses along a walk, float64 [N, 5]: x, y, z of the eye, yaw, pitch."""
+        """Return the poses along a walk, float64 [N, 5]: eye x, y, z, yaw and pitch."""
         rule = self.rule
         way = plan_walk(self.area, rng)
         spacing_m = len(way) * SAMPLE_M / (OVERSAMPLING * wanted)
@@ -179,7 +179,7 @@ class RoomTour:
         return np.round(np.column_stack([eyes, yaws, pitch]), DECIMALS) + 0.0
 
     def _eyes_m(self, count: int, spacing_m: float, rng: np.random.Generator) -> np.ndarray:
-        """Return how high the eye is over the feet along a walk, float64 [N]."""
+        """Return the height of the eye above the feet along a walk, float64 [N]."""
         if rng.random() < self.rule.player_share:
             return np.full(count, PLAYER_EYE_BLOCKS)
         high_m = rng.uniform(*self.rule.eye_m) + SWAY_M * smooth_noise(count, spacing_m, rng)
@@ -190,7 +190,7 @@ class RoomTour:
         return pose.camera_to_room(self.volume.block_to_room)
 
     def _split_tours(self, rows: np.ndarray, min_frames: int) -> list[np.ndarray]:
-        """Return views in a row as tours without leaps, those of too few frames left out."""
+        """Split views into tours without jumps, omitting tours with too few frames."""
         if not len(rows):
             return []
         step_m = np.linalg.norm(np.diff(rows[:, :3], axis=0), axis=1) / (
@@ -201,7 +201,7 @@ class RoomTour:
         return [part for part in np.split(rows, cuts) if len(part) >= min_frames]
 
     def _times_s(self, tour: np.ndarray) -> np.ndarray:
-        """Return when each frame is taken, as fast as one walks and turns."""
+        """Return the time of each frame, based on walking and turning speed."""
         walk = np.linalg.norm(np.diff(tour[:, :3], axis=0), axis=1) / (
             self.volume.blocks_per_metre * WALK_M_S
         )
@@ -251,9 +251,9 @@ def plan_views(
 def _rooms(
     volume: BlockVolume, solid: CollisionGrid, rule: TourRule
 ) -> tuple[WalkGraph, list[TourRoom]]:
-    """Return where a player walks in a volume; where none fits, where a slim one would.
+    """Return the walk graph and the rooms of a volume, for a slimmer body if necessary.
 
-    A cluttered scan may leave no floor that is wide enough for a person, though a camera fits.
+    A cluttered scan may have no floor that is wide enough for a person, although a camera fits.
     """
     for slim in (1.0, SLIM):
         graph = walk_graph(volume, WalkRule(scale=slim * volume.blocks_per_metre))
@@ -264,7 +264,7 @@ def _rooms(
 
 
 def _fill(tours: list[RoomTour], count: int, progress: Progress) -> None:
-    """Let rooms find their shares; what one cannot give goes to the others."""
+    """Find the views of all rooms, passing on the shares that a room cannot provide."""
     progress("views", 0, count)
     left = count
     while left > 0:

@@ -87,7 +87,7 @@ def _view(
 
 
 def _keeps_intrinsics(line: dict[str, Any], camera: Camera) -> bool:
-    """Whether a line's size and vertical field of view alone are this very camera."""
+    """Return whether the size and vertical field of view of a line describe this camera exactly."""
     try:
         expected = camera_of(
             *(line["width"], line["height"]), vertical_fov_deg=line["vertical_fov_deg"]

@@ -113,7 +113,7 @@ def find_rooms(
 
 
 def _roofs(blocked: np.ndarray) -> np.ndarray:
-    """Return for each cell the layer of the first blocked cell at or over it; Y where none is."""
+    """Return the layer of the first blocked cell at or above each cell, or Y for none."""
     layers = np.arange(blocked.shape[1])[None, :, None]
     first = np.where(blocked, layers, blocked.shape[1])
     return np.minimum.accumulate(first[:, ::-1], axis=1)[:, ::-1]
@@ -122,7 +122,7 @@ def _roofs(blocked: np.ndarray) -> np.ndarray:
 def _indoors(
     graph: WalkGraph, blocked: np.ndarray, cells: np.ndarray, roof: np.ndarray
 ) -> np.ndarray:
-    """Tell the places under a roof and between walls; between walls where nothing has a roof."""
+    """Return the positions below a roof and between walls, or only between walls without roofs."""
     walled = _enclosed_by_walls(graph, blocked, cells)
     inside = walled & (roof < blocked.shape[1])
     least = MIN_ROOM_M2 / (graph.spacing / graph.blocks_per_metre) ** 2
@@ -137,7 +137,7 @@ def _indoors(
 
 
 def _enclosed_by_walls(graph: WalkGraph, blocked: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Tell the places from whose eye level rays mostly end at something."""
+    """Return the positions from which most horizontal rays at eye level hit something."""
     eyes = np.add(cells, [0.5, 0.0, 0.5])
     eyes[:, 1] += 1.5 * graph.blocks_per_metre
     reach = FAR_M * graph.blocks_per_metre
@@ -146,7 +146,7 @@ def _enclosed_by_walls(graph: WalkGraph, blocked: np.ndarray, cells: np.ndarray)
 
 @njit
 def _blocked_share(blocked, eyes, reach, rays):
-    """Return which share of level rays from each eye, float64 [N, 3] in cells, meets something."""
+    """Return the fraction of horizontal rays from each eye, float64 [N, 3] in cells, that hit."""
     result = np.zeros(len(eyes))
     for n in range(len(eyes)):
         y = int(eyes[n, 1])
@@ -164,7 +164,7 @@ def _blocked_share(blocked, eyes, reach, rays):
 
 
 def _by_layouts(volume: BlockVolume, graph: WalkGraph, rule: TourRule) -> np.ndarray:
-    """Return the room of each place by the floor plans, int64 [N]; -1 for none."""
+    """Return the room of each position according to the floor plans, int64 [N]; -1 for none."""
     points = apply(volume.block_to_room, graph.feet)
     number = np.full(len(graph), -1)
     for n, layout in enumerate(rule.layouts):
@@ -182,7 +182,7 @@ def _by_ceilings(
     roof: np.ndarray,
     usable: np.ndarray,
 ) -> np.ndarray:
-    """Return the room of each place by what hangs together under ceilings; -1 for none."""
+    """Return the room of each position according to connected ceilings; -1 for none."""
     cell_m = 1 / graph.blocks_per_metre
     under = np.zeros_like(blocked)
     under[:, :-1] = ~blocked[:, :-1] & blocked[:, 1:]
@@ -204,7 +204,11 @@ def _by_ceilings(
 
 
 def _cut_at_necks(room: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
-    """Return the piece, int64 [X, Z], that each cell of a room is of, and how many there are."""
+    """Split a room at narrow places into pieces.
+
+    Returns:
+        The piece of each cell, int64 [X, Z], and the number of pieces.
+    """
     away = np.asarray(ndimage.distance_transform_edt(np.pad(room, 1)))[1:-1, 1:-1]
     cores = _label_parts(away * cell_m > NARROW_M / 2, np.ones((3, 3), bool))
     sizes = np.bincount(cores.reshape(-1)) * cell_m**2
@@ -221,12 +225,12 @@ def _cut_at_necks(room: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
 
 
 def _label_parts(mask: np.ndarray, joined: np.ndarray) -> np.ndarray:
-    """Return the number, from 1, of the part of a mask that each cell is of; 0 outside of it."""
+    """Return the number of the connected part of each cell, starting at 1; 0 outside the mask."""
     return np.asarray(ndimage.label(mask, joined)[0])  # pyright: ignore[reportIndexIssue]
 
 
 def _assign_remaining(graph: WalkGraph, number: np.ndarray, usable: np.ndarray) -> np.ndarray:
-    """Return the rooms with places of none given to the room of the nearest place that has one."""
+    """Assign positions without a room to the room of the nearest position that has one."""
     known, remaining = np.flatnonzero(number >= 0), np.flatnonzero(usable & (number < 0))
     if not len(known):
         return np.where(usable, 0, -1)
@@ -238,7 +242,7 @@ def _assign_remaining(graph: WalkGraph, number: np.ndarray, usable: np.ndarray) 
 
 
 def _main_floor(graph: WalkGraph, places: np.ndarray) -> np.ndarray:
-    """Return the places of a room that are about as high as most of them."""
+    """Return the positions of a room that are on its main level."""
     heights = graph.feet[places, 1] / graph.blocks_per_metre
     levels = np.sort(np.unique(np.round(heights / LEVEL_M)))
     counts = [(np.abs(heights / LEVEL_M - level) <= 1).sum() for level in levels]
@@ -247,7 +251,7 @@ def _main_floor(graph: WalkGraph, places: np.ndarray) -> np.ndarray:
 
 
 def _contents(volume: BlockVolume, cells: np.ndarray, roof: np.ndarray) -> tuple[int, int]:
-    """Return how many classes and how many objects stand in the box around a room's places."""
+    """Return the numbers of classes and of objects in the box around a room's positions."""
     low, high = cells.min(axis=0), cells.max(axis=0) + 1
     high[1] = max(int(np.median(roof)), int(low[1]) + 1)
     around = max(1, round(volume.blocks_per_metre / 2))

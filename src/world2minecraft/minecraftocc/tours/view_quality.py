@@ -103,12 +103,12 @@ def assess_views(
 
 
 def _largest(faces: np.ndarray) -> np.ndarray:
-    """Return the share of each row that the commonest of the four upright faces has."""
+    """Return the fraction of the most frequent of the four vertical face directions in each row."""
     return np.max([(faces == side).mean(axis=1) for side in (0, 1, 4, 5)], axis=0)
 
 
 def _distinct(values: np.ndarray) -> np.ndarray:
-    """Return how many different values of 0 or more each row has."""
+    """Return the number of distinct non-negative values in each row."""
     ordered = np.sort(values, axis=1)
     first = np.ones(ordered.shape, bool)
     first[:, 1:] = ordered[:, 1:] != ordered[:, :-1]

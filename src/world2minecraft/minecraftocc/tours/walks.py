@@ -79,7 +79,7 @@ def plan_walk(area: WalkArea, rng: np.random.Generator) -> np.ndarray:
 
 
 def _stops(area: WalkArea, rng: np.random.Generator) -> np.ndarray:
-    """Return places of one part that are spread over it; large parts are drawn more often."""
+    """Return well-spread positions in a random connected part, preferring large parts."""
     sizes = np.bincount(area.part).astype(float)
     sizes[sizes < max(sizes.max() / 4, 2)] = 0  # A nook that no way leads to is left out.
     if not sizes.any():
@@ -96,7 +96,7 @@ def _stops(area: WalkArea, rng: np.random.Generator) -> np.ndarray:
 
 
 def _in_order(graph: WalkGraph, stops: np.ndarray) -> list[int]:
-    """Return stops in the order of a short walk: on to the nearest that is left."""
+    """Order stops by always continuing to the nearest remaining one."""
     order, left = [int(stops[0])], [int(stop) for stop in stops[1:]]
     while left:
         away = np.linalg.norm(graph.feet[left] - graph.feet[order[-1]], axis=1)
@@ -105,14 +105,14 @@ def _in_order(graph: WalkGraph, stops: np.ndarray) -> list[int]:
 
 
 def _resample(points: np.ndarray, spacing: float) -> np.ndarray:
-    """Return points of a polyline at even distances, its ends among them."""
+    """Return evenly spaced points on a polyline, including its ends."""
     along = np.r_[0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     places = np.linspace(0, along[-1], max(2, int(np.ceil(along[-1] / spacing)) + 1))
     return np.column_stack([np.interp(places, along, column) for column in points.T])
 
 
 def _smooth(area: WalkArea, feet: np.ndarray) -> np.ndarray:
-    """Return a way with its corners rounded, but where that leads through something."""
+    """Round the corners of a path, except where it would collide."""
     sigma = SMOOTH_M / SAMPLE_M
     best = gaussian_filter1d(feet, sigma, axis=0, mode="nearest")
     share = np.ones(len(feet))

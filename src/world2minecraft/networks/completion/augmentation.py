@@ -71,14 +71,14 @@ def crop_sample(sample: Sample, start: np.ndarray, shape: tuple[int, int, int]) 
 
 
 def _window(sample: Sample, rng: np.random.Generator, crop: tuple[int, int, int]) -> np.ndarray:
-    """Return where a window begins: within the sample, or around it where it is smaller."""
+    """Return a random start of a crop, inside the sample or around a smaller sample."""
     spare = np.array(sample.truth.shape) - crop
     start = [int(rng.integers(min(s, 0), max(s, 0) + 1)) for s in spare[:2]]
     return np.array([*start, int(rng.integers(-3, 3)) + (spare[2] // 2 if spare[2] > 0 else 0)])
 
 
 def _rows(sight: Sight, rows: np.ndarray, **changes: np.ndarray) -> Sight:
-    """Return a sight with some rows of what is known of occupied cells."""
+    """Return a copy of a network input with only the given rows of its occupied cells."""
     selected = {
         name: None if (value := getattr(sight, name)) is None else value[rows]
         for name in ("hits", "colour", "offset", "votes", "hint")
@@ -87,7 +87,7 @@ def _rows(sight: Sight, rows: np.ndarray, **changes: np.ndarray) -> Sight:
 
 
 def _corrupt_input(sight: Sight, rng: np.random.Generator) -> Sight:
-    """Return a sight with lost cells, boxes cut away, no top, and specks that are not there."""
+    """Randomly remove cells, boxes and the top from an input, and add false cells."""
     odds = sight.log_odds.copy()
     flat = odds.reshape(-1)
     if len(sight.at) and rng.random() < 0.5:
@@ -109,7 +109,7 @@ def _corrupt_input(sight: Sight, rng: np.random.Generator) -> Sight:
 
 
 def _add_specks(sight: Sight, rng: np.random.Generator) -> Sight:
-    """Return a sight with up to 60 more occupied cells, which look like some other cell."""
+    """Add up to 60 false occupied cells with the appearance of random other cells."""
     odds = sight.log_odds.copy()
     empty = np.flatnonzero(odds.reshape(-1) <= 0)
     specks = np.sort(rng.choice(empty, min(len(empty), int(rng.integers(1, 60))), replace=False))
@@ -121,7 +121,7 @@ def _add_specks(sight: Sight, rng: np.random.Generator) -> Sight:
 
 
 def _drop_channels(sight: Sight, rng: np.random.Generator) -> Sight:
-    """Return a sight with some of its channels missing, and its colours in another light."""
+    """Randomly remove channels from an input and change the lighting of its colours."""
     draws = rng.random(5)
     colour = sight.colour
     if colour is not None:

@@ -54,7 +54,7 @@ def to_half_precision(network: CompletionNet) -> CompletionNet:
 
 
 def _fold_norms(layers: nn.Sequential) -> None:
-    """Write each norm that follows a convolution into it."""
+    """Fold each norm that follows a convolution into the convolution."""
     for n in range(len(layers) - 1):
         first, second = layers[n], layers[n + 1]
         if isinstance(first, nn.Conv3d) and isinstance(second, nn.BatchNorm3d):
@@ -79,7 +79,7 @@ def _onnx_bytes(network: nn.Module) -> bytes:
 
 
 def _store_weights(data: bytes, about: dict[str, str]) -> bytes:
-    """Return a model whose large weights are stored as halves, and which says what it is."""
+    """Return a model with metadata and with large weights stored in half precision."""
     model = onnx.load_from_string(data)
     onnx.helper.set_model_props(model, dict(sorted(about.items())))
     return compress_weights(model, "half").SerializeToString()

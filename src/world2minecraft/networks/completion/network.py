@@ -120,7 +120,7 @@ class CompletionNet(nn.Module):
 
 
 def _trusting() -> nn.Conv3d:
-    """Return a layer that begins by saying what the geometric labels and the votes say."""
+    """Return a layer that initially reproduces the geometric labels and the votes."""
     layer = nn.Conv3d(CHANNELS, CLASS_COUNT, 1, bias=False)
     with torch.no_grad():
         layer.weight.zero_()

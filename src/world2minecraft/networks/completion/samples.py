@@ -176,7 +176,7 @@ def _box(
     room_to_grid: np.ndarray,
     rng: np.random.Generator,
 ) -> tuple[np.ndarray, tuple[int, int, int]]:
-    """Return the lowest cell and the shape of a sample's box."""
+    """Return the first cell and the shape of a sample's box."""
     voxel_m = evidence.voxel_m
     seen_low = np.round(evidence.origin_m / voxel_m).astype(np.int64)
     seen_high = seen_low + evidence.log_odds.shape
@@ -230,7 +230,7 @@ def mask_seen_rooms(
 
 
 def _in_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Return which points [N, 2] lie in a polygon [K, 2]: a ray to the right crosses it oddly."""
+    """Return whether each point [N, 2] is inside a polygon [K, 2], by the even-odd rule."""
     inside = np.zeros(len(points), bool)
     x, y = points.T
     for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):

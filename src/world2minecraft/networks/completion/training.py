@@ -56,7 +56,7 @@ def completion_loss(logits: Tensor, truth: Tensor, surface: Tensor) -> dict[str,
 
 
 def _jaccard(share: Tensor, wanted: Tensor) -> Tensor:
-    """Return one minus the mean soft IoU of the classes that are wanted somewhere."""
+    """Return one minus the mean soft IoU of the classes that occur in the ground truth."""
     both = (share * wanted).sum(dim=0)
     either = share.sum(dim=0) + wanted.sum(dim=0) - both
     there = wanted.sum(dim=0) > 0
@@ -151,7 +151,7 @@ class Trainer:
 
     @torch.no_grad()
     def _update_mean(self) -> None:
-        """Draw the running mean towards the weights; fast at first, when all is new."""
+        """Update the running mean of the weights, faster at the beginning."""
         keep = min(self.run.mean_of, (self.step + 1) / (self.step + 10))
         new = self.network.state_dict()
         for name, value in self.mean.state_dict().items():

@@ -61,9 +61,9 @@ def draw_scan(kind: ScanKind, tour: np.ndarray, rng: np.random.Generator) -> Vir
 
 
 def _frame(pose: np.ndarray, by_camera: bool, rng: np.random.Generator) -> np.ndarray:
-    """Return room_to_grid: turned so that the camera looks along +y, or in the room's axes.
+    """Return ``room_to_grid``, either rotated so that the camera faces +y, or in room axes.
 
-    Cells begin at the floor and a corner, as after alignment, or anywhere.
+    The grid starts at the floor and a corner, as after alignment, or with a random offset.
     """
     yaw_deg = 0.0
     if by_camera:
@@ -107,7 +107,7 @@ def _view(
     rng: np.random.Generator,
     kind: ScanKind,
 ) -> View:
-    """Return one view as its sensor hands it over, in the frame of the room."""
+    """Render a view with sensor noise, in room coordinates."""
     photo = take_photo(scene, camera, pose)
     luminance = photo.colour.astype(np.float32) @ LUMINANCE
     depth_m = sense_depth(noise.sensor, photo.depth_m, photo.cosine, luminance, camera.fx_px, rng)

@@ -109,7 +109,7 @@ def jitter_colour(image: np.ndarray, strength: float, rng: np.random.Generator) 
 
 
 def _adjust_colour(values: np.ndarray, kind: int, factor: np.float32) -> np.ndarray:
-    """Return values mixed with black, with their mean grey, or with each pixel's own grey."""
+    """Blend colours with black, with their mean grey, or with the grey of each pixel."""
     if kind == 0:
         mixed = values * factor
     else:

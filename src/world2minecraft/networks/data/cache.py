@@ -152,7 +152,7 @@ def cache_bytes(count: int, rule: FrameRule) -> int:
 
 
 def _layout(count: int, rule: FrameRule) -> dict[str, tuple[tuple[int, ...], type]]:
-    """Return shape and kind of each array."""
+    """Return the shape and dtype of each array."""
     size, cells = (rule.height_px, rule.width_px), rule.grid.shape
     return {
         "image": ((count, *size, 3), np.uint8),
@@ -207,7 +207,7 @@ def _stored(frame: Frame) -> dict[str, np.ndarray]:
 
 
 def _identity(source: ImportedSet, rule: FrameRule) -> str:
-    """Return a name that another set, an altered one, another size or grid does not have."""
+    """Return a cache name that depends on the data set, its state, the image size and the grid."""
     facts = [
         VERSION, str(source.path.resolve()), source.format, _state(source.path),
         hashlib.sha256("\n".join(source.keys()).encode()).hexdigest(),
@@ -217,7 +217,7 @@ def _identity(source: ImportedSet, rule: FrameRule) -> str:
 
 
 def _state(path: Path) -> str:
-    """Return what changes when a set does: a store's own sum, else the newest of its folders."""
+    """Return a value that changes with the data set: its checksum or its newest file time."""
     meta = path / "dataset.json"
     if meta.is_file():
         return hashlib.sha256(meta.read_bytes()).hexdigest()

@@ -140,7 +140,7 @@ def cells_with_masks(sample: OccSample, grid: Grid) -> KnownCells:
 
 
 def _factor(sample: OccSample, grid: Grid) -> int:
-    """Return how many of the region's cells make one of the grid's, along a side."""
+    """Return the number of region cells per grid cell along each side."""
     region, (shape, voxel_m) = sample.occ.region, grid
     factor = max(round(voxel_m / region.voxel_m), 1)
     fits = abs(factor * region.voxel_m - voxel_m) < 1e-6
@@ -162,7 +162,7 @@ def _any_of(mask: np.ndarray, factor: int) -> np.ndarray:
 
 
 class _Crop:
-    """The middle of a picture, as large as the wanted shape allows, at the wanted size."""
+    """The largest central part of an image with the required aspect ratio, at the required size."""
 
     def __init__(self, camera: Camera, rule: FrameRule):
         scale = max(rule.width_px / camera.width_px, rule.height_px / camera.height_px)
@@ -180,14 +180,14 @@ class _Crop:
         )
 
     def colour(self, pixels: np.ndarray) -> np.ndarray:
-        """Return uint8 [H, W, 3]: each pixel a mean of those that it covers."""
+        """Crop and resample a colour image to uint8 [H, W, 3]."""
         size = (self.camera.width_px, self.camera.height_px)
         box = (self.left, self.top, self.left + self.width, self.top + self.height)
         image = Image.fromarray(pixels).resize(size, Image.Resampling.BILINEAR, box=box)
         return np.asarray(image)
 
     def depth(self, depth_m: np.ndarray | None) -> np.ndarray:
-        """Return float32 [H, W]: read between pixels of one surface, of the nearest at its edge."""
+        """Crop and resample a depth map to float32 [H, W], without blending different surfaces."""
         rows, columns = self.camera.height_px, self.camera.width_px
         if depth_m is None:
             return np.zeros((rows, columns), np.float32)
@@ -197,10 +197,10 @@ class _Crop:
 
 
 def _depth_between(depth_m: np.ndarray, down: np.ndarray, across: np.ndarray) -> np.ndarray:
-    """Read depth at places given in pixels from the first pixel's centre, [rows] and [columns].
+    """Interpolate depth at positions relative to the first pixel centre, [rows] and [columns].
 
-    The nearest pixel alone would be half a pixel aside, always to the same side, where a picture
-    is made half as large: on a wall seen aslant that is a cell.
+    Using only the nearest pixel would shift the depth by half a pixel if an image is halved, which
+    corresponds to a whole cell on walls at a steep angle.
     """
     first, high, low_share = [], [], []
     for places, side in ((down, depth_m.shape[0]), (across, depth_m.shape[1])):

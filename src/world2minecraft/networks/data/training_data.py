@@ -24,7 +24,7 @@ MAX_COUNTED_FRAMES = 1000  # Of each set, for the classes' frequencies; spread e
 
 @dataclass(frozen=True)
 class CacheLocation:
-    """Where decoded frames are cached, if at all.
+    """Where decoded frames are cached, if caching is enabled.
 
     Attributes:
         keep: Whether to cache frames.

@@ -57,7 +57,7 @@ class DeformableAttention(nn.Module):
         return self.out(found)
 
     def _gathered(self, value: Tensor, places: Tensor, shifts: Tensor, weights: Tensor) -> Tensor:
-        """Return [B, Q, C] of one level; shifts [B, Q, heads, points, axes] are in its cells."""
+        """Return the sampled values of a level, [B, Q, C], for shifts in cells."""
         batch, count = int(places.shape[0]), int(places.shape[1])
         sides = torch.tensor(value.shape[2:], device=value.device, dtype=places.dtype)
         carried = self.value(value.flatten(2).transpose(1, 2)).transpose(1, 2)

@@ -73,7 +73,7 @@ def _load_model(model: str) -> Any:
     try:
         import transformers  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
     except ImportError:
-        raise MissingExtraError("a backbone of transformers", "hf") from None
+        raise MissingExtraError("a backbone from transformers", "hf") from None
     if not Path(model).is_dir() and not MODEL_NAME.fullmatch(model):
         raise InputError(model, "not a folder and not a valid model name; expected ORG/NAME")
     transformers.utils.logging.disable_progress_bar()
@@ -90,7 +90,7 @@ def _load_model(model: str) -> Any:
 
 
 def _feature_channels(config: Any) -> list[int]:
-    """Return four of the stages that a backbone can give, the last of them among these."""
+    """Return the indices of four stages of a backbone, including the last one."""
     names = list(getattr(config, "stage_names", None) or [])
     count = len(names) - 1 if names else int(getattr(config, "num_hidden_layers", LEVELS))
     if count <= LEVELS:
@@ -99,7 +99,7 @@ def _feature_channels(config: Any) -> list[int]:
 
 
 def _size_multiple(config: Any) -> int:
-    """Return what a picture's sides must be a multiple of."""
+    """Return the number of which the sides of an image must be multiples."""
     patch = getattr(config, "patch_size", None)
     patch = patch[0] if isinstance(patch, (list, tuple)) else patch
     return int(patch) if isinstance(patch, int) and patch > 4 else STRIDES[-1]

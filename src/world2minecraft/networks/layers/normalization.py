@@ -97,7 +97,7 @@ class _GroupNormFunction(torch.autograd.Function):
 
 
 def _layout(values: Tensor) -> torch.memory_format:
-    """Return how the values lie, or would without gaps: with the channels last, or not."""
+    """Return the memory format of a tensor: channels last, or contiguous."""
     last = {4: torch.channels_last, 5: torch.channels_last_3d}.get(values.ndim)
     return last if last is not None and values.stride(1) == 1 else torch.contiguous_format
 

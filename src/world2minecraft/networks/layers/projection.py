@@ -56,11 +56,11 @@ def sample_corners(values: Tensor, places: Tensor) -> Tensor:
             number = cell if number is None else number * sides[axis] + cell
             weight = part if weight is None else weight * part
         if number is None or weight is None:
-            raise ValueError("values must be a volume with three axes")
+            raise ValueError("values must be a volume [B, C, X, Y, Z]")
         here = flat.gather(2, number[:, None].expand(-1, flat.shape[1], -1)) * weight[:, None]
         found = here if found is None else found + here
     if found is None:
-        raise ValueError("values must be a volume with eight corners")
+        raise ValueError("values must be a volume [B, C, X, Y, Z]")
     return found
 
 
@@ -147,7 +147,7 @@ def lift_features(
 
 
 def _places(sight: CellProjection, scale: int, values: Tensor) -> Tensor:
-    """Return the number of each cell's pixel in a map, int64 [B, C, N]."""
+    """Return the flat index of each cell's pixel in a map, int64 [B, C, N]."""
     height, width = int(values.shape[-2]), int(values.shape[-1])
     pixels = torch.floor(sight.pixels / scale)
     column = pixels[..., 0].clamp(0, width - 1).long()

@@ -74,7 +74,7 @@ class Upsample3d(nn.Module):
 
 
 class _PooledConv(nn.Module):
-    """Means of two along some axes, the last cell of an odd side counting twice; then a kernel."""
+    """Average pooling by two along some axes with edge padding, and a 1x1x1 convolution."""
 
     def __init__(self, channels: int, out_channels: int, norm: Norm, axes: tuple[bool, bool, bool]):
         super().__init__()

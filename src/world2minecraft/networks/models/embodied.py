@@ -336,7 +336,7 @@ class SceneStream:
 
 
 def _window_starts(whole: int, side: int) -> list[int]:
-    """Return where boxes begin along an axis, so that each overlaps the next by half or more.
+    """Return the starts of boxes along an axis, so that neighbours overlap by at least half.
 
     >>> _window_starts(30, 30), _window_starts(50, 20)
     ([0], [0, 10, 20, 30])
@@ -345,6 +345,6 @@ def _window_starts(whole: int, side: int) -> list[int]:
 
 
 def _nearness(shape: tuple[int, int, int]) -> Tensor:
-    """Return how near each cell of a box is to its middle, 1 to almost 0 at the rim."""
+    """Return weights for the cells of a box, from 1 at its centre to almost 0 at its border."""
     along = [1 - (torch.arange(side) + 0.5 - side / 2).abs() / (side / 2 + 0.5) for side in shape]
     return along[0][:, None, None] * along[1][:, None] * along[2]

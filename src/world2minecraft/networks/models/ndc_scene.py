@@ -90,7 +90,7 @@ class VolumeToCells(nn.Module):
 
 
 class _UpsampleStep(nn.Module):
-    """Doubles a volume; each pixel then gives its feature to the depths that ask for it."""
+    """A step that doubles a volume and adds image features to it with a learned gate."""
 
     def __init__(self, in_channels: int, map_channels: int, out_channels: int, norm: Norm):
         super().__init__()

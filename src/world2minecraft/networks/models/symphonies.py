@@ -232,7 +232,7 @@ class Symphonies(nn.Module):
         return torch.where(hit[..., None], self.proposed(cells, found), cells)
 
     def _hit(self, inputs: OccInput, depth_m: Tensor) -> Tensor:
-        """Return bool [B, N]: the cells that hold the point of a pixel of the depth map."""
+        """Return whether each cell contains the point of a pixel in the depth map, bool [B, N]."""
         height, width = int(depth_m.shape[1]), int(depth_m.shape[2])
         rows, columns = torch.meshgrid(
             torch.arange(height, device=depth_m.device), torch.arange(width, device=depth_m.device),
@@ -252,15 +252,12 @@ class Symphonies(nn.Module):
 
 
 def _points_m(inputs: OccInput, depth_m: Tensor, pixel: Tensor) -> Tensor:
-    """Return the points that places of the picture show, in metres from the grid's corner.
+    """Return the points at image positions in metres relative to the corner of the grid, [B, Q, 3].
 
     Args:
-        inputs: the cameras.
-        depth_m: [B, h, w].
-        pixel: [B, Q, 2], row and column as shares of the picture.
-
-    Returns:
-        [B, Q, 3].
+        inputs: Inputs with the cameras.
+        depth_m: Depth in metres, [B, h, w].
+        pixel: Image positions as fractions (row, column), [B, Q, 2].
     """
     height, width = int(depth_m.shape[1]), int(depth_m.shape[2])
     row = (pixel[..., 0] * height).floor().clamp(0, height - 1).long()
