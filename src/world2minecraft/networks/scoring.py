@@ -215,7 +215,7 @@ def file_predictions(
     keys: Sequence[str],
     progress: Progress = no_progress,
 ) -> Iterator[PredictedFrame]:
-    """Combine saved predictions with the ground truth of the samples.
+    """Combine saved predictions with the ground truth of the samples with the same keys.
 
     Raises:
         InputError: If a prediction is missing, or if its shape differs from the sample.

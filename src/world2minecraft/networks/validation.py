@@ -84,7 +84,7 @@ def predict_labels(
 def validate(
     network: nn.Module, frames: Frames, rows: Sequence[int], config: RunConfig
 ) -> OccupancyCounts:
-    """Return the counts for the given frames with the protocol ``monoscene``."""
+    """Predict the given frames and return the counts for the protocol ``monoscene``."""
     total = OccupancyCounts()
     predicted = predict_labels(network, frames, rows, config)
     for row, labels in zip(rows, predicted, strict=True):

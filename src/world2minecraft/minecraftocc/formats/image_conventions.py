@@ -51,8 +51,8 @@ def encode_depth(depth_m: np.ndarray, code: DepthCode) -> bytes:
 def decode_depth(raw: np.ndarray, code: DepthCode) -> np.ndarray:
     """Decode stored depth values to metres, float32 [H, W], with 0 for holes.
 
-    The two NYU encodings are told apart by their three low bits: rotated millimetres have the value
-    0 or 1 there (for depths below 16.4 m), while units of 1/8000 m have any value.
+    The two NYU encodings are distinguished by their three low bits: rotated millimetres have the
+    value 0 or 1 there (for depths below 16.4 m), while units of 1/8000 m have any value.
 
     Example:
         >>> decode_depth(np.array([[8000, 0, 16385]], np.uint16), "nyu").tolist()

@@ -78,7 +78,7 @@ def cells_in_image(
     """Project the centres of a box's cells into an image, in the same way as the published loaders.
 
     Returns:
-        Three arrays. The first tells whether each cell is in front of the camera and inside the
+        Three arrays. The first states whether each cell is in front of the camera and inside the
         image, bool [X, Y, Z]. The others are the pixel positions (column, row), int64 [X, Y, Z, 2],
         and the depths in metres, float64 [X, Y, Z]; they are valid only for cells inside the image.
     """

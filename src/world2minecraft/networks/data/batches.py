@@ -69,7 +69,7 @@ def plan_draws(sizes: Sequence[int], weights: Sequence[float], count: int, seed:
 
 
 def draw_rng(seed: int, draw: int) -> np.random.Generator:
-    """Return the random generator for the augmentation of a frame."""
+    """Return the random generator for the augmentation of the frame with this draw number."""
     return np.random.default_rng([seed, 2**20, draw])
 
 
