@@ -24,7 +24,7 @@ def test_stats_print_the_table_and_write_all_that_is_asked_for(data, tmp_path, c
     words += ["--latex", str(tmp_path / "s.tex"), "--plots", str(tmp_path / "plots")]
     assert run(words) == 0
     text = capsys.readouterr().out
-    assert "MinecraftOcc (paper)   100,165     156  ~1,000    1,452      733,280,256" in text
+    assert "MinecraftOcc (paper)  100,165     156  ~1,000    1,452      733,280,256" in text
     assert "next   w2m dataset quality" in text
     assert json.loads((tmp_path / "s.json").read_text())["pictures"] == 4
     assert r"\toprule" in (tmp_path / "s.tex").read_text()

@@ -66,7 +66,7 @@ def test_screenshots_become_a_tour_file(world, tmp_path, capsys):
     out = tmp_path / "shots.jsonl"
     words = ["dataset", "tour", str(world), "--screenshots", str(tmp_path), "--out", str(out)]
     assert cli.run([*words, "--at", "feet"]) == 0
-    assert "1 screenshots (1 by its name by" in capsys.readouterr().out
+    assert "1 screenshots (1 by file name with pattern" in capsys.readouterr().out
     (line,) = lines_of(out)
     assert line["image"] == "6.5_64_5.5_90_10.png" and line["y"] == pytest.approx(
         64 + 1.62 * 25 / 6

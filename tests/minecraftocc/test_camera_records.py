@@ -100,7 +100,7 @@ def test_errors_say_what_to_do():
         {**record(), "E": "x"},
         {**record(), "width": None},
     ):
-        with pytest.raises(UsageError, match="this is no camera's record"):
+        with pytest.raises(UsageError, match="not a valid camera record"):
             camera_from_record(wrong)
 
 

@@ -133,7 +133,7 @@ def test_what_has_no_pictures_is_told(tmp_path):
         open_pictures(tmp_path / "none")
     write_store(tmp_path / "data", [sample(occ=occ_labels())])
     source = open_pictures(tmp_path / "data")
-    with pytest.raises(InputError, match="has labels alone, no picture"):
+    with pytest.raises(InputError, match="has labels but no image"):
         source.read(source.keys[0])
 
 

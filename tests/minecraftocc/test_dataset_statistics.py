@@ -170,7 +170,7 @@ def test_cells_of_two_sizes_in_one_world_are_refused():
     cells = WorldCells()
     occ = random_labels(1)
     cells.add(occ.region, occ.occupied)
-    with pytest.raises(ValueError, match=r"cells of one world must have one size, not 0.5 m and"):
+    with pytest.raises(ValueError, match=r"cells of a world must have the same size, got 0.5 m"):
         cells.add(replace(occ.region, voxel_m=0.25), occ.occupied)
 
 

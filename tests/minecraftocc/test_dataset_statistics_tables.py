@@ -52,19 +52,19 @@ SMALL = DatasetStatistics(
     "60x60x36 cells of 0.08 m",
 )
 TEXT = """\
-data set              pictures  scenes   rooms  classes  semantic voxels  voxels a scene  resolution
-NYUv2                    1,449     464       -       13       10,786,528           23.2K     640x480
-OccScanNet              65,119     674       -       13      201,215,233          298.5K     640x480
-MinecraftOcc (paper)   100,165     156  ~1,000    1,452      733,280,256            4.7M   1920x1129
-houses & more                8       2      11        2           61,234           30.6K   1920x1129
+data set               images  scenes   rooms  classes  semantic voxels  voxels/scene  resolution
+NYUv2                   1,449     464       -       13       10,786,528         23.2K     640x480
+OccScanNet             65,119     674       -       13      201,215,233        298.5K     640x480
+MinecraftOcc (paper)  100,165     156  ~1,000    1,452      733,280,256          4.7M   1920x1129
+houses & more               8       2      11        2           61,234         30.6K   1920x1129
 
-semantic voxels  as the paper counts: over all pictures, the occupied cells of the region
-                 (60x60x36 cells of 0.08 m) whose centres fall into the picture;
-                 of whole regions 90,500, as NYUv2's row seems to count
-distinct cells   17,000 of the worlds themselves; each is in 3.6 pictures
-classes          2 of 3 fine classes are seen by 100 pixels in 3 pictures or more;
+semantic voxels  counted as in the paper: occupied cells of the region of each image
+                 (60x60x36 cells of 0.08 m) whose centres are inside the image;
+                 90,500 in the complete regions, as apparently counted for NYUv2
+distinct cells   17,000 in the worlds, each in 3.6 images on average
+classes          2 of 3 fine classes have at least 100 pixels in 3 or more images:
                  1 blocks, 1 pieces of furniture;
-                 8 of the 11 classes that are not empty are there
+                 8 of the 11 occupied classes are present
 splits           test 2, train 6
 
 class       voxels  share  NYUv2 train
@@ -80,9 +80,9 @@ television       0   0.0%         0.5%
 furniture    5,000   8.2%        30.0%  ######
 object       1,000   1.6%        14.2%  #
 
-fine class            pixels  pictures
-minecraft:oak_planks  90,000         8
-design:chair_cafe      9,000         6"""
+fine class            pixels  images
+minecraft:oak_planks  90,000       8
+design:chair_cafe      9,000       6"""
 
 
 def test_the_text_is_the_papers_table_and_what_it_cannot_say():
@@ -116,8 +116,8 @@ def test_a_set_without_fine_classes_rooms_and_cells_says_so():
         SMALL, fine=None, scenes=(SceneCount("a", 8, 61_234),), sizes_px={"9x9": 5, "8x8": 3}
     )
     text = statistics_text(bare)
-    assert "the 12 and unknown; this set names no fine classes" in text
-    assert "rooms            not known of every scene" in text
+    assert "the 12 classes and unknown; this data set has no fine classes" in text
+    assert "rooms            not known for all scenes" in text
     assert "resolutions      9x9 (5), 8x8 (3)" in text
     assert "distinct cells" not in text
 
@@ -204,7 +204,7 @@ def test_processes_count_what_one_counts(store, monkeypatch):
 def test_a_missing_store_or_split_is_reported(store, tmp_path):
     with pytest.raises(InputError, match="not a data set"):
         store_statistics(tmp_path / "nothing")
-    with pytest.raises(UsageError, match="the splits of .* are test, train, not 'val'"):
+    with pytest.raises(UsageError, match="has no split 'val'; known splits: test, train"):
         store_statistics(store[0], "val")
 
 
@@ -260,5 +260,5 @@ def test_exports_of_a_set_have_its_numbers(tmp_path):
     assert (nyu.pictures, nyu.fine, nyu.splits) == (2, None, {"test": 1, "train": 1})
     assert (nyu.voxels, nyu.uncut_voxels) == (whole.voxels, whole.uncut_voxels)
     assert statistics_of(tmp_path / "npz", "test").pictures == 1
-    with pytest.raises(InputError, match="has no pictures of the split 'val'"):
+    with pytest.raises(InputError, match="contains no images in split 'val'"):
         statistics_of(tmp_path / "npz", "val")

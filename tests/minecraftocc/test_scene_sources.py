@@ -205,7 +205,7 @@ def test_mistakes_are_told(tmp_path, foreign):
         open_scene_source(tmp_path / "none")
     with pytest.raises(UsageError, match="a box must be x0 y0 z0 x1 y1 z1 with x0 < x1"):
         open_scene_source(foreign, box=(1, 2, 3, 1, 5, 6))
-    with pytest.raises(UsageError, match="above 0 and up to 64, not 0"):
+    with pytest.raises(UsageError, match="above 0 and at most 64, got 0"):
         open_scene_source(foreign, blocks_per_metre=0)
     with pytest.raises(UnknownNameError, match="no block map is named 'nyv'"):
         open_scene_source(foreign, block_map="nyv")

@@ -81,7 +81,7 @@ def test_a_line_may_say_its_own_fov_size_and_place(tmp_path):
     (tmp_path / "tour.jsonl").write_text(json.dumps({**row, "width": 99, "height": 18}))
     with pytest.raises(DamagedFileError) as raised:
         read_screenshots(tmp_path, at="feet")
-    assert "says 99x18 of a.png, which has 32x18" in one_line(raised)
+    assert "states 99x18 pixels for a.png, which has 32x18" in one_line(raised)
 
 
 @pytest.mark.parametrize(
@@ -107,7 +107,7 @@ def test_a_name_tells_a_pose(tmp_path, name, pattern):
     picture(tmp_path / f"{name}.png")
     (view,) = read_screenshots(tmp_path, at="eye", pattern=pattern)
     assert view.pose == GamePose(*POSE.values(), at="eye")
-    assert view.pose_source.startswith("its name by ")
+    assert view.pose_source.startswith("file name with pattern ")
 
 
 @pytest.mark.parametrize(
@@ -123,7 +123,7 @@ def test_a_name_tells_a_pose(tmp_path, name, pattern):
 def test_a_pngs_texts_tell_a_pose(tmp_path, texts):
     picture(tmp_path / "a.png", texts=texts)
     (view,) = read_screenshots(tmp_path, at="feet")
-    assert view.pose == GamePose(*POSE.values(), at="feet") and view.pose_source == "its PNG text"
+    assert view.pose == GamePose(*POSE.values(), at="feet") and view.pose_source == "PNG texts"
 
 
 def test_pictures_come_in_the_order_of_their_names(tmp_path):
@@ -153,7 +153,7 @@ def test_feet_or_eye_must_be_said(tmp_path):
     with pytest.raises(UsageError) as raised:
         read_screenshots(tmp_path, at="head")  # type: ignore[arg-type]
     assert one_line(raised) == (
-        "at must be feet (what F3 and most mods tell) or eye (1.62 above it), not 'head'"
+        "at must be feet (as shown by F3 and most mods) or eye (1.62 above), got 'head'"
     )
 
 
@@ -166,22 +166,22 @@ def test_folders_without_pictures_or_poses(tmp_path):
     with pytest.raises(InputError) as raised:
         read_screenshots(tmp_path, at="eye")
     text = one_line(raised)
-    assert "no sidecar (poses.jsonl" in text and "its PNG texts tell none" in text
+    assert "no pose found in a sidecar file (poses.jsonl" in text
     assert "add a sidecar file or a pattern" in text
     with pytest.raises(UsageError, match="use only one of them"):
         read_screenshots(tmp_path, at="eye", poses="p.csv", pattern="{x}")
-    with pytest.raises(InputError, match="no pose found: file name by"):
+    with pytest.raises(InputError, match="read from file name with pattern"):
         read_screenshots(tmp_path, at="eye", pattern="{x}_{y}_{z}_{yaw}_{pitch}")
 
 
 @pytest.mark.parametrize(
     ("row", "text"),
     [
-        ({}, "without image"),
-        ({"image": "../a.png"}, "is not below its folder"),
-        ({"image": "/etc/passwd"}, "is not below its folder"),
-        ({"image": "C:\\a.png"}, "is not below its folder"),
-        ({"image": "b.png"}, "names b.png, which is not there"),
+        ({}, "without an image file name"),
+        ({"image": "../a.png"}, "is not inside the folder"),
+        ({"image": "/etc/passwd"}, "is not inside the folder"),
+        ({"image": "C:\\a.png"}, "is not inside the folder"),
+        ({"image": "b.png"}, "lists b.png, which does not exist"),
         ({"image": "a.png", "x": float("nan")}, "line 1 is not a valid pose"),
         ({"image": "a.png", "y": 1e12}, "line 1 is not a valid pose"),
         ({"image": "a.png", "pitch": 100}, "pitch must be -90 (up) to 90 (down)"),
@@ -239,12 +239,12 @@ def test_pngs_that_cannot_be(tmp_path):
     path = tmp_path / "0_64_0_0_0.png"
     good = picture(path).read_bytes()
     cases = [
-        (b"", "is no PNG"),
-        (b"GIF89a" * 9, "is no PNG"),
-        (good[:20], "is cut short"),
-        (good[:-9], "is cut short"),
-        (good[:8] + chunk(b"IDAT", b"x" * 13), "does not begin with its size"),
-        (good[:18] + b"\xff" + good[19:], "checksum of its IHDR is wrong"),
+        (b"", "not a PNG file"),
+        (b"GIF89a" * 9, "not a PNG file"),
+        (good[:20], "the file is truncated"),
+        (good[:-9], "the file is truncated"),
+        (good[:8] + chunk(b"IDAT", b"x" * 13), "the header (IHDR) is missing"),
+        (good[:18] + b"\xff" + good[19:], "wrong checksum in PNG chunk IHDR"),
     ]
     for data, text in cases:
         path.write_bytes(data)

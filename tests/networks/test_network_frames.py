@@ -91,7 +91,7 @@ def test_coarse_labels_and_masks_follow_the_published_rule():
 
 def test_what_cannot_be_a_frame_says_why():
     rule = FrameRule(COARSE, 40, 30)
-    with pytest.raises(InputError, match="has no picture"):
+    with pytest.raises(InputError, match="has no image"):
         make_frame(replace(SAMPLE, colour=None), rule)
     bent = replace(SAMPLE.camera, distortion=(0.1, 0.0, 0.0, 0.0, 0.0))
     with pytest.raises(InputError, match="its lens distorts"):

@@ -130,9 +130,9 @@ def test_saved_predictions_of_all_kinds_are_read_as_ours(tmp_path):
 
 
 def test_what_cannot_be_read_is_named(tmp_path):
-    with pytest.raises(InputError, match="is not there"):
+    with pytest.raises(InputError, match="not found"):
         SavedPredictions(tmp_path / "no.npz")
-    with pytest.raises(InputError, match="holds no KEY.npz"):
+    with pytest.raises(InputError, match="contains no KEY.npz"):
         SavedPredictions(tmp_path)
     write_npz(tmp_path / "all.npz", {"room_0-t0-00000": LABELS})
     saved = SavedPredictions(tmp_path / "all.npz")

@@ -304,7 +304,7 @@ class RecordedView:
     image: Path
     camera: Camera
     pose: GamePose  # at the feet or the eye, as it was stated
-    pose_source: str  # "poses.csv", "PNG texts", "file name by {x}_{y}..."
+    pose_source: str  # "poses.csv", "PNG texts", "file name with pattern {x}_{y}..."
     frame: int = 0
     tour_id: str = ""
     t_s: float = 0.0
@@ -360,7 +360,7 @@ def read_screenshots(
         facts = read_png_facts(path)
         numbers = read(path, facts)
         if numbers is None:
-            raise InputError(path, f"no pose found: {origin} must contain x, y, z, yaw and pitch")
+            raise InputError(path, f"no pose found (read from {origin}); expected x, y, z, yaw and pitch")
         camera = camera_of(facts.width_px, facts.height_px, vertical_fov_deg=vertical_fov_deg)
         try:
             pose = GamePose(*(numbers[name] for name in POSE_FIELDS), at=at)
@@ -446,14 +446,14 @@ Reader = Callable[[Path, PngFacts], dict[str, float] | None]
 def _reader(pictures: list[Path], pattern: str | None) -> tuple[Reader, str]:
     """Return the function that reads poses, chosen for the first image, and its description."""
     if pattern is not None:
-        return _by_name(pattern), f"file name by {pattern}"
+        return _by_name(pattern), f"file name with pattern {pattern}"
     first = pictures[0]
     facts = read_png_facts(first)
     if _by_text(first, facts) is not None:
         return _by_text, "PNG texts"
     for usual in DEFAULT_PATTERNS:
         if _by_name(usual)(first, facts) is not None:
-            return _by_name(usual), f"file name by {usual}"
+            return _by_name(usual), f"file name with pattern {usual}"
     raise InputError(
         first,
         f"no pose found in a sidecar file ({', '.join(SIDECARS)}), in the PNG texts or in the file "

@@ -215,7 +215,7 @@ def test_wrong_folders_are_named(tmp_path, folders):
         open_occupancy(tmp_path / "none")
     with pytest.raises(UnknownNameError, match="did you mean 'nyu'"):
         open_occupancy(tmp_path, "nyuv2")
-    with pytest.raises(InputError, match="holds no gathered_data"):
+    with pytest.raises(InputError, match="no files found that match gathered_data"):
         open_occupancy(tmp_path, "occscannet")
     with pytest.raises(UnknownNameError, match="no sample is named"):
         open_occupancy(folders / "nyu")["house"]

@@ -60,7 +60,7 @@ def test_splits(made):
     store = open_store(made)
     assert len(store.keys("train")) == len(store.keys("test")) == 7
     assert {one.scene_id for one in store.samples("test", pictures=False)} == {"house_0002"}
-    with pytest.raises(UsageError, match="are test, train, not 'val'"):
+    with pytest.raises(UsageError, match="has no split 'val'; known splits: test, train"):
         store.keys("val")
 
 
@@ -219,11 +219,11 @@ def test_an_index_of_other_samples_is_found(copied, tmp_path):
     ("change", "text"),
     [
         (lambda d: (d / "dataset.json").unlink(), "not a data set: dataset.json not found"),
-        (lambda d: (d / "dataset.json").write_text("[]"), "is no dataset.json of format 1"),
-        (lambda d: edit(d / "dataset.json", complete=False), "is not finished; run the same"),
-        (lambda d: (d / "classes.json").write_text("{}"), "holds no classes"),
-        (lambda d: (d / "index.parquet").unlink(), "is no index"),
-        (lambda d: (d / "index.parquet").write_bytes(b"PAR1" * 99), "is no index"),
+        (lambda d: (d / "dataset.json").write_text("[]"), "not a valid dataset.json in format 1"),
+        (lambda d: edit(d / "dataset.json", complete=False), "is not complete; run the same"),
+        (lambda d: (d / "classes.json").write_text("{}"), "not a valid list of classes"),
+        (lambda d: (d / "index.parquet").unlink(), "not a valid index"),
+        (lambda d: (d / "index.parquet").write_bytes(b"PAR1" * 99), "not a valid index"),
         (lambda d: shutil.rmtree(d / "shards"), "cannot be read: No such file"),
     ],
 )
@@ -240,14 +240,14 @@ def edit(path, **changes):
 @pytest.mark.parametrize(
     ("column", "value", "text"),
     [
-        ("shard", "../../etc/passwd", "names a shard"),
-        ("shard", "shards/train/../../x.tar", "names a shard"),
-        ("size", 1 << 60, "has a size of"),
-        ("size", -5, "has a size of"),
-        ("offset", -512, "has a size of"),
+        ("shard", "../../etc/passwd", "invalid shard name"),
+        ("shard", "shards/train/../../x.tar", "invalid shard name"),
+        ("size", 1 << 60, "invalid position or size"),
+        ("size", -5, "invalid position or size"),
+        ("offset", -512, "invalid position or size"),
         ("offset", 1 << 40, "ends before its last sample"),
-        ("offset", 512, "holds no sample"),
-        ("key", "other-a-000001", "holds no sample other-a-000001"),
+        ("offset", 512, "not found at byte 512"),
+        ("key", "other-a-000001", "sample other-a-000001 not found"),
     ],
 )
 def test_inconsistent_rows_are_refused(copied, column, value, text):
@@ -270,7 +270,7 @@ def test_an_index_with_missing_columns_or_extra_rows_is_refused(copied, monkeypa
     from world2minecraft.minecraftocc.store import index
 
     monkeypatch.setattr(index, "MAX_ROWS", 5)
-    with pytest.raises(LimitError, match="has 14 rows"):
+    with pytest.raises(LimitError, match="14 rows"):
         open_store(copied)
     monkeypatch.undo()
     pq.write_table(

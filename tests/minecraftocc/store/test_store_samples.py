@@ -153,19 +153,19 @@ def broken(**changes):
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({"format": 2}, "no JSON of a sample of format 1"),
-        ({"region__shape": [10**6, 10**6, 10**6]}, "a region has 1 to 16,777,216 cells"),
+        ({"format": 2}, "not the JSON of a sample in format 1"),
+        ({"region__shape": [10**6, 10**6, 10**6]}, "a region must have from 1 to 16,777,216 cells"),
         ({"region__shape": [5, 4, 4]}, "must have shape|the packed bits of 80 cells"),
-        ({"region__shape": [0, 4, 3]}, "a region has 1 to"),
-        ({"region__shape": "abc"}, "is no sample"),
+        ({"region__shape": [0, 4, 3]}, "a region must have from 1 to"),
+        ({"region__shape": "abc"}, "not a valid sample"),
         ({"region__voxel_m": -1}, "voxel_m must be above 0"),
-        ({"camera__width_px": 17}, "a picture is 16x12, not 17x12"),
-        ({"camera__width_px": -1}, "is no sample"),
+        ({"camera__width_px": 17}, "an image has 16x12 pixels, expected 17x12"),
+        ({"camera__width_px": -1}, "not a valid sample"),
         ({"camera_to_room": [[1]]}, "camera_to_room must have shape"),
-        ({"camera_to_room": None}, "is no sample"),
-        ({"facts": 3}, "is no sample"),
-        ({"frame": "x"}, "is no sample"),
-        ({"key": None, "camera": []}, "is no sample"),
+        ({"camera_to_room": None}, "not a valid sample"),
+        ({"facts": 3}, "not a valid sample"),
+        ({"frame": "x"}, "not a valid sample"),
+        ({"key": None, "camera": []}, "not a valid sample"),
     ],
 )
 def test_an_inconsistent_json_is_reported_in_one_line(changes, text):
@@ -198,21 +198,21 @@ def test_an_image_with_a_huge_header_is_not_decoded():
     chunk = b"IHDR" + header
     png = b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + chunk
     png += struct.pack(">I", zlib.crc32(chunk))
-    with pytest.raises(DamagedFileError, match="a picture"):
+    with pytest.raises(DamagedFileError, match="an image"):
         decode_depth(png, CAMERA, "here")
 
 
 def test_a_picture_of_another_kind_is_refused():
     grey = encode_colour(np.zeros((12, 16, 3), np.uint8), "png")
-    with pytest.raises(DamagedFileError, match="no grey picture"):
+    with pytest.raises(DamagedFileError, match="must be a grey PNG"):
         decode_depth(grey, CAMERA, "here")
 
 
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (("gif",), "pictures are jpg, png, webp, not 'gif'"),
-        (("jpg", 0), "a quality is 1 to 100, not 0"),
+        (("gif",), "one of jpg, png, webp, got 'gif'"),
+        (("jpg", 0), "quality must be from 1 to 100, got 0"),
     ],
 )
 def test_unknown_choices_are_refused(words, text):

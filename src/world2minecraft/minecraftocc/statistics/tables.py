@@ -23,7 +23,7 @@ HEAD = (
     "rooms",
     "classes",
     "semantic voxels",
-    "voxels per scene",
+    "voxels/scene",
     "resolution",
 )
 SHOWN = 8  # Fine classes at either end of the list.
