@@ -115,9 +115,7 @@ def test_errors_say_what_to_do(monkeypatch):
     with pytest.raises(UsageError, match=r"voxel_m must be at least 0.01 m, got 0.001"):
         voxelize_scene(volume, voxel_m=0.001)
     monkeypatch.setattr(module, "MAX_CELLS", 1000)
-    with pytest.raises(
-        UsageError, match=r"cells of 0.08 m need 0 GB and exceed the limit of 1,000 cells"
-    ):
+    with pytest.raises(UsageError, match=r"need 0 GB and exceed the limit of 1,000 cells"):
         voxelize_scene(volume)
 
 

@@ -360,7 +360,9 @@ def read_screenshots(
         facts = read_png_facts(path)
         numbers = read(path, facts)
         if numbers is None:
-            raise InputError(path, f"no pose found (read from {origin}); expected x, y, z, yaw and pitch")
+            raise InputError(
+                path, f"no pose found (read from {origin}); expected x, y, z, yaw and pitch"
+            )
         camera = camera_of(facts.width_px, facts.height_px, vertical_fov_deg=vertical_fov_deg)
         try:
             pose = GamePose(*(numbers[name] for name in POSE_FIELDS), at=at)
