@@ -8,15 +8,15 @@ from world2minecraft import cli
 from world2minecraft.core.errors import UnknownNameError
 
 WORDS = [
-    ("demo --seed -1", 2, "--seed must be 0 or more, not -1"),
-    ("demo --frames 1", 2, "frames must be 3 or more, not 1; try 40"),
+    ("demo --seed -1", 2, "--seed must be 0 or more, got -1"),
+    ("demo --frames 1", 2, "frames must be 3 or more, got 1; try 40"),
     ("demo --palette nordc", 2, "no palette is named 'nordc'; known: "),
     ("demo --palette no.yaml", 3, "no.yaml: "),
     ("reconstruct scan --out OUT --palette vanila", 2, "did you mean 'vanilla'?"),
     ("reconstruct scan --out OUT --from reprt", 2, "did you mean 'report'?"),
     ("build room.npz --out OUT --air some", 2, "--air must be room, box, none, not 'some'"),
-    ("build room.npz --out OUT --air none", 2, "--air needs --into WORLD or --rcon"),
-    ("build room.npz --out OUT --new-chunks", 2, "--new-chunks needs --into WORLD"),
+    ("build room.npz --out OUT --air none", 2, "--air requires --into WORLD or --rcon"),
+    ("build room.npz --out OUT --new-chunks", 2, "--new-chunks requires --into WORLD"),
     ("build room.npz --into W --at 1 2", 2, "requires 3 arguments; see w2m build --help"),
     ("clean OUT --undo 0", 2, "see w2m clean --help"),
     ("undo nowhere --list", 3, "nowhere: is not a world folder: level.dat not found"),

@@ -111,7 +111,7 @@ def test_a_journal_of_another_build_is_told(out, capsys):
     capsys.readouterr()
     assert clean(out, "--list") == 3
     err = capsys.readouterr().err
-    assert "edits.journal: belongs to another build than the one beside it" in err
+    assert "edits.journal: does not belong to the build in this folder" in err
     assert err.endswith("remove it, or build again\n")
     write_edits(out / "build", ())
     assert clean(out, "--list") == 0
@@ -120,9 +120,9 @@ def test_a_journal_of_another_build_is_told(out, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "reason"),
     [
-        (["nowhere"], 3, "nowhere: holds no build (build/scene.json)"),
-        (["{out}", "--list", "--undo", "1"], 2, "exclude each other; give one"),
-        (["{out}", "--json"], 2, "--json needs --list"),
+        (["nowhere"], 3, "nowhere: does not contain a build (build/scene.json)"),
+        (["{out}", "--list", "--undo", "1"], 2, "use only one of --list, --undo, --undo-all and --redo"),
+        (["{out}", "--json"], 2, "--json requires --list"),
         (["{out}", "--undo", "1"], 2, "there is nothing to undo"),
         (["{out}", "--redo", "4"], 2, "edit 4 was not taken back"),
         (["{out}", "--only", "hole"], 2, "no clean-up rule is named 'hole'; did you mean 'holes'?"),

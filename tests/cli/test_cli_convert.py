@@ -111,14 +111,14 @@ def test_a_folder_that_is_no_world_is_never_replaced(schem, tmp_path, capsys):
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "chapter").write_text("years of work")
     assert convert(schem, tmp_path / "thesis", "--force") == 2
-    assert "a folder without a world (no level.dat)" in capsys.readouterr().err
+    assert "exists and is not a world folder" in capsys.readouterr().err
     assert (tmp_path / "thesis" / "chapter").read_text() == "years of work"
 
 
 def test_a_file_is_not_converted_to_itself(schem, capsys):
     before = schem.read_bytes()
     assert convert(schem, schem, "--force") == 2
-    assert "is both source and target" in capsys.readouterr().err
+    assert "is both the source and the target" in capsys.readouterr().err
     assert schem.read_bytes() == before
 
 
@@ -255,7 +255,7 @@ def test_a_run_becomes_a_scene_for_habitat(run_folder, tmp_path, capsys):
     (tmp_path / "mine.habitat").mkdir()
     (tmp_path / "mine.habitat" / "thesis").write_text("years of work")
     assert convert(run_folder, tmp_path / "mine.habitat", "--force") == 2
-    assert "is a folder of other files" in capsys.readouterr().err
+    assert "is a folder with unrelated files" in capsys.readouterr().err
     assert convert(target, tmp_path / "b.schem") == 3
 
 
@@ -264,7 +264,7 @@ def test_a_scale_may_be_said_where_there_is_none(schem, run_folder, tmp_path, ca
     assert read_volume(tmp_path / "a.glb").blocks_per_metre == 4
     assert convert(schem, tmp_path / "b.glb", "--blocks-per-metre", "0") == 2
     assert convert(run_folder, tmp_path / "b.glb", "--blocks-per-metre", "2") == 2
-    assert "--blocks-per-metre is 4 for this room; leave it out" in capsys.readouterr().err
+    assert "this room has a fixed scale of 4; omit --blocks-per-metre" in capsys.readouterr().err
 
 
 def test_meshes_of_others_are_refused(tmp_path, capsys):

@@ -96,7 +96,7 @@ def test_a_port_that_is_taken_is_one_line(labels, capsys):
     ("words", "code", "why"),
     [
         (["none.npz"], 3, "none.npz"),
-        (["--demo", "den.npy"], 2, "--demo opens a room of its own; leave out the file, or --demo"),
+        (["--demo", "den.npy"], 2, "--demo opens the demo room; omit either --demo or the file"),
         (["--walk"], 2, "--walk needs a world, as in w2m forge OUT --walk"),
         (["none", "--walk"], 3, "none"),
         (["--host", "no.such.host.invalid", "--demo"], 2, "cannot listen on no.such.host.invalid"),

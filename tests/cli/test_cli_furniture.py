@@ -63,7 +63,7 @@ def test_nothing_is_replaced_unless_it_is_said(own, volume, tmp_path, capsys):
     assert (own / "a.json").read_bytes() == before
     assert furniture(*words, "--name", "sofa") == 2
     assert (
-        "the library already has a sofa; choose another name with --name" in capsys.readouterr().err
+        "the library already contains sofa; choose another name with --name" in capsys.readouterr().err
     )
 
 

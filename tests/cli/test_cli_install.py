@@ -56,7 +56,7 @@ def test_the_world_goes_to_the_only_game(out, home, capsys):
         "  1. start Minecraft launcher\n"
         "  2. Singleplayer\n"
         "  3. Kitchen, then Play Selected World\n\n"
-        "From 1.20.5 on, /function w2m:human_size gives you the size of a person there.\n"
+        "In 1.20.5 or newer, /function w2m:human_size scales you to the size of a person.\n"
     )
 
 
@@ -88,8 +88,8 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "reason"),
     [
-        (["install"], 2, "no world given; add the folder of a run, as in w2m install OUT"),
-        (["install", "{out}"], 2, "no game found; use --saves DIR"),
+        (["install"], 2, "no world given; add the run folder, as in w2m install OUT"),
+        (["install", "{out}"], 2, "no game found; give the saves folder of one with --saves"),
         (
             ["install", "{home}", "--saves", "{home}"],
             3,
@@ -98,7 +98,7 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
         (
             ["install", "{out}", "--saves", "{home}/a/b"],
             3,
-            "not found, nor a folder to create it in",
+            "parent folder not found; give the saves folder",
         ),
         (
             ["install", "{out}", "--saves", "{home}", "--name", "/"],

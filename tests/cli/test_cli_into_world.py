@@ -75,10 +75,10 @@ def test_blocks_are_built_at_a_place_and_taken_back(schem, world, capsys):
     assert "  go there   /tp @s 6 70 -1\n" in said
     assert f"  undo       w2m undo '{world}'\n" in said
     assert build(schem, "--into", world, "--at", 5, 70, -3) == 0
-    assert "all of it is built already; nothing changed." in capsys.readouterr().out
+    assert "the build is already complete; nothing changed." in capsys.readouterr().out
     assert cli.run(["undo", str(world), "--list"]) == 0
     assert capsys.readouterr().out == (
-        "0001  built at 5 70 -3, 2 files\n1 step to undo, the last one first.\n"
+        "0001  built at 5 70 -3, 2 files\n1 step to undo, newest first.\n"
     )
     assert cli.run(["undo", str(world), "--list", "--json"]) == 0
     (step,) = json.loads(capsys.readouterr().out)
@@ -137,7 +137,7 @@ def test_force_brings_the_old_files_back(schem, world):
     ("words", "code", "reason"),
     [
         (["{schem}"], 2, "choose where to build: --out FOLDER"),
-        (["{schem}", "--into", "{world}"], 2, "--into needs a place: add --at X Y Z"),
+        (["{schem}", "--into", "{world}"], 2, "--into requires a block position; add --at X Y Z"),
         (["{schem}", "--out", "x", "--at", "1", "2", "3"], 2, "--at"),
         (["{schem}", "--into", "{world}", "--at", "1", "2"], 2, "--at"),
         (

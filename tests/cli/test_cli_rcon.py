@@ -31,6 +31,6 @@ def test_the_password_comes_from_the_environment_alone(tmp_path, monkeypatch, ca
     np.save(tmp_path / "room.npy", np.zeros((2, 2, 2), np.uint8))
     assert run(["build", str(tmp_path / "room.npy"), "--rcon", "localhost"]) == 2
     assert capsys.readouterr().err.strip() == (
-        "error: --rcon takes the password from the environment: export W2M_RCON_PASSWORD=... "
-        "(rcon.password in server.properties)"
+        "error: --rcon requires a password; set the environment variable W2M_RCON_PASSWORD to "
+        "the value of rcon.password in server.properties"
     )

@@ -192,10 +192,10 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
          "--box must end after it begins on each axis, not '1,2,3,1,5,6'"),
         (["--box", "100,0,0,101,1,1"],
          "--box lies beside the build, which is 8 x 5 x 7 blocks from"),
-        (["--format", "bmp"], "--format must be png, jpg or webp, not 'bmp'"),
-        (["--depth-format", "tif"], "--depth-format must be png, exr or npy, not 'tif'"),
-        (["--quality", "0"], "--quality must be 1 to 100, not 0"),
-        (["--depth-scale", "0"], "--depth-scale must be 1 to 65535, not 0"),
+        (["--format", "bmp"], "--format must be png, jpg or webp, got 'bmp'"),
+        (["--depth-format", "tif"], "--depth-format must be png, exr or npy, got 'tif'"),
+        (["--quality", "0"], "--quality must be 1 to 100, got 0"),
+        (["--depth-scale", "0"], "--depth-scale must be 1 to 65535, got 0"),
         (["--outputs", "rbg"], "no output is named 'rbg'; did you mean 'rgb'?"),
         (["--out", "a.tiff"],
          "a.tiff: --out must end in .png, .jpg, .jpeg, .webp, .exr, .npy, .gif, .apng, .mp4, "
@@ -249,7 +249,7 @@ def test_a_wrong_size_is_told(schem, size, text, capsys):
 
 def test_threads_are_counted(schem, capsys):
     assert cli.run(["render", str(schem), "--threads", "0"]) == 2
-    assert capsys.readouterr().err == "error: --threads must be 1 to 512, not 0\n"
+    assert capsys.readouterr().err == "error: --threads must be 1 to 512, got 0\n"
 
 
 def test_bad_input_is_told(tmp_path, schem, capsys):

@@ -52,10 +52,10 @@ def test_houses_become_worlds(tmp_path, capsys):
     ("words", "message"),
     [
         (["--houses", "2"], "--houses (how many) and --worlds (where) need each other"),
-        (["--houses", "0", "--worlds", "W"], "houses must be 1 or more, not 0"),
+        (["--houses", "0", "--worlds", "W"], "houses must be 1 or more, got 0"),
         (["--houses", "1", "--worlds", "W", "--rooms", "5"], "--houses draws kinds, rooms and"),
         (["--houses", "1", "--worlds", "W", "--style", "retrro"], "did you mean 'retro'?"),
-        (["--houses", "1", "--worlds", "W", "--seed", "-1"], "seed must be 0 or more, not -1"),
+        (["--houses", "1", "--worlds", "W", "--seed", "-1"], "seed must be 0 or more, got -1"),
     ],
 )
 def test_words_of_worlds_are_checked(tmp_path, monkeypatch, capsys, words, message):

@@ -104,7 +104,7 @@ def test_wrong_words_are_told_in_one_line(words, text, tmp_path, capsys):
 def test_a_folder_with_a_capture_is_refused(tmp_path, capsys):
     (tmp_path / "capture.json").write_text("{}")
     assert w2m(["rooms", "scan", "--seed", "1", "--out", str(tmp_path)]) == 2
-    line = f"error: {tmp_path} holds a capture; choose another --out, or remove it\n"
+    line = f"error: {tmp_path} already contains a capture; delete it or choose another --out\n"
     assert capsys.readouterr().err == line
 
 
@@ -124,7 +124,7 @@ def test_a_generated_room_is_not_written_over(tmp_path, capsys):
     write_generated(generate_room(3, kind="study"), tmp_path)
     before = (tmp_path / "truth.npz").read_bytes()
     assert w2m(["rooms", "scan", str(tmp_path), "--out", str(tmp_path)]) == 2
-    line = f"error: {tmp_path} holds a generated room; choose another --out\n"
+    line = f"error: {tmp_path} already contains a generated room; choose another --out\n"
     assert capsys.readouterr().err == line
     assert (tmp_path / "truth.npz").read_bytes() == before
 

@@ -35,7 +35,7 @@ def test_text_and_picture(capture, tmp_path, capsys):
     assert lines[0] == (
         f"{capture}: images with poses, without depth (plain), 12 of 12 frames usable"
     )
-    assert lines[-2] == "picture: den-scan.png"
+    assert lines[-2] == "image: den-scan.png"
     assert lines[-1] == f"next: w2m reconstruct {capture} --out OUT"
     assert Image.open(tmp_path / "here" / "den-scan.png").size == (1600, 1040)
     assert w2m(["scan", str(capture)]) == 0  # One of ours is replaced.
@@ -45,7 +45,7 @@ def test_another_s_file_is_left_alone(capture, tmp_path, capsys):
     (tmp_path / "here" / "den-scan.png").write_bytes(b"mine")
     assert w2m(["scan", str(capture)]) == 0
     assert (
-        "picture: none; den-scan.png: exists and is not a picture of w2m scan; choose another"
+        "image: not written; den-scan.png: exists and was not written by w2m scan; choose another"
         in capsys.readouterr().out
     )
     assert (tmp_path / "here" / "den-scan.png").read_bytes() == b"mine"
@@ -58,7 +58,7 @@ def test_a_place_of_one_s_own_and_none(capture, tmp_path, capsys):
     assert list((tmp_path / "here").iterdir()) == []
     capsys.readouterr()
     assert w2m(["scan", str(capture), "--no-picture", "-o", "a.png"]) == 2
-    assert "leave out --no-picture" in capsys.readouterr().err
+    assert "omit --no-picture" in capsys.readouterr().err
     (tmp_path / "file").write_text("")
     assert w2m(["scan", str(capture), "--picture", str(tmp_path / "file" / "a.png")]) == 3
 

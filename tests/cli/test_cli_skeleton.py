@@ -173,7 +173,7 @@ FAILURES = [
     (UsageError("give --out"), "error: give --out\n", 2),
     (CaptureError("cap", "has no poses"), "error: cap: has no poses\n", 3),
     (CaptureError("cap", "a\n\n b"), "error: cap: a b\n", 3),
-    (KeyboardInterrupt(), "stopped; run the same command again to continue\n", 130),
+    (KeyboardInterrupt(), "interrupted; run the same command again to continue\n", 130),
     (
         MemoryError(),
         "error: out of memory; close other programs, or use a larger --voxel\n",

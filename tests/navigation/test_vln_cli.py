@@ -106,14 +106,14 @@ def test_a_model_is_recorded_and_replayed(flat_path, tmp_path, capsys):
         first = tmp_path / "first"
         assert cli.run([*words, "--agent", server.url, "--out", str(first)]) == 0
         asked = len(server.requests)
-        assert "5 questions and 0 from the record" in capsys.readouterr().out
+        assert "5 requests and 0 recorded replies" in capsys.readouterr().out
         assert asked == 5  # Two refused forms, a bad reply, its repair, and STOP.
     result = json.loads((first / "result.json").read_text())
     assert result["agent"] == "tiny" and result["summary"]["invalid"] == 0
     again = tmp_path / "again"
     replay = ["--agent", "local", "--replay", str(first / "replies.jsonl"), "--out", str(again)]
     assert cli.run([*words, *replay]) == 0
-    assert "0 questions and 3 from the record" in capsys.readouterr().out
+    assert "0 requests and 3 recorded replies" in capsys.readouterr().out
     same = ("episodes.jsonl", "views/0001.jpg")
     assert all((first / name).read_bytes() == (again / name).read_bytes() for name in same)
     replayed = json.loads((again / "result.json").read_text())
@@ -185,7 +185,7 @@ def test_a_set_is_evaluated_and_told(tmp_path, capsys):
         assert "50.0 [9, 91] n=2" not in told.splitlines()[0] and "tiny" in told
         assert cli.run(["vln", "evaluate", str(tmp_path), *words]) == 0  # From the record.
         assert len(server.requests) == 3
-        assert "0 questions and 3 from the record" in capsys.readouterr().out
+        assert "0 requests and 3 recorded replies" in capsys.readouterr().out
     result = json.loads((out / "result.json").read_text())
     rights = [item.answer == said for item, said in zip(items, "ADD", strict=False)]
     assert list(result["right"].values()) == [rights[i] for i in (2, 0, 1)]  # Sorted by name.

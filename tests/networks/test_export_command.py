@@ -39,7 +39,7 @@ def test_compressed_weights_report_how_far_logits_move(run, capsys):
     assert cli.run(["export", str(run), "--out", str(out), "--weights", "int8"]) == 0
     said = capsys.readouterr().out
     assert f"{out}: monoscene-tiny, {out.stat().st_size / 1e6:.1f} MB; " in said
-    assert "weights as int8 move a logit by " in said and f"w2m evaluate occupancy {out}" in said
+    assert "int8 weights change a logit by " in said and f"w2m evaluate occupancy {out}" in said
     assert cli.run(["export", str(run), "--out", str(out), "--weights", "int4"]) == 2
     assert "no weight format is named 'int4'; did you mean 'int8'" in capsys.readouterr().err
 

@@ -1,4 +1,4 @@
-"""Captures before and after a reconstruction: inspect one, and join finished runs into a home."""
+"""Inspect captures before a reconstruction, and join finished runs to a home."""
 
 import os
 from collections.abc import Sequence
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class CaptureReport:
-    """What a capture holds, what it lacks, and the command that reconstructs it.
+    """The contents and shortcomings of a capture, with the command that reconstructs it.
 
     Attributes:
-        path: the capture.
-        summary: its frames, cameras, depth and poses; None for a RoomPlan without frames.
-        plan: the RoomPlan, where the capture is one without frames.
+        path: Path of the capture.
+        summary: Frames, cameras, depth and poses. None for a RoomPlan without frames.
+        plan: The RoomPlan. None unless the capture is a RoomPlan without frames.
     """
 
     path: Path
@@ -32,7 +32,7 @@ class CaptureReport:
 
     @property
     def lines(self) -> list[str]:
-        """The report as lines of text; the last one is the next command."""
+        """The report as lines of text, ending with the command that reconstructs the capture."""
         from world2minecraft.capture.summary import roomplan_lines, summary_lines
 
         if self.plan is not None:
@@ -46,24 +46,26 @@ class CaptureReport:
         return {"lines": self.lines} if self.summary is None else summary_to_json(self.summary)
 
     def save_picture(self, path: str | Path, replace: bool = True) -> Path:
-        """Draw some frames, the cameras and the first plan on one page; write it as a PNG.
+        """Write a PNG overview with sample frames, camera positions and a preliminary floor plan.
 
         Args:
-            path: the file.
-            replace: replace a file that is no such picture.
+            path: Image file to write.
+            replace: Whether to replace an existing file that is not such an overview.
 
         Raises:
-            UsageError: the capture is a RoomPlan, which has no frames.
-            OutputError: the file cannot be written, or exists and may not be replaced.
+            UsageError: If the capture is a RoomPlan without frames.
+            OutputError: If the file cannot be written, or exists and must not be replaced.
         """
         from world2minecraft.capture.poster import is_poster, poster_png
         from world2minecraft.core.files import write_bytes
 
         place = Path(path)
         if self.summary is None:
-            raise UsageError(f"{self.path} is a RoomPlan and has no frames to draw")
+            raise UsageError(
+                f"{self.path} is a RoomPlan without frames, so it has no overview image"
+            )
         if not replace and place.exists() and not is_poster(place):
-            raise OutputError(place, "exists and is not a picture of w2m scan")
+            raise OutputError(place, "exists and was not written by w2m scan; choose another file")
         write_bytes(place, poster_png(self.summary))
         return place
 
@@ -72,15 +74,16 @@ class CaptureReport:
 
 
 def inspect_capture(capture: str | Path, *, settings: Settings | None = None) -> CaptureReport:
-    """Report what a capture holds and what it lacks, in seconds and without reconstructing it.
+    """Report the contents and shortcomings of a capture within seconds, without reconstructing it.
 
     Args:
-        capture: photos, a video, the export of a scanning app, RGB-D frames, a mesh, a point cloud
-            or a RoomPlan.
-        settings: options of the reader, such as ``{"capture.depth_unit": "mm"}``.
+        capture: Photos, a video, the export of a scanning app, RGB-D frames, a mesh, a point cloud
+            or a RoomPlan file.
+        settings: Options of the capture reader, such as ``{"capture.depth_unit": "mm"}``.
 
     Raises:
-        UsageError: a setting is wrong. CaptureError: the capture cannot be read.
+        UsageError: If a setting is invalid.
+        CaptureError: If the capture cannot be read.
 
     Example:
         >>> import world2minecraft as w2m
@@ -118,31 +121,32 @@ def join_rooms(
     settings: Settings | None = None,
     progress: Progress = no_progress,
 ) -> Run:
-    """Join finished runs of single rooms into one home with one world.
+    """Join finished runs of single rooms to one home with one world.
 
-    The first room keeps its place. Each other room is placed where one of its doors meets a door
-    of a room that is placed already: of the same width and height, with a wall between them. Rooms
-    are rotated by quarter turns and moved by whole cells; nothing is resampled.
+    The first room keeps its position. Each further room is placed where one of its doors meets a
+    door of the same width and height in a room that is already placed, with a wall between the
+    doors. Rooms are rotated by quarter turns and moved by whole cells, so no room is resampled.
 
     Args:
-        rooms: 2 or more runs, or their folders.
-        out: the folder to write.
-        places: positions by hand, each ``NAME=X,Y,TURNS``: metres in the frame of the first room,
-            and quarter turns.
-        blocks_per_metre: the scale of the world.
+        rooms: At least two runs or run folders.
+        out: Output folder.
+        places: Positions of rooms that should not be placed automatically, as ``NAME=X,Y,TURNS``:
+            metres in the frame of the first room, and quarter turns.
+        blocks_per_metre: Scale of the world.
         style: ``blocks``, ``display`` or ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
-        formats: further files of the build, such as ``("litematic", "glb")``.
-        mc_version: the game version that the world is written for.
-        settings: further parameters by their keys.
-        progress: called at each step.
+        formats: Additional file formats to write, such as ``("litematic", "glb")``.
+        mc_version: Minecraft version of the world.
+        settings: Further parameters by key.
+        progress: Callback that reports the progress of each stage.
 
     Returns:
         The run of the home.
 
     Raises:
-        UsageError: an argument is wrong, or a room fits nowhere or in several places.
-        InputError: a run cannot be read. OutputError: the folder cannot be written.
+        UsageError: If an argument is invalid, or if a room fits in no position or in several.
+        InputError: If a run cannot be read.
+        OutputError: If the output folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m

@@ -1,4 +1,4 @@
-"""SceneForge, the web editor, from Python; walks in the browser; the effort of edited scenes."""
+"""Open SceneForge (the web editor), walk through worlds in the browser, and measure edits."""
 
 import html
 from collections.abc import Callable, Sequence
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class EditorSession:
-    """A running editor; a notebook shows it in a frame, and ``stop`` ends it.
+    """A running SceneForge editor. A notebook shows it in a frame.
 
     Attributes:
-        server: the server behind the page.
-        notes: what the editor found when it opened the room.
-        read_only: the reason why the room cannot be edited; empty where it can.
-        demo_folder: where the demo room is stored; None for other rooms.
+        server: Web server of the editor.
+        notes: Remarks about the room from opening it.
+        read_only: Why the room cannot be edited. Empty if it can be edited.
+        demo_folder: Folder of the demo room. None for other rooms.
     """
 
     server: "ForgeServer"
@@ -36,7 +36,7 @@ class EditorSession:
 
     @property
     def link(self) -> str:
-        """The address of the page, with the token that lets this user in."""
+        """The address of the page, including the token that grants access."""
         return self.server.link
 
     @property
@@ -50,15 +50,15 @@ class EditorSession:
         return self.server.host
 
     def run(self, ready: Callable[[], None] = lambda: None) -> None:
-        """Serve in this thread until Ctrl+C, where the editor was not started yet.
+        """Serve in this thread until Ctrl+C is pressed, if the server is not running yet.
 
         Args:
-            ready: called once the page can be opened.
+            ready: Callback that is called as soon as the page can be opened.
         """
         self.server.run(ready)
 
     def stop(self) -> None:
-        """Stop the server; every edit is on disk already."""
+        """Stop the server. No edits are lost, because every edit is already saved."""
         self.server.stop()
 
     def __enter__(self) -> "EditorSession":
@@ -81,16 +81,17 @@ def open_editor(
 ) -> EditorSession:
     """Start SceneForge for a room in the background of this process.
 
-    Every edit is saved beside the room as it is made and can be undone; the files of the room
-    change when you save. Only this machine can reach the page, and only by its link.
+    Every edit is recorded next to the room immediately and can be undone. The files of the room
+    change when you save in the editor. Only this machine can open the page, and only with its link.
 
     Args:
-        source: a run, its folder or an occupancy file; None for the start page.
-        port: the port to listen on; 8484, or any free one, by default.
-        browser: open the page in the browser.
+        source: Run, run folder or occupancy file. None opens the start page.
+        port: Port to listen on. Defaults to 8484, or to any free port if 8484 is in use.
+        browser: Open the page in the browser.
 
     Raises:
-        UsageError: the port is in use. InputError: the source holds no room.
+        UsageError: If the port is in use.
+        InputError: If the source does not contain a room.
 
     Example:
         >>> import world2minecraft as w2m
@@ -121,22 +122,25 @@ def prepare_editor(
     capture: str | Path | None = None,
     max_upload_mb: int = 512,
 ) -> EditorSession:
-    """Prepare SceneForge without starting it; ``run`` of the session serves until Ctrl+C.
+    """Prepare SceneForge without starting it.
+
+    Call ``run`` on the returned session to serve until Ctrl+C is pressed.
 
     Args:
-        source: a run, its folder, an occupancy file, or a capture; None for the start page.
-        demo: open the demo room; no source is given then.
-        host: the address to listen on.
-        port: the port to listen on; 8484, or any free one, by default.
-        allow_hosts: further names of this machine, beside addresses and ``localhost``.
-        home: the folder for captures and rooms made in the editor; SceneForge in the user's data
-            folder by default.
-        capture: the capture of the run, where its folder does not state it; remembered.
-        max_upload_mb: the limit of one uploaded capture.
+        source: Run, run folder, occupancy file or capture. None opens the start page.
+        demo: Open the demo room. Cannot be combined with a source.
+        host: Address to listen on.
+        port: Port to listen on. Defaults to 8484, or to any free port if 8484 is in use.
+        allow_hosts: Further host names of this machine, in addition to IP addresses and
+            ``localhost``.
+        home: Folder for captures and rooms created in the editor. Defaults to SceneForge in the
+            user's data folder.
+        capture: Capture of the run, if the run folder does not record it. The path is remembered.
+        max_upload_mb: Maximum size of an uploaded capture in MiB.
 
     Raises:
-        UsageError: ``demo`` and a source are given, or the port is in use.
-        InputError: the source holds no room.
+        UsageError: If ``demo`` is combined with a source, or if the port is in use.
+        InputError: If the source does not contain a room.
 
     Example:
         >>> from world2minecraft.api.editor import prepare_editor
@@ -150,7 +154,7 @@ def prepare_editor(
     from world2minecraft.sceneforge.uploads import is_capture, user_home
 
     if demo and source is not None:
-        raise UsageError("--demo opens a room of its own; leave out the file, or --demo")
+        raise UsageError("--demo opens the demo room; omit either --demo or the file")
     place = None if source is None else path_of(source)
     is_dropped = place is not None and is_capture(place)
     demo_out = (Path(home) if home else user_home()) / DEMO_OUT if demo else None
@@ -173,17 +177,17 @@ def prepare_editor(
 
 
 def _state_of(editor: "Editor | None") -> tuple[tuple[str, ...], str]:
-    """Return the notes of an editor, and why it cannot edit."""
+    """Return the notes of an editor and the reason why the room is read-only."""
     return (tuple(editor.notes), editor.read_only) if editor else ((), "")
 
 
 @dataclass(frozen=True, eq=False)
 class WalkSession:
-    """A walk through a world in the browser; ``run`` serves it until nobody walks any more.
+    """A walk through a world in the browser, which ``run`` serves.
 
     Attributes:
-        scene: the world.
-        window: the page.
+        scene: World to walk through.
+        window: Browser page of the walk.
     """
 
     scene: "VlnScene"
@@ -191,14 +195,14 @@ class WalkSession:
 
     @property
     def link(self) -> str:
-        """The address of the page, with the token that lets this user in."""
+        """The address of the page, including the token that grants access."""
         return self.window.link
 
     def run(self) -> None:
-        """Follow the keys that are pressed on the page, until Ctrl+C.
+        """Move the player according to the keys pressed on the page, until Ctrl+C is pressed.
 
         Raises:
-            UsageError: nobody pressed a key for ten minutes.
+            UsageError: If no key is pressed for ten minutes.
         """
         from world2minecraft.navigation.free_walk import walk_freely
 
@@ -213,10 +217,11 @@ class WalkSession:
 
 
 def prepare_walk(source: Run | str | Path) -> WalkSession:
-    """Prepare a walk through a world with the view and the steps of an agent.
+    """Prepare a walk through a world with the view and the steps of a navigation agent.
 
     Raises:
-        InputError: the source is no world. UsageError: there is no place to stand.
+        InputError: If the source is not a world.
+        UsageError: If the world has no position where a player can stand.
 
     Example:
         >>> from world2minecraft.api.editor import prepare_walk
@@ -235,24 +240,24 @@ def prepare_walk(source: Run | str | Path) -> WalkSession:
 
 @dataclass(frozen=True)
 class EffortTable:
-    """The operations and times of edited scenes, as the paper's efficiency table.
+    """The number of operations and the editing time of scenes, as in the paper's efficiency table.
 
     Attributes:
-        efforts: of the edited scenes.
-        scratch: of scenes that were built from nothing, for the other column.
+        efforts: Editing effort of the scenes that started from a reconstruction.
+        scratch: Editing effort of the scenes that were built from an empty grid.
     """
 
     efforts: tuple["Effort", ...]
     scratch: tuple["Effort", ...] = ()
 
     def to_json(self) -> dict[str, Any]:
-        """Return each scene, the means and the paper's figures as JSON values."""
+        """Return the effort of each scene, the means and the paper's results as JSON values."""
         from world2minecraft.sceneforge.effort_table import stats_json
 
         return stats_json(self.efforts, self.scratch)
 
     def to_csv(self) -> str:
-        """Return a line for each scene, under a head."""
+        """Return a CSV table with a header and one row per scene."""
         from world2minecraft.sceneforge.effort_table import stats_csv
 
         return stats_csv([*self.efforts, *self.scratch])
@@ -275,11 +280,11 @@ def measure_editing(
     """Count the operations and the working time of scenes that were edited in SceneForge.
 
     Args:
-        scenes: what was opened in the editor, or their ``.forge`` folders.
-        scratch: scenes that were built from an empty grid.
+        scenes: Rooms that were opened in the editor, or their ``.forge`` folders.
+        scratch: Scenes that were built from an empty grid.
 
     Raises:
-        InputError: a scene was never edited.
+        InputError: If a scene has never been edited.
     """
     from world2minecraft.sceneforge.effort_table import effort_at
 

@@ -1,4 +1,4 @@
-"""Build a room into a world that exists, in its folder or on a running server."""
+"""Build a room into an existing world, either in its folder or on a running server."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -21,16 +21,16 @@ Corner = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class WorldChange:
-    """What a build changed in a world.
+    """The changes that a build made to a world.
 
     Attributes:
-        world: the folder of the world.
-        corner: where the corner of the room's floor stands.
-        size_blocks: the blocks along x, y and z.
-        blocks: how many blocks changed; 0 where all of them were there.
-        entities: how many entities were added.
-        recovered: an earlier step that had been interrupted was undone first.
-        has_size_functions: the world has functions that scale the player to the room.
+        world: Folder of the world.
+        corner: Block position of the room's floor corner.
+        size_blocks: Number of blocks along x, y and z.
+        blocks: Number of blocks that changed. 0 if the world already contained the build.
+        entities: Number of entities that were added.
+        recovered: Whether an earlier interrupted step was undone first.
+        has_size_functions: Whether the world contains functions that scale the player to the room.
     """
 
     world: Path
@@ -44,17 +44,17 @@ class WorldChange:
 
 @dataclass(frozen=True)
 class ServerBuild:
-    """What was built on a server.
+    """A room that was built on a server.
 
     Attributes:
-        corner: where the corner of the room's floor stands.
-        size_blocks: the blocks along x, y and z.
-        blocks: how many of them are not air.
-        commands: how many commands were sent.
-        reconnects: how many lost connections were survived.
-        checked: how many places were read back, all of them right.
-        resumed: an earlier build of the same blocks had been interrupted and was continued.
-        left_out: what commands cannot carry, with its count.
+        corner: Block position of the room's floor corner.
+        size_blocks: Number of blocks along x, y and z.
+        blocks: Number of blocks other than air.
+        commands: Number of commands that were sent.
+        reconnects: Number of times that a lost connection was restored.
+        checked: Number of block positions that were read back and found correct.
+        resumed: Whether an interrupted build of the same blocks was resumed.
+        left_out: Contents that commands cannot create, with the count of each kind.
     """
 
     corner: Corner
@@ -81,27 +81,28 @@ def build_into_world(
     settings: Settings | None = None,
     progress: Progress = no_progress,
 ) -> WorldChange:
-    """Build a room, or the blocks of a file, into an existing world.
+    """Build a room or the blocks of a file into an existing world.
 
-    Every file that changes is backed up; ``undo_build`` restores it.
+    Every changed file is backed up. ``undo_build`` restores the backup.
 
     Args:
-        source: a run, its folder, an occupancy grid, or a block file.
-        world: the folder of the world; the game must not have it open.
-        at: where the corner of the room's floor stands, in blocks of the world.
-        turns: quarter turns before that, counter-clockwise from above.
-        air: which air of the room replaces blocks of the world: ``room``, ``box`` or ``none``.
-        new_chunks: make chunks that the game has never generated.
-        blocks_per_metre: the scale of the room.
+        source: Run, run folder, occupancy grid or block file.
+        world: Folder of the world. The world must not be open in the game.
+        at: Block position of the room's floor corner (x, y, z) in the world.
+        turns: Number of quarter turns, counter-clockwise from above, applied before placement.
+        air: Which air of the source replaces existing blocks: ``room``, ``box`` or ``none``.
+        new_chunks: Create chunks that the game has not generated yet.
+        blocks_per_metre: Scale of the room.
         style: ``blocks``, ``display`` or ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
-        settings: further parameters, such as ``{"build.ceiling": "glass"}``.
-        progress: called at each step.
+        settings: Further parameters, such as ``{"build.ceiling": "glass"}``.
+        progress: Callback that reports the progress of each stage.
 
     Raises:
-        UsageError: an argument is wrong, or the build reaches out of the world.
-        ConflictError: the game has the world open. InputError: the folder is not a world, or
-        lacks chunks. OutputError: the disk is full.
+        UsageError: If an argument is invalid or the build extends beyond the world limits.
+        ConflictError: If the world is open in the game.
+        InputError: If the folder is not a world or lacks chunks.
+        OutputError: If the disk is full.
 
     Example:
         >>> import shutil
@@ -153,27 +154,28 @@ def build_on_server(
     password: str | None = None,
     progress: Progress = no_progress,
 ) -> ServerBuild:
-    """Build a room, or the blocks of a file, on a running server; this cannot be undone.
+    """Build a room or the blocks of a file on a running server. The build cannot be undone.
 
-    A build that was interrupted continues when it is called again.
+    Call the function again with the same arguments to resume an interrupted build.
 
     Args:
-        source: a run, its folder, an occupancy grid, or a block file.
-        server: ``HOST`` or ``HOST:PORT`` of the remote console.
-        at: where the corner of the room's floor stands; (0, 64, 0) by default.
-        turns: quarter turns before that, counter-clockwise from above.
-        air: which air of the room replaces blocks: ``room``, ``box`` or ``none``.
-        blocks_per_metre: the scale of the room.
+        source: Run, run folder, occupancy grid or block file.
+        server: Address of the remote console: ``HOST`` or ``HOST:PORT``.
+        at: Block position of the room's floor corner (x, y, z). Defaults to (0, 64, 0).
+        turns: Number of quarter turns, counter-clockwise from above, applied before placement.
+        air: Which air of the source replaces existing blocks: ``room``, ``box`` or ``none``.
+        blocks_per_metre: Scale of the room.
         style: ``blocks``, ``display`` or ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
-        mc_version: the game version of the server.
-        settings: further parameters, such as ``{"build.ceiling": "glass"}``.
-        password: of the console; the environment variable W2M_RCON_PASSWORD by default.
-        progress: called at each step.
+        mc_version: Minecraft version of the server.
+        settings: Further parameters, such as ``{"build.ceiling": "glass"}``.
+        password: Password of the remote console. Defaults to the environment variable
+            W2M_RCON_PASSWORD.
+        progress: Callback that reports the progress of each stage.
 
     Raises:
-        UsageError: an argument or the password is missing or wrong.
-        ServerError: the server refuses, or cannot be reached.
+        UsageError: If an argument is invalid or the password is missing.
+        ServerError: If the server refuses the connection or cannot be reached.
     """
     from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
     from world2minecraft.editing.build_into_world import affected_mask, check_air
@@ -218,38 +220,46 @@ def check_place(
     has_world: bool,
     has_server: bool,
 ) -> None:
-    """Check that arguments about a place go with a world or a server.
+    """Check that placement arguments are used together with a world or a server.
+
+    Args:
+        at: Block position of the room's floor corner, or None.
+        turns: Number of quarter turns.
+        air: ``room``, ``box`` or ``none``.
+        new_chunks: Whether missing chunks are to be created.
+        has_world: Whether a world folder is given.
+        has_server: Whether a server address is given.
 
     Raises:
-        UsageError: they do not, or ``air`` is unknown.
+        UsageError: If a placement argument has no world or server, or if ``air`` is unknown.
     """
     from world2minecraft.editing.build_into_world import check_air
 
     if has_world and at is None:
-        raise UsageError("--into needs a place: add --at X Y Z, as the F3 screen shows it")
+        raise UsageError("--into requires a block position; add --at X Y Z (see the F3 screen)")
     if not has_world and not has_server and (at is not None or turns):
-        raise UsageError("--at and --turns need --into WORLD or --rcon; add one or leave them out")
+        raise UsageError("--at and --turns require --into WORLD or --rcon HOST")
     check_air(air)
     if new_chunks and not has_world:
-        raise UsageError("--new-chunks needs --into WORLD; add it or leave it out")
+        raise UsageError("--new-chunks requires --into WORLD")
     if air != "room" and not has_world and not has_server:
-        raise UsageError("--air needs --into WORLD or --rcon; add one or leave it out")
+        raise UsageError("--air requires --into WORLD or --rcon HOST")
 
 
 def _room_blocks(
     source: Run | str | Path, options: BuildOptions, progress: Progress
 ) -> tuple["BlockVolume", bool]:
-    """Return the blocks, and whether they are a room of ours, whose floor is known."""
+    """Return the blocks of a source, and whether the source is a room with a known floor height."""
     from world2minecraft.reconstruction.build_without_capture import is_block_file
 
     return blocks_of(source, options, progress), not is_block_file(path_of(source))
 
 
 def _password_of_environment() -> str:
-    """Return the console's password; an option would show it to everyone on the machine."""
+    """Return the console password from the environment, where other users cannot see it."""
     if not os.environ.get(PASSWORD):
         raise UsageError(
-            f"--rcon takes the password from the environment: export {PASSWORD}=... "
-            "(rcon.password in server.properties)"
+            f"--rcon requires a password; set the environment variable {PASSWORD} to the value of "
+            "rcon.password in server.properties"
         )
     return os.environ[PASSWORD]

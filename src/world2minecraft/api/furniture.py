@@ -1,4 +1,4 @@
-"""The furniture library: list its pieces, add your own, draw them."""
+"""List, add and draw the pieces of the furniture library."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -19,15 +19,15 @@ SCALES = (1.0, 2.0, 4.0)  # Blocks per metre of what is shown and drawn.
 
 
 def list_furniture(word: str = "", *, class_name: str = "") -> list["Template"]:
-    """Return the furniture of the library and your own, in the order in which it is matched.
+    """Return the furniture of the library and of the user, in the order used for matching.
 
     Args:
-        word: a part of a name, a title or a family; empty for all.
-        class_name: ``chair``, ``bed``, ``sofa``, ``table``, ``tvs``, ``furn`` or ``objs``; empty
-            for all.
+        word: Part of a name, a title or a family. Empty returns all pieces.
+        class_name: ``chair``, ``bed``, ``sofa``, ``table``, ``tvs``, ``furn`` or ``objs``. Empty
+            returns all classes.
 
     Raises:
-        UnknownNameError: there is no such class.
+        UnknownNameError: If the class is unknown.
 
     Example:
         >>> import world2minecraft as w2m
@@ -43,10 +43,10 @@ def list_furniture(word: str = "", *, class_name: str = "") -> list["Template"]:
 
 
 def furniture_piece(name: str) -> "Template":
-    """Return the piece of furniture of a name.
+    """Return the piece of furniture with the given name.
 
     Raises:
-        UnknownNameError: there is none.
+        UnknownNameError: If the name is unknown.
     """
     from world2minecraft.furniture import template
 
@@ -54,30 +54,31 @@ def furniture_piece(name: str) -> "Template":
 
 
 def is_own(piece: "Template") -> bool:
-    """Return whether a piece is one that the user added."""
+    """Return whether a piece of furniture was added by the user."""
     from world2minecraft.furniture.user_library import user_design_files
 
     return piece.name in user_design_files()
 
 
 def by_heading(pieces: Sequence["Template"]) -> dict[str, list["Template"]]:
-    """Return pieces under the heading of their class, such as ``Chairs``; no heading is empty."""
+    """Group pieces of furniture under class headings such as ``Chairs``, without empty groups."""
     from world2minecraft.furniture.library import group_by_class
 
     return group_by_class(pieces)
 
 
 def furniture_markdown(pieces: Sequence["Template"]) -> str:
-    """Return pieces as Markdown tables, one for each class."""
+    """Return pieces of furniture as Markdown tables, with one table per class."""
     from world2minecraft.furniture.library import templates_to_markdown
 
     return templates_to_markdown(pieces)
 
 
 def block_counts(piece: "Template", blocks_per_metre: float) -> dict[str, int]:
-    """Return how many blocks of each kind a piece of usual size has at a scale.
+    """Return the number of blocks of each type in a piece of typical size at a scale.
 
-    Empty where its shape is fitted with blocks instead.
+    The result is empty if the piece has no block design at that scale and its shape is fitted
+    instead.
 
     Example:
         >>> from world2minecraft.api.furniture import block_counts, furniture_piece
@@ -94,7 +95,7 @@ def block_counts(piece: "Template", blocks_per_metre: float) -> dict[str, int]:
 
 
 def furniture_json(piece: "Template") -> dict[str, Any]:
-    """Return what is known of a piece as JSON values: sizes in metres, parameters, materials."""
+    """Return the properties of a piece as JSON values: sizes in metres, parameters, materials."""
     sides = zip(("depth", "width", "height"), piece.size_m, strict=True)
     return {
         "name": piece.name,
@@ -117,15 +118,15 @@ def furniture_json(piece: "Template") -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class AddedFurniture:
-    """A piece that was added to the user's own furniture.
+    """A piece of furniture that was added to the user's library.
 
     Attributes:
-        name: its name in the library.
-        path: the file that it was written to.
-        blocks: how many blocks it has.
-        size_m: its usual depth, width and height in metres.
-        front: the side to which its front looked: ``north``, ``east``, ``south`` or ``west``.
-        notes: what of the source was left out or assumed.
+        name: Name in the library.
+        path: File that was written.
+        blocks: Number of blocks.
+        size_m: Typical depth, width and height in metres.
+        front: Side that the front faced in the source: ``north``, ``east``, ``south`` or ``west``.
+        notes: Parts of the source that were omitted, and assumptions that were made.
     """
 
     name: str
@@ -150,27 +151,30 @@ def add_furniture(
     match: bool = True,
     force: bool = False,
 ) -> AddedFurniture:
-    """Add a piece of your own to the furniture library, from blocks that someone built.
+    """Add a piece of furniture built from blocks to the user's furniture library.
 
-    The air around it is cut off. At its own scale the piece is built block for block; at another
-    its shape is fitted. It is stored in the folder ``W2M_FURNITURE``, or with the user's settings.
+    Surrounding air is removed. At its own scale, the piece is built block for block. At other
+    scales, its shape is fitted with blocks. The piece is stored in the folder named by the
+    environment variable ``W2M_FURNITURE``, or next to the user's settings.
 
     Args:
-        source: a ``.schem``, ``.litematic``, ``.nbt`` or another build.
+        source: ``.schem``, ``.litematic``, ``.nbt`` or other file with blocks.
         class_name: ``chair``, ``bed``, ``sofa``, ``table``, ``tvs``, ``furn`` or ``objs``.
-        blocks_per_metre: the scale at which it was built.
-        name: its name in the library; that of the file by default.
-        title: its name for people.
-        front: ``north``, ``east``, ``south`` or ``west``; inferred from its blocks by default.
-        size_m: its real depth, width and height in metres; that of its blocks by default.
+        blocks_per_metre: Scale at which the piece was built.
+        name: Name in the library. Defaults to the file name.
+        title: Readable name.
+        front: Side that the front faces: ``north``, ``east``, ``south`` or ``west``. Inferred from
+            the blocks by default.
+        size_m: Real depth, width and height in metres. Defaults to the size of the blocks.
         mount: ``floor``, ``wall``, ``ceiling`` or ``any``.
-        recolour: let its wood, wool and stone take the colour of an object.
-        match: match objects of a reconstruction against it.
-        force: replace a piece of your own of this name.
+        recolour: Replace wood, wool and stone with variants in the colour of the matched object.
+        match: Match reconstructed objects with this piece.
+        force: Replace an existing piece of the user with the same name.
 
     Raises:
-        UsageError: a name or a class is not valid, or the name is taken. InputError: the file
-        cannot be read. OutputError: the library cannot be written.
+        UsageError: If a name or class is invalid, or if the name is already in use.
+        InputError: If the file cannot be read.
+        OutputError: If the library cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -207,17 +211,21 @@ def add_furniture(
         sum(length for number, length in runs if number),
         piece.typical_m,
         added.front,
-        (*(f"left out: {count} {what}" for what, count in losses), *added.notes),
+        (*(f"omitted: {count} {what}" for what, count in losses), *added.notes),
     )
 
 
 def _free_file(name: str, force: bool) -> Path:
-    """Return the file of a new piece. Raises UsageError where its name is taken."""
+    """Return the file path of a new piece.
+
+    Raises:
+        UsageError: If the name is already in use.
+    """
     from world2minecraft.furniture.library import builtin_design_files
     from world2minecraft.furniture.user_library import user_design_folder
 
     if name in builtin_design_files():
-        raise UsageError(f"the library already has a {name}; choose another name with --name")
+        raise UsageError(f"the library already contains {name}; choose another name with --name")
     target = user_design_folder() / f"{name}.json"
     if target.exists() and not force:
         raise UsageError(f"{target} exists; add --force to replace it, or choose another --name")
@@ -232,21 +240,22 @@ def draw_furniture(
     columns: int = 4,
     progress: Progress = no_progress,
 ) -> list["Template"]:
-    """Draw furniture by class at 1, 2 and 4 blocks per metre; write the picture as a PNG.
+    """Draw furniture by class at 1, 2 and 4 blocks per metre, and write a PNG file.
 
     Args:
-        out: the PNG.
-        names: the pieces to draw; all by default.
-        class_name: draw this class only.
-        columns: how many pieces to draw side by side.
-        progress: called before and after the drawing.
+        out: PNG file to write.
+        names: Pieces to draw. Defaults to all pieces.
+        class_name: Draw only this class.
+        columns: Number of pieces per row.
+        progress: Callback that is called before and after drawing.
 
     Returns:
-        The pieces that were drawn.
+        The selected pieces.
 
     Raises:
-        UsageError: nothing to draw. UnknownNameError: there is no such piece or class.
-        OutputError: the picture cannot be written.
+        UsageError: If no selected piece can be drawn.
+        UnknownNameError: If a piece or class is unknown.
+        OutputError: If the image cannot be written.
 
     Example:
         >>> from world2minecraft.api.furniture import draw_furniture
@@ -264,7 +273,7 @@ def draw_furniture(
         for heading, members in by_heading(chosen).items()
     }
     if not any(groups.values()):
-        raise UsageError("nothing to draw: no piece has blocks at 1, 2 or 4 blocks per metre")
+        raise UsageError("nothing to draw: no selected piece has a block design at scale 1, 2 or 4")
     progress("render", 0, 1)
     write_bytes(out, sheet_png(contact_sheet(groups, columns)))
     progress("render", 1, 1)

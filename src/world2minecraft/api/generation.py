@@ -1,4 +1,4 @@
-"""Generated rooms with exact truth, virtual scans of them, and the scores of a reconstruction."""
+"""Generate rooms with ground truth, scan them virtually, and score reconstructions."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,7 +12,7 @@ from world2minecraft.core.progress import Progress, no_progress
 if TYPE_CHECKING:
     from world2minecraft.procgen import Room as GeneratedRoom
 
-MIN_FRAMES = 3  # Of fewer nobody can say how well their poses fit.
+MIN_FRAMES = 3  # The quality of the poses cannot be estimated from fewer frames.
 
 
 def generate_room(
@@ -23,18 +23,21 @@ def generate_room(
     clutter: float = 0.0,
     out: str | Path | None = None,
 ) -> "GeneratedRoom":
-    """Generate a furnished room with exact truth; the same seed gives the same room.
+    """Generate a furnished room with exact ground truth. The same seed gives the same room.
 
     Args:
-        kind: ``living``, ``bed``, ``kitchen``, ``dining``, ``study``, ``bathroom`` ...; drawn by
-            the seed by default.
-        seed: 0 or more.
-        shape: ``box``, ``ell``, ``cut``, ``sloped`` or ``columns``; None draws one.
-        clutter: 0 (tidy) to 1.
-        out: a folder to write the room to: ``layout.json``, ``truth.npz`` and ``preview.png``.
+        kind: Room type: ``living``, ``bed``, ``kitchen``, ``dining``, ``study``, ``bathroom`` and
+            others. Random by default.
+        seed: Random seed. Must be 0 or more.
+        shape: Floor shape: ``box``, ``ell``, ``cut``, ``sloped`` or ``columns``. None selects a
+            random shape.
+        clutter: Amount of clutter from 0 (tidy) to 1.
+        out: Folder to write ``layout.json``, ``truth.npz`` and ``preview.png`` to. None writes no
+            files.
 
     Raises:
-        UsageError: an argument is out of range. OutputError: the folder cannot be written.
+        UsageError: If an argument is out of range.
+        OutputError: If the output folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -59,17 +62,18 @@ def generate_house(
     clutter: float = 0.0,
     out: str | Path | None = None,
 ) -> "GeneratedRoom":
-    """Generate a house of several furnished rooms; the same seed gives the same house.
+    """Generate a house of several furnished rooms. The same seed gives the same house.
 
     Args:
-        seed: 0 or more.
-        rooms: 3 to 14, halls included.
-        storeys: 1 or 2.
-        clutter: 0 (tidy) to 1.
-        out: a folder to write the house to.
+        seed: Random seed. Must be 0 or more.
+        rooms: Number of rooms including halls, 3 to 14.
+        storeys: Number of storeys, 1 or 2.
+        clutter: Amount of clutter from 0 (tidy) to 1.
+        out: Folder to write the house to. None writes no files.
 
     Raises:
-        UsageError: an argument is out of range. OutputError: the folder cannot be written.
+        UsageError: If an argument is out of range.
+        OutputError: If the output folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -93,22 +97,24 @@ def generate_worlds(
     style: str | None = None,
     progress: Progress = no_progress,
 ) -> list[Path]:
-    """Generate houses as Minecraft worlds, each with the class and the object of every block.
+    """Generate houses as Minecraft worlds, with the class and object id of every block.
 
     Args:
-        out: the folder to write; each house is a folder in it.
-        houses: how many; a longer series begins with a shorter one.
-        seed: 0 or more.
-        style: the style of all houses; each draws its own by default.
-        progress: called for each house.
+        out: Output folder, with one subfolder per house.
+        houses: Number of houses. With the same seed, a larger number adds houses after the same
+            first ones.
+        seed: Random seed. Must be 0 or more.
+        style: Style of all houses. Random for each house by default.
+        progress: Callback that is called for each house.
 
     Returns:
-        The folders of the houses, with ``world/``, ``scene.json``, ``scene.npz`` and
+        The folders of the houses. Each contains ``world/``, ``scene.json``, ``scene.npz`` and
         ``designs.json``.
 
     Raises:
-        UsageError: a number is out of range. UnknownNameError: there is no such style.
-        OutputError: the folder cannot be written.
+        UsageError: If a number is out of range.
+        UnknownNameError: If the style is unknown.
+        OutputError: If the output folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -119,9 +125,9 @@ def generate_worlds(
     from world2minecraft.reconstruction.run_folder import check_writable
 
     if houses < 1:
-        raise UsageError(f"houses must be 1 or more, not {houses}")
+        raise UsageError(f"houses must be 1 or more, got {houses}")
     if seed < 0:
-        raise UsageError(f"seed must be 0 or more, not {seed}")
+        raise UsageError(f"seed must be 0 or more, got {seed}")
     check_writable(Path(out))
     return write_worlds(Path(out), houses, seed, style=style, progress=progress)
 
@@ -129,15 +135,15 @@ def generate_worlds(
 def save_room(
     room: "GeneratedRoom", out: str | Path, progress: Progress = no_progress
 ) -> "GeneratedRoom":
-    """Write a generated room: ``layout.json``, ``truth.npz`` and ``preview.png``; return it.
+    """Write a generated room as ``layout.json``, ``truth.npz`` and ``preview.png``, and return it.
 
     Args:
-        room: the room or house.
-        out: the folder to write.
-        progress: called at each step.
+        room: Room or house to write.
+        out: Output folder.
+        progress: Callback that reports each written file.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the output folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -177,27 +183,29 @@ def scan_room(
     coverage: float = 1.0,
     progress: Progress = no_progress,
 ) -> Path:
-    """Scan a generated room with a virtual camera; write a capture with its truth beside it.
+    """Scan a generated room with a virtual camera, and write a capture with its ground truth.
 
     Args:
-        room: a generated room or house, or the folder of one.
-        out: the folder of the capture; must hold no other capture.
-        sensor: ``rgbd`` (noisy depth), ``clean``, or a phone's ``photo`` (photos with poses),
-            ``photos`` (photos alone) or ``video``.
-        frames: the pictures of the whole walk; 40 by default, 100 photos, 240 of a video.
-        seed: of the walk and the noise; that of the room by default.
-        labels: write label images too.
-        label_error: the share of their surface that is wrong, 0 to 1.
-        depth_scale_sigma: the standard deviation of each frame's factor of depth.
-        coverage: the share of the walk that is taken, above 0 and up to 1.
-        progress: called after each frame.
+        room: Generated room or house, or its folder.
+        out: Folder of the capture. Must not contain another capture.
+        sensor: ``rgbd`` (noisy depth), ``clean`` (exact depth), ``photo`` (phone photos with
+            poses), ``photos`` (phone photos only) or ``video``.
+        frames: Number of images in the whole walk. Defaults to 40, 100 for photos, or 240 for a
+            video.
+        seed: Random seed of the walk and the noise. Defaults to the seed of the room.
+        labels: Also write label images.
+        label_error: Fraction of the surface with wrong labels, 0 to 1.
+        depth_scale_sigma: Standard deviation of the depth scale factor of each frame.
+        coverage: Fraction of the walk to record, above 0 and at most 1.
+        progress: Callback that is called after each frame.
 
     Returns:
-        The folder of the capture, for ``reconstruct``; ``evaluate`` finds the truth in it.
+        The capture folder, which can be passed to ``reconstruct`` and, as the ground truth, to
+        ``evaluate``.
 
     Raises:
-        UsageError: an argument is out of range, or the folder holds another capture.
-        OutputError: the folder cannot be written.
+        UsageError: If an argument is out of range or the folder contains another capture.
+        OutputError: If the output folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -225,15 +233,16 @@ def scan_room(
 
 
 def check_scan(out: Path, figures: Mapping[str, Any]) -> None:
-    """Check the folder and the figures of ``scan_room`` before any work.
+    """Check the output folder and the settings of ``scan_room`` before any work.
 
     Args:
-        out: the folder of the capture.
-        figures: the arguments of ``scan_room`` by their names.
+        out: Folder of the capture.
+        figures: Arguments of ``scan_room`` by name.
 
     Raises:
-        UsageError: a figure is out of range, or the folder holds another capture or a room.
-        OutputError: the folder cannot be written.
+        UsageError: If a setting is out of range, or if the folder contains another capture or a
+            room.
+        OutputError: If the output folder cannot be written.
     """
     from world2minecraft.procgen.sensors.scan_frames import ScanSettings
 
@@ -245,7 +254,7 @@ def check_scan(out: Path, figures: Mapping[str, Any]) -> None:
 
 
 def _settings_of(figures: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the arguments of ``scan_room`` as those of a virtual scan."""
+    """Convert the arguments of ``scan_room`` to the settings of a virtual scan."""
     chosen = {name: value for name, value in figures.items() if name not in ("labels", "progress")}
     chosen["with_labels"] = bool(figures.get("labels") or figures.get("label_error"))
     return chosen
@@ -265,21 +274,22 @@ def demo(
 ) -> Run:
     """Generate a room, scan it with a virtual depth camera and reconstruct it.
 
-    The truth is known, so that the report scores the result against it.
+    The report scores the result against the ground truth of the generated room.
 
     Args:
-        out: the folder to write; the scan is in its folder ``capture``.
-        kind: the kind of room, as ``generate_room`` has it.
-        seed: 0 or more.
-        frames: the frames of the scan, 3 or more.
-        blocks_per_metre: the scale of the world.
+        out: Output folder. The scan is written to its ``capture`` subfolder.
+        kind: Room type. ``generate_room`` lists the types.
+        seed: Random seed. Must be 0 or more.
+        frames: Number of frames in the scan, 3 or more.
+        blocks_per_metre: Scale of the world.
         style: ``blocks``, ``display`` or ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
-        formats: further files of the build.
-        progress: called at each step.
+        formats: Additional file formats to write.
+        progress: Callback that reports the progress of each stage.
 
     Raises:
-        UsageError: an argument is out of range. OutputError: the folder cannot be written.
+        UsageError: If an argument is out of range.
+        OutputError: If the output folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -292,9 +302,9 @@ def demo(
     from world2minecraft.runs import run_capture
 
     if seed < 0:
-        raise UsageError(f"--seed must be 0 or more, not {seed}")
+        raise UsageError(f"--seed must be 0 or more, got {seed}")
     if frames < MIN_FRAMES:
-        raise UsageError(f"--frames must be {MIN_FRAMES} or more, not {frames}; try 40")
+        raise UsageError(f"--frames must be {MIN_FRAMES} or more, got {frames}; try 40")
     plaque = {"build.plaque": f"A {kind} room"}
     options = BuildOptions(blocks_per_metre, style, palette, formats, settings=plaque)
     chosen = options.parameters()
@@ -309,11 +319,17 @@ def demo(
 
 
 def scan_trial(name: str, out: str | Path, progress: Progress = no_progress) -> Path:
-    """Write a trial of the benchmark, such as ``noise-500``: a scanned room with its truth.
+    """Write a benchmark trial, such as ``noise-500``: a scanned room with its ground truth.
+
+    Args:
+        name: Name of the trial.
+        out: Output folder.
+        progress: Callback that reports the progress of the scan.
 
     Raises:
-        UnknownNameError: there is no such trial. UsageError: the folder holds another capture.
-        OutputError: the folder cannot be written.
+        UnknownNameError: If the trial is unknown.
+        UsageError: If the folder contains another capture.
+        OutputError: If the output folder cannot be written.
     """
     from world2minecraft.procgen.benchmark_trials import find_trial, write_trial
 
@@ -329,24 +345,25 @@ def evaluate(
     stages: bool = False,
     progress: Progress = no_progress,
 ) -> dict[str, Any]:
-    """Score a reconstruction against the room that was scanned.
+    """Score a reconstruction against the ground truth of its virtual scan.
 
     Only cells that a noise-free ray of a used frame reached or crossed are scored.
 
     Args:
-        run: a run or its folder, or the ``labels.npz`` of another method: ``labels`` (uint8
-            [X, Y, Z]), ``voxel_m``, ``origin_m`` and ``grid_to_scan`` (4x4), with an
-            ``objects.json`` beside it.
-        truth: the folder of a virtual scan, or any with ``truth.npz`` and ``truth.json``.
-        stages: also score the run with the truth put in after each stage.
-        progress: called at each step of ``stages``.
+        run: Run, run folder, or a ``labels.npz`` file of another method. Such a file contains
+            ``labels`` (uint8 [X, Y, Z]), ``voxel_m``, ``origin_m`` and ``grid_to_scan`` (4x4), with
+            an ``objects.json`` in the same folder.
+        truth: Folder of a virtual scan, or any folder with ``truth.npz`` and ``truth.json``.
+        stages: Also score the run with the output of each stage replaced by the ground truth in
+            turn.
+        progress: Callback that reports the scored stages if ``stages`` is True.
 
     Returns:
-        The figures by group, such as ``["occupancy"]["iou"]``; docs/metrics.md describes them.
+        Scores by group, such as ``["occupancy"]["iou"]``. They are described in docs/metrics.md.
 
     Raises:
-        InputError: a file is missing or cannot be read.
-        UsageError: ``stages`` is asked of another method's labels.
+        InputError: If a file is missing or cannot be read.
+        UsageError: If ``stages`` is requested for the labels of another method.
 
     Example:
         >>> import world2minecraft as w2m
@@ -361,7 +378,7 @@ def evaluate(
     foreign = foreign_file(place)
     if foreign is not None:
         if stages:
-            raise UsageError(f"{place} is not a run of w2m reconstruct; leave out --stages")
+            raise UsageError(f"{place} was not created by w2m reconstruct; omit --stages")
         return evaluate_foreign(foreign, folder)
     _check_run(place)
     scores = evaluate_reconstruction(place, folder)
@@ -371,22 +388,25 @@ def evaluate(
 
 
 def _check_run(folder: Path) -> None:
-    """Raise InputError where a folder holds no finished run."""
+    """Raise InputError if a folder does not contain a finished run."""
     if not folder.is_dir():
-        raise InputError(folder, "is not a folder; w2m reconstruct CAPTURE --out OUT makes one")
+        raise InputError(
+            folder, "folder not found; create it with w2m reconstruct CAPTURE --out OUT"
+        )
     for name in ("scan.json", "room.npz", "objects.json"):
         if not (folder / name).is_file():
             raise InputError(
-                folder, f"has no {name}; finish the run: w2m reconstruct CAPTURE --out {folder}"
+                folder,
+                f"does not contain {name}; finish the run: w2m reconstruct CAPTURE --out {folder}",
             )
 
 
 def _check_empty(out: Path) -> None:
-    """Refuse a folder that holds a capture or a room: two would mix."""
+    """Raise UsageError if a folder already contains a capture or a generated room."""
     from world2minecraft.reconstruction.run_folder import check_writable
 
     check_writable(out)
     if (out / "layout.json").exists():
-        raise UsageError(f"{out} holds a generated room; choose another --out")
+        raise UsageError(f"{out} already contains a generated room; choose another --out")
     if any((out / name).exists() for name in ("capture.json", "capture.mp4", "truth.npz")):
-        raise UsageError(f"{out} holds a capture; choose another --out, or remove it")
+        raise UsageError(f"{out} already contains a capture; delete it or choose another --out")

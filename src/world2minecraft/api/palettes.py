@@ -1,4 +1,4 @@
-"""Palettes: the blocks that rooms may be built of."""
+"""List and open palettes, which define the blocks that rooms are built from."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def list_palettes() -> list["Palette"]:
-    """Return the palettes of the program.
+    """Return the palettes included in the program.
 
     Example:
         >>> import world2minecraft as w2m
@@ -23,10 +23,11 @@ def list_palettes() -> list["Palette"]:
 
 
 def open_palette(name: str | Path) -> "Palette":
-    """Return a palette by its name, or read one of your own from a YAML or JSON file.
+    """Return an included palette by name, or read a palette from a YAML or JSON file.
 
     Raises:
-        UnknownNameError: there is no such palette. InputError: the file is not a palette.
+        UnknownNameError: If the palette is unknown.
+        InputError: If the file is not a valid palette.
 
     Example:
         >>> from world2minecraft.api.palettes import open_palette
@@ -39,7 +40,7 @@ def open_palette(name: str | Path) -> "Palette":
 
 
 def palette_json(palette: "Palette") -> dict[str, Any]:
-    """Return what a palette holds as JSON values: blocks by class, furniture, words.
+    """Return a palette as JSON values: blocks by class, furniture, and number of name rules.
 
     Example:
         >>> from world2minecraft.api.palettes import open_palette, palette_json

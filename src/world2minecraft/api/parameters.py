@@ -1,4 +1,4 @@
-"""The parameters of a reconstruction: every key of ``settings`` with its meaning."""
+"""List the parameters of a reconstruction, which are the keys of ``settings``."""
 
 from typing import TYPE_CHECKING
 
@@ -7,16 +7,16 @@ if TYPE_CHECKING:
 
 
 def settings(prefix: str | None = None) -> "tuple[ParameterInfo, ...]":
-    """List the keys that ``settings`` of other functions, and ``--set``, accept.
+    """List the keys accepted by the ``settings`` argument of other functions and by ``--set``.
 
     Args:
-        prefix: a group such as ``find``, or one key; all by default.
+        prefix: A group such as ``find``, or a single key. Defaults to all keys.
 
     Returns:
-        For each its ``key``, ``default``, ``unit``, ``meaning`` and ``origin``.
+        One entry per parameter with its ``key``, ``default``, ``unit``, ``meaning`` and ``origin``.
 
     Raises:
-        UnknownNameError: no key begins with ``prefix``; the message suggests the nearest.
+        UnknownNameError: If no key starts with ``prefix``. The message suggests the closest match.
 
     Example:
         >>> import world2minecraft as w2m

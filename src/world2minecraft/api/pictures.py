@@ -1,4 +1,4 @@
-"""Pictures of builds: one in memory, or any number as files, from any pose."""
+"""Render images of builds from any camera pose, in memory or as files."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -30,20 +30,22 @@ MAX_THREADS = 512
 def render(
     source: Run | str | Path, *, size: tuple[int, int] = (640, 480), view: str = "isometric"
 ) -> "Image":
-    """Draw a build as one picture, without the game, a display or a graphics card.
+    """Render a build as one image, without the game, a display or a graphics card.
 
     Args:
-        source: a run, its folder, a world, or a block file such as ``house.schem``.
-        size: the width and the height in pixels.
-        view: ``isometric``, from outside with ceiling and near walls cut away; ``plan``, from
-            above; or ``inside``, from where the player starts.
+        source: Run, run folder, world, or block file such as ``house.schem``.
+        size: Image width and height in pixels.
+        view: ``isometric`` (from outside, with the ceiling and near walls cut away), ``plan`` (from
+            above) or ``inside`` (from the player's spawn point).
 
     Returns:
-        The picture, RGB.
+        The RGB image.
 
     Raises:
-        UnknownNameError: there is no such view. InputError: the build cannot be read.
-        UsageError: the size is out of range, or ``inside`` is asked of a build without a start.
+        UnknownNameError: If the view is unknown.
+        InputError: If the build cannot be read.
+        UsageError: If the size is out of range, or if ``inside`` is requested for a build without a
+            spawn point.
 
     Example:
         >>> import world2minecraft as w2m
@@ -62,7 +64,7 @@ def render(
     volume = build.volume
     if view == "inside":
         if build.start is None:
-            raise UsageError(f"{path_of(source)} has no player start; use view='isometric'")
+            raise UsageError(f"{path_of(source)} has no player spawn point; use view='isometric'")
         start = build.start
         return _inside(volume, (start.x, start.y, start.z, start.yaw_deg), size)
     if view == "isometric":
@@ -128,52 +130,56 @@ def render_files(
     jobs: int = 1,
     progress: Progress = no_progress,
 ) -> "DrawnFiles":
-    """Draw a build to picture files, with the pose of each, without the game or a display.
+    """Render a build to image files with their camera poses, without the game or a display.
 
     Args:
-        source: a run, its folder, a world, or a block file such as ``house.schem``.
-        out: a picture (.png .jpg .webp .exr .npy), an animation (.gif .apng .webp .mp4 .webm) or
-            a folder; by default a name from the source and the view, in the working folder.
-        view: ``start``, from where the player starts (from outside where a build has no start),
+        source: Run, run folder, world, or block file such as ``house.schem``.
+        out: Image file (.png .jpg .webp .exr .npy), animation (.gif .apng .webp .mp4 .webm) or
+            folder. By default, a file in the working directory named after the source and the view.
+        view: ``start`` (from the player's spawn point, or from outside if the build has none),
             ``orbit``, ``tour`` (a walk through the rooms) or ``turntable``.
-        poses: instead of a view, poses (x, y, z, yaw, pitch) at the feet, as the game's F3 screen
-            shows them, or ``GamePose`` values; or a file of poses: JSON lines or CSV.
-        frames: the number of pictures of an orbit, a tour or a turntable.
-        opened: from outside, leave out ceilings and near walls; by default for labelled rooms.
-        box: draw these blocks only: x0, y0, z0, x1, y1, z1, the last ones excluded.
-        size: the width and the height in pixels.
-        vertical_fov_deg: 70 by default, as in the game; 40 for an orbit.
-        horizontal_fov_deg: in place of the vertical one.
-        outputs: ``rgb``, ``depth``, ``range``, ``block``, ``state``, ``class``, ``instance``,
-            ``face`` ...; ``id`` is state, class and instance, ``all`` is all of them.
-        image_format: of colour in a folder: ``png``, ``jpg`` or ``webp``.
+        poses: Camera poses to use instead of a view: (x, y, z, yaw, pitch) at the feet, as on the
+            game's F3 screen, ``GamePose`` values, or a JSON lines or CSV file of poses.
+        frames: Number of images in an orbit, a tour or a turntable.
+        opened: Omit ceilings and near walls in views from outside. By default, only for rooms with
+            class labels.
+        box: Render only the blocks in this box: x0, y0, z0, x1, y1, z1, with exclusive upper
+            bounds.
+        size: Image width and height in pixels.
+        vertical_fov_deg: Vertical field of view in degrees. Defaults to 70, as in the game, or 40
+            for an orbit.
+        horizontal_fov_deg: Horizontal field of view in degrees, given instead of the vertical one.
+        outputs: Image layers: ``rgb``, ``depth``, ``range``, ``block``, ``state``, ``class``,
+            ``instance``, ``face`` and others. ``id`` selects state, class and instance. ``all``
+            selects every layer.
+        image_format: File format of colour images in a folder: ``png``, ``jpg`` or ``webp``.
         depth_format: ``png`` (16 bits), ``exr`` or ``npy`` (float32, metres).
-        depth_scale: the value of one metre in a depth PNG.
-        quality: of JPEG and WebP, 1 to 100.
-        fps: the frames per second of an animation.
+        depth_scale: Value of one metre in a depth PNG.
+        quality: JPEG and WebP quality from 1 to 100.
+        fps: Frames per second of an animation.
         light: ``shader`` (soft), ``game`` or ``neutral`` (even).
-        hour: the hour of the day, 0 to 24.
-        brightness: as in the game, 0 (moody) to 1 (bright).
-        exposure: 0.01 to 100; chosen automatically by default.
-        sun_shadow: draw the shadows of the sun.
-        samples: rays across each pixel, 1 to 4.
-        texture_px: the pixels of a block's side: 16, 32, 64 or 128.
-        packs: resource packs or client jars; the last one wins.
-        photo: trace the paths of light: slow, with soft shadows.
-        photo_samples: the paths for each pixel of a photo.
+        hour: Time of day from 0 to 24.
+        brightness: Brightness setting of the game, from 0 (moody) to 1 (bright).
+        exposure: Exposure from 0.01 to 100. Chosen automatically by default.
+        sun_shadow: Render the shadows that the sun casts.
+        samples: Number of rays along each side of a pixel, 1 to 4.
+        texture_px: Texture size of a block face in pixels: 16, 32, 64 or 128.
+        packs: Resource packs or client jar files. Later packs take precedence.
+        photo: Use path tracing, which is slow but renders soft shadows.
+        photo_samples: Number of light paths per pixel with ``photo``.
         device: ``auto``, ``cpu`` or ``gpu``.
-        threads: all cores by default.
-        jobs: the number of processes that draw a folder or an animation.
-        progress: called after each picture, or each pass of a photo.
+        threads: Number of threads. Defaults to all cores.
+        jobs: Number of processes that render a folder or an animation.
+        progress: Callback that is called after each image, or after each path tracing pass.
 
     Returns:
-        What was written: its path, the poses, and notes.
+        The written path, the camera poses and notes.
 
     Raises:
-        UsageError: an argument is out of range, or two of them exclude each other.
-        UnknownNameError: a view or an output is not known.
-        InputError: the build, the poses or a pack cannot be read.
-        OutputError: the files cannot be written.
+        UsageError: If an argument is out of range or two arguments exclude each other.
+        UnknownNameError: If a view or an output layer is unknown.
+        InputError: If the build, the poses or a resource pack cannot be read.
+        OutputError: If the files cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -205,7 +211,7 @@ def _draw(
     box: Box | None,
     progress: Progress,
 ) -> "DrawnFiles":
-    """Check what can be checked before any work, then read the build and draw it."""
+    """Check the arguments before any work, then read the build and render it."""
     from world2minecraft.rendering.output import parse_layers
     from world2minecraft.rendering.picture_files.destination import choose_target
     from world2minecraft.rendering.picture_files.drawing import draw_files
@@ -229,7 +235,7 @@ def _thread_count(asked: int | None) -> int:
     if asked is None:
         return usable_cores()
     if not 1 <= asked <= MAX_THREADS:
-        raise UsageError(f"--threads must be 1 to {MAX_THREADS}, not {asked}")
+        raise UsageError(f"--threads must be 1 to {MAX_THREADS}, got {asked}")
     return asked
 
 
@@ -240,7 +246,7 @@ def _view_of(
     fps: float,
     opened: bool | None,
 ) -> "View":
-    """Return the view that the arguments describe."""
+    """Return the view that the arguments of ``render_files`` describe."""
     from world2minecraft.rendering.picture_files.shot_selection import View
     from world2minecraft.rendering.views import GamePose
 
@@ -259,17 +265,17 @@ def _view_of(
 
 
 def _file_formats(image: str, depth: str, quality: int, per_metre: int) -> "FileFormats":
-    """Return how layers become files."""
+    """Return the file formats of the image layers."""
     from world2minecraft.rendering.output import FileFormats
 
     if image not in ("png", "jpg", "jpeg", "webp"):
-        raise UsageError(f"--format must be png, jpg or webp, not {image!r}")
+        raise UsageError(f"--format must be png, jpg or webp, got {image!r}")
     if depth not in ("png", "exr", "npy"):
-        raise UsageError(f"--depth-format must be png, exr or npy, not {depth!r}")
+        raise UsageError(f"--depth-format must be png, exr or npy, got {depth!r}")
     if not 1 <= quality <= 100:
-        raise UsageError(f"--quality must be 1 to 100, not {quality}")
+        raise UsageError(f"--quality must be 1 to 100, got {quality}")
     if not 1 <= per_metre <= 65535:
-        raise UsageError(f"--depth-scale must be 1 to 65535, not {per_metre}")
+        raise UsageError(f"--depth-scale must be 1 to 65535, got {per_metre}")
     return FileFormats(f".{image}", f".{depth}", quality, per_metre)
 
 
@@ -278,10 +284,15 @@ def camera_choice(
     vertical_fov_deg: float | None = None,
     horizontal_fov_deg: float | None = None,
 ) -> "CameraChoice":
-    """Return the size of pictures in pixels with the field of view that was given, if any.
+    """Return the image size in pixels with an optional field of view.
+
+    Args:
+        size: Image width and height in pixels.
+        vertical_fov_deg: Vertical field of view in degrees.
+        horizontal_fov_deg: Horizontal field of view in degrees. Excludes ``vertical_fov_deg``.
 
     Raises:
-        UsageError: a value is out of range, or both fields of view are given.
+        UsageError: If a value is out of range or both fields of view are given.
     """
     from world2minecraft.rendering.picture_files.shot_selection import CameraChoice
 
@@ -289,14 +300,14 @@ def camera_choice(
 
 
 def game_pose(values: Sequence[float], at: str = "feet") -> "GamePose":
-    """Return a pose of the game.
+    """Return a camera pose in game coordinates.
 
     Args:
-        values: x, y, z in blocks, then yaw and pitch in degrees, as the F3 screen shows them.
-        at: where x, y, z is: ``feet`` or ``eye``.
+        values: x, y and z in blocks, then yaw and pitch in degrees, as on the game's F3 screen.
+        at: Reference point of x, y and z: ``feet`` or ``eye``.
 
     Raises:
-        UsageError: a value is out of range.
+        UsageError: If a value is out of range.
 
     Example:
         >>> game_pose((4, 64, -3, 90, 10)).yaw_deg

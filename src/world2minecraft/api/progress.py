@@ -1,7 +1,7 @@
-"""Show progress on stderr: bars on a terminal, plain lines elsewhere.
+"""Show progress on stderr as bars in a terminal, or as plain lines elsewhere.
 
-Both implement ``core.progress.Progress``. A reconstruction also shows the time left of the whole
-run, which ``api.time_left`` estimates.
+Both displays implement ``core.progress.Progress``. A reconstruction also shows the remaining time
+of the whole run, which ``api.time_left`` estimates.
 """
 
 import sys
@@ -62,7 +62,7 @@ STAGE_TEXTS = {
 
 
 def stage_text(stage: str) -> str:
-    """Return what a stage does, such as "Fusing depth into voxels" for ``fuse``."""
+    """Return the description of a stage, such as "Fusing depth into voxels" for ``fuse``."""
     return STAGE_TEXTS.get(stage, stage)
 
 
@@ -70,13 +70,13 @@ def stage_text(stage: str) -> str:
 def show_progress(
     stream: TextIO | None = None, *, stages: Sequence[str] = (), until: str = ""
 ) -> Iterator[Progress]:
-    """Show progress while the block runs.
+    """Show progress while the ``with`` block runs.
 
     Args:
-        stream: where to write; stderr by default.
-        stages: the stages of the whole run, such as ``time_left.DEMO``. Without them, a run whose
-            first stage is that of a reconstruction is taken for a whole reconstruction.
-        until: the last stage, for a reconstruction that ends early.
+        stream: Text stream to write to. Defaults to stderr.
+        stages: Stages of the whole run, such as ``time_left.DEMO``. By default, they are inferred
+            if the first reported stage is the first stage of a reconstruction.
+        until: Last stage, for a reconstruction that ends early.
 
     Example:
         >>> import io
@@ -99,9 +99,9 @@ def show_progress(
 
 
 class WholeRun:
-    """The time left of a run of several stages, where its stages are known.
+    """The remaining time of a run with several stages, if the stages are known.
 
-    See ``show_progress`` for the arguments.
+    The arguments are those of ``show_progress``.
     """
 
     def __init__(self, stages: Sequence[str] = (), until: str = ""):
@@ -109,7 +109,7 @@ class WholeRun:
         self._estimate = TimeLeft(stages) if stages else None
 
     def report(self, stage: str, done: int, total: int, now_s: float) -> None:
-        """Take in one report of progress."""
+        """Update the estimate with a progress report at time ``now_s`` in seconds."""
         if self._estimate is None and (stages := stages_from(stage)):
             last = stages.index(self._until) if self._until in stages else len(stages)
             self._estimate = TimeLeft(stages[: last + 1])
@@ -122,17 +122,17 @@ class WholeRun:
         return self._estimate is not None
 
     def left_s(self, now_s: float) -> float | None:
-        """Return the seconds left, or None where they are not known."""
+        """Return the remaining time in seconds, or None if it is unknown."""
         return None if self._estimate is None else self._estimate.left_s(now_s)
 
     def text(self, now_s: float) -> str:
-        """Return the time left in words, in brackets after a space, or nothing."""
+        """Return the remaining time as text in parentheses, or an empty string if it is unknown."""
         left = self.left_s(now_s)
         return "" if left is None else f" (about {format_duration(left)} left in total)"
 
 
 class LineProgress:
-    """Progress as lines: at the start and the end of a stage, and every half minute between."""
+    """Progress as text lines at the start and end of each stage, and every 30 seconds between."""
 
     def __init__(
         self,
@@ -146,7 +146,7 @@ class LineProgress:
         self._printed = 0.0  # When the last line was printed.
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
-        """Report one step; most steps print nothing."""
+        """Report a step. Most steps print nothing."""
         now = self._clock()
         self._whole.report(stage, done, total, now)
         if stage != self._stage:
@@ -163,7 +163,7 @@ class LineProgress:
             self._print(f"{stage_text(stage)}: {facts}{self._whole.text(now)}")
 
     def finish(self) -> None:
-        """End the current stage; one of unknown length ends when the next begins."""
+        """End the current stage, and print its duration."""
         if not self._stage:
             return
         seconds = self._clock() - self._began
@@ -177,7 +177,7 @@ class LineProgress:
 
 
 def format_duration(seconds: float) -> str:
-    """Return a duration in two words.
+    """Return a duration as a short text.
 
     Example:
         >>> [format_duration(seconds) for seconds in (7.2, 125, 8000)]
@@ -208,7 +208,7 @@ def _bars(stream: TextIO, whole: WholeRun) -> Iterator[Progress]:
 
 
 class BarProgress:
-    """Progress as bars on a rich display: one for each stage, above them one for the whole run."""
+    """Progress as bars on a rich display: one for the whole run and one for each stage."""
 
     def __init__(self, display: Any, whole: WholeRun, clock: Callable[[], float] = time.monotonic):
         self._display, self._whole, self._clock = display, whole, clock
@@ -218,7 +218,7 @@ class BarProgress:
         self._run_began = self._began
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
-        """Report one step."""
+        """Report a step and update the bars."""
         now = self._clock()
         self._whole.report(stage, done, total, now)
         self._show_whole_run(now)

@@ -1,4 +1,4 @@
-"""Repairs of a built room: run them, list them, undo and redo each."""
+"""Repair built rooms, list the repairs, and undo or redo each of them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,13 +20,13 @@ class Repair:
     """One repair of a build.
 
     Attributes:
-        number: its number in the build, from 1.
-        kind: what was done: ``fill``, ``move``, ``drop`` ...
-        subject: the class of what was repaired and its object id, such as ``chair 1``.
-        blocks: how many blocks it changed.
-        corner: the lowest x, y and z of these blocks in the world.
-        reason: why it was made.
-        is_done: False where it was undone.
+        number: Number of the repair within the build, starting at 1.
+        kind: Type of the repair, such as ``fill``, ``move`` or ``drop``.
+        subject: Class and object id of the repaired object, such as ``chair 1``.
+        blocks: Number of blocks that the repair changed.
+        corner: Minimum x, y and z of the changed blocks in the world.
+        reason: Why the repair was made.
+        is_done: Whether the repair is in effect. False after it has been undone.
     """
 
     number: int
@@ -41,24 +41,26 @@ class Repair:
 def repair(
     source: Run | str | Path, *, only: Sequence[str] = (), dry_run: bool = False
 ) -> list[Repair]:
-    """Repair a built room: floating blocks, holes in walls, furniture that intersects a wall.
+    """Repair floating blocks, holes in walls and furniture that intersects a wall in a built room.
 
-    Every build is repaired already, unless the setting ``mend`` is off; this repairs what edits
-    have left. Each repair is recorded in ``build/edits.journal``. The world and its further
-    formats are written again.
+    Builds are repaired automatically unless the setting ``mend`` is off, so this function repairs
+    faults introduced by later edits. Each repair is recorded in ``build/edits.journal``. The world
+    and the additional file formats are then rewritten.
 
     Args:
-        source: a run, its folder, or the ``build`` folder in it.
-        only: the rules to apply: ``trim``, ``see_through``, ``holes``, ``floating``, ``steady``;
-            all by default.
-        dry_run: return the repairs, and change nothing.
+        source: Run, run folder, or its ``build`` folder.
+        only: Rules to apply: ``trim``, ``see_through``, ``holes``, ``floating`` and ``steady``.
+            Defaults to all rules.
+        dry_run: Return the repairs without changing the build.
 
     Returns:
         The new repairs.
 
     Raises:
-        UnknownNameError: a rule is not known. InputError: there is no build.
-        OutputError: the world was played in. ConflictError: the journal is of another build.
+        UnknownNameError: If a rule is unknown.
+        InputError: If the source contains no build.
+        OutputError: If the world has been played in.
+        ConflictError: If the journal belongs to another build.
 
     Example:
         >>> import world2minecraft as w2m
@@ -81,10 +83,11 @@ def repair(
 
 
 def list_repairs(source: Run | str | Path) -> list[Repair]:
-    """Return the repairs of a build, those that were undone too.
+    """Return all repairs of a build, including those that have been undone.
 
     Raises:
-        InputError: there is no build. ConflictError: the journal is of another build.
+        InputError: If the source contains no build.
+        ConflictError: If the journal belongs to another build.
 
     Example:
         >>> from world2minecraft.api.repairs import list_repairs
@@ -97,11 +100,17 @@ def list_repairs(source: Run | str | Path) -> list[Repair]:
 
 
 def undo_repair(source: Run | str | Path, number: int | None = None) -> int:
-    """Undo the repair of a number, or all of them; return how many were undone.
+    """Undo one repair or all repairs, and return the number of repairs undone.
+
+    Args:
+        source: Run, run folder, or its ``build`` folder.
+        number: Number of the repair to undo. None undoes all repairs.
 
     Raises:
-        UsageError: there is no such repair. ConflictError: a later one changed the same blocks.
-        InputError: there is no build. OutputError: the world was played in.
+        UsageError: If the repair does not exist.
+        ConflictError: If a later repair changed the same blocks.
+        InputError: If the source contains no build.
+        OutputError: If the world has been played in.
     """
     build = _build_folder(path_of(source))
     history = _open_history(build)
@@ -114,11 +123,17 @@ def undo_repair(source: Run | str | Path, number: int | None = None) -> int:
 
 
 def redo_repair(source: Run | str | Path, number: int) -> None:
-    """Make the repair of a number again, after it was undone.
+    """Redo a repair that has been undone.
+
+    Args:
+        source: Run, run folder, or its ``build`` folder.
+        number: Number of the repair to redo.
 
     Raises:
-        UsageError: it was not undone. ConflictError: a later one changed the same blocks.
-        InputError: there is no build. OutputError: the world was played in.
+        UsageError: If the repair has not been undone.
+        ConflictError: If a later repair changed the same blocks.
+        InputError: If the source contains no build.
+        OutputError: If the world has been played in.
     """
     build = _build_folder(path_of(source))
     history = _open_history(build)
@@ -128,7 +143,11 @@ def redo_repair(source: Run | str | Path, number: int) -> None:
 
 
 def world_of(source: Run | str | Path) -> Path:
-    """Return the world of a build. Raises InputError where there is no build."""
+    """Return the world folder of a build.
+
+    Raises:
+        InputError: If the source contains no build.
+    """
     return _build_folder(path_of(source)) / "world"
 
 
@@ -147,28 +166,35 @@ def _repair_of(number: int, edit: "BlockEdit", is_done: bool = True) -> Repair:
 
 
 def _build_folder(source: Path) -> Path:
-    """Return the build folder of a run. Raises InputError where there is none."""
+    """Return the build folder of a run.
+
+    Raises:
+        InputError: If the source contains no build.
+    """
     for folder in (source / "build", source):
         if (folder / "scene.json").is_file():
             return folder
-    raise InputError(source, "holds no build (build/scene.json); build one with w2m build")
+    raise InputError(
+        source, "does not contain a build (build/scene.json); create one with w2m build"
+    )
 
 
 def _check_unplayed(world: Path) -> None:
-    """Raise OutputError where the game has saved a world since it was built."""
+    """Raise OutputError if the game has saved a world since it was built."""
     from world2minecraft.minecraft.worlds.level_dat import MAKER, MAKER_TAG
     from world2minecraft.minecraft.worlds.world_reader import read_level
 
     if read_level(world).get(MAKER_TAG) != MAKER:
-        reason = "holds a world that has been played in or made elsewhere"
-        raise OutputError(world, f"{reason}; build it again to another --out, and repair that")
+        reason = "has been played in or was not created by World2Minecraft"
+        raise OutputError(world, f"{reason}; build the room again with another --out")
 
 
 def _open_history(build: Path) -> "History":
-    """Return the blocks of a build with the edits made to them.
+    """Return the blocks of a build with its recorded edits.
 
     Raises:
-        ConflictError: the edits are those of another build. InputError: a file cannot be read.
+        ConflictError: If the edits belong to another build.
+        InputError: If a file cannot be read.
     """
     from world2minecraft.editing.journal import EDITS_FILE, Journal
     from world2minecraft.editing.volume_draft import History
@@ -178,12 +204,14 @@ def _open_history(build: Path) -> "History":
     try:
         return History(volume, Journal(build / EDITS_FILE))
     except ConflictError as error:
-        reason = f"belongs to another build than the one beside it ({error.reason})"
-        raise ConflictError(build / EDITS_FILE, f"{reason}; remove it, or build again") from error
+        reason = f"does not belong to the build in this folder ({error.reason})"
+        raise ConflictError(
+            build / EDITS_FILE, f"{reason}; delete this file or build the room again"
+        ) from error
 
 
 def _rewrite_build(build: Path, history: "History") -> None:
-    """Write a build with other blocks in it, under the name that its world has."""
+    """Write a build with changed blocks, keeping the name of its world."""
     from world2minecraft.construction import WORLD_NAME, write_build
     from world2minecraft.core.files import read_json
     from world2minecraft.formats.world_labels import read_scene

@@ -1,4 +1,4 @@
-"""What the program made, as Python values: a run, its room and its objects."""
+"""Runs, rooms and objects as Python values, read from the folders that the program writes."""
 
 import base64
 import html
@@ -27,17 +27,19 @@ MAX_LISTED = 12  # Objects in the text and in the notebook view of a run.
 
 @dataclass(frozen=True, eq=False)
 class RoomObject:
-    """One object of a room.
+    """An object of a room.
 
     Attributes:
-        id: its number, 1 or more; its cells are those where ``room.instances == id``.
-        name: what it is, in words, such as ``television``.
-        class_name: its class of the paper's twelve, such as ``tvs``.
-        center_m: float64 [3], the middle of its box in the room frame (x, y, z up), in metres.
-        size_m: float64 [3], along its own axes: front to back, side to side, height, in metres.
-        yaw_deg: its rotation, counter-clockwise from above; at 0 its front looks along +x.
-        confidence: 0 to 1, the mean confidence of its cells.
-        template: the furniture template that stands for it in the world; empty where there is none.
+        id: Object id, 1 or more. The cells of the object are those with ``room.instances == id``.
+        name: Readable name, such as ``television``.
+        class_name: One of the paper's twelve classes, such as ``tvs``.
+        center_m: Centre of the bounding box in the room frame (z up) in metres, float64 [3].
+        size_m: Size of the bounding box along its own axes in metres, float64 [3]: front to back,
+            side to side, height.
+        yaw_deg: Rotation in degrees, counter-clockwise from above. At 0 the front faces +x.
+        confidence: Mean confidence of the cells, 0 to 1.
+        template: Furniture template that replaces the object in the world. Empty if the object is
+            built from its cells.
     """
 
     id: int
@@ -63,9 +65,9 @@ class Room:
     """The semantic occupancy of a room: a class for each cell of a grid in the room frame.
 
     Attributes:
-        grid: the cells, with their confidence, colour and source.
-        names: the name of each object, by its id.
-        scan_to_room: float64 [4, 4], from the frame of the capture to that of the room.
+        grid: Cells with their class, confidence, colour and source.
+        names: Object names by object id.
+        scan_to_room: Transform from the capture frame to the room frame, float64 [4, 4].
 
     Example:
         >>> from world2minecraft.api.results import Room
@@ -87,34 +89,34 @@ class Room:
 
     @property
     def labels(self) -> np.ndarray:
-        """The class of each cell, uint8 [X, Y, Z]: 0 empty, 1 to 11, 255 unknown."""
+        """The class of each cell as uint8 [X, Y, Z]: 0 for empty, 1 to 11, 255 for unknown."""
         return self.grid.labels
 
     @property
     def instances(self) -> np.ndarray:
-        """The object of each cell, uint16 [X, Y, Z]; 0 for none."""
+        """The object id of each cell as uint16 [X, Y, Z], or 0 for cells without an object."""
         return self.grid.instance
 
     @property
     def voxel_m(self) -> float:
-        """The side of a cell in metres."""
+        """The cell size in metres."""
         return self.grid.voxel_m
 
     @property
     def origin_m(self) -> np.ndarray:
-        """The minimum corner of cell (0, 0, 0) in the room frame, float64 [3], in metres."""
+        """The minimum corner of cell (0, 0, 0) in the room frame in metres, float64 [3]."""
         return self.grid.origin_m
 
     @property
     def size_m(self) -> np.ndarray:
-        """The size of the grid, float64 [3], in metres."""
+        """The size of the grid in metres, float64 [3]."""
         return np.array(self.grid.shape) * self.grid.voxel_m
 
     def plan(self, px_per_cell: int = 4) -> "Image":
-        """Draw the room from above without its ceiling, each cell in the colour of its class.
+        """Draw the room from above without its ceiling, with each cell in the colour of its class.
 
         Args:
-            px_per_cell: the pixels along each side of a cell.
+            px_per_cell: Side length of a cell in pixels.
         """
         from PIL import Image
 
@@ -140,10 +142,10 @@ class Room:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A folder with a reconstructed or built room; everything is read when it is first used.
+    """A folder with a reconstructed or built room. Its files are read on first use.
 
     Attributes:
-        folder: where its files lie; docs/file-formats.md describes them.
+        folder: Folder of the run. Its files are described in docs/file-formats.md.
     """
 
     folder: Path
@@ -153,7 +155,8 @@ class Run:
         """The semantic occupancy of the room.
 
         Raises:
-            InputError: the folder has no ``room.npz``. DamagedFileError: it holds no valid grid.
+            InputError: If the folder does not contain ``room.npz``.
+            DamagedFileError: If ``room.npz`` does not contain a valid grid.
         """
         from world2minecraft.formats.run_arrays import read_room
 
@@ -162,10 +165,11 @@ class Run:
 
     @cached_property
     def objects(self) -> tuple[RoomObject, ...]:
-        """The objects of the room, by their ids.
+        """The objects of the room, ordered by id.
 
         Raises:
-            InputError: a file of the run is missing. DamagedFileError: it cannot be read.
+            InputError: If a file of the run is missing.
+            DamagedFileError: If a file of the run cannot be read.
         """
         templates = self._templates()
         return tuple(
@@ -184,13 +188,13 @@ class Run:
 
     @cached_property
     def report(self) -> dict[str, Any]:
-        """The figures of ``report.json``; empty where the run has no report."""
+        """The contents of ``report.json``. Empty if the run has no report."""
         path = self.folder / "report.json"
         return read_json(path) if path.is_file() else {}
 
     @property
     def notes(self) -> list[str]:
-        """What the reconstruction noted about the capture and its result."""
+        """The remarks of the reconstruction about the capture and the result."""
         return list(self.report.get("scan", self.report).get("notes", ()))
 
     @property
@@ -200,10 +204,10 @@ class Run:
 
     @cached_property
     def blocks(self) -> BlockVolume:
-        """The blocks of the world, with the class and the object of each.
+        """The blocks of the world, with the class and the object id of each block.
 
         Raises:
-            InputError: the run has no build.
+            InputError: If the run has no build.
         """
         from world2minecraft.evaluation.report.finished_run import read_built
 
@@ -248,16 +252,16 @@ class Run:
 
 
 def load(path: str | Path) -> "Run | GeneratedRoom | Dataset":
-    """Open a folder that the program wrote.
+    """Open a folder that was written by this program.
 
     Args:
-        path: the folder of a run, of a build, of a generated room or of an occupancy data set.
+        path: Folder of a run, a build, a generated room or an occupancy data set.
 
     Returns:
-        A ``Run``; of ``generate_room`` the generated room; of ``build_dataset`` the data set.
+        A ``Run``, a generated room or a ``Dataset``, depending on the contents of the folder.
 
     Raises:
-        InputError: the folder is not found, or the program did not write it.
+        InputError: If the folder does not exist or was not written by this program.
 
     Example:
         >>> import world2minecraft as w2m

@@ -1,4 +1,4 @@
-"""Rooms: reconstruct one from a capture, and build it at any scale and in any style."""
+"""Reconstruct a room from a capture, and build it at any scale and in any style."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,16 +18,20 @@ Settings = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class BuildOptions:
-    """How a room becomes blocks; every function that builds takes these by name.
+    """Options for building a room from blocks.
+
+    Functions that build a room accept these options as keyword arguments.
 
     Attributes:
-        blocks_per_metre: the scale: 1 is true size, 4 shows furniture, 12.5 is a block per cell.
-        style: ``blocks``, ``display`` (block display entities, finer) or ``voxels``.
+        blocks_per_metre: Scale of the world: 1 is true to size, 4 shows furniture, 12.5 is one
+            block per cell of 0.08 m.
+        style: ``blocks``, ``display`` (block display entities, which show finer detail) or
+            ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
-        formats: further files of the build, such as ``("litematic", "glb")``.
-        mc_version: the game version that the files are written for.
-        settings: further parameters by their keys, such as ``{"build.ceiling": "glass"}``;
-            ``w2m.settings()`` lists them all.
+        formats: Additional file formats to write, such as ``("litematic", "glb")``.
+        mc_version: Minecraft version to write the files for.
+        settings: Further parameters by key, such as ``{"build.ceiling": "glass"}``.
+            ``w2m.settings()`` lists all keys.
     """
 
     blocks_per_metre: float = 4.0
@@ -38,11 +42,15 @@ class BuildOptions:
     settings: Settings | None = None
 
     def parameters(self, base: "Parameters | None" = None) -> "Parameters":
-        """Return ``base``, or the defaults, with these options.
+        """Return reconstruction parameters with these options applied.
+
+        Args:
+            base: Parameters to start from. Uses the default parameters if None.
 
         Raises:
-            UsageError: a value is out of range. UnknownNameError: a style, a palette, a format or
-            a setting is not known. InputError: the palette's file cannot be read.
+            UsageError: If a value is out of range.
+            UnknownNameError: If a style, palette, format or setting is unknown.
+            InputError: If the palette file cannot be read.
         """
         from dataclasses import replace
 
@@ -89,43 +97,46 @@ def reconstruct(
     settings: Settings | None = None,
     progress: Progress = no_progress,
 ) -> Run:
-    """Turn a capture of a room into a Minecraft world, with a report (Algorithm 1 of the paper).
+    """Convert a capture of a room to a Minecraft world with a report (Algorithm 1 of the paper).
 
-    A run that was interrupted continues after its last finished stage when it is called again
-    with the same arguments.
+    Call the function again with the same arguments to resume an interrupted run after its last
+    completed stage.
 
     Args:
-        capture: photos, a video, the export of a scanning app, RGB-D frames, a mesh, a point cloud
-            or a RoomPlan; ``docs/captures.md`` lists them.
-        out: the folder to write.
-        labels: a folder of 2D label images, one for each frame.
-        method: ``best``, or ``paper`` for the steps of the paper alone.
-        voxel_m: the side of a cell in metres.
-        blocks_per_metre: the scale of the world.
+        capture: Photos, a video, the export of a scanning app, RGB-D frames, a mesh, a point cloud
+            or a RoomPlan file. ``docs/captures.md`` lists all formats.
+        out: Output folder.
+        labels: Folder with one 2D label image per frame.
+        method: ``best``, or ``paper`` to use only the steps in the paper.
+        voxel_m: Cell size in metres.
+        blocks_per_metre: Scale of the world.
         style: ``blocks``, ``display`` or ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
-        formats: further files of the build, such as ``("litematic", "glb")``.
-        mc_version: the game version that the world is written for.
-        known: a length that gives photos their scale, such as ``("table height", 0.72)``.
-        known_points: two pixels, such as ``"a.jpg:120,80"``, and the metres between them.
-        fov_deg: the vertical field of view of a single photo, where it has no EXIF.
-        plan: a RoomPlan of the same room, as further evidence.
-        depth_model: a network for the depth of pictures, such as ``hf:ORG/NAME``.
-        semantics: a segmentation network, such as ``hf:ORG/NAME``.
+        formats: Additional file formats to write, such as ``("litematic", "glb")``.
+        mc_version: Minecraft version of the world.
+        known: Known length that sets the scale of photos, such as ``("table height", 0.72)``.
+        known_points: Two pixels, such as ``"a.jpg:120,80"``, and the distance between them in
+            metres.
+        fov_deg: Vertical field of view in degrees for a single photo without EXIF data.
+        plan: RoomPlan file of the same room to use as additional evidence.
+        depth_model: Depth estimation network, such as ``hf:ORG/NAME``.
+        semantics: Segmentation network, such as ``hf:ORG/NAME``.
         predictor: ``depth``, or ``mono:FILE.onnx`` for a monocular occupancy network.
         labeller: ``auto``, ``completion``, ``votes`` or ``geometric``.
-        start: the stage to start from, in a folder that holds an earlier run.
-        follow: watch a capture that still grows, until a file named ``done`` appears.
-        follow_idle_s: the seconds without a new frame after which following ends.
-        settings: further parameters, such as ``{"find.cluster_radius": 3}``.
-        progress: called at each step with the stage, the steps done, all steps and a note.
+        start: Stage to restart from. Requires an output folder with an earlier run.
+        follow: Watch a capture that is still being recorded until a file named ``done`` appears.
+        follow_idle_s: Seconds to wait for a new frame before the capture is considered complete.
+        settings: Further parameters, such as ``{"find.cluster_radius": 3}``.
+        progress: Callback that receives the stage, the number of completed steps, the total number
+            of steps and a note.
 
     Returns:
-        The run: its room, objects, world and report.
+        The run with its room, objects, world and report.
 
     Raises:
-        UsageError: an argument is wrong. CaptureError: the capture cannot be used.
-        OutputError: the folder cannot be written.
+        UsageError: If an argument is invalid.
+        CaptureError: If the capture cannot be used.
+        OutputError: If the output folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -181,26 +192,27 @@ def build(
     settings: Settings | None = None,
     progress: Progress = no_progress,
 ) -> Run:
-    """Build a world of its own from a run or from an occupancy grid.
+    """Build a new world from a run or an occupancy grid.
 
-    A run is built from its objects and placements as they are. Of a grid alone the objects are
-    detected and matched first.
+    The objects and placements of a run are used unchanged. For an occupancy grid, objects are
+    detected and matched with furniture first.
 
     Args:
-        source: a run or its folder; or ``room.npz``, ``occ.json``, or a ``.npy`` of class ids
-            [X, Y, Z].
-        out: the folder to write, another than the source.
-        blocks_per_metre: the scale of the world.
+        source: Run, run folder, ``room.npz``, ``occ.json``, or a ``.npy`` file of class ids [X, Y,
+            Z].
+        out: Output folder. Must differ from the source folder.
+        blocks_per_metre: Scale of the world.
         style: ``blocks``, ``display`` or ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
-        formats: further files of the build, such as ``("litematic", "glb")``.
-        mc_version: the game version that the world is written for.
-        settings: further parameters, such as ``{"build.ceiling": "glass"}``.
-        progress: called at each step.
+        formats: Additional file formats to write, such as ``("litematic", "glb")``.
+        mc_version: Minecraft version of the world.
+        settings: Further parameters, such as ``{"build.ceiling": "glass"}``.
+        progress: Callback that reports the progress of each stage.
 
     Raises:
-        UsageError: an argument is wrong. InputError: the source cannot be read.
-        OutputError: the folder cannot be written.
+        UsageError: If an argument is invalid.
+        InputError: If the source cannot be read.
+        OutputError: If the output folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -216,12 +228,12 @@ def build(
 
 
 def path_of(source: "Run | str | Path") -> Path:
-    """Return the folder of a run, or the path that was given."""
+    """Return the folder of a run, or a given path unchanged."""
     return source.folder if isinstance(source, Run) else Path(source)
 
 
 def _checked_palette(palette: str | Path | None) -> str | None:
-    """Return a palette's name or the path of its file; read it once, to find faults early."""
+    """Return the name of a palette or the path of its file after loading it once as a check."""
     if palette is None:
         return None
     from world2minecraft.construction.palettes import load_palette
@@ -231,11 +243,11 @@ def _checked_palette(palette: str | Path | None) -> str | None:
 
 
 def _check_stage(start: str | None, follow: bool) -> None:
-    """Raise UsageError, before any work, where a stage is not known or cannot be started from."""
+    """Raise UsageError if a stage is unknown or cannot be combined with ``follow``."""
     from world2minecraft.reconstruction.pipeline import STAGES
 
     if follow and start is not None:
-        raise UsageError("--follow reads a whole capture; leave out --from")
+        raise UsageError("--follow cannot be combined with --from; omit one of them")
     stages = (*STAGES, "report")
     if start is not None and start not in stages:
         raise UnknownNameError("stage", start, stages)
@@ -248,10 +260,10 @@ def _build_lone_plan(
     needs_frames: list[str],
     progress: Progress,
 ) -> bool:
-    """Build a RoomPlan that has no frames; return whether the capture is one.
+    """Build a RoomPlan without frames, and return whether the capture is a RoomPlan.
 
     Raises:
-        UsageError: arguments are given that need frames.
+        UsageError: If arguments are given that require frames.
     """
     from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
     from world2minecraft.reconstruction.opening import scene_name
@@ -262,7 +274,7 @@ def _build_lone_plan(
         return False
     if needs_frames:
         options = " and ".join(f"--{'from' if one == 'start' else one}" for one in needs_frames)
-        raise UsageError(f"{capture} is a RoomPlan and has no frames; leave out {options}")
+        raise UsageError(f"{capture} is a RoomPlan without frames; omit {options}")
     run_plan(plan, out, chosen, progress, scene_name(capture))
     return True
 
@@ -270,10 +282,11 @@ def _build_lone_plan(
 def blocks_of(
     source: "Run | str | Path", options: BuildOptions, progress: Progress = no_progress
 ) -> "BlockVolume":
-    """Return the blocks that ``build`` would write; nothing is written.
+    """Return the blocks that ``build`` would write, without writing any files.
 
     Raises:
-        UsageError: an option is wrong. InputError: the source cannot be read.
+        UsageError: If an option is invalid.
+        InputError: If the source cannot be read.
     """
     from world2minecraft.reconstruction.build_without_capture import blocks_of as read_or_build
 

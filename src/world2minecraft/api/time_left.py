@@ -1,17 +1,17 @@
-"""Estimate the time left of a run of several stages.
+"""Estimate the remaining time of a run with several stages.
 
-Each stage has an expected cost: seconds for itself and seconds for each frame. What is finished
-was measured, so the expected costs of the rest are scaled by how much longer or shorter it took
-than expected. The costs were measured on the 40-frame kitchen and on ``w2m demo`` with 40 and 160
-frames, on two cores, with compiled kernels; only their proportions matter after the first stage.
+Each stage has an expected cost: a fixed number of seconds plus seconds per frame. The expected
+costs of the remaining stages are scaled by the ratio of measured to expected time of the finished
+stages. The costs were measured on the 40-frame kitchen and on ``w2m demo`` with 40 and 160 frames,
+on two cores, with compiled kernels. Only their proportions matter after the first stage.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 USUAL_FRAMES = 40
-# Trust in the expected costs, as seconds of a run that went as expected: a first stage of half a
-# second, half of it imports, does not say how fast the machine is.
+# Weight of the expected costs in seconds. A first stage of half a second, half of which is
+# imports, says little about the speed of the machine.
 PRIOR_S = 2.0
 
 
@@ -19,9 +19,10 @@ PRIOR_S = 2.0
 class StageCost:
     """The expected cost of a stage.
 
-    fixed_s: seconds whatever the number of frames.
-    frame_s: seconds for each frame.
-    has_frames: the total that the stage reports is a number of frames.
+    Attributes:
+        fixed_s: Seconds regardless of the number of frames.
+        frame_s: Seconds per frame.
+        has_frames: Whether the total that the stage reports is a number of frames.
     """
 
     fixed_s: float
@@ -29,7 +30,7 @@ class StageCost:
     has_frames: bool = False
 
     def seconds(self, frames: int) -> float:
-        """Return the expected seconds for a number of frames."""
+        """Return the expected duration in seconds for a number of frames."""
         return self.fixed_s + self.frame_s * frames
 
 
@@ -55,10 +56,9 @@ DEMO = ("room", "capture", *RECONSTRUCTION)
 
 
 class TimeLeft:
-    """Estimate the time left from reports of progress.
+    """An estimate of the remaining time, updated by progress reports.
 
-    The stages of a run follow one another in the order of ``stages``; a run that resumes skips
-    some of them.
+    The stages of a run occur in the order of ``stages``. A resumed run skips some of them.
 
     Example:
         >>> estimate = TimeLeft(("scan", "fuse"))
@@ -72,10 +72,10 @@ class TimeLeft:
         self._stages = tuple(stages)
         self._frames = USUAL_FRAMES
         self._stage, self._began_s, self._fraction = "", 0.0, 0.0
-        self._finished: dict[str, float] = {}  # Stages and their seconds.
+        self._finished: dict[str, float] = {}  # Stages and their durations in seconds.
 
     def report(self, stage: str, done: int, total: int, now_s: float) -> None:
-        """Take in one report of progress; stages that are not of the run are ignored."""
+        """Update the estimate with a progress report. Unknown stages are ignored."""
         if stage not in self._stages:
             return
         if stage != self._stage:
@@ -86,10 +86,10 @@ class TimeLeft:
         self._fraction = done / total if total else 0.0
 
     def left_s(self, now_s: float) -> float | None:
-        """Return the seconds left, or None before the first stage is finished.
+        """Return the remaining seconds, or None before the first stage is finished.
 
         The rest of the current stage is estimated from its expected cost at first, and from its
-        own speed as it proceeds.
+        measured speed as it proceeds.
         """
         if not self._finished:
             return None
@@ -107,14 +107,16 @@ class TimeLeft:
             self._finished[self._stage] = self._finished.get(self._stage, 0.0) + spent_s
 
     def _scale(self) -> float:
-        """Return how many times longer than expected the finished stages took."""
+        """Return the ratio of measured to expected time of the finished stages."""
         measured = sum(self._finished.values())
         expected = sum(COSTS[stage].seconds(self._frames) for stage in self._finished)
         return (measured + PRIOR_S) / (expected + PRIOR_S)
 
 
 def stages_from(first: str) -> tuple[str, ...]:
-    """Return the stages of a reconstruction whose first report is of this stage.
+    """Return the stages of a reconstruction that starts with a given stage.
+
+    The result is empty if the stage is not the first stage of a reconstruction.
 
     Example:
         >>> stages_from("scan")[:3], stages_from("render")

@@ -1,4 +1,4 @@
-"""Worlds and block files: convert any form into any other, install worlds, undo builds in them."""
+"""Convert between worlds and block files, install worlds, and undo builds into worlds."""
 
 import os
 import sys
@@ -23,17 +23,17 @@ HABITAT_MARK = "*.scene_dataset_config.json"
 
 @dataclass(frozen=True)
 class Conversion:
-    """What a conversion wrote, and what the formats could not carry.
+    """The result of a conversion, with the contents that could not be read or written.
 
     Attributes:
-        path: the file or folder that was written.
-        size_blocks: the blocks along x, y and z.
-        blocks: how many of them are not air.
-        kinds: how many kinds of blocks there are.
-        not_read: what the source has and could not be read, with its count.
-        not_written: what the target's format cannot hold, with its count.
-        mod_blocks: blocks of each mod, written by their names.
-        function: for a data pack, the function that builds it in the game.
+        path: File or folder that was written.
+        size_blocks: Number of blocks along x, y and z.
+        blocks: Number of blocks other than air.
+        kinds: Number of different block states.
+        not_read: Contents of the source that could not be read, with the count of each kind.
+        not_written: Contents that the target format does not support, with the count of each kind.
+        mod_blocks: Number of blocks from each mod, which are written with their original names.
+        function: For a data pack, the function that places the blocks in the game.
     """
 
     path: Path
@@ -58,27 +58,29 @@ def convert(
     box: tuple[int, int, int, int, int, int] | None = None,
     labels: str = "",
 ) -> Conversion:
-    """Convert a room, a world or a block file to another form.
+    """Convert a room, a world or a block file to another format.
 
-    The format of the source is detected from its suffix and content, that of the target from its
-    suffix alone: a name without a suffix becomes a world folder. Formats: ``.schem``,
+    The source format is detected from the file suffix and contents, the target format from the
+    suffix alone. A target without a suffix becomes a world folder. The formats are ``.schem``,
     ``.litematic``, ``.nbt``, ``.zip`` (data pack), ``.mcfunction``, ``.mcstructure`` (Bedrock),
-    ``.glb``, ``.habitat`` (a folder), and ``.schematic`` to read.
+    ``.glb``, ``.habitat`` (a folder), and for reading only ``.schematic``.
 
     Args:
-        source: a run, its folder, a world or a file.
-        target: the file or folder to write.
-        force: replace the target where it exists.
-        mc_version: the game version to write for; newer games upgrade it.
-        schem_version: the version of a Sponge schematic: 1, 2 or 3.
-        name: the name of a world or a data pack; that of the target by default.
-        blocks_per_metre: the scale, where the source does not state it.
-        box: convert these blocks only: x0, y0, z0, x1, y1, z1, the last ones excluded.
-        labels: a palette whose words give blocks of a foreign world their classes.
+        source: Run, run folder, world or block file.
+        target: File or folder to write.
+        force: Replace an existing target.
+        mc_version: Minecraft version to write for. Newer versions upgrade the file.
+        schem_version: Sponge schematic version: 1, 2 or 3.
+        name: Name of the world or data pack. Defaults to the name of the target.
+        blocks_per_metre: Scale for a source that does not record its own.
+        box: Convert only the blocks in this box: x0, y0, z0, x1, y1, z1, with exclusive upper
+            bounds.
+        labels: Palette whose block name rules assign classes to the blocks of a world without
+            labels.
 
     Raises:
-        UsageError: the target exists, or no format has its suffix. InputError: the source cannot
-        be read, or the target cannot be written.
+        UsageError: If the target exists or has an unknown suffix.
+        InputError: If the source cannot be read or the target cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -124,7 +126,7 @@ def convert(
 
 
 def _read_part(source: Path, box: "Box | None", losses: "Losses") -> "BlockVolume":
-    """Return the blocks of a source, or those in a box: of a world no others are read."""
+    """Return the blocks of a source, or only the blocks inside a box."""
     from world2minecraft.formats.build_reader import read_build
     from world2minecraft.formats.volume_formats import read_volume
 
@@ -132,21 +134,21 @@ def _read_part(source: Path, box: "Box | None", losses: "Losses") -> "BlockVolum
 
 
 def _with_scale(volume: "BlockVolume", blocks_per_metre: float | None) -> "BlockVolume":
-    """Return the volume at a scale, or at its own where none is given."""
+    """Return the volume with the given scale, or unchanged if no scale is given."""
     if blocks_per_metre is None:
         return volume
     if not 0.01 <= blocks_per_metre <= 1000:
-        raise UsageError(f"--blocks-per-metre must be 0.01 to 1000, not {blocks_per_metre:g}")
+        raise UsageError(f"--blocks-per-metre must be 0.01 to 1000, got {blocks_per_metre:g}")
     own = volume.blocks_per_metre
     if volume.semantic.any() and abs(own - blocks_per_metre) > 1e-6:
-        raise UsageError(f"--blocks-per-metre is {own:g} for this room; leave it out")
+        raise UsageError(f"this room has a fixed scale of {own:g}; omit --blocks-per-metre")
     to_room = volume.block_to_room.copy()
     to_room[:3] *= own / blocks_per_metre
     return replace(volume, block_to_room=to_room)
 
 
 def _with_labels(volume: "BlockVolume", palette: str) -> "BlockVolume":
-    """Return the volume with the classes that a palette reads from the names of its blocks."""
+    """Return the volume with the classes that a palette assigns to its block names."""
     if not palette:
         return volume
     from world2minecraft.construction.mod_block_classes import label_volume
@@ -154,17 +156,21 @@ def _with_labels(volume: "BlockVolume", palette: str) -> "BlockVolume":
 
     meanings = load_palette(palette).meanings
     if meanings is None:
-        raise UsageError(f"palette {palette} reads no blocks; add reads to it, or try vanilla")
+        raise UsageError(
+            f"palette {palette} has no 'reads' section to classify blocks; "
+            "add that section or use vanilla"
+        )
     return label_volume(volume, meanings)
 
 
 def _check_target(source: Path, target: Path, force: bool) -> None:
-    """Check what can be known before any work.
+    """Check the source and the target before any work.
 
     Raises:
-        InputError: the source is not found. UsageError: the target has no known suffix, is the
-        source, exists and ``force`` is not given, or is a folder of other things.
-        ConflictError: the target is a world that the game has open.
+        InputError: If the source does not exist.
+        UsageError: If the target has no known suffix, is the source, exists without ``force``, or
+            is a folder with unrelated files.
+        ConflictError: If the target is a world that is open in the game.
     """
     from world2minecraft.formats.volume_formats import format_for_path
 
@@ -174,7 +180,7 @@ def _check_target(source: Path, target: Path, force: bool) -> None:
     if not os.path.lexists(target):
         return
     if target.exists() and source.samefile(target):
-        raise UsageError(f"{target} is both source and target; choose another target")
+        raise UsageError(f"{target} is both the source and the target; choose another target")
     if not force:
         raise UsageError(f"{target} exists; add --force to replace it")
     if (target / "level.dat").is_file():
@@ -185,13 +191,13 @@ def _check_target(source: Path, target: Path, force: bool) -> None:
     if not target.is_dir() or not any(target.iterdir()):
         return
     if form.suffix == "" and not (target / "level.dat").is_file():
-        raise UsageError(f"{target} is a folder without a world (no level.dat); choose another")
+        raise UsageError(f"{target} exists and is not a world folder; choose another target")
     if form.suffix != "" and not any(target.glob(HABITAT_MARK)):
-        raise UsageError(f"{target} is a folder of other files; choose another target")
+        raise UsageError(f"{target} is a folder with unrelated files; choose another target")
 
 
 def _replace_target(written: Path, target: Path, force: bool) -> None:
-    """Move what was written to the target, with the files that were written beside it."""
+    """Move the written file or folder to the target, together with files written next to it."""
     beside = [path for path in sorted(written.parent.iterdir()) if path != written]
     for path in beside:
         place = target.parent / path.name
@@ -203,16 +209,16 @@ def _replace_target(written: Path, target: Path, force: bool) -> None:
 
 
 def _make_parent(target: Path) -> None:
-    """Make the folder that the target lies in."""
+    """Create the parent folder of the target."""
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        reason = "is a file" if target.parent.is_file() else f"cannot be made: {error.strerror}"
+        reason = "is a file" if target.parent.is_file() else f"cannot be created: {error.strerror}"
         raise OutputError(target.parent, f"{reason}; choose another target") from error
 
 
 def _put_in_place(written: Path, target: Path) -> None:
-    """Move a file or folder, on the same disk, over what stands at the target."""
+    """Move a file or folder to the target on the same disk, replacing an existing target."""
     if not target.is_dir() or target.is_symlink():
         os.replace(written, target)
         return
@@ -227,13 +233,15 @@ def _put_in_place(written: Path, target: Path) -> None:
 
 @dataclass(frozen=True)
 class InstalledWorld:
-    """A world that was copied into a game.
+    """A world that was copied into the saves folder of a game.
 
     Attributes:
-        path: its folder in the saves folder; its name is that of the world in the game.
-        game: the name of the game, such as ``Prism: Fabric``.
-        note: a warning where the game is too old for the world; empty otherwise.
-        has_player_size: whether its data pack can resize the player (``/function w2m:human_size``).
+        path: World folder in the saves folder. The folder name is also the name of the world in the
+            game.
+        game: Name of the game installation, such as ``Prism: Fabric``.
+        note: Warning if the game is too old for the world. Empty otherwise.
+        has_player_size: Whether the world's data pack can resize the player (``/function
+            w2m:human_size``).
     """
 
     path: Path
@@ -243,9 +251,10 @@ class InstalledWorld:
 
 
 def find_games() -> "list[Game]":
-    """Return the games of this machine, with the saves folder and, where known, the version.
+    """Return the game installations on this machine with their saves folders and versions.
 
-    The Minecraft launcher, Prism, PolyMC and MultiMC are searched.
+    The function searches for the Minecraft launcher, Prism, PolyMC and MultiMC. The version is None
+    if it is unknown.
 
     Example:
         >>> from world2minecraft.api.worlds import find_games
@@ -264,19 +273,21 @@ def install_world(
     saves: str | Path | None = None,
     name: str = "",
 ) -> InstalledWorld:
-    """Copy the world of a run into the saves folder of a game; nothing is overwritten.
+    """Copy the world of a run into the saves folder of a game without overwriting other worlds.
 
-    Where the name of the world is taken, a number follows it.
+    If the world name is already in use, a number is appended.
 
     Args:
-        source: a run, its folder, or a world.
-        game: of several games, the number in ``find_games()``, from 1, or a part of the name.
-        saves: a saves folder, instead of searching for games.
-        name: the name of the world; its own by default.
+        source: Run, run folder or world.
+        game: Number of the installation in ``find_games()``, starting at 1, or a part of its name.
+            Required if several installations are found.
+        saves: Saves folder to use instead of searching for games.
+        name: Name of the world. Defaults to its current name.
 
     Raises:
-        UsageError: no game is found, or several match. InputError: the source holds no world, or
-        the saves folder is not found. OutputError: the saves folder cannot be written.
+        UsageError: If no game is found or several games match.
+        InputError: If the source contains no world or the saves folder does not exist.
+        OutputError: If the saves folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -289,8 +300,8 @@ def install_world(
     world = installation.find_world(path_of(source))
     chosen = Game("the game", Path(saves)) if saves else choose_game(find_games(), game)
     if not chosen.saves.parent.is_dir():
-        reason = "not found, nor a folder to create it in; give the saves folder of a game"
-        raise InputError(chosen.saves, f"{reason} with --saves DIR")
+        reason = "parent folder not found; give the saves folder of a game with --saves DIR"
+        raise InputError(chosen.saves, reason)
     target = installation.install_world(world, chosen.saves, name or None)
     return InstalledWorld(
         target,
@@ -305,9 +316,9 @@ class UndoStep:
     """A build into a world that can be undone.
 
     Attributes:
-        number: its number in the world, such as ``0001``.
-        what: what it did, such as ``built at 5 70 -3``.
-        files: how many files it changed.
+        number: Number of the step in the world, such as ``0001``.
+        what: Description of the step, such as ``built at 5 70 -3``.
+        files: Number of files that the step changed.
     """
 
     number: str
@@ -317,13 +328,14 @@ class UndoStep:
 
 @dataclass(frozen=True)
 class Undone:
-    """What was undone.
+    """The result of undoing a build into a world.
 
     Attributes:
-        files: how many files were restored; 0 where blocks were.
-        blocks: how many blocks were restored one by one.
-        unchanged: how many blocks were left, because they were changed since.
-        interrupted: whether the step had been interrupted, and was not complete.
+        files: Number of files that were restored. 0 if blocks were restored one by one.
+        blocks: Number of blocks that were restored one by one.
+        unchanged: Number of blocks that were not restored because they have changed since the
+            build.
+        interrupted: Whether the undone step had been interrupted before it was complete.
     """
 
     files: int = 0
@@ -333,10 +345,10 @@ class Undone:
 
 
 def undo_steps(world: str | Path) -> list[UndoStep]:
-    """Return the builds into a world that ``undo_build`` can undo, the first one first.
+    """Return the builds into a world that ``undo_build`` can undo, oldest first.
 
     Raises:
-        InputError: the folder holds no world.
+        InputError: If the folder does not contain a world.
     """
     from world2minecraft.editing.file_backups import list_steps
     from world2minecraft.minecraft.worlds.level_dat import no_world
@@ -350,18 +362,18 @@ def undo_steps(world: str | Path) -> list[UndoStep]:
 def undo_build(world: str | Path, *, blocks: bool = False, force: bool = False) -> Undone:
     """Undo the last build into a world.
 
-    Every file that the build changed is restored byte for byte, unless the game has saved the
-    world since.
+    Every file that the build changed is restored byte for byte, unless the game has saved the world
+    since the build.
 
     Args:
-        world: the folder of the world.
-        blocks: restore the blocks one by one, and leave those that were changed since.
-        force: restore the files even where they were changed since.
+        world: Folder of the world.
+        blocks: Restore the blocks one by one, except those that have changed since the build.
+        force: Restore the files even if they have changed since the build.
 
     Raises:
-        UsageError: there is nothing to undo, or both ``blocks`` and ``force`` are given.
-        ConflictError: the world was changed since, or the game has it open.
-        InputError: the folder holds no world.
+        UsageError: If there is no build to undo, or if both ``blocks`` and ``force`` are given.
+        ConflictError: If the world has changed since the build or is open in the game.
+        InputError: If the folder does not contain a world.
 
     Example:
         >>> import world2minecraft as w2m

@@ -1,8 +1,8 @@
-"""The command line ``w2m``, one module per verb.
+"""The command line ``w2m``, with one module per verb.
 
-``verbs`` holds the table of verbs and imports each module when its verb is called, so
-``w2m --help`` loads neither numpy nor numba. ``failures`` reports an error as one line and an exit
-code: 0 success, 1 failure, 2 usage error, 3 bad input, 130 interrupted.
+``verbs`` contains the table of verbs and imports each module only when its verb is called, so ``w2m
+--help`` loads neither numpy nor numba. ``failures`` reports an error as one line and an exit code:
+0 for success, 1 for failure, 2 for a usage error, 3 for bad input, 130 if interrupted.
 """
 
 import os
@@ -18,11 +18,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run one command and return its exit code; errors are reported, never raised.
+    """Run a command and return its exit code. Errors are reported on stderr, never raised.
 
     Args:
-        arguments: the words after ``w2m``. ``--traceback`` may stand anywhere among them; setting
-            the environment variable ``W2M_TRACEBACK=1`` has the same effect.
+        arguments: Command-line arguments after ``w2m``. ``--traceback`` can be at any position.
+            Setting the environment variable ``W2M_TRACEBACK=1`` has the same effect.
     """
     words = [word for word in arguments if word != TRACEBACK_FLAG] or ["--help"]
     wants_traceback = len(words) < len(arguments) or os.environ.get("W2M_TRACEBACK", "0") != "0"

@@ -1,4 +1,4 @@
-"""``python -m world2minecraft.cli`` does what ``w2m`` does."""
+"""Run ``w2m`` with ``python -m world2minecraft.cli``."""
 
 from world2minecraft.cli import main
 

@@ -1,17 +1,17 @@
-"""Opens a link that a verb printed in the user's browser."""
+"""Open links in the user's browser."""
 
 import threading
 import webbrowser
 from pathlib import PurePath
 
-# They would take the terminal, where the link and what follows it are to be read.
+# Text browsers would take over the terminal that shows the link.
 IN_THE_TERMINAL = frozenset({"www-browser", "links", "elinks", "lynx", "w3m"})
 
 
 def open_link(link: str) -> None:
-    """Open a link and return at once; where there is no browser it stands in the terminal.
+    """Open a link in the browser, without waiting for browsers that block until they are closed.
 
-    Some browsers keep whoever opens them waiting until they end; a server cannot.
+    The link is not opened if only a text browser is available.
     """
     if not _is_in_the_terminal():
         threading.Thread(target=webbrowser.open, args=[link], daemon=True).start()

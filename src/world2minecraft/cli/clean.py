@@ -1,4 +1,4 @@
-"""``w2m clean``: repair a built room, and undo any repair."""
+"""Repair a built room, and undo any repair: ``w2m clean``."""
 
 import json
 from collections.abc import Sequence
@@ -14,25 +14,23 @@ if TYPE_CHECKING:
     from world2minecraft.api.repairs import Repair
 
 EXAMPLES = """\
-w2m clean OUT                  repair what edits have left
-w2m clean OUT --list           the repairs, of the build and since
+w2m clean OUT                  repair faults introduced by edits
+w2m clean OUT --list           list all repairs
 w2m clean OUT --undo 3         undo the third repair
-w2m clean OUT --undo-all       the room as it was built
-w2m clean OUT --dry-run        what would be repaired
+w2m clean OUT --undo-all       restore the room as it was before all repairs
+w2m clean OUT --dry-run        show what would be repaired
 """
 
 Undo = Annotated[
-    int | None, typer.Option("--undo", metavar="N", min=1, help="Undo the repair of this number.")
+    int | None, typer.Option("--undo", metavar="N", min=1, help="Undo the repair with this number.")
 ]
 Redo = Annotated[
-    int | None, typer.Option("--redo", metavar="N", min=1, help="Make an undone repair again.")
+    int | None, typer.Option("--redo", metavar="N", min=1, help="Redo the repair with this number.")
 ]
 
 
 def run(
-    source: Annotated[
-        Path, typer.Argument(metavar="OUT", help="A run's folder, or the build folder in it.")
-    ],
+    source: Annotated[Path, typer.Argument(metavar="OUT", help="Run folder, or its build folder.")],
     list_: Annotated[bool, typer.Option("--list", help="List the repairs.")] = False,
     undo: Undo = None,
     undo_all: Annotated[bool, typer.Option("--undo-all", help="Undo all repairs.")] = False,
@@ -47,35 +45,36 @@ def run(
         ),
     ] = None,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Print the repairs; change nothing.")
+        bool, typer.Option("--dry-run", help="Print the repairs without changing the build.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the --list as JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="With --list, print JSON.")] = False,
 ) -> None:
-    """Repair a built room: floating blocks, holes in walls, furniture that intersects a wall.
+    """Repair floating blocks, holes in walls and furniture that intersects a wall in a built room.
 
-    Every build is repaired already (unless built with --set mend=no); each repair is an edit in
-    build/edits.journal that can be listed and undone. The world and its further formats are
-    written again; a world that was played in is not changed.
+    Builds are repaired automatically (unless built with --set mend=no). Each repair is recorded in
+    build/edits.journal and can be listed and undone. The world and its additional formats are then
+    rewritten. A world that has been played in is not changed.
 
     Raises:
-        UsageError: there is no such repair or rule. InputError: there is no build.
+        UsageError: If a repair or a rule does not exist.
+        InputError: If the folder contains no build.
     """
     from world2minecraft.api import repairs
 
     if sum((list_, undo is not None, undo_all, redo is not None)) > 1:
-        raise UsageError("--list, --undo, --undo-all and --redo exclude each other; give one")
+        raise UsageError("use only one of --list, --undo, --undo-all and --redo")
     if as_json and not list_:
-        raise UsageError("--json needs --list")
+        raise UsageError("--json requires --list")
     if list_:
         found = repairs.list_repairs(source)
         print(to_json(found) if as_json else format_repairs(found) or "No repairs.")
         return
     if redo is not None:
         repairs.redo_repair(source, redo)
-        print(f"Repair {redo} is made again.")
+        print(f"Repair {redo} redone.")
     elif undo is not None:
         repairs.undo_repair(source, undo)
-        print(f"Repair {undo} is undone.")
+        print(f"Repair {undo} undone.")
     elif undo_all:
         count = repairs.undo_repair(source)
         print(f"{count} repair{'s' * (count != 1)} undone.")
@@ -84,7 +83,7 @@ def run(
         print(format_repairs(done) or "Nothing to repair.")
         if dry_run or not done:
             return
-    print(f"{repairs.world_of(source)} and its further formats are written again.")
+    print(f"{repairs.world_of(source)} and its additional formats have been rewritten.")
 
 
 def to_json(repairs: "Sequence[Repair]") -> str:
@@ -93,7 +92,7 @@ def to_json(repairs: "Sequence[Repair]") -> str:
 
 
 def format_repairs(repairs: "Sequence[Repair]") -> str:
-    """Return repairs as lines: number, kind, blocks, object, place, reason."""
+    """Return one line per repair: number, kind, object, blocks, position and reason."""
     lines = []
     for one in repairs:
         size = f"{one.blocks} block{'s' * (one.blocks > 1)}"

@@ -1,7 +1,7 @@
-"""Print a script that completes commands in a shell: ``w2m completion``.
+"""Print a shell completion script: ``w2m completion``.
 
-The script calls ``w2m`` with ``_W2M_COMPLETE`` set, and typer answers with the names that fit:
-verbs from the table in ``cli.verbs``, options from the module of the verb alone.
+The script calls ``w2m`` with ``_W2M_COMPLETE`` set, and typer replies with the matching names:
+verbs from the table in ``cli.verbs``, and options from the module of the verb.
 """
 
 from typing import Annotated
@@ -28,10 +28,10 @@ def run(shell: Annotated[str, typer.Argument(help="bash, zsh or fish.")]) -> Non
     fish: run  w2m completion fish > ~/.config/fish/completions/w2m.fish  once.
 
     Args:
-        shell: the shell that reads the script.
+        shell: Shell to write the script for.
 
     Raises:
-        UnknownNameError: there is no script for this shell.
+        UnknownNameError: If the shell is not supported.
     """
     from typer.completion import get_completion_script  # type: ignore[attr-defined]
 

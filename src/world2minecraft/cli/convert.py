@@ -1,4 +1,4 @@
-"""``w2m convert``: convert a room, a world or a block file to another form."""
+"""Convert a room, a world or a block file to another format: ``w2m convert``."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -19,14 +19,17 @@ w2m convert a.schem b.schem --schem-version 3 --force
 
 def run(
     source: Annotated[
-        Path, typer.Argument(metavar="SOURCE", help="A file, a world, or the folder of a run.")
+        Path, typer.Argument(metavar="SOURCE", help="Block file, world, or run folder.")
     ],
     target: Annotated[
-        Path, typer.Argument(metavar="TARGET", help="What to write; its suffix is the format.")
+        Path,
+        typer.Argument(
+            metavar="TARGET", help="File or folder to write; the suffix selects the format."
+        ),
     ],
     force: Annotated[bool, typer.Option("--force", help="Replace TARGET if it exists.")] = False,
     mc_version: Annotated[
-        str, typer.Option(help="Game version to write for; newer games upgrade it.")
+        str, typer.Option(help="Minecraft version to write for; newer versions upgrade the file.")
     ] = "1.20.1",
     schem_version: Annotated[int, typer.Option(help="Sponge schematic version: 1, 2 or 3.")] = 2,
     name: Annotated[
@@ -34,7 +37,7 @@ def run(
     ] = "",
     blocks_per_metre: Annotated[
         float | None,
-        typer.Option(help="Scale, where SOURCE does not state it.", show_default="1"),
+        typer.Option(help="Scale, if SOURCE does not record it.", show_default="1"),
     ] = None,
     box: Annotated[
         str,
@@ -42,15 +45,17 @@ def run(
     ] = "",
     labels: Annotated[
         str,
-        typer.Option(metavar="PALETTE", help="Palette that names the classes of SOURCE's blocks."),
+        typer.Option(
+            metavar="PALETTE", help="Palette that assigns classes to the blocks of SOURCE."
+        ),
     ] = "",
 ) -> None:
-    """Convert a room, a world or a block file to another form.
+    """Convert a room, a world or a block file to another format.
 
-    The format of SOURCE is detected from its suffix and content, that of TARGET from its suffix
-    alone: a name without a suffix becomes a world folder. Known suffixes: .schem, .litematic,
-    .nbt, .zip (data pack), .mcfunction, .mcstructure (Bedrock), .glb, .habitat (a folder), and
-    .schematic to read. What TARGET cannot hold is listed.
+    The format of SOURCE is detected from its suffix and contents, that of TARGET from its suffix
+    alone. A TARGET without a suffix becomes a world folder. Supported suffixes: .schem, .litematic,
+    .nbt, .zip (data pack), .mcfunction, .mcstructure (Bedrock), .glb, .habitat (a folder), and for
+    reading only .schematic. Contents that TARGET does not support are listed.
     """
     from world2minecraft.api import convert
     from world2minecraft.cli.render.options import box_of
@@ -69,9 +74,9 @@ def run(
     size = " x ".join(str(side) for side in done.size_blocks)
     print(f"{target}: {done.blocks:,} blocks of {done.kinds} kinds, {size}")
     if done.function:
-        print(f"in a world that has it: /function {done.function}")
+        print(f"to place it in a world with this data pack: /function {done.function}")
     for mod, count in done.mod_blocks.items():
-        print(f"written by name: {count:,} blocks of the mod {mod}")
+        print(f"written with their original names: {count:,} blocks of the mod {mod}")
     _print_losses(done.not_read, f"not read from {source.name}")
     _print_losses(done.not_written, f"not written to {target.name}")
 

@@ -22,7 +22,7 @@ w2m demo --seed 7 -o other    build another living room in other/
 """
 DEMO_SEED = 5
 DEMO_FRAMES = 40
-MIN_FRAMES = 3  # With fewer, how well the poses fit cannot be measured.
+MIN_FRAMES = 3  # The quality of the poses cannot be estimated from fewer frames.
 
 
 def run(
@@ -47,14 +47,14 @@ def run(
     the result against it.
 
     Args:
-        out: the folder to write; the scan is written to its folder ``capture``.
-        kind: the kind of room.
-        seed: the room's seed.
-        frames: the number of frames of the virtual camera.
-        blocks_per_metre: the scale.
-        style: what furniture is made of.
-        palette: the blocks that may be used.
-        formats: further file formats of the build.
+        out: Output folder. The scan is written to its ``capture`` subfolder.
+        kind: Room type.
+        seed: Random seed of the room.
+        frames: Number of frames of the virtual scan.
+        blocks_per_metre: Scale of the world.
+        style: Material of the furniture.
+        palette: Palette of blocks to build with.
+        formats: Additional file formats to write.
     """
     from world2minecraft.api import demo
     from world2minecraft.api.progress import show_progress

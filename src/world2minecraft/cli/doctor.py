@@ -30,10 +30,11 @@ CORE_PACKAGES = ("numpy", "numba", "scipy", "pillow")
 class Check:
     """The result of one check.
 
-    what: the name of what was checked.
-    state: ``ok``, ``warn`` where the program runs with limits, ``bad`` where it cannot run.
-    found: what was found.
-    advice: what to do about it, if anything.
+    Attributes:
+        what: Name of the checked item.
+        state: ``ok``, ``warn`` (the program runs with limitations) or ``bad`` (it cannot run).
+        found: What the check found.
+        advice: How to fix a problem. Empty if there is none.
     """
 
     what: str
@@ -49,7 +50,7 @@ def run(as_json: Annotated[bool, typer.Option("--json", help="Print a JSON list.
     Java, the game and a graphics card are not needed.
 
     Args:
-        as_json: print the checks as JSON instead of text.
+        as_json: Print the checks as JSON instead of text.
     """
     checks = list(examine())
     if as_json:
@@ -64,7 +65,7 @@ def run(as_json: Annotated[bool, typer.Option("--json", help="Print a JSON list.
 
 
 def examine() -> Iterator[Check]:
-    """Run all checks, in the order they are shown."""
+    """Run all checks in display order."""
     yield check_python(sys.version_info[:2])
     for name in CORE_PACKAGES:
         yield check_package(name)
@@ -111,7 +112,7 @@ def check_cache() -> Check:
 
 
 def check_threads() -> Check:
-    """Return the number of cores that this process may use."""
+    """Report the number of cores that this process can use."""
     from world2minecraft.core.machine import usable_cores
 
     cores = usable_cores()
@@ -120,7 +121,7 @@ def check_threads() -> Check:
 
 
 def check_memory(free_gb: float | None) -> Check:
-    """Check the free memory; None where the system does not report it."""
+    """Check the free memory in GB. None means that the system does not report it."""
     if free_gb is None:
         return Check("memory", "ok", "not reported by this system")
     if free_gb >= MIN_MEMORY_GB:
@@ -130,7 +131,7 @@ def check_memory(free_gb: float | None) -> Check:
 
 
 def check_disk(folder: Path) -> Check:
-    """Check the free space of the disk that holds ``folder``."""
+    """Check the free space on the disk that contains ``folder``."""
     free_gb = shutil.disk_usage(folder).free / 1e9
     if free_gb >= MIN_DISK_GB:
         return Check("disk", "ok", f"{free_gb:.1f} GB free here")
@@ -154,7 +155,7 @@ def optional_extras() -> dict[str, tuple[str, ...]]:
 
 
 def check_extra(extra: str, packages: tuple[str, ...]) -> Check:
-    """Check whether an optional extra is installed; reconstruction and building need none."""
+    """Check whether an optional extra is installed. Reconstruction and building need no extras."""
     missing = [name for name in packages if not _is_installed(name)]
     if not missing:
         return Check(f"[{extra}]", "ok", "installed")
@@ -163,7 +164,7 @@ def check_extra(extra: str, packages: tuple[str, ...]) -> Check:
 
 
 def available_memory_gb() -> float | None:
-    """Return the memory available to a new program, in GB; None where it is not reported."""
+    """Return the memory available to new programs in GB, or None if it is not reported."""
     try:
         lines = Path("/proc/meminfo").read_text().splitlines()
         values = {line.split(":")[0]: line.split()[1] for line in lines}

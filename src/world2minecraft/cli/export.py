@@ -1,4 +1,4 @@
-"""``w2m export``: a trained network as one ONNX file, which runs without torch."""
+"""Export a trained network to an ONNX file, which runs without torch: ``w2m export``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -18,24 +18,24 @@ w2m reconstruct my_scan --out OUT --predictor mono:net.onnx
 
 def run(
     weights: Annotated[
-        Path, typer.Argument(metavar="RUN", help="A run's folder, or weights of w2m train.")
+        Path, typer.Argument(metavar="RUN", help="Run folder, or weights from w2m train.")
     ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="The ONNX file to write.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="ONNX file to write.")],
     name: Annotated[
         str,
         typer.Option(
-            "--name", help="The network's name in reports.", show_default="network and size"
+            "--name", help="Name of the network in reports.", show_default="network and size"
         ),
     ] = "",
     stored: Annotated[
-        str, typer.Option("--weights", help="How weights are stored: float, half or int8.")
+        str, typer.Option("--weights", help="Storage type of the weights: float, half or int8.")
     ] = "float",
 ) -> None:
-    """Write a trained occupancy network as ONNX, as docs/networks-onnx.md describes.
+    """Export a trained occupancy network to ONNX. docs/networks-onnx.md describes the file.
 
-    The file and the network are compared on one image, and the file is written only if they agree.
-    Weights stored as half or int8 are expanded as the file is loaded: the file is smaller, nothing
-    is faster, and predictions change a little. Score the file before you use it.
+    The outputs of the file and the network are compared on one image, and the file is kept only if
+    they agree. Weights stored as half or int8 are expanded when the file is loaded, so the file is
+    smaller but not faster, and predictions change slightly. Score the file before you use it.
     """
     from world2minecraft.api import export_network
 
@@ -45,18 +45,18 @@ def run(
 
 
 def summary_lines(written: "ExportedNetwork") -> list[str]:
-    """Return what is printed of a file."""
+    """Return the lines to print about an exported network."""
     out = written.path
     lines = [
         f"{out}: {written.name}, {written.bytes / 1e6:.1f} MB; "
-        f"its logits differ by {written.difference:.1g} at most"
+        f"maximum logit difference {written.difference:.1g}"
     ]
     if written.weights != "float":
         lines.append(
-            f"weights as {written.weights} move a logit by {written.moved_mean:.2g} on average, "
-            f"{written.moved:.2g} at most (all have a spread of {written.spread:.2g}); "
-            f"{written.relabelled:.1%} of the cells get another class"
+            f"{written.weights} weights change a logit by {written.moved_mean:.2g} on average and "
+            f"{written.moved:.2g} at most (standard deviation of all logits: {written.spread:.2g});"
+            f" {written.relabelled:.1%} of the cells change class"
         )
-        lines.append(f"next: w2m evaluate occupancy {out} DATA      to see what that costs")
+        lines.append(f"next: w2m evaluate occupancy {out} DATA      to measure the loss")
     lines.append(f"next: w2m reconstruct CAPTURE --out OUT --predictor mono:{out}")
     return lines

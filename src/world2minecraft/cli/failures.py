@@ -1,4 +1,4 @@
-"""Report errors as one line on stderr and an exit code."""
+"""Report errors as one line on stderr with an exit code."""
 
 import errno
 import sys
@@ -10,7 +10,7 @@ FAILURE, USAGE, BAD_INPUT, STOPPED = 1, 2, 3, 130
 
 
 def report_error(error: BaseException, with_traceback: bool = False) -> int:
-    """Print the error to stderr and return its exit code."""
+    """Print an error to stderr and return its exit code."""
     if isinstance(error, SystemExit):
         return error.code if isinstance(error.code, int) else int(error.code is not None)
     if with_traceback:
@@ -21,14 +21,14 @@ def report_error(error: BaseException, with_traceback: bool = False) -> int:
 
 
 def explain_error(error: BaseException) -> tuple[str, int]:
-    """Return one line that states the error and what to do next, and the exit code.
+    """Return a one-line message with the error and the next step, and the exit code.
 
     Example:
         >>> explain_error(MemoryError())
         ('out of memory; close other programs, or use a larger --voxel', 1)
     """
     if isinstance(error, KeyboardInterrupt) or type(error).__name__ == "Abort":
-        return "stopped; run the same command again to continue", STOPPED
+        return "interrupted; run the same command again to continue", STOPPED
     if isinstance(error, World2MinecraftError):
         return one_line(error), error.exit_code
     if hasattr(error, "format_message"):  # typer's usage errors; older ones come from click.

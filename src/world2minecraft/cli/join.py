@@ -1,4 +1,4 @@
-"""``w2m join``: finished runs of single rooms become one home."""
+"""Join finished runs of single rooms to one home: ``w2m join``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -18,7 +18,7 @@ from world2minecraft.cli.build.options import (
 )
 
 EXAMPLES = """\
-w2m join kitchen hall bedroom -o HOME             by the doors that they share
+w2m join kitchen hall bedroom -o HOME             by their common doors
 w2m join kitchen hall -o HOME --at hall=3.76,0,1  by hand: metres and quarter turns
 w2m install HOME                                  copy the home into your game
 """
@@ -28,7 +28,7 @@ def run(
     rooms: Annotated[
         list[Path], typer.Argument(metavar="OUT...", help="Folders of finished runs.")
     ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="The folder of the home.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Output folder of the home.")],
     places: Annotated[
         list[str] | None,
         typer.Option("--at", metavar="NAME=X,Y,TURNS", help="Position of a room. Repeatable."),
@@ -40,16 +40,17 @@ def run(
     mc_version: Version = "1.20.1",
     settings: SettingList = None,
 ) -> None:
-    """Join finished runs into one home with one world.
+    """Join finished runs to one home with one world.
 
-    The first room keeps its place. Each other room is placed where one of its doors meets a door
-    of a room that is placed already: of the same width and height, with a wall between them. Where
-    a room fits in several places, they are listed; --at chooses one. Rooms are rotated by quarter
-    turns and moved by whole cells; nothing is resampled.
+    The first room keeps its position. Each further room is placed where one of its doors meets a
+    door of the same width and height in a room that is already placed, with a wall between the
+    doors. If a room fits in several positions, they are listed, and --at selects one. Rooms are
+    rotated by quarter turns and moved by whole cells, so no room is resampled.
 
     Raises:
-        UsageError: a room fits nowhere or in several places. InputError: a run cannot be read.
-        OutputError: the folder cannot be written.
+        UsageError: If a room fits in no position or in several.
+        InputError: If a run cannot be read.
+        OutputError: If the output folder cannot be written.
     """
     from world2minecraft.api import join_rooms
     from world2minecraft.api.progress import show_progress
@@ -74,7 +75,7 @@ def run(
 
 
 def print_home(out: Path, rooms: int) -> None:
-    """Print what was joined, and how to open it."""
+    """Print the size of the joined home, its notes, and how to open it."""
     from world2minecraft.cli.outcome import print_play_steps
     from world2minecraft.core.files import read_json
 

@@ -1,4 +1,4 @@
-"""``--json`` of verbs that print figures: to the screen, or to the file whose name follows."""
+"""The option ``--json`` of verbs that print results, with an optional file name."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -11,12 +11,12 @@ OPTION, FILE = "--json", "[FILE]"
 STDOUT = Path("-")
 JsonOutput = Annotated[
     Path | None,
-    typer.Option(OPTION, metavar=FILE, help="Print every figure as JSON, or write it to FILE."),
+    typer.Option(OPTION, metavar=FILE, help="Print all results as JSON, or write them to FILE."),
 ]
 
 
 def prints_json(json_file: Path | None) -> bool:
-    """Return whether JSON, and nothing else, goes to the screen."""
+    """Return whether only JSON is printed to stdout."""
     return json_file == STDOUT
 
 
@@ -26,11 +26,11 @@ def print_json(value: Any) -> None:
 
 
 def complete_json_option(words: Sequence[str], options: Iterable[Any]) -> list[str]:
-    """Give a ``--json`` without a file the name ``-``, for a verb with ``JsonOutput``.
+    """Add the file name ``-`` to a ``--json`` option without a file, for verbs with ``JsonOutput``.
 
     Args:
-        words: those after the verb.
-        options: the parameters of the verb.
+        words: Command-line arguments after the verb.
+        options: Parameters of the verb.
     """
     if not any(OPTION in one.opts and one.metavar == FILE for one in options):
         return list(words)

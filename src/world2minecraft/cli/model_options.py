@@ -1,6 +1,7 @@
-"""The options of verbs that ask a language model: which one, what it may cost, its replies.
+"""Options of verbs that use a language model: which model, cost limits, and recorded replies.
 
-A verb that ``with_model_options`` has these options on the command line and gets them as one value.
+A verb decorated with ``with_model_options`` accepts these options on the command line and receives
+them as one value.
 """
 
 import inspect
@@ -22,7 +23,7 @@ Model = Annotated[
     str,
     typer.Option(
         "--model",
-        help="The model on the server, where --agent does not name it.",
+        help="Model name on the server, if --agent does not include it.",
     ),
 ]
 KeyEnv = Annotated[
@@ -30,27 +31,27 @@ KeyEnv = Annotated[
     typer.Option(
         "--key-env",
         metavar="NAME",
-        help="The environment variable that holds the key.",
+        help="Environment variable that contains the API key.",
         rich_help_panel=MORE,
     ),
 ]
-MaxUsd = Annotated[
-    float | None, typer.Option("--max-usd", help="Stop before more than this is spent, in dollars.")
-]
+MaxUsd = Annotated[float | None, typer.Option("--max-usd", help="Cost limit in US dollars.")]
 MaxCalls = Annotated[
     int | None,
-    typer.Option("--max-calls", help="Stop after this many questions.", rich_help_panel=MORE),
+    typer.Option("--max-calls", help="Maximum number of requests.", rich_help_panel=MORE),
 ]
 Prices = Annotated[
     Path | None,
-    typer.Option("--prices", help="A YAML file of prices; see the docs.", rich_help_panel=MORE),
+    typer.Option(
+        "--prices", help="YAML file with prices; see the documentation.", rich_help_panel=MORE
+    ),
 ]
 MaxPixels = Annotated[
     int,
     typer.Option(
         "--max-pixels",
         metavar="N",
-        help="The most pixels of a picture that a model sees; larger ones are reduced.",
+        help="Maximum number of pixels in an image; larger images are downscaled.",
         rich_help_panel=MORE,
     ),
 ]
@@ -59,7 +60,7 @@ MaxTokens = Annotated[
     int,
     typer.Option(
         "--max-tokens",
-        help="The longest reply, reasoning included; reasoning models need 8192.",
+        help="Maximum reply length including reasoning; reasoning models need 8192.",
         min=1,
         rich_help_panel=MORE,
     ),
@@ -67,14 +68,14 @@ MaxTokens = Annotated[
 Timeout = Annotated[
     float,
     typer.Option(
-        "--timeout", help="The longest attempt, in seconds.", min=0.1, rich_help_panel=MORE
+        "--timeout", help="Timeout of one request in seconds.", min=0.1, rich_help_panel=MORE
     ),
 ]
 Temperature = Annotated[
     float,
     typer.Option(
         "--temperature",
-        help="The temperature of replies; below 0 for that of the server.",
+        help="Sampling temperature; negative for the server's default.",
         rich_help_panel=MORE,
     ),
 ]
@@ -83,7 +84,7 @@ Replay = Annotated[
     typer.Option(
         "--replay",
         metavar="FILE",
-        help="Take all replies from the replies.jsonl of a run; send no request.",
+        help="Use the replies in a replies.jsonl instead of sending requests.",
     ),
 ]
 
@@ -103,7 +104,7 @@ class ModelOptions:
     replay: Replay = None
 
     def value(self) -> "ApiModelOptions":
-        """Return them as the public API takes them."""
+        """Return the options as a ``ModelOptions`` value of the public API."""
         from world2minecraft.api.agents import ModelOptions as ApiModelOptions
 
         given = asdict(self)
@@ -118,10 +119,10 @@ DEFAULTS = ModelOptions()
 def with_model_options(
     defaults: ModelOptions = DEFAULTS,
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Give a verb the options of a model in place of its parameter ``model_options``.
+    """Replace the parameter ``model_options`` of a verb with individual model options.
 
     Args:
-        defaults: their values where the command line does not set them.
+        defaults: Option values to use if they are not given on the command line.
     """
     options = [
         inspect.Parameter(
@@ -148,10 +149,10 @@ def with_model_options(
 
 
 def cost_line(cost: Mapping[str, Any]) -> str:
-    """Return what was asked and what that cost, in a line."""
-    usd = "an unknown sum" if cost["usd"] is None else f"${cost['usd']:.4f}"
+    """Return the number of requests and their cost as one line of text."""
+    usd = "unknown cost" if cost["usd"] is None else f"${cost['usd']:.4f}"
     tokens = cost["prompt_tokens"] + cost["completion_tokens"]
     return (
-        f"{cost['calls']:,} questions and {cost['replayed']:,} from the record, "
+        f"{cost['calls']:,} requests and {cost['replayed']:,} recorded replies, "
         f"{tokens:,} tokens, {usd}"
     )

@@ -1,4 +1,4 @@
-"""``w2m occupy``: predict the class of every cell of a frame, or of a captured room."""
+"""Predict the class of every cell in a frame or a captured room: ``w2m occupy``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -21,42 +21,44 @@ w2m occupy photo.jpg --out room.npz --predictor mono --fov 55
 
 
 Source = Annotated[
-    Path, typer.Argument(metavar="INPUT", help="A depth PNG of 16 bits, a photo, or a capture.")
+    Path, typer.Argument(metavar="INPUT", help="16-bit depth PNG, photo, or capture.")
 ]
 GridFile = Annotated[
     Path | None,
-    typer.Option("--grid", help="The frame's grid: an SSCNet .bin (only its header is read) or "
+    typer.Option("--grid", help="Grid of the frame: an SSCNet .bin (only its header is used) or "
                  "an npz."),
 ]  # fmt: skip
-Out = Annotated[Path, typer.Option("--out", "-o", help="The npz file to write.")]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Output npz file.")]
 Colour = Annotated[
-    Path | None, typer.Option("--colour", help="The photo of a depth picture's camera.")
+    Path | None, typer.Option("--colour", help="Photo from the camera of the depth image.")
 ]
 DepthCode = Annotated[
     str,
     typer.Option(
         "--depth-code",
-        help="How a depth PNG holds metres: auto, rotated, mm or 8000.",
+        help="Depth encoding of the PNG: auto, rotated, mm or 8000.",
         rich_help_panel=MORE,
     ),
 ]
 FocalPx = Annotated[
     float,
-    typer.Option("--focal-px", help="Focal length of a frame, at its size.", rich_help_panel=MORE),
+    typer.Option(
+        "--focal-px", help="Focal length in pixels at the size of the frame.", rich_help_panel=MORE
+    ),
 ]
 PredictorName = Annotated[
-    str, typer.Option("--predictor", help="depth; or mono or mono:FILE.onnx, which sees photos.")
+    str, typer.Option("--predictor", help="depth; for photos, mono or mono:FILE.onnx.")
 ]
 LabelImages = Annotated[
-    Path | None, typer.Option("--labels", help="Of a capture: a folder of 2D label images.")
+    Path | None, typer.Option("--labels", help="Folder of 2D label images (captures only).")
 ]
 FieldOfView = Annotated[
     float | None,
-    typer.Option("--fov", help="Of one photo without --grid: vertical field of view in degrees."),
+    typer.Option("--fov", help="Vertical field of view in degrees, for a photo without --grid."),
 ]
 Keep = Annotated[
     Path | None,
-    typer.Option("--keep", help="Of a capture: write the files of the run to this folder."),
+    typer.Option("--keep", help="Write the files of the run to this folder (captures only)."),
 ]
 
 
@@ -72,16 +74,16 @@ def run(
     fov: FieldOfView = None,
     keep: Keep = None,
 ) -> None:
-    """Predict the class of every cell: of a frame's grid, or of a captured room.
+    """Predict the class of every cell in the grid of a frame, or in a captured room.
 
-    With --grid and a picture, the cells are those of the file: 60x36x60 of 8 cm, x right, z up, y
-    forward. Of a .bin only the places of grid and camera are read, never a label. Of a depth
-    picture the completion network names what is seen and predicts what is hidden; of a photo a
-    network (--predictor mono) predicts all of it.
+    With --grid and an image, the cells are those of the grid file: 60x36x60 cells of 8 cm, x right,
+    z up, y forward. Only the grid and camera positions are read from a .bin file, never its labels.
+    For a depth image, the completion network labels visible cells and predicts hidden cells. For a
+    photo, a monocular network (--predictor mono) predicts all cells.
 
-    Without --grid, a capture is registered, fused and labelled as w2m reconstruct does: the cells
-    are the room's, x, y, z up. With --grid they are resampled to that grid, which must be of the
-    same world. ``labels`` is uint8, ids 0 to 11, 255 where nothing was observed.
+    Without --grid, a capture is registered, fused and labelled as by w2m reconstruct, and the cells
+    are in the room frame with z up. With --grid, they are resampled to that grid, which must be in
+    the same world frame. ``labels`` is uint8 with class ids 0 to 11, or 255 for unobserved cells.
     """
     from world2minecraft.api import predict_occupancy
     from world2minecraft.api.progress import show_progress
@@ -106,7 +108,7 @@ def run(
 
 
 def summary_lines(source: Path, out: Path, cells: "PredictedCells", grid: Path | None) -> list[str]:
-    """Return what is printed of the cells of a capture or a photo."""
+    """Return the lines to print about predicted cells."""
     import numpy as np
 
     from world2minecraft.core.classes import CLASS_NAMES, display_name
@@ -120,8 +122,8 @@ def summary_lines(source: Path, out: Path, cells: "PredictedCells", grid: Path |
     if grid is None:
         next_step = f"w2m reconstruct {source} --out OUT     builds a world from the same capture"
     return [
-        f"{out}: {found}" if found else f"{out}: nothing but empty cells",
-        f"{cells.observed.mean():.0%} of its {sides} cells were observed; the rest is predicted "
-        "by a network, or unknown",
+        f"{out}: {found}" if found else f"{out}: all cells are empty",
+        f"{cells.observed.mean():.0%} of the {sides} cells were observed; the rest are predicted "
+        "by a network or unknown",
         f"next: {next_step}",
     ]

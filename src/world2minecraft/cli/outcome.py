@@ -8,7 +8,7 @@ from world2minecraft.core.progress import Progress
 
 
 def kernels_are_compiled() -> bool:
-    """Return whether an earlier run has compiled kernels of this version."""
+    """Return whether an earlier run has compiled the kernels of this version."""
     from world2minecraft.core.jit import KERNEL_CACHE
 
     return any(KERNEL_CACHE.iterdir())
@@ -22,9 +22,9 @@ def print_compile_note() -> None:
 
 
 def with_compile_note(progress: Progress) -> Progress:
-    """Return a progress that prints the note on compilation before its first step.
+    """Return a progress callback that prints the note on compilation before its first step.
 
-    What is wrong with the arguments is reported before any step, and without the note.
+    Errors in the arguments are reported before any step, so they appear without the note.
     """
     noted = False
 
@@ -39,11 +39,11 @@ def with_compile_note(progress: Progress) -> Progress:
 
 
 def print_outcome(out: Path, facts: dict[str, Any]) -> None:
-    """Print the size of the result, its notes and where to look at it.
+    """Print the size of the result, its notes and where to view it.
 
     Args:
-        out: the folder of the run.
-        facts: the contents of its ``report.json``.
+        out: Folder of the run.
+        facts: Contents of the run's ``report.json``.
     """
     explained = facts["surface_explained"]["within_one_voxel"]
     size = " x ".join(f"{side:.1f}" for side in facts["room_size_m"])
@@ -51,7 +51,7 @@ def print_outcome(out: Path, facts: dict[str, Any]) -> None:
     print(
         f"\nRoom {size} m from {used} frames ({skipped} skipped), {len(facts['objects'])} objects,"
     )
-    print(f"{facts['blocks']:,} blocks; {explained:.0%} of the observed surface lies in a block.")
+    print(f"{facts['blocks']:,} blocks; {explained:.0%} of the observed surface is within a block.")
     for note in facts["scan"]["notes"]:
         print(f"note: {note}")
     print(f"\n  look   open {out / 'report.html'} in a browser, or {out / 'preview.png'}")
@@ -59,7 +59,7 @@ def print_outcome(out: Path, facts: dict[str, Any]) -> None:
 
 
 def print_play_steps(build: Path) -> None:
-    """Print how to open the world in the game, and the further formats of the build."""
+    """Print how to open the world in the game, and the additional formats of the build."""
     print(f"  play   w2m install {build.parent}      copies the world into the game")
     print(f"         or copy {build / 'world'} into the game's saves folder")
     pack = build / "datapack.zip"
@@ -70,7 +70,7 @@ def print_play_steps(build: Path) -> None:
 
 
 def print_extra_formats(build: Path) -> None:
-    """Print the files of the further formats, each with what the format cannot hold."""
+    """Print the files in additional formats, with the contents that each format omits."""
     from world2minecraft.core.files import read_json
 
     if not (build / "forms.json").is_file():

@@ -1,4 +1,4 @@
-"""``w2m palettes``: the palettes of the program, and a check of your own."""
+"""List the included palettes, or check a palette file: ``w2m palettes``."""
 
 import json
 from typing import TYPE_CHECKING, Annotated
@@ -9,24 +9,23 @@ if TYPE_CHECKING:
     from world2minecraft.api.palettes import Palette
 
 EXAMPLES = """\
-w2m palettes                      the palettes of the program
-w2m palettes mine.yaml            check one of your own, and list the blocks of each class
-w2m palettes --json               for programs
+w2m palettes                      list the included palettes
+w2m palettes mine.yaml            check your own palette, and list the blocks of each class
+w2m palettes --json               print JSON
 w2m build OUT --palette mine.yaml
 """
 MAX_SHOWN = 6
 
 
 def run(
-    name: Annotated[
-        str, typer.Argument(metavar="PALETTE", help="A palette's name, or its file.")
-    ] = "",
+    name: Annotated[str, typer.Argument(metavar="PALETTE", help="Name or file of a palette.")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """List the palettes, or check one and list the blocks of each class.
+    """List the palettes, or check a palette and list its blocks by class.
 
     Raises:
-        UnknownNameError: there is no such palette. InputError: the file is not a palette.
+        UnknownNameError: If the palette is unknown.
+        InputError: If the file is not a valid palette.
     """
     from world2minecraft.api.palettes import list_palettes, open_palette, palette_json
 
@@ -41,16 +40,16 @@ def run(
 
 
 def summary_of(palette: "Palette") -> str:
-    """Return one line about a palette."""
+    """Return a one-line summary of a palette."""
     blocks = {state for states in palette.blocks.values() for state in states}
     words = 0 if palette.meanings is None else len(palette.meanings.words)
     pieces = len(palette.furniture)
     extra = f", {pieces} pieces of furniture" if pieces else ""
-    return f"{palette.name:<24}{len(blocks)} full blocks{extra}, reads blocks by {words} words"
+    return f"{palette.name:<24}{len(blocks)} full blocks{extra}, {words} block name rules"
 
 
 def details_of(palette: "Palette") -> str:
-    """Return the blocks of each class, and the furniture, in lines."""
+    """Return the blocks of each class and the furniture as lines of text."""
     from world2minecraft.core.classes import display_name
 
     lines = [summary_of(palette)]

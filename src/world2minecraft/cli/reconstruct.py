@@ -1,4 +1,4 @@
-"""``w2m reconstruct``: turn a capture into a Minecraft world, with a report."""
+"""Convert a capture to a Minecraft world with a report: ``w2m reconstruct``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -26,60 +26,58 @@ w2m reconstruct my_scan -o OUT                         an app's export, RGB-D fr
 w2m reconstruct IMG_2041.MOV -o OUT                    a phone's video; a folder of photos too
 w2m reconstruct my_photos -o OUT --known "table height" 0.72
 w2m reconstruct room.glb -o OUT                        a mesh or a point cloud
-w2m reconstruct photo.jpg -o OUT --depth hf:ORG/NAME   one photo, its depth by a network
+w2m reconstruct photo.jpg -o OUT --depth hf:ORG/NAME   one photo, with estimated depth
 w2m reconstruct my_scan -o OUT --semantics hf:shi-labs/oneformer_ade20k_swin_tiny
-w2m reconstruct my_scan -o OUT --from build --style display    build again, all else unchanged
-w2m reconstruct my_scan -o OUT --method paper          the paper's steps alone
-w2m reconstruct my_scan -o OUT --follow                while the scan still goes on
+w2m reconstruct my_scan -o OUT --from build --style display    repeat only the build
+w2m reconstruct my_scan -o OUT --method paper          only the steps in the paper
+w2m reconstruct my_scan -o OUT --follow                during the scan
 """
 
 CapturePath = Annotated[
-    Path, typer.Argument(help="Photos, a video, an app's export, frames, a mesh, a plan.")
+    Path, typer.Argument(help="Photos, video, app export, RGB-D frames, mesh or floor plan.")
 ]
-Out = Annotated[Path, typer.Option("--out", "-o", help="Folder of the results.")]
-Voxel = Annotated[
-    float, typer.Option("--voxel", help="Size of a cell in metres.", rich_help_panel=MORE)
-]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Output folder.")]
+Voxel = Annotated[float, typer.Option("--voxel", help="Cell size in metres.", rich_help_panel=MORE)]
 Start = Annotated[
     str | None,
-    typer.Option("--from", metavar="STAGE", help="Start from a stage: scan, register, fuse, label, "
-                 "find, furnish, build or report."),
+    typer.Option("--from", metavar="STAGE", help="Restart from a stage: scan, register, fuse, "
+                 "label, find, furnish, build or report."),
 ]  # fmt: skip
 LabelImages = Annotated[
     Path | None,
-    typer.Option("--labels", help="Folder of 2D label images, one for each frame."),
+    typer.Option("--labels", help="Folder of 2D label images, one per frame."),
 ]
 Method = Annotated[
-    str, typer.Option("--method", help="best, or paper: the steps of the paper alone.")
+    str, typer.Option("--method", help="best, or paper (only the steps in the paper).")
 ]
 Follow = Annotated[
     bool,
-    typer.Option("--follow", help="Watch a capture that still grows, until a file named done "
+    typer.Option("--follow", help="Watch a capture during recording until a file named done "
                  "appears.", rich_help_panel=MORE),
 ]  # fmt: skip
 FollowIdle = Annotated[
     float,
-    typer.Option("--follow-idle-s", help="Seconds without a new frame that end --follow.",
-                 rich_help_panel=MORE),
+    typer.Option("--follow-idle-s", rich_help_panel=MORE,
+                 help="With --follow, stop after this many seconds without a frame."),
 ]  # fmt: skip
 Known = Annotated[
     tuple[str, float] | None,
     typer.Option("--known", metavar="NAME METRES",
-                 help='A length that gives photos their scale: "table height" 0.72.'),
+                 help='Known length that sets the scale of photos: "table height" 0.72.'),
 ]  # fmt: skip
 KnownPoints = Annotated[
     tuple[str, str, float] | None,
     typer.Option("--known-points", metavar="A:x,y B:x,y METRES", rich_help_panel=MORE,
-                 help="Pixels of photos A and B, and the metres between what they show."),
+                 help="Pixels in photos A and B, and the distance of the points in metres."),
 ]  # fmt: skip
 DepthModel = Annotated[
     str,
     typer.Option("--depth", "--depth-model", metavar="hf:ID",
-                 help="Network for the depth of pictures.", rich_help_panel=MORE),
+                 help="Depth estimation network.", rich_help_panel=MORE),
 ]  # fmt: skip
 Semantics = Annotated[
     str,
-    typer.Option("--semantics", metavar="hf:ID", help="Network that segments the pictures.",
+    typer.Option("--semantics", metavar="hf:ID", help="Segmentation network.",
                  rich_help_panel=MORE),
 ]  # fmt: skip
 FieldOfView = Annotated[
@@ -98,7 +96,7 @@ PredictorName = Annotated[
 ]  # fmt: skip
 Plan = Annotated[
     Path | None,
-    typer.Option("--plan", help="RoomPlan of the same room, as further evidence.",
+    typer.Option("--plan", help="RoomPlan of the same room, used as additional evidence.",
                  rich_help_panel=MORE),
 ]  # fmt: skip
 
@@ -127,11 +125,11 @@ def run(
     follow: Follow = False,
     follow_idle_s: FollowIdle = 60.0,
 ) -> None:
-    """Turn a capture into a Minecraft world.
+    """Convert a capture to a Minecraft world.
 
-    The world opens in creative mode, with the player standing in the room. A run that was
-    interrupted continues after its last finished stage when the same command is given again.
-    Photos and videos are given poses and depth first, which takes a minute or two.
+    The world opens in creative mode with the player inside the room. Repeat the command to resume
+    an interrupted run after its last completed stage. For photos and videos, camera poses and depth
+    are estimated first, which takes one or two minutes.
     """
     from world2minecraft.api import reconstruct
     from world2minecraft.api.progress import show_progress
@@ -170,7 +168,7 @@ def run(
 
 
 def print_run(made: "Run") -> None:
-    """Print what a run found and the next steps; a plan alone has no frames to speak of."""
+    """Print the results of a run and the next steps. A floor plan has no frames to report."""
     from world2minecraft.cli.outcome import print_outcome, print_play_steps
 
     if "scan" in made.report:
@@ -179,7 +177,7 @@ def print_run(made: "Run") -> None:
     size = " x ".join(f"{side:.1f}" for side in made.report["room_size_m"])
     rooms, objects = len(made.report["rooms"]), len(made.objects)
     print(f"\n{rooms} room{'s' * (rooms != 1)} of a floor plan, {size} m, {objects} objects.")
-    print("note: a plan has no colours; floor, walls and furniture have typical ones")
+    print("note: a plan has no colours; floor, walls and furniture use typical colours")
     for note in made.report["notes"]:
         print(f"note: {note}")
     print(f"\n  look   {made.folder / 'report.html'} in a browser, {made.folder / 'preview.png'}")

@@ -1,4 +1,4 @@
-"""``w2m scan``: what a capture holds, as text and as one picture, before any long work."""
+"""Report the contents of a capture as text and as an image: ``w2m scan``."""
 
 import json
 from pathlib import Path
@@ -17,15 +17,15 @@ w2m scan IMG_2041.MOV                     a phone's video
 w2m scan kitchen.r3d                      the export of a LiDAR app; zips are read in place
 w2m scan scene0000_00.sens                a data set's recording, or its folder
 w2m scan room.glb --set capture.unit=cm   a mesh or a point cloud
-w2m scan my_scan -o look.png              the picture elsewhere; --no-picture for none
-w2m scan my_scan --json                   for programs
+w2m scan my_scan -o look.png              write the overview image to another file
+w2m scan my_scan --json                   print JSON, without an image
 """
 
 
 def run(
     capture: Annotated[
         Path,
-        typer.Argument(help="Photos, a video, an app's export, a data set, a mesh, a cloud ..."),
+        typer.Argument(help="Photos, video, app export, data set, mesh or point cloud."),
     ],
     picture: Annotated[
         Path | None,
@@ -34,30 +34,35 @@ def run(
             "-o",
             "--picture",
             metavar="PNG",
-            help="The picture to write.",
+            help="Overview image to write.",
             show_default="NAME-scan.png",
         ),
     ] = None,
-    no_picture: Annotated[bool, typer.Option("--no-picture", help="Write no picture.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON; no picture.")] = False,
+    no_picture: Annotated[
+        bool, typer.Option("--no-picture", help="Do not write an image.")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON, and write no image.")
+    ] = False,
     settings: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="capture.KEY=VALUE", help="An option of the reader."),
+        typer.Option("--set", metavar="capture.KEY=VALUE", help="Option of the capture reader."),
     ] = None,
 ) -> None:
-    """Report what a capture holds, what it lacks, and what to do about it.
+    """Report the contents and shortcomings of a capture, and how to improve it.
 
-    A few pictures are read and, where there are poses, a first plan is made, in seconds. Nothing
-    but the picture is written.
+    A few images are read and, if the capture has camera poses, a preliminary floor plan is computed
+    within seconds. Only the overview image is written.
 
     Raises:
-        UsageError: options exclude each other. CaptureError: the capture cannot be read.
+        UsageError: If options exclude each other.
+        CaptureError: If the capture cannot be read.
     """
     from world2minecraft.api import inspect_capture
     from world2minecraft.cli.build.options import parse_settings
 
     if picture is not None and (no_picture or as_json):
-        raise UsageError("--out writes a picture; leave out --no-picture and --json")
+        raise UsageError("--out writes an image; omit --no-picture and --json")
     report = inspect_capture(capture, settings=parse_settings(settings))
     if as_json:
         print(json.dumps(report.to_json(), indent=1))
@@ -65,12 +70,12 @@ def run(
     lines = report.lines
     print("\n".join(lines[:-1]))
     if not no_picture and report.summary is not None:
-        print(f"picture: {_save_picture(report, picture)}")
+        print(f"image: {_save_picture(report, picture)}")
     print(lines[-1])
 
 
 def _save_picture(report: "CaptureReport", picture: Path | None) -> str:
-    """Write the picture; return its path, or the reason why there is none."""
+    """Write the overview image, and return its path or the reason why it was not written."""
     if picture is not None:
         return str(report.save_picture(picture))
     name = "" if report.summary is None else Path(report.summary.folder.name).stem
@@ -78,4 +83,4 @@ def _save_picture(report: "CaptureReport", picture: Path | None) -> str:
     try:
         return str(report.save_picture(chosen, replace=False))
     except OutputError as error:
-        return f"none; {error}; choose another file with -o PNG"
+        return f"not written; {error} with -o PNG"

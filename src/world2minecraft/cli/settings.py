@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
 w2m settings                      list all keys
-w2m settings find                 list the keys that begin with find.
+w2m settings find                 list the keys that start with find.
 w2m settings fuse --json          print them as JSON
 """
 INDENT = "    "
@@ -28,16 +28,16 @@ def run(
 ) -> None:
     """List the keys of --set.
 
-    Each key is followed by its default, its unit and what it means. Change one with
-    --set KEY=VALUE. Keys that begin with capture. are options of the capture's reader and are
-    described in the documentation of each format.
+    Each key is followed by its default, its unit and its meaning. Change a value with --set
+    KEY=VALUE. Keys that start with capture. are options of the capture reader, which are described
+    in the documentation of each format.
 
     Args:
-        prefix: the group or key to list, or None for all.
-        as_json: print a JSON list instead of text.
+        prefix: Group or key to list. None lists all keys.
+        as_json: Print a JSON list instead of text.
 
     Raises:
-        UnknownNameError: no key begins with ``prefix``; the message suggests the nearest.
+        UnknownNameError: If no key starts with ``prefix``. The message suggests the closest match.
     """
     from world2minecraft.api import settings
 
@@ -51,7 +51,7 @@ def run(
 
 
 def format_setting(setting: "ParameterInfo", width: int) -> Iterator[str]:
-    """Yield the lines of one setting: ``key = default unit``, then the meaning, indented.
+    """Yield the lines about a setting: ``key = default unit``, then the indented meaning.
 
     Example:
         >>> from world2minecraft.core.parameters import ParameterInfo

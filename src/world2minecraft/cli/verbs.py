@@ -1,9 +1,9 @@
-"""List the verbs of ``w2m`` and load each one's module when it is called.
+"""Table of the verbs of ``w2m``, and the code that loads the module of a verb when it is called.
 
-A verb is a module ``world2minecraft.cli.NAME`` (``rooms scan`` is ``cli.rooms.scan``; the command
-of a folder is ``cli.render.command``) with a function ``run``, whose typed parameters typer reads
-as arguments and options, and a text ``EXAMPLES`` for its help. ``run`` returns an exit code, or
-None for 0. Options declared with ``cli.panels.MORE`` are listed in a section of their own.
+A verb is a module ``world2minecraft.cli.NAME`` (``rooms scan`` is ``cli.rooms.scan``, and the
+command of a folder is ``cli.render.command``). It has a function ``run``, whose typed parameters
+typer reads as arguments and options, and a text ``EXAMPLES`` for its help. ``run`` returns an exit
+code, or None for 0. Options declared with ``cli.panels.MORE`` are listed in a separate section.
 """
 
 import os
@@ -27,19 +27,19 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
     "Start": {
         "demo": "Generate a room, scan it virtually and build it as a world.",
         "scan": "Show what a capture contains, without reconstructing it.",
-        "reconstruct": "Turn a capture into a Minecraft world, with a report.",
+        "reconstruct": "Convert a capture to a Minecraft world with a report.",
         "install": "Copy a built world into the game's saves folder.",
         "doctor": "Check that this machine can run the program.",
     },
     "Reconstruct": {
-        "join": "Join reconstructions of single rooms into one home.",
+        "join": "Join reconstructions of single rooms to one home.",
         "convert": "Convert between rooms, builds, worlds, schematics and 3D files.",
         "render": "Render a build as images, depth maps, walks and turntables.",
     },
     "Edit": {
         "forge": "Open the SceneForge editor in the browser.",
-        "forge stats": "Report how much editing rooms needed.",
-        "build": "Build a room as a world, into an existing one or on a server.",
+        "forge stats": "Report the editing effort of rooms.",
+        "build": "Build a room as a new world, into a world or on a server.",
         "clean": "Repair typical reconstruction errors in a built room.",
         "undo": "Undo the last build into a world.",
     },
@@ -49,28 +49,28 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
     },
     "Data sets": {
         "dataset build": "Build a labelled data set of generated houses or worlds.",
-        "dataset rooms": "Build a labelled data set of photo-like pictures of rooms.",
-        "dataset tour": "Plan the views of a world, or read those of screenshots.",
+        "dataset rooms": "Build a labelled data set of photo-like images of rooms.",
+        "dataset tour": "Plan views of a world, or read screenshot poses.",
         "dataset map": "Show how blocks are labelled, and export the table.",
-        "dataset stats": "Summarise a data set beside the paper's figures.",
-        "dataset quality": "Measure the naturalness and sharpness of pictures.",
+        "dataset stats": "Summarise a data set next to the paper's results.",
+        "dataset quality": "Measure the naturalness and sharpness of images.",
         "dataset show": "Draw one sample of a data set.",
         "dataset sheet": "Draw a contact sheet of a data set or a tour.",
         "dataset verify": "Verify the checksums of a data set.",
-        "dataset export": "Export a data set in the form of NYUv2, OccScanNet ...",
+        "dataset export": "Export a data set to NYUv2, OccScanNet or other formats.",
         "dataset import": "Import NYUv2, OccScanNet and similar data sets.",
     },
     "Networks": {
         "train": "Train an occupancy network on one or more data sets.",
         "export": "Export a trained network to ONNX.",
-        "occupy": "Predict the class of each cell of a picture or room.",
-        "evaluate occupancy": "Score predictions by the published protocols.",
+        "occupy": "Predict the class of each cell in an image or room.",
+        "evaluate occupancy": "Score predictions with the published protocols.",
     },
     "Navigation": {
         "vln build": "Build navigation tasks from walks through scenes.",
         "vln reword": "Rephrase the instructions of a navigation set.",
-        "vln annotate": "Write instructions for walks on a page in the browser.",
-        "vln stats": "Summarise a navigation set, with the scores of guessing.",
+        "vln annotate": "Write instructions for walks in the browser.",
+        "vln stats": "Summarise a navigation set, with baseline scores.",
         "vln export": "Export navigation data for trainers and simulators.",
         "vln run": "Run an agent on an instruction, with scores and video.",
         "vln evaluate": "Evaluate a model on the items of a navigation set.",
@@ -80,11 +80,11 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
     "Evaluate": {
         "evaluate reconstruction": "Score a reconstruction against ground truth.",
         "evaluate scannet": "Create ground truth from a ScanNet scene.",
-        "compare layouts": "Score the layouts of other methods and ours.",
+        "compare layouts": "Score room layouts from this and other methods.",
         "compare build": "Build layouts of other methods as worlds.",
         "compare judge": "Grade rooms with a vision-language model.",
-        "compare describe": "Describe a room as text-to-layout methods do.",
-        "paper": "Print the paper's tables beside our results.",
+        "compare describe": "Describe a room for text-to-layout methods.",
+        "paper": "Print the paper's tables next to our results.",
         "paper figure": "Draw a room like the figures of the paper.",
     },
     "Tools": {
@@ -92,7 +92,7 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
         "furniture show": "Show one furniture template.",
         "furniture add": "Add a furniture template from a schematic.",
         "furniture sheet": "Draw all furniture templates on one sheet.",
-        "palettes": "List the block palettes, or check one of your own.",
+        "palettes": "List the block palettes, or check a palette file.",
         "settings": "List the keys of --set with units, defaults and meanings.",
         "completion": "Print a script that completes w2m commands in a shell.",
     },
@@ -101,7 +101,7 @@ VERBS: dict[str, str] = {
     verb: summary for group in VERB_GROUPS.values() for verb, summary in group.items()
 }
 
-# The first words of verbs of two words, each with the summary of its own help.
+# First words of two-word verbs, with the summaries for their help.
 FAMILIES = {
     "compare": "Compare rooms with those of other methods.",
     "dataset": "Build, inspect and exchange occupancy data sets.",
@@ -111,10 +111,10 @@ FAMILIES = {
     "vln": "Build, run and score vision-language navigation.",
 }
 
-# Verbs of one word whose folder holds more than the command.
+# One-word verbs whose folder contains more modules than the command.
 FOLDERS = ("build", "forge", "paper", "render", "train")
 
-# A shell's completion script sets this variable when it asks for names.
+# A shell completion script sets this variable to request names.
 COMPLETE_VARIABLE = "_W2M_COMPLETE"
 
 # The placeholder of a value without a metavar, by its type.
@@ -146,7 +146,7 @@ def call(words: Sequence[str]) -> int:
 
 
 class Completion(NamedTuple):
-    """One name that a shell may complete a word to, as typer reads it."""
+    """A candidate for the completion of a word, in the form that typer expects."""
 
     value: str
     help: str
@@ -154,7 +154,7 @@ class Completion(NamedTuple):
 
 
 def complete_verbs(prefix: str, beginning: str) -> list[Any]:
-    """Return the words that may follow ``prefix`` in a verb, without importing any verb.
+    """Return the words that can follow ``prefix`` in a verb, without importing any verb.
 
     Example:
         >>> [one.value for one in complete_verbs("rooms ", "")]
@@ -170,16 +170,16 @@ def complete_verbs(prefix: str, beginning: str) -> list[Any]:
 
 
 class VerbCommand(TyperCommand):
-    """The command of one verb.
+    """The command of a verb.
 
-    Its help shows arguments, options and examples first, and the options of the panel ``MORE``
+    Its help shows arguments, options and examples first, and the options in the panel ``MORE``
     last.
     """
 
     examples = ""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse the arguments; a usage error refers to the help of this verb."""
+        """Parse the arguments. Usage errors refer to the help of this verb."""
         try:
             return super().parse_args(ctx, complete_json_option(args, self.params))
         except Exception as error:
@@ -189,7 +189,7 @@ class VerbCommand(TyperCommand):
             raise
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
-        """Return the arguments in capitals, the optional ones in brackets."""
+        """Return the arguments in capitals, with optional arguments in brackets."""
         words = (
             (f"{one.metavar}" if one.required else f"[{one.metavar}]") + "..." * (one.nargs != 1)
             for one in self.params
@@ -224,16 +224,16 @@ class VerbCommand(TyperCommand):
 
 
 class VerbGroup(TyperGroup):
-    """The verbs that begin with ``prefix``, or all verbs. Listing them imports no module."""
+    """All verbs, or the verbs that start with ``prefix``. Listing them imports no module."""
 
     prefix = ""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse the arguments; without any, show the help."""
+        """Parse the arguments, or show the help if there are none."""
         return super().parse_args(ctx, args or ["--help"])
 
     def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
-        """Return the verbs that fit, or options where the word begins with a dash."""
+        """Return the matching verbs, or options if the word starts with a dash."""
         own = self.prefix.strip()
         if own in VERBS and not incomplete[:1].isalnum():
             return load(own).shell_complete(ctx, incomplete)
@@ -246,7 +246,7 @@ class VerbGroup(TyperGroup):
         return list(self._summaries())
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Return the command of a verb, or the group of the verbs that begin with a word."""
+        """Return the command of a verb, or the group of verbs that start with a word."""
         name = f"{self.prefix}{cmd_name}"
         if name in VERBS:
             return load(name)
@@ -257,10 +257,10 @@ class VerbGroup(TyperGroup):
         return {verb[start:]: VERBS[verb] for verb in VERBS if verb.startswith(self.prefix)}
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Return the verb that ``args`` begin with.
+        """Return the verb at the start of ``args``.
 
         Raises:
-            UnknownNameError: no verb has this name; the message suggests the nearest.
+            UnknownNameError: If the verb is unknown. The message suggests the closest match.
         """
         both = " ".join(args[:2])
         if len(args) > 1 and both in VERBS:
@@ -277,7 +277,7 @@ class VerbGroup(TyperGroup):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Write the verbs with their summaries, all verbs under the headings of their groups."""
+        """Write the verbs with their summaries, grouped under headings."""
         if self.prefix:
             with formatter.section("Verbs"):
                 formatter.write_dl(list(self._summaries().items()))
@@ -287,7 +287,7 @@ class VerbGroup(TyperGroup):
                 formatter.write_dl(_indent_families(summaries))
 
     def format_epilog(self, ctx: Any, formatter: Any) -> None:
-        """Write the examples under the table."""
+        """Write the examples below the table of verbs."""
         if not self.prefix:
             _write_examples(formatter, EXAMPLES)
 

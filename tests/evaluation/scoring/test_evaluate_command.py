@@ -42,7 +42,7 @@ def test_another_methods_labels_are_scored_by_the_same_verb(capture, tmp_path, c
     assert "IoU, exact" in text and "0 of 1, 0 found" in text
     assert "confidence" not in text and "next:" not in text
     assert w2m([*words, "--stages"]) == 2
-    assert "is not a run of w2m reconstruct" in capsys.readouterr().err
+    assert "was not created by w2m reconstruct" in capsys.readouterr().err
 
 
 def test_the_stages_are_rows_after_the_run_itself(perfect, capture):
@@ -57,8 +57,8 @@ def test_the_stages_are_rows_after_the_run_itself(perfect, capture):
 @pytest.mark.parametrize(
     ("what", "message"),
     [
-        ("nothing", "is not a folder; w2m reconstruct CAPTURE --out OUT makes one"),
-        ("empty", "has no scan.json; finish the run: w2m reconstruct CAPTURE --out "),
+        ("nothing", "folder not found; create it with w2m reconstruct CAPTURE --out OUT"),
+        ("empty", "does not contain scan.json; finish the run: w2m reconstruct CAPTURE --out "),
         ("no truth", "truth.npz: ground truth not found; w2m rooms scan writes it"),
     ],
 )

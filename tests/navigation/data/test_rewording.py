@@ -131,7 +131,7 @@ def test_a_model_says_it_again_and_is_checked(folder, capsys):
         assert len(server.requests) == 4
         assert cli.run([*words, "--jobs", "1"]) == 0  # The walk that has words is not asked for.
         assert len(server.requests) == 4
-        assert "0 questions and 2 from the record" in capsys.readouterr().out
+        assert "0 requests and 2 recorded replies" in capsys.readouterr().out
     assert "Turns: left. Things: door, table, piano." in str(asked[0])
     (item, *_) = [one for one in read_items(folder) if one.scene_id == "kitchen"]
     assert (item.instruction.text, item.instruction.annotator) == (SAME, "m")

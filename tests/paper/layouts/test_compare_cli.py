@@ -83,7 +83,7 @@ def test_what_is_left_out_is_told(tmp_path, capsys):
     record["object_list"] += [[f"thing {n}", {}] for n in range(7)]
     assert cli.run(["compare", "layouts", str(write(tmp_path / "a.json", [record]))]) == 0
     text = capsys.readouterr().out
-    assert "note: left out: room-1: thing 0: 'length' is missing" in text
+    assert "note: skipped: room-1: thing 0: 'length' is missing" in text
     assert "note: ... and 2 more" in text
 
 

@@ -253,6 +253,6 @@ def test_a_plan_alone_has_a_brief_report(place, tmp_path, capsys):
 def test_a_plan_refuses_what_needs_frames(place, tmp_path, capsys):
     words = ["reconstruct", str(place), "--out", str(tmp_path / "out")]
     assert cli.run([*words, "--labels", str(tmp_path), "--from", "build"]) == 2
-    told = "Room.json is a RoomPlan and has no frames; leave out --from and --labels"
+    told = "Room.json is a RoomPlan without frames; omit --from and --labels"
     assert told in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -1,1 +1,1 @@
-"""``w2m build``: occupancy files become blocks."""
+"""The verb ``w2m build``, which builds a room from blocks."""

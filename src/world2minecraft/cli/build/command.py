@@ -1,4 +1,4 @@
-"""``w2m build``: build a room as a world of its own, into a world, or on a server."""
+"""Build a room as a new world, into an existing world or on a server: ``w2m build``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -35,12 +35,10 @@ w2m build OUT --rcon localhost:25575 --at 0 70 0     on a running server
 Source = Annotated[
     Path,
     typer.Argument(
-        metavar="ROOM", help="Folder of a run, room.npz, occ.json, .npy, or blocks (.schem ...)."
+        metavar="ROOM", help="Run folder, room.npz, occ.json, .npy, or block file (.schem ...)."
     ),
 ]
-Out = Annotated[
-    Path | None, typer.Option("--out", "-o", help="Folder of the results: a world of its own.")
-]
+Out = Annotated[Path | None, typer.Option("--out", "-o", help="Write a new world to this folder.")]
 Into = Annotated[
     Path | None, typer.Option("--into", metavar="WORLD", help="Build into this world.")
 ]
@@ -49,7 +47,7 @@ Rcon = Annotated[
 ]
 Place = Annotated[
     tuple[int, int, int] | None,
-    typer.Option("--at", metavar="X Y Z", help="Place of the room's corner in the world."),
+    typer.Option("--at", metavar="X Y Z", help="Block position of the room's floor corner."),
 ]
 Turns = Annotated[
     int, typer.Option("--turns", help="Quarter turns, counter-clockwise from above, with --at.")
@@ -57,14 +55,16 @@ Turns = Annotated[
 Air = Annotated[
     str,
     typer.Option(
-        "--air", help="Air that replaces blocks: room, box or none.", rich_help_panel=MORE
+        "--air",
+        help="Air that replaces existing blocks: room, box or none.",
+        rich_help_panel=MORE,
     ),
 ]
 NewChunks = Annotated[
     bool,
     typer.Option(
         "--new-chunks",
-        help="Make chunks that the game has not generated, with --into.",
+        help="With --into, create chunks that the game has not generated.",
         rich_help_panel=MORE,
     ),
 ]
@@ -86,13 +86,13 @@ def run(
     mc_version: Version = "1.20.1",
     settings: SettingList = None,
 ) -> None:
-    """Build a room as a world of its own, into an existing world, or on a running server.
+    """Build a room as a new world, into an existing world, or on a running server.
 
-    A run is built from its objects and placements as they are; of a grid alone the objects are
-    detected and matched first. With --into or --rcon the corner of the room's floor stands at
-    X Y Z, so that one stands on it at height Y. With --into every file that changes is backed up,
-    and `w2m undo WORLD` restores it. A build on a server cannot be undone; its password is read
-    from W2M_RCON_PASSWORD.
+    The objects and placements of a run are used unchanged. For an occupancy grid, objects are
+    detected and matched with furniture first. With --into or --rcon, the room's floor corner is
+    placed at X Y Z, so a player stands on the floor at height Y. With --into, every changed file is
+    backed up, and `w2m undo WORLD` restores it. A build on a server cannot be undone. Its password
+    is read from the environment variable W2M_RCON_PASSWORD.
     """
     _check_targets(out, into, rcon, at, turns, air, new_chunks)
     changes = parse_settings(settings)
@@ -121,7 +121,7 @@ def _check_targets(
     air: str,
     new_chunks: bool,
 ) -> None:
-    """Raise UsageError, before any work, where the options do not say where to build."""
+    """Raise UsageError before any work if no target is given or options contradict each other."""
     from world2minecraft.api.existing_worlds import check_place
 
     if out is None and into is None and rcon is None:
@@ -170,11 +170,11 @@ def _build_on_server(source: Path, server: str, options: dict[str, Any]) -> None
 
 
 def _print_change(done: "WorldChange") -> None:
-    """Print what a build changed in a world, how to go there, and how to undo it."""
+    """Print the changes to a world, how to get there, and how to undo them."""
     if done.recovered:
-        print("An earlier step had been interrupted; what it had changed was restored first.")
+        print("An earlier build was interrupted; its changes were undone first.")
     if not done.blocks and not done.entities:
-        print(f"{done.world}: all of it is built already; nothing changed.")
+        print(f"{done.world}: the build is already complete; nothing changed.")
         return
     size = " x ".join(map(str, done.size_blocks))
     more = f" and {done.entities} entities" if done.entities else ""
@@ -187,14 +187,14 @@ def _print_change(done: "WorldChange") -> None:
 
 
 def _print_server_build(done: "ServerBuild") -> None:
-    """Print what was built on a server and how to go there."""
+    """Print what was built on a server and how to get there."""
     if done.resumed:
-        print("An earlier run of this build had been interrupted; this one continued it.")
+        print("An interrupted build was resumed.")
     x, y, z = done.corner
     size = " x ".join(str(side) for side in done.size_blocks)
     print(f"\nBuilt {done.blocks:,} blocks at {x} {y} {z} ({size}).")
-    cuts = f", {done.reconnects} lost connections survived" if done.reconnects else ""
-    print(f"  {done.commands:,} commands{cuts}; {done.checked} places read back, all right")
+    cuts = f", {done.reconnects} lost connections restored" if done.reconnects else ""
+    print(f"  {done.commands:,} commands{cuts}; {done.checked} blocks verified")
     for what, count in done.left_out.items():
-        print(f"  left out: {count} {what}")
+        print(f"  omitted: {count} {what}")
     print(f"  look   /tp @s {x} {y} {z}, or a few blocks into the room")

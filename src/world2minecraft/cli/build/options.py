@@ -1,4 +1,4 @@
-"""The options of every verb that builds: scale, style, palette, version and further settings."""
+"""Options shared by all verbs that build: scale, style, palette, game version and settings."""
 
 from typing import Annotated
 
@@ -11,14 +11,14 @@ SKETCHES_UNDER = 1.5  # Blocks per metre.
 Scale = Annotated[
     float,
     typer.Option(
-        "--blocks-per-metre", help="Scale: 1 (true size), 2, 4, or 12.5 (a block for each cell)."
+        "--blocks-per-metre", help="Scale: 1 (true to size), 2, 4, or 12.5 (one block per cell)."
     ),
 ]
 Style = Annotated[
     str | None,
     typer.Option(
         "--style",
-        help="Furniture of blocks, of finer display entities (display), or of voxels.",
+        help="Furniture made of blocks, finer display entities (display), or voxels.",
         show_default="blocks",
     ),
 ]
@@ -36,13 +36,13 @@ Formats = Annotated[
     typer.Option(
         "--formats",
         metavar="A,B",
-        help="Further files: litematic,nbt,glb,mcstructure.",
+        help="Additional formats: litematic,nbt,glb,mcstructure.",
         rich_help_panel=MORE,
     ),
 ]
 Version = Annotated[
     str,
-    typer.Option("--mc-version", help="Game version to write for.", rich_help_panel=MORE),
+    typer.Option("--mc-version", help="Minecraft version to write for.", rich_help_panel=MORE),
 ]
 SettingList = Annotated[
     list[str] | None,
@@ -53,10 +53,10 @@ SettingList = Annotated[
 
 
 def parse_settings(settings: list[str] | None) -> dict[str, str]:
-    """Return ``--set`` options as keys and values.
+    """Return ``--set`` options as a dictionary.
 
     Raises:
-        UsageError: one is not KEY=VALUE.
+        UsageError: If an option is not KEY=VALUE.
     """
     from world2minecraft.core.errors import UsageError
 
@@ -65,18 +65,18 @@ def parse_settings(settings: list[str] | None) -> dict[str, str]:
         key, equals, value = setting.partition("=")
         if not equals:
             raise UsageError(
-                f"--set takes key=value, not {setting!r}, such as --set find.cluster_radius=3"
+                f"--set must be KEY=VALUE, such as find.cluster_radius=3, got {setting!r}"
             )
         found[key.strip()] = value.strip()
     return found
 
 
 def split_names(text: str | None) -> list[str]:
-    """Return the names of a list with commas."""
+    """Split a comma-separated list into its names."""
     return [name.strip() for name in (text or "").split(",") if name.strip()]
 
 
 def print_style_note(blocks_per_metre: float, style: str | None) -> None:
-    """Say, where blocks are as large as furniture, which style still shows its shape."""
+    """Recommend ``--style display`` at scales where furniture made of blocks is rough."""
     if blocks_per_metre < SKETCHES_UNDER and style != "display":
         print("At this scale, furniture made of blocks is rough; --style display shows its shape.")

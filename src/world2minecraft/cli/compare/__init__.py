@@ -1,1 +1,1 @@
-"""``w2m compare``: layouts of other methods beside ours."""
+"""The verbs ``w2m compare ...``, which compare rooms with those of other methods."""

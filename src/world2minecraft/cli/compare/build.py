@@ -1,4 +1,4 @@
-"""``w2m compare build``: build layouts of other methods as Minecraft worlds."""
+"""Build layouts of other methods as Minecraft worlds: ``w2m compare build``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -15,19 +15,24 @@ w2m compare build RESULT/layout.json --task room.json --assets ASSETS -o ROOM
 """
 
 PathOf = Annotated[
-    Path, typer.Argument(metavar="LAYOUT", help="A layout of another method.", show_default=False)
+    Path,
+    typer.Argument(metavar="LAYOUT", help="Layout file of another method.", show_default=False),
 ]
-Out = Annotated[
-    Path, typer.Option("--out", "-o", help="Write the world, or several, to this folder.")
-]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Write the worlds to this folder.")]
 Wanted = Annotated[
     list[str] | None,
-    typer.Option("--scene", metavar="NAME", help="A scene, by a part of its name; repeatable."),
+    typer.Option("--scene", metavar="NAME", help="Part of the name of a scene. Repeatable."),
 ]
 Count = Annotated[
-    int | None, typer.Option("--count", help="Build the first scenes.", min=1, show_default="1")
+    int | None,
+    typer.Option(
+        "--count",
+        help="Number of scenes to build, starting with the first.",
+        min=1,
+        show_default="1",
+    ),
 ]
-Scale = Annotated[float, typer.Option("--blocks-per-metre", help="Scale, as in w2m build.")]
+Scale = Annotated[float, typer.Option("--blocks-per-metre", help="Scale of the worlds.")]
 
 
 def run(
@@ -41,14 +46,16 @@ def run(
     assets: option.Assets = None,
     blocks_per_metre: Scale = 4.0,
 ) -> None:
-    """Build layouts as they are: no fault is repaired.
+    """Build layouts as worlds without repairing their faults.
 
-    Each becomes a run's folder with its world, a picture and a brief report; its boxes remain in
-    compared.json, from which w2m compare layouts scores it. Of a file with several scenes the first
-    is built, unless --scene or --count selects others; several are built to OUT/NAME.
+    Each layout becomes a run folder with a world, an image and a brief report. Its bounding boxes
+    are stored in compared.json, which w2m compare layouts can score. If the file contains several
+    scenes, the first is built unless --scene or --count selects others. Several scenes are built in
+    OUT/NAME.
 
     Raises:
-        InputError: the layout cannot be read. UsageError: an option is wrong.
+        InputError: If the layout cannot be read.
+        UsageError: If an option is invalid.
     """
     from world2minecraft.api.comparison import build_layouts
     from world2minecraft.api.progress import show_progress
@@ -71,9 +78,7 @@ def run(
         print(f"{one.method}, {one.name}: {one.built} of {one.objects} objects, {one.folder}")
     option.print_skipped(found.skipped)
     if found.scenes > len(found.built):
-        print(
-            f"note: the file has {found.scenes:,} scenes; add --count N or --scene NAME for others"
-        )
+        print(f"note: the file contains {found.scenes:,} scenes; select others with --scene NAME")
     places = [one.folder for one in found.built]
     print(f"\nlook   {places[0] / 'preview.png'}")
     print(f"next: w2m compare judge {' '.join(map(str, places[:3]))} --agent gemini --out JUDGED")

@@ -1,4 +1,4 @@
-"""``w2m compare describe``: describe a room for text-to-layout methods."""
+"""Describe a room for text-to-layout methods: ``w2m compare describe``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -17,28 +17,33 @@ w2m compare describe OUT --for layoutvlm -o room.json           in the format of
 Scene = Annotated[
     Path,
     typer.Argument(
-        help="A finished run or a layout; a capture with --agent or --from-truth.",
+        help="Finished run or layout. With --agent or --from-truth, a capture.",
         show_default=False,
     ),
 ]
-For = Annotated[str, typer.Option("--for", help="The form: text, layoutgpt, idesign or layoutvlm.")]
+For = Annotated[
+    str, typer.Option("--for", help="Output format: text, layoutgpt, idesign or layoutvlm.")
+]
 FromTruth = Annotated[
-    bool, typer.Option("--from-truth", help="Describe the truth of a scan of w2m rooms scan.")
+    bool,
+    typer.Option("--from-truth", help="Describe the ground truth of a scan from w2m rooms scan."),
 ]
 AgentName = Annotated[
     str,
-    typer.Option("--agent", help="Let a model describe the photos of a capture: a name as in "
-                 "w2m vln run, or the address of a server."),
+    typer.Option("--agent", help="Model that describes the photos of a capture: a name as in "
+                 "w2m vln run, or a server address."),
 ]  # fmt: skip
 Out = Annotated[
     Path | None,
     typer.Option(
-        "--out", "-o", metavar="FILE", help="Write to this file.", show_default="the screen"
+        "--out", "-o", metavar="FILE", help="Write to this file.", show_default="print it"
     ),
 ]
-Keep = Annotated[Path, typer.Option("--keep", metavar="DIR", help="The folder for the replies.")]
+Keep = Annotated[
+    Path, typer.Option("--keep", metavar="DIR", help="Folder to store the model's replies in.")
+]
 Photos = Annotated[
-    int, typer.Option("--photos", help="How many photos the model sees.", min=1, max=32)
+    int, typer.Option("--photos", help="Number of photos sent to the model.", min=1, max=32)
 ]
 
 
@@ -54,13 +59,15 @@ def run(
     *,
     model_options: option.ModelOptions,
 ) -> None:
-    """Describe a room in words, by rule from its boxes or by a model from its photos.
+    """Describe a room in words, from its bounding boxes by rules or from its photos by a model.
 
-    The description goes to LayoutGPT, I-Design or LayoutVLM; w2m compare layouts scores their
-    layouts.
+    LayoutGPT, I-Design or LayoutVLM can create layouts from the description, and w2m compare
+    layouts scores their layouts.
 
     Raises:
-        InputError: the scene cannot be read. ServerError, BudgetError: the model does not reply.
+        InputError: If the scene cannot be read.
+        ServerError: If the model does not reply.
+        BudgetError: If a limit on requests or cost is reached.
     """
     from world2minecraft.api.comparison import describe_room
     from world2minecraft.core.files import write_text

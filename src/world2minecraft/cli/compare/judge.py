@@ -1,4 +1,4 @@
-"""``w2m compare judge``: a vision-language model grades built rooms, all shown alike."""
+"""Grade built rooms with a vision-language model, from comparable views: ``w2m compare judge``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -17,25 +17,29 @@ w2m compare judge ROOM OUT --agent gemini -o AGAIN --replay JUDGED/replies.jsonl
 Places = Annotated[
     list[Path],
     typer.Argument(
-        metavar="BUILT...", help="Folders of w2m compare build, and finished runs.",
+        metavar="BUILT...", help="Folders from w2m compare build, or finished runs.",
         show_default=False,
     ),
 ]  # fmt: skip
 AgentName = Annotated[
     str,
     typer.Option(
-        "--agent", help="gemini, openai, qwen, local, each with :MODEL if wanted; or the address "
-        "of a server, http://HOST/v1.", show_default=False,
+        "--agent", help="gemini, openai, qwen or local, optionally followed by :MODEL; or a server "
+        "address, http://HOST/v1.", show_default=False,
     ),
 ]  # fmt: skip
 Out = Annotated[
-    Path, typer.Option("--out", "-o", help="Write grades, replies and pictures to this folder.")
+    Path, typer.Option("--out", "-o", help="Write grades, replies and images to this folder.")
 ]
-Repeats = Annotated[int, typer.Option("--repeats", help="How often each room is graded.", min=1)]
+Repeats = Annotated[
+    int, typer.Option("--repeats", help="Number of times to grade each room.", min=1)
+]
 Wish = Annotated[
     Path | None,
     typer.Option(
-        "--wish", metavar="FILE", help="What the rooms should be, from w2m compare describe."
+        "--wish",
+        metavar="FILE",
+        help="Description of the intended room, from w2m compare describe.",
     ),
 ]
 
@@ -52,12 +56,14 @@ def run(
 ) -> None:
     """Grade rooms from 1 to 10 for realism, completeness and atmosphere.
 
-    Each is shown from the same two corners in the same light, without the name of its method.
-    OUT/replies.jsonl has the replies, so that the same command costs nothing again. The prompt is
-    part of the program: paper/layouts/prompts/judge.md.
+    Each room is shown from the same two corners in the same light, without the name of its method.
+    The replies are stored in OUT/replies.jsonl, so repeating the command costs nothing. The prompt
+    is paper/layouts/prompts/judge.md in the program.
 
     Raises:
-        InputError: a world cannot be read. ServerError, BudgetError: the model does not reply.
+        InputError: If a world cannot be read.
+        ServerError: If the model does not reply.
+        BudgetError: If a limit on requests or cost is reached.
     """
     from world2minecraft.api.agents import table_text
     from world2minecraft.api.comparison import judge_rooms, read_wish
@@ -77,6 +83,6 @@ def run(
     print(table_text(judged.table()))
     if judged.unread:
         replies = repeats * len(judged.grades)
-        print(f"note: {judged.unread} of {replies} replies hold no grades and are not counted")
+        print(f"note: {judged.unread} of {replies} replies contain no grades and are not counted")
     print(f"\n{option.cost_line(judged.cost)}\ngrades  {out / 'judged.json'}")
-    print(f"next: look at {out / 'pictures'}, which is all that {judged.model} has seen")
+    print(f"next: view {out / 'pictures'}, the images that {judged.model} graded")

@@ -1,4 +1,4 @@
-"""``w2m compare layouts``: what lies outside, collides or is missing, method by method."""
+"""Score layouts of any method for collisions and missing objects: ``w2m compare layouts``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -22,18 +22,18 @@ w2m compare layouts gpt.json scene_graph.json OUT --truth MY_SCAN --json
 Paths = Annotated[
     list[Path],
     typer.Argument(
-        metavar="LAYOUT...", help="Layouts of LayoutGPT, I-Design or LayoutVLM, folders of "
+        metavar="LAYOUT...", help="Layouts of LayoutGPT, I-Design or LayoutVLM, folders from "
         "w2m compare build, or finished runs.", show_default=False,
     ),
 ]  # fmt: skip
 Truth = Annotated[
     Path | None,
     typer.Option(
-        "--truth", metavar="SCENE", help="The true scene, for semantic integrity: a scan of "
-        "w2m rooms scan, or a repaired run. Runs are also held to the rooms of a scan.",
+        "--truth", metavar="SCENE", help="True scene for semantic integrity: a scan from w2m rooms "
+        "scan, or a repaired run. Runs are also scored within the rooms of a scan.",
     ),
 ]  # fmt: skip
-Scenes = Annotated[bool, typer.Option("--scenes", help="Print a row for each scene.")]
+Scenes = Annotated[bool, typer.Option("--scenes", help="Print one row per scene.")]
 Markdown = Annotated[bool, typer.Option("--markdown", help="Print Markdown tables.")]
 
 
@@ -48,13 +48,14 @@ def run(
     json_path: JsonOutput = None,
     markdown: Markdown = False,
 ) -> None:
-    """Score layouts of rooms, of any method, by one rule.
+    """Score room layouts of any method with the same rules.
 
-    Boxes are scored before they become blocks. docs/layout-baselines.md defines what counts as
-    out of bounds and as a collision; a second table has the rules of other methods.
+    Bounding boxes are scored before they are converted to blocks. docs/layout-baselines.md defines
+    out of bounds and collisions. A second table uses the rules of other methods.
 
     Raises:
-        InputError: a layout cannot be read. UsageError: an option is wrong.
+        InputError: If a layout cannot be read.
+        UsageError: If an option is invalid.
     """
     from world2minecraft.api.comparison import score_layouts
     from world2minecraft.api.progress import show_progress
@@ -84,12 +85,12 @@ def run(
 
 
 def _check_target(json_path: Path | None) -> None:
-    """Refuse to overwrite a layout that was named right after ``--json``."""
+    """Raise UsageError if the file named after ``--json`` is a layout."""
     from world2minecraft.api.comparison import is_layout
     from world2minecraft.core.errors import UsageError
 
     if json_path is not None and json_path.is_file() and is_layout(json_path):
-        raise UsageError(f"--json would overwrite the layout {json_path}; put --json last")
+        raise UsageError(f"--json would overwrite the layout {json_path}; move --json to the end")
 
 
 def _print_tables(found: "LayoutScores", markdown: bool) -> None:
@@ -103,10 +104,10 @@ def _print_tables(found: "LayoutScores", markdown: bool) -> None:
 def _print_next(found: "LayoutScores", first: Path) -> None:
     if found.runs and not found.uses_true_rooms:
         print(
-            "note: runs were held to the rooms that they found; --truth SCAN holds them to the "
-            "true ones"
+            "note: runs were scored within their reconstructed rooms; add --truth SCAN to use "
+            "the true rooms"
         )
-    step = f"w2m compare judge {first} --agent gemini --out JUDGED   to have it graded"
+    step = f"w2m compare judge {first} --agent gemini --out JUDGED   to grade it"
     if found.runs < found.scenes:
-        step = f"w2m compare build {first} --out BUILT   to see them as blocks"
+        step = f"w2m compare build {first} --out BUILT   to build them as blocks"
     print(f"\nnext: {step}")

@@ -1,4 +1,4 @@
-"""The options that the verbs which read layouts share."""
+"""Options shared by the verbs that read layouts."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,7 +8,9 @@ import typer
 
 from world2minecraft.cli.panels import MORE
 
-DEFAULT_PX_M = 3.5 / 256  # paper.layouts.importers.PX_M, which a help page need not import.
+DEFAULT_PX_M = (
+    3.5 / 256
+)  # Equals paper.layouts.importers.PX_M, without importing it for a help page.
 MAX_LISTED = 5
 
 Format = Annotated[
@@ -22,7 +24,7 @@ Format = Annotated[
 PxM = Annotated[
     float,
     typer.Option(
-        "--px-m", metavar="METRES", help="The side of a pixel, for layouts in pixels.",
+        "--px-m", metavar="METRES", help="Side length of a pixel, for layouts in pixels.",
         show_default="3.5/256", rich_help_panel=MORE,
     ),
 ]  # fmt: skip
@@ -31,7 +33,7 @@ Task = Annotated[
     typer.Option(
         "--task",
         metavar="FILE",
-        help="LayoutVLM's scene file, where it is not beside the layout.",
+        help="LayoutVLM's scene file, if it is not next to the layout.",
         rich_help_panel=MORE,
     ),
 ]
@@ -40,15 +42,15 @@ Assets = Annotated[
     typer.Option(
         "--assets",
         metavar="DIR",
-        help="LayoutVLM's folder of assets, for sizes.",
+        help="LayoutVLM's asset folder, used for object sizes.",
         rich_help_panel=MORE,
     ),
 ]
 
 
 def print_skipped(lines: Sequence[str]) -> None:
-    """Print which objects were left out, and why."""
+    """Print which objects were skipped and why."""
     for line in lines[:MAX_LISTED]:
-        print(f"note: left out: {line}")
+        print(f"note: skipped: {line}")
     if len(lines) > MAX_LISTED:
         print(f"note: ... and {len(lines) - MAX_LISTED:,} more")
