@@ -121,7 +121,11 @@ def test_a_journal_of_another_build_is_told(out, capsys):
     ("words", "code", "reason"),
     [
         (["nowhere"], 3, "nowhere: does not contain a build (build/scene.json)"),
-        (["{out}", "--list", "--undo", "1"], 2, "use only one of --list, --undo, --undo-all and --redo"),
+        (
+            ["{out}", "--list", "--undo", "1"],
+            2,
+            "use only one of --list, --undo, --undo-all and --redo",
+        ),
         (["{out}", "--json"], 2, "--json requires --list"),
         (["{out}", "--undo", "1"], 2, "there is nothing to undo"),
         (["{out}", "--redo", "4"], 2, "edit 4 was not taken back"),

@@ -72,8 +72,8 @@ def test_a_sample_is_shown(store, tmp_path, capsys, monkeypatch):
     assert w2m(["dataset", "show", str(store)]) == 0
     said = capsys.readouterr().out.splitlines()
     assert said[0] == f"{store}: store, 1 samples (1 train)"
-    assert said[1] == "100.0% of the depth within the region lies in labelled cells"
-    assert said[2] == f"picture: {KEY}.png"
+    assert said[1] == "100.0% of the depth pixels within the region are in labelled cells"
+    assert said[2] == f"image: {KEY}.png"
     assert Image.open(tmp_path / f"{KEY}.png").width > 1000
 
 

@@ -12,7 +12,7 @@ def test_it_tells_what_blocks_stand_for(capsys):
     first, second, third = capsys.readouterr().out.splitlines()
     assert first == "minecraft:bookshelf  furn"
     assert second == "tmeo_ultra:chuanglian_1  objs"
-    assert third.startswith("minecraft:oak_planks  by its place: floor, ceiling, wall, ")
+    assert third.startswith("minecraft:oak_planks  depends on surroundings: floor, ceiling, wall, ")
 
 
 def test_the_papers_map_says_its_own(capsys):

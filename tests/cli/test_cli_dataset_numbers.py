@@ -56,7 +56,7 @@ def test_quality_prints_the_papers_rows_and_writes_json(tmp_path, capsys):
         (["quality", "{tmp}/none"], 3, "not a data set and not a folder of images"),
         (["quality", "{data}"], 3, "has labels but no image"),
         *(
-            (["quality", "{tmp}", "--resize", text], 2, "--resize is WIDTHxHEIGHT")
+            (["quality", "{tmp}", "--resize", text], 2, "--resize must be WIDTHxHEIGHT")
             for text in ("640", "x480", "axb", "640x480x2", "")
         ),
         (["quality", "{tmp}", "--variant", "matlab"], 2, "no NIQE variant is named 'matlab'"),

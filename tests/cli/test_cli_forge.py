@@ -74,7 +74,7 @@ def test_without_a_room_there_is_a_start_page(tmp_path, monkeypatch):
 def test_a_server_for_others_warns_and_requires_the_link(labels):
     words = (labels, "--port", 0, "--host", "0.0.0.0", "--allow-host", "den.lan")
     with forge(*words) as (_, link, said):
-        assert said.startswith("warning: anyone who can reach 0.0.0.0 and has the link can edit")
+        assert said.startswith("warning: anyone with the link who can reach 0.0.0.0 can edit")
         url, token = link.split("?token=")
         bearer = {"Authorization": f"Bearer {token}"}
         for host, status in (("127.0.0.2", 200), ("den.lan", 200), ("evil.example", 403)):
@@ -97,7 +97,7 @@ def test_a_port_that_is_taken_is_one_line(labels, capsys):
     [
         (["none.npz"], 3, "none.npz"),
         (["--demo", "den.npy"], 2, "--demo opens the demo room; omit either --demo or the file"),
-        (["--walk"], 2, "--walk needs a world, as in w2m forge OUT --walk"),
+        (["--walk"], 2, "--walk requires a world, as in w2m forge OUT --walk"),
         (["none", "--walk"], 3, "none"),
         (["--host", "no.such.host.invalid", "--demo"], 2, "cannot listen on no.such.host.invalid"),
     ],

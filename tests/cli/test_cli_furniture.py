@@ -43,8 +43,8 @@ def test_a_chair_is_added_from_any_format(suffix, own, volume, tmp_path, capsys)
     write_blocks(volume, source)
     assert furniture("add", source, "--class", "chair", "--blocks-per-metre", 1) == 0
     out = capsys.readouterr().out
-    assert "my_chair: 1 blocks, 1.00 x 1.00 x 1.00 m deep, wide and high" in out
-    assert "Its front looked south (inferred from its blocks; --front sets it)." in out
+    assert "my_chair: 1 blocks, 1.00 x 1.00 x 1.00 m (depth x width x height)" in out
+    assert "The front faces south (inferred from its blocks; set it with --front)." in out
     assert (own / "my_chair.json").is_file()
     assert furniture("show", "my_chair") == 0
     assert "  1 per metre: 1 birch_stairs" in capsys.readouterr().out
@@ -63,7 +63,8 @@ def test_nothing_is_replaced_unless_it_is_said(own, volume, tmp_path, capsys):
     assert (own / "a.json").read_bytes() == before
     assert furniture(*words, "--name", "sofa") == 2
     assert (
-        "the library already contains sofa; choose another name with --name" in capsys.readouterr().err
+        "the library already contains sofa; choose another name with --name"
+        in capsys.readouterr().err
     )
 
 
@@ -88,7 +89,10 @@ def test_what_cannot_be_is_told_in_a_line(words, code, message, own, capsys):
 def test_the_list_holds_all(own, capsys):
     assert furniture("list") == 0
     out = capsys.readouterr().out
-    assert f"{len(TEMPLATES.names())} designs; objects are matched against 24, marked *." in out
+    assert (
+        f"{len(TEMPLATES.names())} designs; objects are matched with the 24 designs marked *."
+        in out
+    )
     assert all(f" {name} " in out for name in TEMPLATES.names())
 
 
@@ -102,7 +106,7 @@ def test_the_list_and_each_piece_are_json(own, capsys):
 
 def test_the_list_of_a_word(own, capsys):
     assert furniture("list", "bathtub", "--class", "furn") == 0
-    assert "2 designs; objects are matched against 0" in capsys.readouterr().out
+    assert "2 designs; objects are matched with the 0 designs" in capsys.readouterr().out
 
 
 def test_a_sheet_is_drawn(own, tmp_path, capsys):

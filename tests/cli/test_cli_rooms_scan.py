@@ -69,8 +69,8 @@ def test_a_trial_is_scanned_by_name(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ([], "nothing to scan; give a folder of w2m rooms generate, --seed or --trial"),
-        (["--seed", "-1"], "--seed must be 0 or more, not -1"),
+        ([], "nothing to scan; give a room folder, --seed or --trial"),
+        (["--seed", "-1"], "--seed must be 0 or more, got -1"),
         (["--seed", "1", "--kind", "barn"], "no room kind is named 'barn'; known:"),
         (["--seed", "1", "--sensor", "rgb"], "no sensor is named 'rgb'; did you mean 'rgbd'"),
         (["--seed", "1", "--frames", "0"], "frames must be 1 or more, got 0"),
@@ -86,10 +86,10 @@ def test_a_trial_is_scanned_by_name(tmp_path, monkeypatch):
             ["--seed", "1", "--label-error", "2"],
             "label_error must be from 0 to 1, got 2.0",
         ),
-        (["room", "--kind", "study"], "room has a kind of its own; leave --kind out"),
+        (["room", "--kind", "study"], "the type of room is fixed; omit --kind"),
         (
             ["--trial", "noise-500", "--frames", "9"],
-            "--trial brings its own room and settings; give it with --out alone",
+            "--trial has a fixed room and settings; combine it only with --out",
         ),
         (["--trial", "noise-5000"], "no trial is named 'noise-5000'; did you mean"),
     ],

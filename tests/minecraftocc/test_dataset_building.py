@@ -384,7 +384,7 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
     assert f"{data}: 3 images (2 train, 1 test) in 2 shards" in out
     assert "ms of CPU each: render" in out
     assert cli.run(words) == 0
-    assert "made   nothing: the data set is complete" in capsys.readouterr().out
+    assert "made   nothing; the data set is already complete" in capsys.readouterr().out
     assert cli.run(["dataset", "verify", data]) == 0
     assert "3 samples in 2 shards, 0 MB: ok" in capsys.readouterr().out
     (tmp_path / "data/shards/stray.txt").write_text("x")
@@ -409,7 +409,7 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
         (["--world", "gone"], "gone: not found", 3),
         (["--worlds", "gone"], "gone: not a folder; --worlds needs", 3),
         (["--houses", "2", "--camera", "nyuu"], "no camera is named 'nyuu'; did you mean 'nyu'", 2),
-        (["--houses", "2", "--size", "big"], "--size is WIDTHxHEIGHT in pixels", 2),
+        (["--houses", "2", "--size", "big"], "--size must be WIDTHxHEIGHT in pixels", 2),
         (["--houses", "2", "--voxel", "big"], "--voxel is metres, such as 0.08, or block", 2),
         (["--houses", "2", "--region", "cube"], "no kind of region is named 'cube'", 2),
         (

@@ -30,7 +30,7 @@ ours resized to 640x480 [C]      11.54  44.09      251,739
 [a] needs data sets with separate licences: w2m dataset quality NYUV2
 [b] needs the paper's images, which are not public: w2m dataset quality DATA
 
-next: w2m paper 3 --results mine.yaml   your own results in place of ours
+next: w2m paper 3 --results mine.yaml   use your own results instead
 """
 
 
@@ -45,7 +45,7 @@ def test_tables_are_listed(capsys):
     assert [line.split()[1] for line in lines[:11]][:3] == ["datasets", "vln", "image-quality"]
     assert lines[5] == (
         " 6  layouts         Layout methods                                  "
-        "8 cells of ours, 28 need what we lack"
+        "8 cells filled, 28 missing"
     )
 
 
@@ -146,7 +146,7 @@ def test_other_forms_have_all_cells(capsys):
     assert latex.count("{") == latex.count("}")
     assert r"\textit{23.33}" in latex
     assert run(["paper", "1", "--json", "--latex"]) == 2
-    assert "choose one of --markdown, --latex and --json" in capsys.readouterr().err
+    assert "use only one of --markdown, --latex and --json" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", table_names())

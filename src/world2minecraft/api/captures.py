@@ -65,7 +65,7 @@ class CaptureReport:
                 f"{self.path} is a RoomPlan without frames, so it has no overview image"
             )
         if not replace and place.exists() and not is_poster(place):
-            raise OutputError(place, "exists and was not written by w2m scan; choose another file")
+            raise OutputError(place, "already exists and was not written by w2m scan")
         write_bytes(place, poster_png(self.summary))
         return place
 

@@ -83,4 +83,4 @@ def _save_picture(report: "CaptureReport", picture: Path | None) -> str:
     try:
         return str(report.save_picture(chosen, replace=False))
     except OutputError as error:
-        return f"not written; {error} with -o PNG"
+        return f"not written; {error}; choose another file with -o PNG"

@@ -165,7 +165,7 @@ def test_a_set_is_counted_by_the_command(one_worker, tmp_path, capsys):
     assert {row["task"] for row in figures["baselines"]} == set(by_task)
     assert min(Image.open(tmp_path / "lengths.png").size) > 200
     trained = sorted(set(by_task) - set(held))
-    where = f"; {', '.join(trained)} on train, as none of it is held out" if trained else ""
+    where = f"; {', '.join(trained)} on train, because none of it is held out" if trained else ""
     assert f"Without understanding, on the held-out splits{where} (95 % interval)" in told
     assert f"w2m vln evaluate {out} --agent oracle" in told
 

@@ -1,4 +1,4 @@
-"""``w2m dataset build``: labelled images of many scenes, in shards, with one command."""
+"""Build a data set of labelled images from many scenes: ``w2m dataset build``."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -8,10 +8,10 @@ if TYPE_CHECKING:
     from world2minecraft.api.datasets import Dataset
 
 EXAMPLES = """\
-w2m dataset build DATA --houses 4 --images 40            a small one, to look at
+w2m dataset build DATA --houses 4 --images 40            a small data set to try
 w2m dataset build DATA --houses 40 --images 2000         2,000 images of generated houses
 w2m dataset build DATA --preset 100k --camera paper      the paper's number and size of images
-w2m dataset build DATA --worlds MY_WORLDS --images 500   of worlds on disk
+w2m dataset build DATA --worlds MY_WORLDS --images 500   images of worlds on disk
 w2m dataset build DATA --schem house.schem --blocks-per-metre 1
 w2m dataset build DATA --world saves/Home --screenshots MY_SHOTS --at feet
 w2m dataset build DATA --houses 40 --images 2000 --labels-only
@@ -54,14 +54,16 @@ def run(
     engine: option.EngineName = "pool",
     jobs: option.Jobs = None,
 ) -> None:
-    """Build a data set: images, depth, and the class of every cell in front of the camera.
+    """Build a data set with images, depth, and a class for every cell in front of the camera.
 
-    A build that was interrupted continues with the same command; at most one image per process
-    is lost. The same options and seed give the same bytes, with any engine and number of jobs.
+    Repeat the command to resume an interrupted build, which loses at most one image per process.
+    The same options and seed produce identical files with any engine and number of jobs.
 
     Raises:
-        UsageError: the options contradict each other. ConflictError: the folder holds another data
-        set, or another process builds there. InputError: a scene cannot be read.
+        UsageError: If options contradict each other.
+        ConflictError: If the folder contains another data set, or another process is building
+            there.
+        InputError: If a scene cannot be read.
     """
     from world2minecraft.cli.arguments import output_of, size_of
 
@@ -102,7 +104,7 @@ def _print_summary(data: "Dataset") -> None:
         stages = ", ".join(f"{title} {each[stage]:.0f}" for stage, title in STAGES.items())
         print(f"  made   {report.made:,} images in {each['all']:.0f} ms of CPU each: {stages}")
     else:
-        print("  made   nothing: the data set is complete")
+        print("  made   nothing; the data set is already complete")
     print(f"  sum    {report.sha256}")
     print(f"  read   w2m.open_dataset({str(folder)!r}), or datasets.load_dataset({str(folder)!r})")
     print(f"  next   w2m dataset verify {folder}")

@@ -1,4 +1,4 @@
-"""``w2m dataset export``: a data set in the formats that other loaders read."""
+"""Export a data set to published formats: ``w2m dataset export``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,15 +14,15 @@ EXAMPLES = """\
 w2m dataset export DATA --format nyu --out NYU             for MonoScene, NDC-Scene, ISO, Symphonies
 w2m dataset export DATA --format occscannet --out OCC      for ISO, EmbodiedOcc, GPOcc
 w2m dataset export DATA --format embodied --out data       whole scenes, for EmbodiedOcc
-w2m dataset export DATA --format npz --out NPZ             plain arrays, for anything
-w2m dataset export DATA --format nyu --out NYU --limit 20  a few, to try
+w2m dataset export DATA --format npz --out NPZ             plain arrays
+w2m dataset export DATA --format nyu --out NYU --limit 20  a few samples to try
 """
 
 ShortBin = Annotated[
     bool,
     typer.Option(
         "--short-bin",
-        help="Of nyu, write only the headers of the .bin files.",
+        help="Write only the headers of the .bin files (nyu only).",
         rich_help_panel=MORE,
     ),
 ]
@@ -30,7 +30,7 @@ DataRoot = Annotated[
     str | None,
     typer.Option(
         "--data-root",
-        help="Of occscannet and embodied, what the paths in files begin with.",
+        help="Prefix of the paths in the files (occscannet and embodied only).",
         show_default="./data/occscannet",
         rich_help_panel=MORE,
     ),
@@ -40,7 +40,7 @@ FramesPerScene = Annotated[
     typer.Option(
         "--frames-per-scene",
         min=0,
-        help="Of embodied, frames of each scene; 0 for all.",
+        help="Number of frames per scene, or 0 for all (embodied only).",
         show_default="30",
         rich_help_panel=MORE,
     ),
@@ -49,30 +49,30 @@ FramesPerScene = Annotated[
 
 def run(
     source: Annotated[
-        Path, typer.Argument(help="A data set, or a folder that w2m dataset import reads.")
+        Path, typer.Argument(help="Data set, or a folder that w2m dataset import accepts.")
     ],
     format: Annotated[str, typer.Option("--format", help="nyu, occscannet, embodied or npz.")],
-    out: Annotated[Path, typer.Option("--out", "-o", help="The folder to write.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Output folder.")],
     split: Annotated[
         str | None, typer.Option("--split", help="train or test.", show_default="all")
     ] = None,
     limit: Annotated[
-        int | None, typer.Option("--limit", min=1, help="Export this many samples at most.")
+        int | None, typer.Option("--limit", min=1, help="Maximum number of samples.")
     ] = None,
     unknown: Annotated[
-        str, typer.Option("--unknown", help="Write unknown cells as keep (255) or empty (0).")
+        str, typer.Option("--unknown", help="How to write unknown cells: keep (255) or empty (0).")
     ] = "keep",
     in_view: Annotated[
-        bool, typer.Option("--in-view", help="Make cells outside the image unknown.")
+        bool, typer.Option("--in-view", help="Mark cells outside the image as unknown.")
     ] = False,
     short_bin: ShortBin = False,
     data_root: DataRoot = None,
     frames_per_scene: FramesPerScene = None,
 ) -> None:
-    """Write a data set in the format of NYUv2, OccScanNet, EmbodiedOcc-ScanNet, or as plain npz.
+    """Export a data set in the format of NYUv2, OccScanNet, EmbodiedOcc-ScanNet, or as npz files.
 
-    Images are cropped and resampled where a format requires a certain camera. An export that was
-    interrupted continues with the same command. docs/occupancy-formats.md describes every file.
+    Images are cropped and resampled if the format requires a specific camera. Repeat the command to
+    resume an interrupted export. docs/occupancy-formats.md describes all files.
     """
     from world2minecraft.api import export_dataset
     from world2minecraft.api.progress import show_progress
@@ -101,8 +101,8 @@ def _print_summary(report: "ExportReport", format: str) -> None:
         print(f"note: {note}")
     first = {
         "nyu": f"NYU_root={report.out} NYU_preprocess_root={report.out} for MonoScene",
-        "occscannet": f"link {report.out} as data/occscannet where the loader runs",
-        "embodied": f"link {report.out} as data where the loader runs",
+        "occscannet": f"link {report.out} as data/occscannet next to the loader",
+        "embodied": f"link {report.out} as data next to the loader",
         "npz": f"np.load('{report.out}/train/KEY.npz')",
     }
     print(f"use:  {first[format]}")

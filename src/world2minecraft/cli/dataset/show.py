@@ -1,4 +1,4 @@
-"""``w2m dataset show``: one sample of any data set as a picture."""
+"""Draw one sample of a data set as an image: ``w2m dataset show``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,26 +6,25 @@ from typing import Annotated
 import typer
 
 EXAMPLES = """\
-w2m dataset show DATA                                 the data set, and its first sample
-w2m dataset show DATA house_0001-t0-00012             one sample, by its key
+w2m dataset show DATA                                 describe the data set, draw one sample
+w2m dataset show DATA house_0001-t0-00012             draw the sample with this key
 w2m dataset show depthbin --labels preprocess         NYUv2 as MonoScene has it
-w2m dataset show OccScanNet --out look.png            write the picture elsewhere
+w2m dataset show OccScanNet --out look.png            write the image to another file
 """
 
 
 def run(
     source: Annotated[
-        Path, typer.Argument(help="A data set, or NYUv2, OccScanNet, EmbodiedOcc-ScanNet, npz.")
+        Path,
+        typer.Argument(help="Data set, including NYUv2, OccScanNet, EmbodiedOcc-ScanNet, npz."),
     ],
     key: Annotated[
         str | None,
-        typer.Argument(help="The key of the sample.", show_default="the first"),
+        typer.Argument(help="Key of the sample.", show_default="the first"),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out", "-o", "--picture", help="The PNG file to write.", show_default="KEY.png"
-        ),
+        typer.Option("--out", "-o", "--picture", help="Output PNG file.", show_default="KEY.png"),
     ] = None,
     format: Annotated[
         str | None,
@@ -33,12 +32,14 @@ def run(
     ] = None,
     labels: Annotated[
         Path | None,
-        typer.Option("--labels", help="Of nyu, the folder of MonoScene's base/, if elsewhere."),
+        typer.Option(
+            "--labels", help="Folder with MonoScene's base/, if stored elsewhere (nyu only)."
+        ),
     ] = None,
 ) -> None:
-    """Draw one sample: its image, its depth, its labels in the image, and from above.
+    """Draw a sample: the image, the depth, the labels overlaid on the image, and a view from above.
 
-    Where the colours of the labels lie on the things that they name, camera, axes and labels fit.
+    If the label colours match the objects in the image, the camera, axes and labels are consistent.
     """
     from world2minecraft.api import open_dataset
     from world2minecraft.api.dataset_contents import draw_sample
@@ -51,8 +52,8 @@ def run(
     figure = draw_sample(found, chosen, out=path)
     if figure.depth_in_cells is not None:
         share = figure.depth_in_cells
-        print(f"{share:.1%} of the depth within the region lies in labelled cells")
-    print(f"picture: {path}")
+        print(f"{share:.1%} of the depth pixels within the region are in labelled cells")
+    print(f"image: {path}")
     more = keys[1:2]
     print(f"next: w2m dataset show {source} {more[0]}" if more and key is None else
           f"next: w2m dataset export {source} --format npz --out OUT")  # fmt: skip

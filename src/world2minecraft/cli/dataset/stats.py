@@ -1,4 +1,4 @@
-"""``w2m dataset stats``: what a data set holds, beside the data sets of the paper."""
+"""Report statistics of a data set next to the data sets in the paper: ``w2m dataset stats``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,22 +9,22 @@ from world2minecraft.cli.dataset.options import Jobs
 from world2minecraft.cli.json_output import JsonOutput
 
 EXAMPLES = """\
-w2m dataset stats DATA                             the paper's table, with DATA below it
-w2m dataset stats DATA --split test --jobs 8       a split, counted by eight processes
+w2m dataset stats DATA                             print the paper's table with DATA
+w2m dataset stats DATA --split test --jobs 8       count one split with eight processes
 w2m dataset stats NYUv2                            a published data set
-w2m dataset stats DATA --json                      every figure, as JSON
+w2m dataset stats DATA --json                      print all results as JSON
 w2m dataset stats DATA --latex table.tex --plots PLOTS
 """
 
 
-DataPath = Annotated[Path, typer.Argument(help="A data set: ours, NYUv2, OccScanNet ...")]
+DataPath = Annotated[Path, typer.Argument(help="Data set: ours, NYUv2, OccScanNet ...")]
 Split = Annotated[str | None, typer.Option("--split", help="train or test.", show_default="all")]
 Format = Annotated[
     str | None,
     typer.Option("--format", help="nyu, occscannet, embodied or npz.", show_default="detected"),
 ]
 LatexFile = Annotated[
-    Path | None, typer.Option("--latex", help="Write the table for a paper.", metavar="FILE")
+    Path | None, typer.Option("--latex", help="Write the table in LaTeX.", metavar="FILE")
 ]
 Plots = Annotated[
     Path | None, typer.Option("--plots", help="Draw charts as PNG files.", metavar="FOLDER")
@@ -40,16 +40,17 @@ def run(
     plots: Plots = None,
     jobs: Jobs = None,
 ) -> None:
-    """Count images, scenes, rooms, classes and voxels, as the paper's table does.
+    """Count images, scenes, rooms, classes and voxels, as in the paper's table.
 
-    Semantic voxels are counted as in the paper: over all images, the occupied cells of the region
-    whose centres project into the image, so that a cell counts once for each image that holds it.
-    The distinct cells of the worlds are listed too. A fine class is a block, or a piece of
-    furniture whatever it is made of; it counts if 3 images show it with 100 pixels or more.
+    As in the paper, semantic voxels are counted over all images: the occupied cells of the region
+    whose centres project into the image. A cell is therefore counted once per image that shows it.
+    The number of distinct cells is also listed. A fine class is a block, or a piece of furniture
+    regardless of its material. It is counted if at least 3 images show it with at least 100 pixels.
 
     Raises:
-        InputError: it is not a data set, or damaged. UsageError: there is no such split.
-        MissingExtraError: charts are requested, and matplotlib is not installed.
+        InputError: If the folder is not a data set or is damaged.
+        UsageError: If the split does not exist.
+        MissingExtraError: If charts are requested and matplotlib is not installed.
     """
     from world2minecraft.api import dataset_contents as contents
     from world2minecraft.api.progress import show_progress
@@ -72,4 +73,4 @@ def run(
     print()
     for place in written:
         print(f"  wrote  {place}")
-    print(f"  next   w2m dataset quality {path}      how natural and how sharp its images are")
+    print(f"  next   w2m dataset quality {path}      measure the naturalness and sharpness")

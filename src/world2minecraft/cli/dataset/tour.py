@@ -1,4 +1,4 @@
-"""``w2m dataset tour``: plan which images of a world are taken, as a file of poses."""
+"""Plan views of a world, or read screenshot poses, as a tour file: ``w2m dataset tour``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from world2minecraft.api.tours import TourFile
 
 EXAMPLES = """\
-w2m dataset tour WORLDS/house_0001                        100 views, to tour.jsonl
+w2m dataset tour WORLDS/house_0001                        write 100 views to tour.jsonl
 w2m dataset tour WORLDS/house_0001 --count 640 --seed 2 --out more.jsonl
 w2m dataset tour house.schem --blocks-per-metre 1 --camera paper
 w2m dataset tour OUT --reachable                          only where the player can walk
@@ -19,25 +19,27 @@ w2m dataset tour WORLD --screenshots FOLDER --at feet     poses of real screensh
 w2m dataset tour WORLD --screenshots FOLDER --at feet --pattern "{x}_{y}_{z}_{yaw}_{pitch}"
 """
 
-World = Annotated[
-    Path, typer.Argument(metavar="WORLD", help="A world, a run's folder, or a block file.")
-]
+World = Annotated[Path, typer.Argument(metavar="WORLD", help="World, run folder, or block file.")]
 Count = Annotated[int, typer.Option("--count", metavar="N", help="Number of views.")]
 Out = Annotated[
-    Path, typer.Option("--out", "-o", metavar="FILE", help="The tour file to write, JSONL.")
+    Path, typer.Option("--out", "-o", metavar="FILE", help="Tour file to write, in JSONL format.")
 ]
 Reachable = Annotated[
-    bool, typer.Option("--reachable", help="Leave out rooms that cannot be reached from the spawn.")
+    bool,
+    typer.Option("--reachable", help="Skip rooms that cannot be reached from the spawn point."),
 ]
 Shots = Annotated[
     Path | None,
-    typer.Option("--screenshots", metavar="DIR", help="Take the poses of these screenshots."),
+    typer.Option(
+        "--screenshots", metavar="DIR", help="Use the poses of the screenshots in a folder."
+    ),
 ]
 Poses = Annotated[
-    Path | None, typer.Option("--poses", metavar="FILE", help="Their poses, as JSONL or CSV.")
+    Path | None, typer.Option("--poses", metavar="FILE", help="Screenshot poses as JSONL or CSV.")
 ]
 Pattern = Annotated[
-    str | None, typer.Option("--pattern", metavar="TEXT", help="How their names hold the poses.")
+    str | None,
+    typer.Option("--pattern", metavar="TEXT", help="Pattern for poses in screenshot names."),
 ]
 
 
@@ -57,19 +59,21 @@ def run(
     poses: Poses = None,
     pattern: Pattern = None,
 ) -> None:
-    """Plan smooth walks through all rooms of a world, with views that are worth an image.
+    """Plan smooth walks through all rooms of a world, with views that are suitable for images.
 
-    Rooms share the views by their size and furniture. Views look along the axes, along the
-    diagonals and freely; blocked, empty, flat and dark ones, and near duplicates, are left out.
-    Doors are opened on the way.
+    Views are distributed over the rooms by size and amount of furniture. They look along the axes,
+    along the diagonals and in free directions. Blocked, empty, flat and dark views and near
+    duplicates are skipped. Doors are opened on the way.
 
-    With --screenshots, the poses of real screenshots become a tour file instead: they come from
-    --poses, from the names by --pattern, or from a poses.jsonl or .csv beside them, the PNG's texts
-    or the usual names. --at states whether x, y, z are at the feet, as F3 shows, or at the eye.
+    With --screenshots, the tour file contains the poses of screenshots. They are read from --poses,
+    from file names matching --pattern, from a poses.jsonl or .csv in the folder, from PNG text, or
+    from common file names. --at states whether x, y, z are at the feet, as on the F3 screen, or at
+    the eye.
 
     Raises:
-        UsageError: the options contradict each other, or nobody can stand in the world.
-        InputError: the world or a screenshot cannot be read.
+        UsageError: If options contradict each other or the world has no position where a player can
+            stand.
+        InputError: If the world or a screenshot cannot be read.
     """
     from world2minecraft.api.datasets import check_seed
     from world2minecraft.api.progress import show_progress
@@ -79,7 +83,7 @@ def run(
     from world2minecraft.core.errors import UsageError
 
     if screenshots is None and (at or poses is not None or pattern is not None):
-        raise UsageError("--at, --poses and --pattern need --screenshots DIR")
+        raise UsageError("--at, --poses and --pattern require --screenshots DIR")
     check_seed(seed)
     scene: dict[str, Any] = {
         "block_map": block_map,
@@ -111,14 +115,14 @@ def run(
 
 def _print_recorded(tour: "TourFile", at: str, world: Path) -> None:
     by = ", ".join(f"{number} by {kind}" for kind, number in tour.kinds.items())
-    print(f"{tour.path}: {tour.views} screenshots ({by}), x, y, z taken as those of the {at}")
-    print(f"  look   w2m dataset sheet {tour.path} --world {world}      images from the same poses")
+    print(f"{tour.path}: {tour.views} screenshots ({by}), with positions at the {at}")
+    print(f"  look   w2m dataset sheet {tour.path} --world {world}      render the same poses")
 
 
 def _print_planned(tour: "TourFile", count: int, world: Path) -> None:
     kinds = ", ".join(f"{tour.kinds.get(kind, 0)} {kind}" for kind in ("axis", "diagonal", "free"))
     print(f"{tour.path}: {tour.views} views ({kinds}) in {tour.tours} tours of {tour.rooms} rooms")
     if tour.views < count:
-        print(f"note: {count} were requested; the rooms give no more that differ")
+        print(f"note: {count} views were requested; the rooms have no more distinct views")
     print(f"  look   w2m dataset sheet {tour.path} --world {world}")
     print(f"  draw   w2m render {world} --poses {tour.path} --out pictures")

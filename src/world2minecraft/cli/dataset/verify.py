@@ -1,4 +1,4 @@
-"""``w2m dataset verify``: every byte of a data set against its index."""
+"""Verify all files of a data set against its index: ``w2m dataset verify``."""
 
 from dataclasses import asdict
 from typing import Annotated
@@ -9,7 +9,7 @@ from world2minecraft.cli.dataset import options as option
 
 EXAMPLES = """\
 w2m dataset verify DATA             read all shards and compare all checksums
-w2m dataset verify DATA --json      the same for another program
+w2m dataset verify DATA --json      print the result as JSON
 """
 MAX_SHOWN = 20
 
@@ -18,12 +18,13 @@ def run(
     folder: option.Folder,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Read a whole data set and list what is missing, damaged or unexpected.
+    """Read a whole data set and list missing, damaged and unexpected contents.
 
-    The exit code is 3 where there is a fault, with --json too.
+    The exit code is 3 if there are faults, also with --json.
 
     Raises:
-        InputError: it is not a data set, or not finished. DamagedFileError: it has faults.
+        InputError: If the folder is not a data set or the data set is incomplete.
+        DamagedFileError: If the data set has faults.
     """
     from world2minecraft.api import verify_dataset
     from world2minecraft.api.progress import show_progress
@@ -40,8 +41,8 @@ def run(
         count = len(report.faults)
         raise DamagedFileError(
             folder,
-            f"has {count:,} fault{'s' * (count > 1)}; delete the shards that are listed and run "
-            "the same w2m dataset build again",
+            f"has {count:,} fault{'s' * (count > 1)}; delete the listed shards and repeat the "
+            "w2m dataset build command",
         )
     if as_json:
         return

@@ -1,1 +1,1 @@
-"""``w2m evaluate``: scores of reconstructions and of networks."""
+"""The verbs ``w2m evaluate ...``, which score reconstructions and networks."""

@@ -1,4 +1,4 @@
-"""``w2m evaluate occupancy``: a network, an ONNX file or saved predictions against any data set."""
+"""Score a network, an ONNX file or saved predictions: ``w2m evaluate occupancy``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 EXAMPLES = """\
-w2m evaluate occupancy RUN DATA                                 a run of w2m train
+w2m evaluate occupancy RUN DATA                                 a run from w2m train
 w2m evaluate occupancy net.onnx NYU --protocol monoscene        an exported network, on real NYUv2
 w2m evaluate occupancy PREDICTED NYU --protocol ssc --protocol monoscene
 w2m evaluate occupancy PRED.npz NYU0003_0000.bin                one frame
-w2m evaluate occupancy saved OCC --protocol embodied            EmbodiedOcc's or GPOcc's own files
-w2m evaluate occupancy scenes OCC --protocol embodied           ... or SCENE.npy, grids of scenes
-w2m evaluate occupancy RUN DATA --json                          every figure, as JSON
+w2m evaluate occupancy saved OCC --protocol embodied            files of EmbodiedOcc or GPOcc
+w2m evaluate occupancy scenes OCC --protocol embodied           grids of scenes as SCENE.npy
+w2m evaluate occupancy RUN DATA --json                          print all results as JSON
 w2m evaluate occupancy RUN DATA --json scores.json --latex rows.tex
 """
 
@@ -26,33 +26,33 @@ w2m evaluate occupancy RUN DATA --json scores.json --latex rows.tex
 Predicted = Annotated[
     Path,
     typer.Argument(metavar="PRED_OR_NET",
-                   help="A run's folder, weights, an .onnx, or saved predictions."),
+                   help="Run folder, weights, an .onnx file, or saved predictions."),
 ]  # fmt: skip
 Truth = Annotated[Path, typer.Argument(metavar="GT_OR_DATA", help="Any occupancy data set.")]
 Protocols = Annotated[
     list[str] | None,
     typer.Option(
         "--protocol",
-        help="monoscene, iso, embodied, ssc or visible; repeatable.",
+        help="monoscene, iso, embodied, ssc or visible. Repeatable.",
         show_default="all",
     ),
 ]
 Split = Annotated[
     str,
     typer.Option(
-        "--split", help="train, test or all.", show_default="test, or all where there is none"
+        "--split", help="train, test or all.", show_default="test, or all without a test split"
     ),
 ]
 Limit = Annotated[
     int | None,
-    typer.Option("--limit", min=1, help="Score this many frames at most, spread evenly."),
+    typer.Option("--limit", min=1, help="Maximum number of frames, selected evenly."),
 ]
 Order = Annotated[
     str,
     typer.Option(
         "--order",
         help="Axes of saved predictions: xyz, xzy (NYUv2) or yxz.",
-        show_default="by their shape",
+        show_default="from their shape",
         rich_help_panel=MORE,
     ),
 ]
@@ -67,12 +67,15 @@ Classes = Annotated[
 ]
 Labels = Annotated[
     Path | None,
-    typer.Option("--labels", help="Of NYUv2, the folder of MonoScene's base/, if elsewhere."),
+    typer.Option("--labels", help="Folder with MonoScene's base/, if stored elsewhere (NYUv2)."),
 ]
 Latex = Annotated[
-    Path | None, typer.Option("--latex", metavar="FILE", help="Write rows of a LaTeX table.")
+    Path | None,
+    typer.Option("--latex", metavar="FILE", help="Write the scores as LaTeX table rows."),
 ]
-Seed = Annotated[int, typer.Option("--seed", help="Seed of the intervals.", rich_help_panel=MORE)]
+Seed = Annotated[
+    int, typer.Option("--seed", help="Random seed of the intervals.", rich_help_panel=MORE)
+]
 
 
 def run(
@@ -90,9 +93,9 @@ def run(
     device: Device = "auto",
     cache: Cache = "",
 ) -> None:
-    """Score occupancy by the published protocols, with confidence intervals over scenes.
+    """Score occupancy predictions with published protocols and confidence intervals over scenes.
 
-    docs/occupancy-scores.md states what each protocol counts, and how it treats unknown cells.
+    docs/occupancy-scores.md defines what each protocol counts and how it treats unknown cells.
     """
     from world2minecraft.api import evaluate_network
     from world2minecraft.api.networks import scores_latex
@@ -127,7 +130,7 @@ def run(
     if latex is not None:
         print(f"rows     {latex}")
     if json_file is None:
-        print("next: the same with --json scores.json, for every figure and interval")
+        print("next: add --json scores.json to write all results and intervals")
 
 
 def _print_tables(scores: dict[str, Any]) -> None:
@@ -139,11 +142,11 @@ def _print_tables(scores: dict[str, Any]) -> None:
         if table is not None:
             console.print(table)
     for name, reason in scores["left_out"].items():
-        print(f"{name} left out: {reason}")
+        print(f"{name} skipped: {reason}")
 
 
 def score_table(scores: dict[str, Any]) -> "Table":
-    """Return the micro figures by protocol, and the macro ones that most ask for."""
+    """Return a table of the micro scores by protocol, with macro IoU and mIoU."""
     rows = []
     for name, found in scores["protocols"].items():
         micro, macro = found["micro"], found["macro"]
@@ -152,11 +155,11 @@ def score_table(scores: dict[str, Any]) -> "Table":
             (name, f"{found['frames']:,}", *(_per_cent(micro[key]) for key in _FIGURES), both)
         )
     head = ("protocol", "frames", "IoU", "precision", "recall", "mIoU", "macro")
-    return _table("per cent; macro: IoU / mIoU, means over frames", head, rows)
+    return _table("percent; macro: IoU / mIoU, averaged over frames", head, rows)
 
 
 def interval_table(scores: dict[str, Any]) -> "Table | None":
-    """Return the intervals of the micro figures; None where there is one scene."""
+    """Return a table of the intervals of the micro scores, or None if there is only one scene."""
     rows, scenes = [], 0
     for name, found in scores["protocols"].items():
         if found["interval"] is not None:
@@ -183,7 +186,7 @@ def _table(title: str, head: tuple[str, ...], rows: list[tuple[str, ...]]) -> "T
 
 
 def class_table(scores: dict[str, Any]) -> "Table":
-    """Return the IoU of each class by protocol."""
+    """Return a table of the IoU by class and protocol."""
     from world2minecraft.core.classes import CLASS_NAMES, display_name
 
     names = list(scores["protocols"])

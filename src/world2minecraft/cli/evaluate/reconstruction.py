@@ -1,4 +1,4 @@
-"""``w2m evaluate reconstruction``: a finished run against the truth of a virtual scan."""
+"""Score a finished run against ground truth: ``w2m evaluate reconstruction``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,33 +9,33 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 EXAMPLES = """\
-w2m evaluate reconstruction OUT my_trial                   every score of the run in OUT
-w2m evaluate reconstruction OUT my_trial --stages          and what each stage loses
+w2m evaluate reconstruction OUT my_trial                   all scores of the run in OUT
+w2m evaluate reconstruction OUT my_trial --stages          also the loss of each stage
 w2m evaluate reconstruction OUT my_trial --json scores.json
-w2m evaluate reconstruction labels.npz my_trial            another method's, objects.json beside
+w2m evaluate reconstruction labels.npz my_trial            the result of another method
 """
 
 
 def run(
-    out: Annotated[
-        Path, typer.Argument(help="Folder of a finished reconstruction, or a labels.npz.")
-    ],
+    out: Annotated[Path, typer.Argument(help="Folder of a finished run, or a labels.npz.")],
     truth: Annotated[Path, typer.Argument(help="Folder with truth.npz and truth.json.")],
     stages: Annotated[
         bool,
-        typer.Option("--stages", help="Also score with the truth put in after each stage."),
+        typer.Option(
+            "--stages", help="Also replace the output of each stage by the truth and score."
+        ),
     ] = False,
     json_path: Annotated[
         Path | None,
-        typer.Option("--json", metavar="FILE", help="Also write every figure to this file."),
+        typer.Option("--json", metavar="FILE", help="Also write all results to this file."),
     ] = None,
 ) -> None:
-    """Score a reconstruction against the room that was scanned.
+    """Score a reconstruction against the ground truth of the scanned room.
 
-    Only cells that a noise-free ray of a used frame reached or crossed are scored. The result of
-    another method is read from labels.npz: labels (uint8 X, Y, Z), voxel_m, origin_m and
-    grid_to_scan (4x4, from the grid's frame to that of the capture's poses); objects.json beside
-    it is a list of {class, center_m, size_m, yaw_deg}.
+    Only cells that a noise-free ray of a used frame reached or crossed are scored. Results of
+    another method are read from labels.npz: labels (uint8 X, Y, Z), voxel_m, origin_m and
+    grid_to_scan (4x4, from the grid frame to the frame of the capture's poses). An objects.json in
+    the same folder is a list of {class, center_m, size_m, yaw_deg}.
     """
     from rich.console import Console
 
@@ -53,14 +53,14 @@ def run(
         console.print(stage_table(facts))
     if json_path is not None:
         write_json(json_path, facts)
-        print(f"figures  {json_path}")
+        print(f"results  {json_path}")
     if out.is_dir() and (out / "scan.json").is_file():
         for line in next_steps(out, truth, stages):
             print(line)
 
 
 def score_table(facts: dict[str, Any]) -> "Table":
-    """Return the scores of a run, one a row."""
+    """Return a table of the scores of a run, one per row."""
     from rich.table import Table
 
     table = Table("what", "score", box=None, header_style="bold", pad_edge=False)
@@ -71,7 +71,7 @@ def score_table(facts: dict[str, Any]) -> "Table":
 
 
 def score_rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return the names and the texts of the scores, in the order in which they are printed."""
+    """Return the names and values of the scores in print order."""
     surface, cells, objects = (
         facts[name] for name in ("surface_within_one_voxel", "occupancy", "objects")
     )
@@ -79,11 +79,11 @@ def score_rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
     rows = [
         ("surface within one voxel, precision", f"{surface['precision']:.3f}"),
         ("surface within one voxel, recall", f"{surface['recall']:.3f}"),
-        ("free space found free", f"{facts['free_recall']:.3f}"),
+        ("free space recognised as free", f"{facts['free_recall']:.3f}"),
         ("IoU, exact", f"{cells['iou']:.3f}"),
         ("mIoU of 11 classes", f"{cells['miou']:.3f}"),
         ("mIoU of the classes present", f"{cells['miou_present_classes']:.3f}"),
-        ("class right where occupied", f"{cells['label_accuracy']:.3f}"),
+        ("class accuracy of occupied cells", f"{cells['label_accuracy']:.3f}"),
         ("frame, tilt and yaw", f"{frame['tilt_deg']:.2f} deg, {frame['yaw_deg']:.2f} deg"),
         ("frame, floor", f"{100 * frame['floor_m']:+.1f} cm"),
     ]
@@ -98,7 +98,7 @@ def score_rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
     ]
     asked, right = objects["orientation_asked"], objects["orientation_hits"]
     if asked:
-        rows.append(("chairs, sofas and beds turned right", f"{right} of {asked}"))
+        rows.append(("orientation of chairs, sofas and beds correct", f"{right} of {asked}"))
     if "openings" in facts:
         rows.append(("openings F1 (precision, recall)", _f1_text(facts["openings"])))
     if layout := facts["layout"]:
@@ -115,7 +115,7 @@ def score_rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def reliability_table(calibration: dict[str, Any]) -> "Table":
-    """Return how often cells of each confidence are right."""
+    """Return a table of the accuracy of cells by confidence."""
     from rich.table import Table
 
     table = Table(
@@ -133,12 +133,12 @@ def reliability_table(calibration: dict[str, Any]) -> "Table":
 
 
 def stage_table(facts: dict[str, Any]) -> "Table":
-    """Return what is left to lose: the scores with truth put in after each stage."""
+    """Return a table of the scores with the output of each stage replaced by the ground truth."""
     from rich.table import Table
 
     names = ("truth after", "IoU", "mIoU", "object F1", "turned", "collisions", "in the world")
     table = Table(*names, box=None, header_style="bold", pad_edge=False)
-    table.title, table.title_justify = "what is left to lose", "left"
+    table.title, table.title_justify = "scores with ground truth after each stage", "left"
     for name, row in {"none": facts, **facts["stages"]}.items():
         table.add_row(
             name,
@@ -153,7 +153,7 @@ def stage_table(facts: dict[str, Any]) -> "Table":
 
 
 def next_steps(out: Path, truth: Path, stages: bool) -> list[str]:
-    """Return the lines that end the output."""
+    """Return the next commands to print."""
     lines = ["" if stages else f"next: w2m evaluate reconstruction {out} {truth} --stages"]
     return [line for line in lines if line] or [f"next: open {out / 'report.html'} in a browser"]
 

@@ -1,4 +1,4 @@
-"""``w2m evaluate scannet``: make a truth of a ScanNet scene, to score runs by."""
+"""Create ground truth from ScanNet scenes to score runs: ``w2m evaluate scannet``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from world2minecraft.api.comparison import TruthMade
 
 EXAMPLES = """\
-w2m evaluate scannet scans/scene0000_00                  beside the scene's own files
-w2m evaluate scannet scans/scene0000_00 -o truth         elsewhere; the scene is unchanged
-w2m evaluate scannet scans -o truths                     of each scene in a folder
+w2m evaluate scannet scans/scene0000_00                  write to the scene folder
+w2m evaluate scannet scans/scene0000_00 -o truth         write to another folder
+w2m evaluate scannet scans -o truths                     process all scenes in a folder
 w2m reconstruct scans/scene0000_00 --out OUT             reconstruct the scene,
 w2m evaluate reconstruction OUT truth                    and score it
 """
@@ -19,21 +19,19 @@ w2m evaluate reconstruction OUT truth                    and score it
 
 def run(
     scene: Annotated[
-        Path, typer.Argument(help="A scene of ScanNet's train or val split, or a folder of them.")
+        Path, typer.Argument(help="Scene of ScanNet's train or val split, or a folder of scenes.")
     ],
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out", "-o", help="Write to this folder.", show_default="the scene's folder"
-        ),
+        typer.Option("--out", "-o", help="Write to this folder.", show_default="the scene folder"),
     ] = None,
 ) -> None:
-    """Make a truth of a ScanNet scene, so that reconstructions of it can be scored.
+    """Create ground truth from a ScanNet scene so that reconstructions of it can be scored.
 
     A scene is a folder with SCENE.sens (or exported color/ depth/ pose/ intrinsic/), SCENE.txt with
     its axisAlignment, SCENE_vh_clean_2.labels.ply, SCENE_vh_clean_2.0.010000.segs.json and
-    SCENE.aggregation.json. The truth has the surfaces and the space that cameras saw through; what
-    lies behind surfaces and the fronts of chairs are unknown and not scored.
+    SCENE.aggregation.json. The ground truth contains the surfaces and the free space observed by
+    cameras. Space behind surfaces and the orientation of chairs are unknown and are not scored.
     """
     from world2minecraft.api.comparison import scannet_truths
     from world2minecraft.api.progress import show_progress
@@ -48,9 +46,9 @@ def run(
 
 
 def summary_line(made: "TruthMade") -> str:
-    """Return what a truth holds, in a line."""
+    """Return a one-line summary of a ground truth."""
     sides = " x ".join(f"{side:.1f}" for side in made.size_m)
     return (
         f"{made.name}: {sides} m, {made.objects} objects, {made.surface:,} surface voxels of 2 cm, "
-        f"{100 * made.annotated_share:.0f} % of them annotated, {made.free:,} seen to be free"
+        f"{100 * made.annotated_share:.0f} % of them annotated, {made.free:,} free voxels"
     )

@@ -1,1 +1,1 @@
-"""``w2m forge``: the web editor."""
+"""The verbs ``w2m forge ...`` of the SceneForge web editor."""

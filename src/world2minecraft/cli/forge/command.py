@@ -1,4 +1,4 @@
-"""``w2m forge``: see every stage of a room in the browser, and edit it."""
+"""View every stage of a room in the browser, and edit the room: ``w2m forge``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,34 +13,38 @@ if TYPE_CHECKING:
     from world2minecraft.api.editor import EditorSession
 
 EXAMPLES = """\
-w2m forge OUT                   a run: its room, objects, photos, blocks
-w2m forge room.npz              any occupancy file; occ.json too
-w2m forge --demo                a room to try it on
-w2m forge                       the start page: drop a capture on it
-w2m forge IMG_2041.MOV          a capture: see what is in it, then make the room
-w2m forge OUT --capture scan    a run, and the capture with its photos
-w2m forge OUT --no-browser      print the link, and open nothing
-w2m forge OUT --walk            walk there with an agent's view and steps
+w2m forge OUT                   edit a run: its room, objects, photos, blocks
+w2m forge room.npz              edit an occupancy file, or occ.json
+w2m forge --demo                edit the demo room
+w2m forge                       open the start page, to drop a capture on it
+w2m forge IMG_2041.MOV          inspect a capture, then reconstruct the room
+w2m forge OUT --capture scan    edit a run with the photos of its capture
+w2m forge OUT --no-browser      print the link without opening a browser
+w2m forge OUT --walk            walk with the view and steps of an agent
 """
 
 Host = Annotated[
     str,
     typer.Option(
         "--host",
-        help="Address to listen on; one that is not local lets other machines in.",
+        help="Address to listen on; non-local addresses admit other machines.",
         rich_help_panel=MORE,
     ),
 ]
 Port = Annotated[
     int | None,
-    typer.Option("--port", min=0, max=65535, help="Port.", show_default="8484, or a free one"),
+    typer.Option(
+        "--port", min=0, max=65535, help="Port to listen on.", show_default="8484, or any free port"
+    ),
 ]
-NoBrowser = Annotated[bool, typer.Option("--no-browser", help="Print the link, and open nothing.")]
+NoBrowser = Annotated[
+    bool, typer.Option("--no-browser", help="Print the link without opening a browser.")
+]
 AllowHost = Annotated[
     list[str] | None,
     typer.Option(
         "--allow-host",
-        help="A further name of this machine. Repeatable.",
+        help="Additional host name of this machine. Repeatable.",
         rich_help_panel=MORE,
     ),
 ]
@@ -48,16 +52,16 @@ Home = Annotated[
     Path | None,
     typer.Option(
         "--home",
-        help="Folder for captures and rooms made in the editor.",
+        help="Folder for captures and rooms created in the editor.",
         show_default="SceneForge in your data folder",
         rich_help_panel=MORE,
     ),
 ]
 PhotosOf = Annotated[
-    Path | None, typer.Option("--capture", help="The capture of the run, for its photos.")
+    Path | None, typer.Option("--capture", help="Capture of the run, to show its photos.")
 ]
 Walk = Annotated[
-    bool, typer.Option("--walk", help="Walk in any world as agents do, by keyboard; no editing.")
+    bool, typer.Option("--walk", help="Walk through a world by keyboard, without editing.")
 ]
 MaxUpload = Annotated[
     int,
@@ -65,7 +69,7 @@ MaxUpload = Annotated[
         "--max-upload",
         metavar="MB",
         min=1,
-        help="Limit of one dropped capture.",
+        help="Size limit of an uploaded capture.",
         rich_help_panel=MORE,
     ),
 ]
@@ -74,9 +78,9 @@ MaxUpload = Annotated[
 def run(
     source: Annotated[
         Path | None,
-        typer.Argument(metavar="[OUT_OR_FILE]", help="A run's folder, a file, a capture."),
+        typer.Argument(metavar="[OUT_OR_FILE]", help="Run folder, occupancy file or capture."),
     ] = None,
-    demo: Annotated[bool, typer.Option("--demo", help="Open a room to try it on.")] = False,
+    demo: Annotated[bool, typer.Option("--demo", help="Open the demo room.")] = False,
     host: Host = "127.0.0.1",
     port: Port = None,
     allow_host: AllowHost = None,
@@ -86,15 +90,15 @@ def run(
     no_browser: NoBrowser = False,
     walk: Walk = False,
 ) -> None:
-    """Serve the editor of one room and open it in the browser, until Ctrl+C.
+    """Serve the editor for a room and open it in the browser, until Ctrl+C is pressed.
 
-    Every edit is saved beside the room as it is made and can be undone; the files of the room
-    change when you save. Only this machine can reach the editor, and only by the link that is
-    printed.
+    Every edit is recorded next to the room immediately and can be undone. The files of the room
+    change when you save in the editor. Only this machine can open the editor, and only with the
+    printed link.
 
     Raises:
-        UsageError: the options exclude each other, or the port is in use.
-        InputError: the source holds no room.
+        UsageError: If options exclude each other or the port is in use.
+        InputError: If the source does not contain a room.
     """
     from world2minecraft.api.editor import prepare_editor
 
@@ -115,32 +119,32 @@ def run(
 
 
 def _walk(source: Path | None, no_browser: bool) -> None:
-    """Let a person walk in a world on the page that shows what agents see."""
+    """Let the user walk through a world on a page that shows the view of an agent."""
     from world2minecraft.api.editor import prepare_walk
     from world2minecraft.cli.outcome import print_compile_note
 
     if source is None:
-        raise UsageError("--walk needs a world, as in w2m forge OUT --walk")
+        raise UsageError("--walk requires a world, as in w2m forge OUT --walk")
     print_compile_note()
     walk = prepare_walk(source)
-    print(f"walk here: {walk.link}\nCtrl+C ends it.", flush=True)
+    print(f"walk here: {walk.link}\nPress Ctrl+C to stop.", flush=True)
     if not no_browser:
         open_link(walk.link)
     walk.run()
 
 
 def _print_link(session: "EditorSession") -> None:
-    """Print notes, a warning where other machines can reach the page, and the link."""
+    """Print the notes, a warning if other machines can reach the page, and the link."""
     if session.demo_folder is not None:
         print(f"note: the demo room is stored in {session.demo_folder}")
     if session.is_public:
         print(
-            f"warning: anyone who can reach {session.host} and has the link can edit, and nothing "
-            "is encrypted; an SSH tunnel is safer (docs/forge.md)"
+            f"warning: anyone with the link who can reach {session.host} can edit, and the "
+            "connection is not encrypted; an SSH tunnel is safer (docs/forge.md)"
         )
     for note in session.notes:
         print(f"note: {note}")
     if session.read_only:
         print(f"note: opened read-only: {session.read_only}")
     print(f"SceneForge: {session.link}", flush=True)
-    print("Ctrl+C stops it; every edit is saved.", flush=True)
+    print("Press Ctrl+C to stop; every edit is saved.", flush=True)

@@ -1,4 +1,4 @@
-"""``w2m forge stats``: the operations and times of edited scenes, as the paper's table."""
+"""Report operations and times of edited scenes, as in the paper's table: ``w2m forge stats``."""
 
 import json
 from pathlib import Path
@@ -10,9 +10,9 @@ from world2minecraft.core.errors import UsageError
 
 EXAMPLES = """\
 w2m forge stats OUT                           a scene that was edited with w2m forge
-w2m forge stats A.forge B.forge --csv         a line for each scene
-w2m forge stats OUT --scratch EMPTY           beside a scene built from nothing
-w2m forge stats OUT1 OUT2 --latex             the table for a paper
+w2m forge stats A.forge B.forge --csv         one line per scene
+w2m forge stats OUT --scratch EMPTY           compare with a scene built from scratch
+w2m forge stats OUT1 OUT2 --latex             print the table in LaTeX
 """
 
 
@@ -20,26 +20,27 @@ def run(
     scenes: Annotated[list[Path], typer.Argument(help="Edited scenes, or their .forge folders.")],
     scratch: Annotated[
         list[Path] | None,
-        typer.Option("--scratch", help="A scene built from nothing. Repeatable."),
+        typer.Option("--scratch", help="Scene built from an empty grid. Repeatable."),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print everything as JSON.")] = False,
-    as_csv: Annotated[bool, typer.Option("--csv", help="Print a line for each scene.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print all results as JSON.")] = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="Print one CSV line per scene.")] = False,
     as_latex: Annotated[bool, typer.Option("--latex", help="Print the table in LaTeX.")] = False,
 ) -> None:
     """Print operations and times of edited scenes as the paper's efficiency table.
 
-    Every gesture is one operation, counted as what it did: an addition (filling holes is one), a
-    deletion, an orientation, and what the paper has no row for. An edit that was undone later is
-    counted too; undo and redo are not. Time is working time: after 10 s without an action, no
-    more is counted. The automated process is the time of the reconstruction.
+    Every gesture is one operation, counted by its effect: an addition (including filling holes), a
+    deletion, an orientation, or another operation that the paper's table omits. Edits that were
+    undone later are counted. Undo and redo are not. Time is working time: pauses are counted up to
+    10 s. The time of the automated process is that of the reconstruction.
 
     Raises:
-        InputError: a scene was never edited. UsageError: two formats are asked for.
+        InputError: If a scene has never been edited.
+        UsageError: If two formats are requested.
     """
     from world2minecraft.api.editor import measure_editing
 
     if as_json + as_csv + as_latex > 1:
-        raise UsageError("--json, --csv and --latex exclude each other; give one of them")
+        raise UsageError("use only one of --json, --csv and --latex")
     table = measure_editing(scenes, scratch or ())
     if as_json:
         print(json.dumps(table.to_json(), indent=1))

@@ -1,1 +1,1 @@
-"""``w2m furniture``: the furniture library."""
+"""The verbs ``w2m furniture ...`` of the furniture library."""

@@ -1,4 +1,4 @@
-"""``w2m furniture add``: blocks that someone built become furniture of the library."""
+"""Add a piece built from blocks to the furniture library: ``w2m furniture add``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,15 +16,18 @@ w2m furniture add lamp.nbt --class objs --blocks-per-metre 1 --size 0.4 0.4 1.6 
 
 
 Source = Annotated[
-    Path, typer.Argument(metavar="FILE", help="A .schem, .litematic, .nbt or another build.")
+    Path, typer.Argument(metavar="FILE", help=".schem, .litematic, .nbt or other block file.")
 ]
 Kind = Annotated[str, typer.Option("--class", help="chair, bed, sofa, table, tvs, furn or objs.")]
-Scale = Annotated[float, typer.Option(help="The scale at which it was built.")]
-Name = Annotated[str, typer.Option(help="Its name in the library.", show_default="FILE's name")]
-Title = Annotated[str, typer.Option(help="Its name for people.", show_default="its name")]
+Scale = Annotated[float, typer.Option(help="Scale at which the piece was built.")]
+Name = Annotated[str, typer.Option(help="Name in the library.", show_default="FILE's name")]
+Title = Annotated[str, typer.Option(help="Readable name.", show_default="its name")]
 Front = Annotated[
     str | None,
-    typer.Option(help="north, east, south or west.", show_default="inferred from its blocks"),
+    typer.Option(
+        help="Side that the front faces: north, east, south or west.",
+        show_default="inferred from its blocks",
+    ),
 ]
 Size = Annotated[
     tuple[float, float, float] | None,
@@ -34,10 +37,12 @@ Size = Annotated[
 ]
 Mount = Annotated[str, typer.Option(help="floor, wall, ceiling or any.")]
 Recolour = Annotated[
-    bool, typer.Option("--recolour", help="Let wood, wool and stone take an object's colour.")
+    bool, typer.Option("--recolour", help="Match wood, wool and stone to the object's colour.")
 ]
-Match = Annotated[bool, typer.Option("--match/--no-match", help="Match objects against it.")]
-Force = Annotated[bool, typer.Option("--force", help="Replace your own piece of this name.")]
+Match = Annotated[
+    bool, typer.Option("--match/--no-match", help="Match reconstructed objects with this piece.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace your own piece with the same name.")]
 
 
 def run(
@@ -53,14 +58,16 @@ def run(
     match: Match = True,
     force: Force = False,
 ) -> None:
-    """Add a piece of furniture of your own, block for block.
+    """Add a piece of furniture built from blocks to your furniture library.
 
-    The air around it is cut off. At its own scale it is built as it is; at another its shape is
-    fitted. Objects of its class and about its size are matched against it from now on. It is
-    stored in the folder W2M_FURNITURE, or with the user's settings.
+    Surrounding air is removed. At its own scale, the piece is built block for block. At other
+    scales, its shape is fitted with blocks. Reconstructed objects of its class and approximate size
+    are then matched with it. The piece is stored in the folder named by the environment variable
+    W2M_FURNITURE, or next to the user's settings.
 
     Raises:
-        UsageError: a name or a class is not valid, or taken. InputError: the file cannot be read.
+        UsageError: If a name or class is invalid, or if the name is already in use.
+        InputError: If the file cannot be read.
     """
     from world2minecraft.api.furniture import add_furniture
 
@@ -82,9 +89,9 @@ def run(
 
 def _print_summary(added: "AddedFurniture", inferred: bool) -> None:
     size = " x ".join(f"{side:.2f}" for side in added.size_m)
-    hint = " (inferred from its blocks; --front sets it)" if inferred else ""
-    print(f"{added.name}: {added.blocks} blocks, {size} m deep, wide and high")
-    print(f"Its front looked {added.front}{hint}.")
+    hint = " (inferred from its blocks; set it with --front)" if inferred else ""
+    print(f"{added.name}: {added.blocks} blocks, {size} m (depth x width x height)")
+    print(f"The front faces {added.front}{hint}.")
     for note in added.notes:
         print(f"note: {note}")
     print(f"Written to {added.path}")

@@ -1,4 +1,4 @@
-"""``w2m furniture list``: the pieces of the furniture library."""
+"""List the pieces of the furniture library: ``w2m furniture list``."""
 
 import json
 from typing import TYPE_CHECKING, Annotated
@@ -11,10 +11,10 @@ if TYPE_CHECKING:
     from world2minecraft.api.furniture import Template
 
 EXAMPLES = """\
-w2m furniture list                    all, by class
-w2m furniture list --class furn       one class
-w2m furniture list --markdown         the tables of docs/furniture-library.md
-w2m furniture list fridge --json      those whose name or title contains a word, for programs
+w2m furniture list                    list all pieces by class
+w2m furniture list --class furn       list one class
+w2m furniture list --markdown         print the tables in docs/furniture-library.md
+w2m furniture list fridge --json      search names and titles, and print JSON
 """
 
 
@@ -31,15 +31,15 @@ def run(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """List the furniture of the library and of your own, with its usual sizes.
+    """List the furniture of the library and your own furniture, with typical sizes.
 
     Raises:
-        UnknownNameError: there is no such class.
+        UnknownNameError: If the class is unknown.
     """
     from world2minecraft.api import furniture
 
     if as_markdown and as_json:
-        raise UsageError("--markdown and --json exclude each other; give one of them")
+        raise UsageError("--markdown and --json exclude each other; omit one of them")
     found = furniture.list_furniture(word, class_name=kind)
     if as_markdown:
         print(furniture.furniture_markdown(found), end="")
@@ -52,11 +52,11 @@ def run(
         for one in members:
             print(line_of(one, own=furniture.is_own(one)))
     matched = sum(one.matched for one in found)
-    print(f"\n{len(found)} designs; objects are matched against {matched}, marked *.")
+    print(f"\n{len(found)} designs; objects are matched with the {matched} designs marked *.")
 
 
 def line_of(one: "Template", own: bool) -> str:
-    """Return a line about a piece: its name, title, usual size, and whether it is matched."""
+    """Return a line about a piece: name, title, typical size, and a mark if objects match it."""
     size = " x ".join(f"{side:.2f}" for side in one.typical_m)
     mark = "*" if one.matched else " "
     return f"  {mark} {one.name:24s} {size} m  {one.title}{' (your own)' if own else ''}"

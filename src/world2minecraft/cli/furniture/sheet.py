@@ -1,4 +1,4 @@
-"""``w2m furniture sheet``: a picture of all furniture at 1, 2 and 4 blocks per metre."""
+"""Draw all furniture at 1, 2 and 4 blocks per metre on one sheet: ``w2m furniture sheet``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -15,10 +15,10 @@ w2m furniture sheet sofa corner_sofa -o sofas.png
 def run(
     names: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[NAME]...", help="The pieces to draw.", show_default="all"),
+        typer.Argument(metavar="[NAME]...", help="Pieces to draw.", show_default="all"),
     ] = None,
     out: Annotated[
-        Path, typer.Option("--out", "-o", metavar="PNG", help="The picture to write.")
+        Path, typer.Option("--out", "-o", metavar="PNG", help="Output PNG file.")
     ] = Path("furniture.png"),
     kind: Annotated[
         str,
@@ -27,10 +27,11 @@ def run(
         ),
     ] = "",
 ) -> None:
-    """Draw the furniture of the library and of your own, by class, at its usual sizes.
+    """Draw the furniture of the library and your own furniture by class, at typical sizes.
 
     Raises:
-        UnknownNameError: there is no such piece or class. OutputError: it cannot be written.
+        UnknownNameError: If a piece or class is unknown.
+        OutputError: If the image cannot be written.
     """
     from world2minecraft.api.furniture import draw_furniture
     from world2minecraft.api.progress import show_progress

@@ -1,4 +1,4 @@
-"""``w2m furniture show``: the facts about a piece, and a picture of it."""
+"""Show the properties of a piece of furniture, and draw it: ``w2m furniture show``."""
 
 import json
 from pathlib import Path
@@ -17,17 +17,22 @@ w2m furniture show bathtub --json
 
 
 def run(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="A name of `w2m furniture list`.")],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Name listed by `w2m furniture list`.")
+    ],
     picture: Annotated[
         Path | None,
-        typer.Option("--out", "-o", "--picture", metavar="PNG", help="Draw it at three scales."),
+        typer.Option(
+            "--out", "-o", "--picture", metavar="PNG", help="Draw the piece at three scales."
+        ),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Show a piece's sizes, parameters, materials, and its blocks at 1, 2 and 4 per metre.
+    """Show the sizes, parameters, materials and block counts of a piece at 1, 2 and 4 per metre.
 
     Raises:
-        UnknownNameError: there is none. OutputError: the picture cannot be written.
+        UnknownNameError: If the piece is unknown.
+        OutputError: If the image cannot be written.
     """
     from world2minecraft.api.furniture import draw_furniture, furniture_json, furniture_piece
 
@@ -36,21 +41,21 @@ def run(
     if picture is not None:
         draw_furniture(picture, [name], columns=1)
         if not as_json:
-            print(f"\nDrawn to {picture}")
+            print(f"\nImage written to {picture}")
 
 
 def facts_of(one: "Template") -> list[str]:
-    """Return the facts about a piece, a line each."""
+    """Return the properties of a piece, one per line."""
     from world2minecraft.api.furniture import SCALES, block_counts
     from world2minecraft.core.classes import display_name
 
     lines = [f"{one.name}: {one.title} ({display_name(one.class_id)}, family {one.family})"]
     for side, span in zip(("deep", "wide", "high"), one.size_m, strict=True):
-        lines.append(f"  {span.minimum:g} to {span.maximum:g} m {side}, usually {span.typical:g}")
-    lines.append(f"  mount {one.mount}, {one.turns} different quarter turns")
+        lines.append(f"  {span.minimum:g} to {span.maximum:g} m {side}, typically {span.typical:g}")
+    lines.append(f"  mount {one.mount}, {one.turns} distinct quarter turns")
     free = " ".join(f"{side:g}" for side in one.clearance_m)
-    lines.append(f"  free space in front, behind and beside: {free} m")
-    lines += [f"  {name} {span.minimum:g} to {span.maximum:g}, usually {span.typical:g}"
+    lines.append(f"  required free space in front, behind and at the sides: {free} m")
+    lines += [f"  {name} {span.minimum:g} to {span.maximum:g}, typically {span.typical:g}"
               for name, span in one.parameters.items()]  # fmt: skip
     lines += [f"  {name}: {word}" for name, word in one.options.items()]
     for role, material in one.materials.items():
@@ -58,5 +63,5 @@ def facts_of(one: "Template") -> list[str]:
         lines.append(f"  {role}: {material.kind} {material.value}{taken}")
     for scale in SCALES:
         counts = ", ".join(f"{count} {kind}" for kind, count in block_counts(one, scale).items())
-        lines.append(f"  {scale:g} per metre: {counts or 'its shape, fitted'}")
+        lines.append(f"  {scale:g} per metre: {counts or 'fitted shape'}")
     return lines

@@ -1,1 +1,1 @@
-"""``w2m paper``: the tables and figures of the paper."""
+"""The verbs ``w2m paper ...``, which print the tables and draw the figures of the paper."""

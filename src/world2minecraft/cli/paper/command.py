@@ -1,4 +1,4 @@
-"""``w2m paper``: the paper's tables, each with what we measured beside it."""
+"""Print the paper's tables next to our own results: ``w2m paper``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -9,12 +9,12 @@ if TYPE_CHECKING:
     from world2minecraft.api.paper import FilledTable
 
 EXAMPLES = """\
-w2m paper                                  which tables there are, and how much of each is filled
-w2m paper 6                                one table, by its number or its name
-w2m paper all --markdown                   all of them, for a page
-w2m paper vln --results mine.yaml          your own results in place of ours
-w2m paper occupancy --latex                for a paper of yours
-w2m paper occupancy --json                 with the keys of rows and columns that results take
+w2m paper                                  list the tables and how complete they are
+w2m paper 6                                print a table, by its number or name
+w2m paper all --markdown                   print all tables in Markdown
+w2m paper vln --results mine.yaml          use your own results instead of ours
+w2m paper occupancy --latex                print the table in LaTeX
+w2m paper occupancy --json                 print JSON, with the row and column keys for results
 
 mine.yaml:
   vln:                                     the table
@@ -26,17 +26,19 @@ mine.yaml:
 
 Which = Annotated[
     str | None,
-    typer.Argument(metavar="[N|NAME|all]", help="A table; without it, all are listed."),
+    typer.Argument(
+        metavar="[N|NAME|all]", help="Table to print. By default, all tables are listed."
+    ),
 ]
 ResultsFile = Annotated[
     Path | None,
     typer.Option(
-        "--results", metavar="FILE", help="Your own results, YAML or JSON, in place of ours."
+        "--results", metavar="FILE", help="YAML or JSON file with results to use instead of ours."
     ),
 ]
-Markdown = Annotated[bool, typer.Option("--markdown", help="Print Markdown.")]
-Latex = Annotated[bool, typer.Option("--latex", help="Print LaTeX, for booktabs.")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, with the keys and sources.")]
+Markdown = Annotated[bool, typer.Option("--markdown", help="Print the tables in Markdown.")]
+Latex = Annotated[bool, typer.Option("--latex", help="Print the tables in LaTeX with booktabs.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON with keys and sources.")]
 
 
 def run(
@@ -46,14 +48,14 @@ def run(
     latex: Latex = False,
     json_out: Json = False,
 ) -> None:
-    """Print tables of the paper: as printed, with our figures and what they were measured on.
+    """Print the paper's tables with the published and our own results and the data behind them.
 
-    A cell of ours that needs what we lack says so and names the command that fills it. A note
-    marks where the paper contradicts itself.
+    A cell that requires resources we lack names them and the command that would fill the cell.
+    Notes mark contradictions within the paper.
 
     Raises:
-        UsageError: there is no such table, or two forms are requested.
-        InputError: the results cannot be read.
+        UsageError: If the table is unknown, or if two formats are requested.
+        InputError: If the results cannot be read.
     """
     import json
 
@@ -61,7 +63,7 @@ def run(
     from world2minecraft.core.errors import UsageError
 
     if markdown + latex + json_out > 1:
-        raise UsageError("choose one of --markdown, --latex and --json")
+        raise UsageError("use only one of --markdown, --latex and --json")
     tables = paper_tables(which or "all", results=results)
     if which is None and not (markdown or latex or json_out):
         _list(tables)
@@ -73,13 +75,13 @@ def run(
     texts = [one.latex() if latex else one.markdown() if markdown else str(one) for one in tables]
     print("\n\n".join(texts))
     if results is None and not (latex or markdown):
-        print(f"\nnext: w2m paper {which} --results mine.yaml   your own results in place of ours")
+        print(f"\nnext: w2m paper {which} --results mine.yaml   use your own results instead")
 
 
 def _list(tables: "list[FilledTable]") -> None:
-    """Print a line for each table: its number, name, title, and how much of it is filled."""
+    """Print one line per table: number, name, title, and number of filled cells."""
     for one in tables:
         table, lacks = one.table, one.lacking
-        state = f"{one.cells:>3} cells of ours" + (f", {lacks} need what we lack" if lacks else "")
+        state = f"{one.cells:>3} cells filled" + (f", {lacks} missing" if lacks else "")
         print(f"{table.number:>2}  {table.name:<16}{table.title:<46}{state}")
-    print("\nnext: w2m paper layouts   one table, with what is measured and how")
+    print("\nnext: w2m paper layouts   print one table and how it is measured")

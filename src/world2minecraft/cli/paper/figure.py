@@ -1,4 +1,4 @@
-"""``w2m paper figure``: draw the paper's figure of a reconstruction of your own."""
+"""Draw the paper's figure for a reconstruction: ``w2m paper figure``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -8,16 +8,21 @@ import typer
 EXAMPLES = """\
 w2m demo && w2m paper figure OUT                       the demo's room
 w2m paper figure OUT --capture MY_SCAN -o room.png
-w2m paper figure OUT --capture MY_SCAN --walk RUN      with the strip of a w2m vln run below
+w2m paper figure OUT --capture MY_SCAN --walk RUN      with images from a w2m vln run below
 """
 
-Run = Annotated[Path, typer.Argument(metavar="OUT", help="A finished reconstruction.")]
+Run = Annotated[Path, typer.Argument(metavar="OUT", help="Finished reconstruction.")]
 Capture = Annotated[
     Path | None,
-    typer.Option("--capture", metavar="SCAN", help="Its capture.", show_default="OUT/capture"),
+    typer.Option(
+        "--capture",
+        metavar="SCAN",
+        help="Capture of the reconstruction.",
+        show_default="OUT/capture",
+    ),
 ]
 Walk = Annotated[
-    Path | None, typer.Option("--walk", metavar="RUN", help="A walk, for the strip below.")
+    Path | None, typer.Option("--walk", metavar="RUN", help="Run of w2m vln run, shown below.")
 ]
 Out = Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="Write this PNG file.")]
 
@@ -25,14 +30,14 @@ Out = Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="Write th
 def run(
     folder: Run, capture: Capture = None, walk: Walk = None, out: Out = Path("figure.png")
 ) -> None:
-    """Draw three views of a room: photo, world, predicted cells, construction.
+    """Draw three views of a room as in the paper: photo, world, predicted cells, construction.
 
-    The photo and the world are seen from one pose, the cells and the construction from outside,
-    without ceiling and near walls. A walk adds a strip of what its agent saw.
+    The photo and the world are shown from the same pose. The cells and the construction are shown
+    from outside, without the ceiling and near walls. A walk adds a row of images seen by its agent.
 
     Raises:
-        CaptureError: the capture has no posed photo that the run used.
-        InputError: a file is missing or damaged.
+        CaptureError: If the capture has no posed photo that the run used.
+        InputError: If a file is missing or damaged.
     """
     from world2minecraft.api.paper import paper_figure
 

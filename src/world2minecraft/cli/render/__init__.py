@@ -1,1 +1,1 @@
-"""``w2m render``: pictures of any build."""
+"""The verb ``w2m render``, which renders images of builds."""

@@ -1,4 +1,4 @@
-"""``w2m render``: pictures of any build: from the game's poses, from outside, on a walk within."""
+"""Render a build from game poses, from outside or on a walk: ``w2m render``."""
 
 import json
 from typing import TYPE_CHECKING
@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from world2minecraft.api.pictures import DrawnFiles
 
 EXAMPLES = """\
-w2m render OUT                                       from where the player starts
+w2m render OUT                                       view from the player's spawn point
 w2m render house.schem -o house.png                  a schematic, from outside
 w2m render OUT --pose 4,64,-3,90,10 -o here.jpg      the pose of the game's F3 screen
 w2m render OUT --tour -o walk.mp4                    a walk through the rooms
-w2m render OUT --turntable -o room.gif               the room turns on a plain ground
+w2m render OUT --turntable -o room.gif               the room rotating on plain ground
 w2m render OUT --tour --frames 200 --outputs rgb,depth,id -o DATA
-w2m render OUT --poses DATA/poses.jsonl -o AGAIN     the same views again
+w2m render OUT --poses DATA/poses.jsonl -o AGAIN     render the same views again
 """
 
 
@@ -56,15 +56,16 @@ def run(
     jobs: option.Jobs = 1,
     as_json: option.AsJson = False,
 ) -> None:
-    """Draw a build, without the game, a display or a graphics card.
+    """Render a build without the game, a display or a graphics card.
 
-    Choose one view: --pose, --poses, --orbit, --tour or --turntable; by default where the player
-    starts, or from outside. NAME.poses.jsonl beside the pictures (poses.jsonl in a folder) has the
-    pose, the intrinsics and the files of each; --poses reads it. names.json names the ids.
+    Choose one view: --pose, --poses, --orbit, --tour or --turntable. By default, the view is from
+    the player's spawn point, or from outside. The pose, intrinsics and files of each image are
+    written to NAME.poses.jsonl (poses.jsonl in a folder), which --poses accepts. names.json lists
+    the names of ids.
 
     Raises:
-        UsageError: the options contradict each other, or one is out of range.
-        InputError: the build or the poses cannot be read, or the output cannot be written.
+        UsageError: If options contradict each other or a value is out of range.
+        InputError: If the build or the poses cannot be read, or if the output cannot be written.
     """
     from world2minecraft.api import render_files
     from world2minecraft.api.progress import show_progress
@@ -91,11 +92,11 @@ def run(
 
 
 def _print_summary(drawn: "DrawnFiles", view: str, source: "Path") -> None:
-    """Print what was written, the pose of the first picture, and a next command."""
+    """Print the output, the pose of the first image, and a next command."""
     for note in drawn.notes:
         print(f"note: {note}")
     first, count = drawn.poses[0], len(drawn)
-    what = "one picture" if count == 1 else f"{count:,} pictures"
+    what = "1 image" if count == 1 else f"{count:,} images"
     print(f"{drawn.path}: {what} of {first['width']}x{first['height']}, {drawn.seconds:.2f} s each")
     if count == 1:
         x, y, z, yaw, pitch = (first[key] for key in ("x", "y", "z", "yaw", "pitch"))
@@ -106,5 +107,7 @@ def _print_summary(drawn: "DrawnFiles", view: str, source: "Path") -> None:
     name = first["scene_id"]
     following = f"--tour --out {name}_tour.gif     a walk through the rooms"
     if view == "tour":
-        following = f"--tour --outputs rgb,depth,id --out {name}_data     the walk as a data set"
+        following = (
+            f"--tour --outputs rgb,depth,id --out {name}_data     render the walk as a data set"
+        )
     print(f"  next   w2m render {source} {following}")

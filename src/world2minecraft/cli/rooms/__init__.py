@@ -1,1 +1,1 @@
-"""``w2m rooms``: generated rooms and virtual scans of them."""
+"""The verbs ``w2m rooms ...``, which generate rooms and scan them virtually."""

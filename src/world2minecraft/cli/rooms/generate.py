@@ -1,4 +1,4 @@
-"""``w2m rooms generate``: generate a furnished room, a house, or houses as worlds."""
+"""Generate a furnished room, a house, or houses as worlds: ``w2m rooms generate``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,26 +13,29 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 w2m rooms generate --seed 7 -o my_room                   a room
 w2m rooms generate --seed 7 --kind bathroom --shape ell  an L-shaped bathroom
-w2m rooms generate --seed 7 --clutter 0.8                an untidy one
+w2m rooms generate --seed 7 --clutter 0.8                an untidy room
 w2m rooms generate --house --rooms 12 --storeys 2        a house with stairs
-w2m rooms generate --houses 40 --seed 1 --worlds WORLDS  forty houses as Minecraft worlds
+w2m rooms generate --houses 40 --seed 1 --worlds WORLDS  40 houses as Minecraft worlds
 """
 DEFAULT_ROOMS, DEFAULT_STOREYS = 5, 1
 
 Kind = Annotated[
     str | None,
-    typer.Option("--kind", help="living, kitchen, bathroom ...", show_default="drawn by the seed"),
+    typer.Option("--kind", help="living, kitchen, bathroom ...", show_default="random"),
 ]
 Rooms = Annotated[
     int | None,
-    typer.Option("--rooms", help="Rooms of a house, 3 to 14, halls included.", show_default="5"),
+    typer.Option(
+        "--rooms", help="Number of rooms of a house including halls, 3 to 14.", show_default="5"
+    ),
 ]
 Storeys = Annotated[
-    int | None, typer.Option("--storeys", help="Storeys of a house, 1 or 2.", show_default="1")
+    int | None,
+    typer.Option("--storeys", help="Number of storeys of a house, 1 or 2.", show_default="1"),
 ]
 StyleName = Annotated[
     str | None,
-    typer.Option("--style", help="Style of all houses.", show_default="each draws its own"),
+    typer.Option("--style", help="Style of all houses.", show_default="random for each"),
 ]
 
 
@@ -42,38 +45,44 @@ def run(
     shape: Annotated[
         str, typer.Option("--shape", help="box, ell, cut, sloped, columns, or any.")
     ] = "box",
-    house: Annotated[bool, typer.Option("--house", help="A house instead of a room.")] = False,
+    house: Annotated[
+        bool, typer.Option("--house", help="Generate a house instead of a room.")
+    ] = False,
     rooms: Rooms = None,
     storeys: Storeys = None,
-    clutter: Annotated[float, typer.Option("--clutter", help="0 (tidy) to 1.")] = 0.0,
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the room or house.")] = Path(
-        "my_room"
-    ),
+    clutter: Annotated[
+        float, typer.Option("--clutter", help="Amount of clutter, 0 (tidy) to 1.")
+    ] = 0.0,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Output folder.")] = Path("my_room"),
     houses: Annotated[
-        int | None, typer.Option("--houses", help="How many houses, as Minecraft worlds.")
+        int | None, typer.Option("--houses", help="Generate this many houses as Minecraft worlds.")
     ] = None,
-    worlds: Annotated[Path | None, typer.Option("--worlds", help="Folder of those worlds.")] = None,
+    worlds: Annotated[
+        Path | None, typer.Option("--worlds", help="Output folder of --houses.")
+    ] = None,
     style: StyleName = None,
 ) -> None:
-    """Generate a furnished room or a house of several rooms, with exact truth.
+    """Generate a furnished room or a house of several rooms, with exact ground truth.
 
-    The folder gets layout.json (the rooms with their walls, openings and objects, in metres),
-    truth.npz (voxels of 2 cm with class, object and colour) and preview.png.
+    The output folder contains layout.json (the rooms with their walls, openings and objects, in
+    metres), truth.npz (voxels of 2 cm with class, object and colour) and preview.png.
 
-    With --houses and --worlds, houses become Minecraft worlds instead, in styles of their own:
-    a folder each, with world/, scene.json, scene.npz and designs.json.
+    With --houses and --worlds, houses in various styles are built as Minecraft worlds instead, each
+    in a subfolder with world/, scene.json, scene.npz and designs.json.
     """
     if houses is not None or worlds is not None or style is not None:
         if houses is None or worlds is None:
-            raise UsageError("--houses (how many) and --worlds (where) need each other; give both")
+            raise UsageError("--houses N and --worlds DIR must be used together")
         if kind is not None or shape != "box" or house or rooms is not None or storeys is not None:
-            raise UsageError("--houses draws kinds, rooms and storeys by its seed; leave them out")
+            raise UsageError(
+                "--houses cannot be combined with --kind, --shape, --house, --rooms or --storeys"
+            )
         _write_worlds(houses, seed, worlds, style)
         return
     if house and (kind is not None or shape != "box"):
-        raise UsageError("--kind and --shape are for a single room; leave them out with --house")
+        raise UsageError("--kind and --shape apply to a single room; omit them or --house")
     if not house and (rooms is not None or storeys is not None):
-        raise UsageError("--rooms and --storeys are for a house; add --house")
+        raise UsageError("--rooms and --storeys apply to a house; add --house")
     _write_room(out, seed, kind, shape, (rooms, storeys) if house else None, clutter)
 
 
@@ -127,4 +136,4 @@ def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> No
     print(f"\n{len(written)} houses in {worlds}.")
     print(f"  look   w2m render {written[0]} --out house.png")
     print(f"  play   w2m install {written[0]}")
-    print(f"  next   w2m dataset tour {written[0]}     where pictures are taken")
+    print(f"  next   w2m dataset tour {written[0]}     plan views for a data set")

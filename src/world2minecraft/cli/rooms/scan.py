@@ -1,4 +1,4 @@
-"""``w2m rooms scan``: scan a generated room, a house or a trial of the benchmark."""
+"""Scan a generated room, a house or a benchmark trial: ``w2m rooms scan``."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,22 +9,24 @@ from world2minecraft.cli.panels import MORE
 from world2minecraft.core.errors import UsageError
 
 EXAMPLES = """\
-w2m rooms scan my_room -o capture                    what w2m rooms generate wrote
-w2m rooms scan --seed 7 --kind kitchen -o capture    a room of its own
-w2m rooms scan --trial noise-500 -o capture          a trial of the benchmark
+w2m rooms scan my_room -o capture                    a room from w2m rooms generate
+w2m rooms scan --seed 7 --kind kitchen -o capture    a newly generated room
+w2m rooms scan --trial noise-500 -o capture          a benchmark trial
 w2m rooms scan --seed 7 -o capture --depth-scale-sigma 0.03 --coverage 0.6
 w2m rooms scan --seed 7 --sensor photos -o photos    JPEGs without depth or poses
 """
 
 
-RoomFolder = Annotated[Path | None, typer.Argument(help="A folder that w2m rooms generate wrote.")]
-Out = Annotated[Path, typer.Option("--out", "-o", help="Folder of the capture.")]
+RoomFolder = Annotated[Path | None, typer.Argument(help="Folder written by w2m rooms generate.")]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Output folder of the capture.")]
 Seed = Annotated[
-    int | None, typer.Option("--seed", help="Of the room (without ROOM_DIR) and the scan.")
+    int | None,
+    typer.Option("--seed", help="Random seed of the scan and, without ROOM_DIR, of the room."),
 ]
-Kind = Annotated[str | None, typer.Option("--kind", help="Kind of the room of --seed.")]
+Kind = Annotated[str | None, typer.Option("--kind", help="Room type to generate with --seed.")]
 TrialName = Annotated[
-    str | None, typer.Option("--trial", help="A trial, such as noise-500 or noise-500-clean.")
+    str | None,
+    typer.Option("--trial", help="Benchmark trial, such as noise-500 or noise-500-clean."),
 ]
 SensorName = Annotated[
     str | None,
@@ -36,15 +38,15 @@ Frames = Annotated[
     int | None,
     typer.Option(
         "--frames",
-        help="Pictures of the whole walk.",
-        show_default="40; 100 photos; 240 of a video",
+        help="Number of images in the whole walk.",
+        show_default="40; photos 100; video 240",
     ),
 ]
 DepthScaleSigma = Annotated[
     float | None,
     typer.Option(
         "--depth-scale-sigma",
-        help="Standard deviation of the factor of each frame's depth.",
+        help="Standard deviation of the depth scale factor of each frame.",
         show_default="0",
         rich_help_panel=MORE,
     ),
@@ -53,17 +55,17 @@ Coverage = Annotated[
     float | None,
     typer.Option(
         "--coverage",
-        help="Share of the walk that is taken.",
+        help="Fraction of the walk to record.",
         show_default="1",
         rich_help_panel=MORE,
     ),
 ]
-Labels = Annotated[bool, typer.Option("--labels", help="Write label images too.")]
+Labels = Annotated[bool, typer.Option("--labels", help="Also write label images.")]
 LabelError = Annotated[
     float | None,
     typer.Option(
         "--label-error",
-        help="Share of the label images that is wrong.",
+        help="Fraction of the surface with wrong labels.",
         show_default="0",
         rich_help_panel=MORE,
     ),
@@ -85,9 +87,9 @@ def run(
 ) -> None:
     """Scan a generated room or house with a virtual depth camera or phone.
 
-    A person's walk through all rooms is planned, and pictures are taken along it. The result is
-    a capture for w2m reconstruct, with its truth beside it for w2m evaluate. A trial brings its
-    own settings.
+    Images are rendered along a planned walk through all rooms. The result is a capture for w2m
+    reconstruct, with the ground truth for w2m evaluate in the same folder. A trial has fixed
+    settings.
     """
     from world2minecraft.api.generation import scan_trial
     from world2minecraft.api.progress import show_progress
@@ -131,10 +133,10 @@ def _check_source(
 ) -> None:
     if trial is not None:
         if room_dir is not None or seed is not None or kind is not None or given:
-            raise UsageError("--trial brings its own room and settings; give it with --out alone")
+            raise UsageError("--trial has a fixed room and settings; combine it only with --out")
     elif room_dir is None and seed is None:
-        raise UsageError("nothing to scan; give a folder of w2m rooms generate, --seed or --trial")
+        raise UsageError("nothing to scan; give a room folder, --seed or --trial")
     elif room_dir is not None and kind is not None:
-        raise UsageError(f"{room_dir} has a kind of its own; leave --kind out")
+        raise UsageError(f"the type of {room_dir} is fixed; omit --kind")
     if seed is not None and seed < 0:
-        raise UsageError(f"--seed must be 0 or more, not {seed}")
+        raise UsageError(f"--seed must be 0 or more, got {seed}")

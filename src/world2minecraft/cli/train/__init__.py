@@ -1,1 +1,1 @@
-"""``w2m train``: occupancy networks."""
+"""The verb ``w2m train``, which trains occupancy networks."""

@@ -1,4 +1,4 @@
-"""``w2m train``: an occupancy network from data sets to weights and scores."""
+"""Train an occupancy network on data sets: ``w2m train``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,12 +9,12 @@ if TYPE_CHECKING:
     from world2minecraft.api.networks import TrainedNetwork
 
 EXAMPLES = """\
-w2m dataset build DATA --houses 40 --images 1000               something to train on
+w2m dataset build DATA --houses 40 --images 1000               build a data set to train on
 w2m train monoscene --data DATA --out RUN                      2,000 steps at 0.16 m
 w2m train monoscene --data DATA --out TRY --preset smoke       a test of some seconds
-w2m train iso --data PHOTO --data BLOCKS:3 --out JOINT         two sets; the first is the target
+w2m train iso --data PHOTO --data BLOCKS:3 --out JOINT         two data sets; the first is scored
 w2m train symphonies --data NYU --preset 8k --out FULL         the papers' grid and size, for a GPU
-w2m train --config RUN/run.yaml --out AGAIN                    the same run again
+w2m train --config RUN/run.yaml --out AGAIN                    repeat a run
 """
 
 
@@ -41,10 +41,10 @@ def run(
     device: options.Device = "auto",
     cache: options.Cache = "",
 ) -> None:
-    """Train an occupancy network, keep its best weights and score them.
+    """Train an occupancy network, keep the best weights and score them.
 
-    A run that was interrupted continues with the same command. RUN/run.yaml holds every setting;
-    edit it and train with --config to change those without an option.
+    Repeat the command to resume an interrupted run. RUN/run.yaml contains all settings. To change
+    settings without an option, edit the file and train with --config.
     """
     from world2minecraft.api import train_network
     from world2minecraft.api.progress import show_progress
@@ -64,7 +64,7 @@ def run(
 
 
 def print_summary(trained: "TrainedNetwork") -> None:
-    """Print the result of a run and the next steps."""
+    """Print the scores of a training run and the next steps."""
     from world2minecraft.api.progress import format_duration
 
     out, scores = trained.folder, trained.scores
@@ -73,9 +73,9 @@ def print_summary(trained: "TrainedNetwork") -> None:
     seconds = format_duration(trained.seconds)
     print(f"{trained.steps:,} steps in {seconds}{stopped}; best at {trained.best_step:,}")
     print(
-        f"IoU {100 * micro['iou']:.2f}, mIoU {100 * micro['miou']:.2f} by monoscene on the "
-        f"{scores['split']} frames ({out / 'scores.json'} has all protocols)"
+        f"IoU {100 * micro['iou']:.2f}, mIoU {100 * micro['miou']:.2f} (protocol monoscene) on the "
+        f"{scores['split']} frames ({out / 'scores.json'} contains all protocols)"
     )
     data = trained.config.data[0].path
-    print(f"next: w2m evaluate occupancy {out} {data}    every protocol, class and interval")
-    print(f"then: w2m export {out} --out net.onnx    to run it without torch")
+    print(f"next: w2m evaluate occupancy {out} {data}    score with all protocols")
+    print(f"then: w2m export {out} --out net.onnx    export it to run without torch")

@@ -1,1 +1,1 @@
-"""``w2m vln``: navigation sets, agents and their scores."""
+"""The verbs ``w2m vln ...`` for navigation sets, agents and scores."""

@@ -1,4 +1,4 @@
-"""``w2m vln build``: build a navigation set of walks through scenes."""
+"""Build a navigation set from walks through scenes: ``w2m vln build``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
 w2m vln build OUT -o SET                                   from one reconstruction
-w2m vln build --rooms 3 --houses 1 -o SET                  from scenes that it generates
+w2m vln build --rooms 3 --houses 1 -o SET                  from newly generated scenes
 w2m vln build --rooms 15 --houses 5 --paper-size -o SET    3,542 items, as in the paper
-w2m vln build OUT --stream tour.jsonl -o SET               from walks that were recorded there
+w2m vln build OUT --stream tour.jsonl -o SET               from recorded walks
 w2m vln build runs/* houses/* -o SET --composition base
 w2m vln build houses/* -o SET --trajectories 10 --moves rxr
 """
@@ -22,7 +22,7 @@ w2m vln build houses/* -o SET --trajectories 10 --moves rxr
 Scenes = Annotated[
     list[Path] | None, typer.Argument(help="Runs, generated houses, worlds, schematics.")
 ]
-Out = Annotated[Path, typer.Option("--out", "-o", help="Write the set to this folder.")]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Output folder of the navigation set.")]
 Rooms = Annotated[
     int,
     typer.Option("--rooms", help="Generate, scan and reconstruct this many rooms first.", min=0),
@@ -30,40 +30,44 @@ Rooms = Annotated[
 Houses = Annotated[int, typer.Option("--houses", help="Generate this many houses first.", min=0)]
 Streams = Annotated[
     list[Path] | None,
-    typer.Option("--stream", help="A recorded walk: a tour file, or a folder of w2m vln run."),
+    typer.Option("--stream", help="Recorded walk: a tour file, or a folder from w2m vln run."),
 ]
 At = Annotated[
     str,
     typer.Option(
-        "--at", help="What the positions of streams are: eye or feet.", rich_help_panel=MORE
+        "--at", help="Reference point of stream positions: eye or feet.", rich_help_panel=MORE
     ),
 ]
 Composition = Annotated[
     str,
-    typer.Option("--composition", help="base (reconstructions), extend (all else) or combined."),
+    typer.Option(
+        "--composition", help="base (reconstructions), extend (other scenes) or combined."
+    ),
 ]
 Trajectories = Annotated[
     int | None,
     typer.Option(
-        "--trajectories", help="Walks of each scene.", show_default="30 of base, 110 of extend"
+        "--trajectories", help="Number of walks per scene.", show_default="base 30, extend 110"
     ),
 ]
 Views = Annotated[
     int,
-    typer.Option("--views", help="Next-View items of a walk.", min=0, rich_help_panel=MORE),
+    typer.Option(
+        "--views", help="Number of Next-View items per walk.", min=0, rich_help_panel=MORE
+    ),
 ]
 PaperSize = Annotated[
-    bool, typer.Option("--paper-size", help="No more items than the paper has, part by part.")
+    bool, typer.Option("--paper-size", help="Limit each part to the paper's number of items.")
 ]
 PaperSplit = Annotated[
     bool,
-    typer.Option("--paper-split", help="Hold out walks, not scenes, as many as the paper."),
+    typer.Option("--paper-split", help="Hold out as many walks as the paper, instead of scenes."),
 ]
 UnseenShare = Annotated[
     float,
     typer.Option(
         "--unseen-share",
-        help="The share of the scenes of each kind that is held out.",
+        help="Fraction of scenes of each kind to hold out.",
         min=0.0,
         max=1.0,
         rich_help_panel=MORE,
@@ -73,27 +77,28 @@ Annotations = Annotated[
     Path | None,
     typer.Option(
         "--annotations",
-        help="Instructions that people wrote: trajectory_id, instruction; CSV or JSONL.",
+        help="Human instructions: CSV or JSONL with trajectory_id, instruction.",
     ),
 ]
 EveryKeyframe = Annotated[
     bool,
     typer.Option(
         "--every-keyframe",
-        help="Ask at every keyframe; then blind guesses score high.",
+        help="Create items at every keyframe; blind baselines then score high.",
         rich_help_panel=MORE,
     ),
 ]
-Moves = Annotated[str, typer.Option("--moves", help="vlnce, rxr, block or macro.")]
+Moves = Annotated[str, typer.Option("--moves", help="Move set: vlnce, rxr, block or macro.")]
 Size = Annotated[
     str,
     typer.Option(
-        "--size", metavar="WIDTHxHEIGHT", help="The size of pictures.", rich_help_panel=MORE
+        "--size", metavar="WIDTHxHEIGHT", help="Image size in pixels.", rich_help_panel=MORE
     ),
 ]
-Seed = Annotated[int, typer.Option("--seed", help="Another seed gives another set.", min=0)]
+Seed = Annotated[int, typer.Option("--seed", help="Random seed.", min=0)]
 Workers = Annotated[
-    int | None, typer.Option("--workers", help="Processes.", min=1, show_default="one a core")
+    int | None,
+    typer.Option("--workers", help="Number of processes.", min=1, show_default="one per core"),
 ]
 
 
@@ -117,16 +122,17 @@ def run(
     seed: Seed = 0,
     workers: Workers = None,
 ) -> None:
-    """Walk through scenes, describe each walk in English, and ask what is seen and done next.
+    """Generate walks through scenes, instructions in English, and items about views and actions.
 
-    A scene is toured from object to object; each leg becomes moves that the game's physics can
-    make. Scenes are split by their names: one in five of each kind is held out. Generated rooms
-    and houses go to OUT/scenes; existing ones are used again. The same arguments and seed give the
-    same bytes, with any number of workers.
+    Each scene is toured from object to object, and each leg is converted to moves that the game's
+    physics allow. Scenes are split by name, and one in five of each kind is held out. Generated
+    rooms and houses are stored in OUT/scenes and reused. The same arguments and seed produce
+    identical files with any number of workers.
 
     Raises:
-        UsageError: an option is wrong, or no scene gives an item. InputError: a scene cannot be
-        read. OutputError: the folder cannot be written.
+        UsageError: If an option is invalid or no scene results in an item.
+        InputError: If a scene cannot be read.
+        OutputError: If the folder cannot be written.
     """
     from world2minecraft.api import build_navigation_set
     from world2minecraft.api.progress import show_progress
@@ -162,7 +168,7 @@ def _size(text: str) -> tuple[int, int]:
 
     parts = text.lower().split("x")
     if len(parts) != 2 or not all(part.isdecimal() for part in parts):
-        raise UsageError(f"--size is WIDTHxHEIGHT, such as 640x360, not {text!r}")
+        raise UsageError(f"--size must be WIDTHxHEIGHT, such as 640x360, got {text!r}")
     return int(parts[0]), int(parts[1])
 
 
@@ -170,12 +176,12 @@ def _print_summary(out: Path, built: "BuiltSet") -> None:
     walks = sum(len(work.trajectories) for work in built.works)
     refused = sum((sum(work.refused.values()) for work in built.works), 0)
     print(f"\n{len(built.items):,} items of {walks:,} walks in {len(built.works)} scenes.")
-    print(f"  rejected {refused:,} walks: they collided, or showed too little")
+    print(f"  rejected {refused:,} walks that collided or showed too little")
     if built.left_out:
-        print(f"  skipped  {len(built.left_out)} scenes are not of the composition")
+        print(f"  skipped  {len(built.left_out)} scenes outside the composition")
     if not built.leaks.is_clean:
         shared = len(built.leaks.images)
-        print(f"  LEAK     {shared} pictures of train are in held-out splits: see dataset.json")
-    print(f"  next     w2m vln stats {out}      lengths, balance, and what blind guessing scores")
+        print(f"  LEAK     {shared} training images are in held-out splits; see dataset.json")
+    print(f"  next     w2m vln stats {out}      lengths, balance and baseline scores")
     print(f"  words    w2m vln reword {out} --annotations FILE, or --rewrite MODEL")
     print(f"  then     w2m vln export {out} --to llamafactory --out TRAIN")

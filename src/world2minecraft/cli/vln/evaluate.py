@@ -1,4 +1,4 @@
-"""``w2m vln evaluate``: a model answers the items of a set, by task and composition."""
+"""Evaluate a model on the items of a navigation set: ``w2m vln evaluate``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from world2minecraft.api.agents import AgentAnswers
 
 EXAMPLES = """\
-w2m vln evaluate SET --agent http://localhost:8000/v1    a server of your own: vLLM, LLaMA-Factory
+w2m vln evaluate SET --agent http://localhost:8000/v1    your own server: vLLM, LLaMA-Factory
 w2m vln evaluate SET --agent gemini --max-usd 5 --jobs 4
 w2m vln evaluate SET --agent majority                    a baseline: no network needed
 w2m vln evaluate SET --agent majority --json             the accuracies as JSON
@@ -20,12 +20,12 @@ w2m vln evaluate SET --agent http://localhost:8000/v1 --training rft --style thi
 w2m vln evaluate SET --agent openai:gpt-4o --split val_unseen --task next_action --count 100
 """
 
-Set = Annotated[Path, typer.Argument(help="A set of w2m vln build.", show_default=False)]
+Set = Annotated[Path, typer.Argument(help="Navigation set from w2m vln build.", show_default=False)]
 AgentName = Annotated[
     str,
     typer.Option(
-        "--agent", help="gemini, openai, qwen, local, each with :MODEL if wanted; or the address "
-        "of a server, http://HOST/v1; or a baseline: uniform, majority, blind, repeat, nearest, "
+        "--agent", help="gemini, openai, qwen or local, optionally followed by :MODEL; a server "
+        "address, http://HOST/v1; or a baseline: uniform, majority, blind, repeat, nearest, "
         "alike, odd, oracle.", show_default=False,
     ),
 ]  # fmt: skip
@@ -41,22 +41,24 @@ Composition = Annotated[str, typer.Option("--composition", help="base, extend or
 Count = Annotated[
     int | None,
     typer.Option(
-        "--count", help="Ask this many items, drawn by --seed.", min=1, show_default="all"
+        "--count", help="Number of items, sampled with --seed.", min=1, show_default="all"
     ),
 ]
-Seed = Annotated[int, typer.Option("--seed", help="The seed of the draw.", rich_help_panel=MORE)]
+Seed = Annotated[
+    int, typer.Option("--seed", help="Random seed of the sample.", rich_help_panel=MORE)
+]
 Style = Annotated[
     str,
     typer.Option(
-        "--style", help="The form of replies: letter, for models trained on the exports; think, "
-        "for those trained by reward; json, held to a schema.",
+        "--style", help="Reply format: letter (for models trained on the exports), think (for "
+        "models trained by reinforcement) or json (with a schema).",
     ),
 ]  # fmt: skip
 Training = Annotated[
     str,
-    typer.Option("--training", help="How the model was trained, for tables: none, sft, rft."),
+    typer.Option("--training", help="Training method to show in tables: none, sft, rft."),
 ]
-Jobs = Annotated[int, typer.Option("--jobs", help="Simultaneous questions.", min=1)]
+Jobs = Annotated[int, typer.Option("--jobs", help="Number of simultaneous requests.", min=1)]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 
 
@@ -78,15 +80,17 @@ def run(
     *,
     model_options: option.ModelOptions,
 ) -> None:
-    """Ask a model the items of a set, and report its accuracy with intervals.
+    """Ask a model the items of a set, and report its accuracy with confidence intervals.
 
-    Items are asked in the words that trainers get. A reply without a letter is requested twice
-    more and then counts as wrong; OUT/answers.jsonl has every reply. The same command continues
-    where it was interrupted.
+    Items are worded as in the training exports. A reply without a letter is requested up to two
+    more times and then counted as wrong. OUT/answers.jsonl contains all replies. Repeat the command
+    to resume an interrupted evaluation.
 
     Raises:
-        UsageError, InputError: a name, an option or the set is wrong.
-        ServerError, BudgetError: the model does not reply.
+        UsageError: If a name or an option is invalid.
+        InputError: If the set cannot be read.
+        ServerError: If the model does not reply.
+        BudgetError: If a limit on requests or cost is reached.
     """
     from world2minecraft.api import evaluate_agent
     from world2minecraft.api.progress import show_progress
@@ -121,11 +125,9 @@ def _print_summary(answers: "AgentAnswers") -> None:
     folder = answers.folder
     print()
     print(table_text(compare_runs([folder]).answers))
-    print(
-        "percent correct, with the interval (Wilson, 95 %); 3! are three replies without a letter,"
-    )
-    print("3 failed three items that the server did not answer; both count as wrong")
+    print("percent correct, with 95 % Wilson interval; '3!' means three replies without a letter,")
+    print("'3 failed' three items without a reply from the server; both count as wrong")
     if answers.cost:
-        print(f"asked: {option.cost_line(answers.cost)}")
-    print(f"\n  read   {folder / 'answers.jsonl'}: each of {answers.count:,} replies")
+        print(f"cost: {option.cost_line(answers.cost)}")
+    print(f"\n  read   {folder / 'answers.jsonl'}: all {answers.count:,} replies")
     print(f"  next   w2m vln table {folder} OTHER_RUN")

@@ -1,4 +1,4 @@
-"""``w2m vln export``: write a navigation set for trainers and simulators."""
+"""Export a navigation set for trainers and simulators: ``w2m vln export``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -18,47 +18,58 @@ w2m vln export SET --to llamafactory --task next_view --composition base -o NV
 """
 
 
-Source = Annotated[Path, typer.Argument(help="A set of w2m vln build.")]
+Source = Annotated[Path, typer.Argument(help="Navigation set from w2m vln build.")]
 To = Annotated[str, typer.Option("--to", help="llamafactory, easyr1, trl, vlnce or r2r.")]
-Out = Annotated[Path, typer.Option("--out", "-o", help="Write to this folder.")]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Output folder.")]
 TaskName = Annotated[
     str | None,
-    typer.Option("--task", help="next_view or next_action alone.", show_default="both"),
+    typer.Option("--task", help="Export only next_view or next_action.", show_default="both"),
 ]
 Composition = Annotated[
     str | None,
-    typer.Option("--composition", help="base, extend or combined alone.", show_default="all three"),
+    typer.Option(
+        "--composition", help="Export only base, extend or combined.", show_default="all three"
+    ),
 ]
 Model = Annotated[
     str | None,
     typer.Option(
         "--model",
-        help="The model to tune: a name on the hub, or a path.",
+        help="Model to fine-tune: a Hugging Face name or a path.",
         show_default="Qwen/Qwen2.5-VL-3B-Instruct",
     ),
 ]
 MaxSamples = Annotated[
     int | None,
     typer.Option(
-        "--max-samples", min=0, help="Rows of one SFT run; 0 for all.", show_default="1000"
+        "--max-samples",
+        min=0,
+        help="Number of rows in an SFT run, or 0 for all.",
+        show_default="1000",
     ),
 ]
 Gpus = Annotated[
     int | None,
-    typer.Option("--gpus", min=1, help="GPUs of the recipe.", show_default="1 for SFT, 8 for GRPO"),
+    typer.Option(
+        "--gpus", min=1, help="Number of GPUs in the recipe.", show_default="1 for SFT, 8 for GRPO"
+    ),
 ]
 MaxPixels = Annotated[
     int | None,
-    typer.Option("--max-pixels", help="Trainers reduce larger pictures.", show_default="262144"),
+    typer.Option(
+        "--max-pixels", help="Image size above which trainers downscale.", show_default="262144"
+    ),
 ]
 Images = Annotated[
     str | None,
     typer.Option(
-        "--images", help="easyr1: paths, or embedded in the parquet file.", show_default="paths"
+        "--images",
+        help="easyr1 only: paths, or embedded in the parquet file.",
+        show_default="paths",
     ),
 ]
 Seed = Annotated[
-    int | None, typer.Option("--seed", help="The seed of the order of rows.", show_default="0")
+    int | None, typer.Option("--seed", help="Random seed of the row order.", show_default="0")
 ]
 
 
@@ -75,10 +86,10 @@ def run(
     images: Images = None,
     seed: Seed = None,
 ) -> None:
-    """Write a set for LLaMA-Factory, EasyR1, TRL or VLN-CE, or as R2R's JSON.
+    """Export a set for LLaMA-Factory, EasyR1, TRL or VLN-CE, or as JSON in the R2R format.
 
-    Each folder has the rows, the pictures, the paper's recipe and the command that runs it; the
-    number of training steps is printed. docs/vln-finetuning.md has more.
+    Each output folder contains the rows, the images, the paper's recipe and the command to run it.
+    The number of training steps is printed. See docs/vln-finetuning.md.
     """
     from world2minecraft.api import export_navigation_set
     from world2minecraft.api.progress import show_progress

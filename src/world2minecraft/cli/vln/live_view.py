@@ -1,6 +1,7 @@
-"""A walk in the terminal, as it happens: what the agent sees, thinks and does.
+"""Show a walk live in the terminal: the agent's view, thoughts and actions.
 
-On a terminal the view is drawn in half blocks of colour; elsewhere each decision has a line.
+In a terminal, the view is drawn with coloured half-block characters. Elsewhere, each decision is
+printed as a line.
 """
 
 import sys
@@ -24,13 +25,13 @@ UPPER = "\u2580"  # The upper half of a cell; its lower half is the background.
 
 
 class LineView:
-    """A line for each decision; an observer."""
+    """An observer that prints a line for each decision."""
 
     def __init__(self, stream: TextIO, on_begin: Callable[[], None] = lambda: None):
         self._stream, self._before_first = stream, on_begin
 
     def on_begin(self, episode: "Episode", agent: str) -> None:
-        """Print the instruction."""
+        """Print the instruction of an episode."""
         self._before_first()
         self._before_first = lambda: None
         self._say(f"{agent}: {episode.instruction.text}")
@@ -47,7 +48,7 @@ class LineView:
     def on_stance(
         self, stance: "Stance", step: int, decision: "Decision | None", move: "Move | None"
     ) -> None:
-        """Print nothing: each decision has its line."""
+        """Print nothing, because each decision has its own line."""
 
     def on_end(self, walk: "EpisodeWalk") -> None:
         """Print how the walk ended."""
@@ -60,7 +61,7 @@ class LineView:
 
 
 class ScreenView(LineView):
-    """The view in half blocks, and the last decisions beside it; an observer."""
+    """An observer that shows the view in half-block characters above the latest decisions."""
 
     def __init__(self, display: Any, on_begin: Callable[[], None] = lambda: None):
         self._display, self._before_first = display, on_begin
@@ -69,7 +70,7 @@ class ScreenView(LineView):
         self._view: Any = None
 
     def on_begin(self, episode: "Episode", agent: str) -> None:
-        """Begin with an empty table; the first walk starts the display."""
+        """Clear the table for a new walk. The first walk starts the display."""
         self._before_first()
         self._before_first = lambda: None
         self._display.start()
@@ -79,7 +80,7 @@ class ScreenView(LineView):
     def on_decision(
         self, sight: "Observation", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
     ) -> None:
-        """Show the view and add a row."""
+        """Show the view and add the decision to the table."""
         from world2minecraft.api.agents import decision_text
 
         if sight.colour.shape[0] > 1:
@@ -113,11 +114,11 @@ class ScreenView(LineView):
 def live_view(
     stream: TextIO | None = None, on_begin: Callable[[], None] = lambda: None
 ) -> Iterator[LineView]:
-    """Give an observer that shows walks on stderr or ``stream`` while the block runs.
+    """Yield an observer that shows walks while the ``with`` block runs.
 
     Args:
-        stream: where to show them.
-        on_begin: called before the first walk.
+        stream: Text stream to write to. Defaults to stderr.
+        on_begin: Callback that is called before the first walk.
     """
     target = sys.stderr if stream is None else stream
     if not target.isatty():
@@ -134,7 +135,7 @@ def live_view(
 
 
 def half_blocks(colour: Any) -> Any:
-    """Return a picture, uint8 [H, W, 3], as text of coloured half blocks."""
+    """Return an image, uint8 [H, W, 3], as text of coloured half-block characters."""
     import numpy as np
     from PIL import Image
     from rich.style import Style
@@ -151,7 +152,7 @@ def half_blocks(colour: Any) -> Any:
 
 
 def plain_text(text: str) -> str:
-    """Return a text in one line, without characters that a terminal executes.
+    """Return a text on one line without control characters.
 
     Example:
         >>> plain_text("go" + chr(27) + "[2J on")

@@ -1,4 +1,4 @@
-"""``w2m vln reword``: the walks of a set in the words of people, or of a language model."""
+"""Replace the wording of a navigation set by that of people or a model: ``w2m vln reword``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,22 +11,24 @@ if TYPE_CHECKING:
     from world2minecraft.api.navigation import RewordedSet
 
 EXAMPLES = """\
-w2m vln reword SET --annotations words.csv                 people's words
-w2m vln reword SET --rewrite gemini --max-usd 1            a model's, where they say the same
+w2m vln reword SET --annotations words.csv                 use human instructions
+w2m vln reword SET --rewrite gemini --max-usd 1            use equivalent instructions of a model
 w2m vln reword SET --rewrite http://localhost:8000/v1 --model qwen
-w2m vln reword SET --plain                                 the generated words again
+w2m vln reword SET --plain                                 restore the generated instructions
 """
 
-SetPath = Annotated[Path, typer.Argument(help="A set of w2m vln build; it is changed.")]
+SetPath = Annotated[Path, typer.Argument(help="Navigation set to change, from w2m vln build.")]
 Annotations = Annotated[
     Path | None,
-    typer.Option("--annotations", help="CSV or JSONL: trajectory_id, instruction."),
+    typer.Option("--annotations", help="CSV or JSONL with trajectory_id, instruction."),
 ]
 Rewrite = Annotated[
-    str, typer.Option("--rewrite", help="gemini, openai, qwen or local; or a server's address.")
+    str, typer.Option("--rewrite", help="gemini, openai, qwen, local or a server address.")
 ]
-Plain = Annotated[bool, typer.Option("--plain", help="Use the generated words again.")]
-Jobs = Annotated[int, typer.Option("--jobs", help="Simultaneous questions.", min=1, max=64)]
+Plain = Annotated[bool, typer.Option("--plain", help="Restore the generated instructions.")]
+Jobs = Annotated[
+    int, typer.Option("--jobs", help="Number of simultaneous requests.", min=1, max=64)
+]
 
 
 @option.with_model_options()
@@ -39,15 +41,17 @@ def run(
     *,
     model_options: option.ModelOptions,
 ) -> None:
-    """Let a set ask in the words of people, or of a language model.
+    """Use instructions written by people or a language model in a navigation set.
 
-    Words are added to trajectories.jsonl and none is removed. Items and episodes use a person's
-    words where there are some, else a model's, else the generated ones. A model's words are
-    accepted only where the same turns and objects are read from them, in the same order; its
-    replies are recorded, so that the same command requests nothing twice.
+    Instructions are added to trajectories.jsonl, and none are removed. Items and episodes prefer
+    human instructions, then those of a model, then the generated ones. An instruction from a model
+    is accepted only if the same turns and objects can be parsed from it in the same order. Replies
+    are recorded, so repeating the command sends no request twice.
 
     Raises:
-        UsageError, InputError: an option or a file is wrong. ServerError: the model does not reply.
+        UsageError: If an option is invalid.
+        InputError: If a file cannot be read.
+        ServerError: If the model does not reply.
     """
     from world2minecraft.api.navigation import reword_navigation_set
     from world2minecraft.api.progress import show_progress
@@ -67,11 +71,11 @@ def run(
 
 def _print_summary(path: Path, done: "RewordedSet") -> None:
     sources = ", ".join(f"{count:,} {name}" for name, count in sorted(done.sources.items()))
-    print(f"\n{path}: items by the source of their words: {sources}.")
+    print(f"\n{path}: items by source of the instruction: {sources}.")
     if done.cost is not None:
         rejected = {reason: n for reason, n in sorted(done.outcomes.items()) if reason}
         why = ", ".join(f"{reason} {n}" for reason, n in rejected.items()) or "none"
         total = sum(done.outcomes.values())
         print(f"  accepted {done.outcomes.get('', 0):,} of {total:,}; rejected: {why}")
-        print(f"  asked    {option.cost_line(done.cost)}")
-    print(f"  next     w2m vln stats {path}      lengths, and what blind guessing scores")
+        print(f"  cost     {option.cost_line(done.cost)}")
+    print(f"  next     w2m vln stats {path}      lengths and baseline scores")

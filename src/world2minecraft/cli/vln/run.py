@@ -1,4 +1,4 @@
-"""``w2m vln run``: an agent walks by an instruction, live in the terminal and on film."""
+"""Let an agent follow an instruction, shown live and recorded as video: ``w2m vln run``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,21 +12,21 @@ if TYPE_CHECKING:
     from world2minecraft.api.agents import AgentRun
 
 EXAMPLES = """\
-w2m vln run OUT "Go to the table"                        the oracle shows the way, no network needed
+w2m vln run OUT "Go to the table"                        the oracle agent, without any model
 w2m vln run OUT "Go to the piano" --agent gemini --max-usd 0.20
 w2m vln run OUT "Find the bed" --agent openai:gpt-4.1 --map text --chunk 2
 w2m vln run OUT "Go to the piano" --agent http://localhost:8000/v1 --model qwen2.5-vl
-w2m vln run OUT "Go to the piano" --agent human          walk yourself, by the keyboard
+w2m vln run OUT "Go to the piano" --agent human          walk yourself by keyboard
 w2m vln run SET --agent random --count 50 --no-video     the episodes of a set
-w2m vln run OUT "Go to the piano" --server localhost:25565     on a game server where OUT stands
+w2m vln run OUT "Go to the piano" --server localhost:25565     on a game server that contains OUT
 w2m vln run OUT "Go to the piano" --agent gemini --replay RUN/replies.jsonl
 """
 
 Scene = Annotated[
     Path,
     typer.Argument(
-        help="A run, a generated house, a world or a schematic; or a set or an episodes.jsonl, "
-        "whose episodes are walked.", show_default=False,
+        help="Run, generated house, world or schematic; or a navigation set or episodes.jsonl "
+        "with the episodes to walk.", show_default=False,
     ),
 ]  # fmt: skip
 Sentence = Annotated[
@@ -36,7 +36,7 @@ AgentName = Annotated[
     str,
     typer.Option(
         "--agent", help="oracle, shortest, random, forward, stop; human (you); gemini, openai, "
-        "qwen, local, each with :MODEL if wanted; or the address of a server, http://HOST/v1.",
+        "qwen or local, optionally followed by :MODEL; or a server address, http://HOST/v1.",
     ),
 ]  # fmt: skip
 Out = Annotated[
@@ -44,26 +44,31 @@ Out = Annotated[
     typer.Option("--out", "-o", help="Write the run to this folder.", show_default="vln_AGENT"),
 ]
 Goal = Annotated[
-    str, typer.Option("--goal", help="The name of the goal, where INSTRUCTION does not name it.")
+    str, typer.Option("--goal", help="Name of the goal, if INSTRUCTION does not name it.")
 ]
 Start = Annotated[
     str,
     typer.Option(
         "--start",
         metavar="X,Y,Z[,YAW]",
-        help="Where to begin: the feet in world blocks.",
+        help="Start position of the feet in world block coordinates.",
         rich_help_panel=MORE,
     ),
 ]
 Moves = Annotated[
-    str, typer.Option("--moves", help="vlnce (0.25 m, 15 degrees), rxr (30 degrees) or block.")
+    str,
+    typer.Option(
+        "--moves", help="Move set: vlnce (0.25 m, 15 degrees), rxr (30 degrees) or block."
+    ),
 ]
-MaxSteps = Annotated[int, typer.Option("--max-steps", help="The most moves of a walk.", min=1)]
+MaxSteps = Annotated[
+    int, typer.Option("--max-steps", help="Maximum number of moves in a walk.", min=1)
+]
 Chunk = Annotated[
     int,
     typer.Option(
         "--chunk",
-        help="The most moves in one reply of a model.",
+        help="Maximum number of moves in one model reply.",
         min=1,
         max=4,
         rich_help_panel=MORE,
@@ -71,38 +76,40 @@ Chunk = Annotated[
 ]
 History = Annotated[
     int,
-    typer.Option("--history", help="Earlier views that a model sees.", min=0, rich_help_panel=MORE),
+    typer.Option(
+        "--history", help="Number of earlier views shown to a model.", min=0, rich_help_panel=MORE
+    ),
 ]
 Map = Annotated[
     str,
     typer.Option(
         "--map",
-        help="What a model sees of earlier positions: none, text (in words) or plan (drawn).",
+        help="How to show earlier positions to a model: none, text or plan (an image).",
     ),
 ]
 NoBrowser = Annotated[
     bool,
     typer.Option(
         "--no-browser",
-        help="Print the link for a human; open no browser.",
+        help="With --agent human, print the link without opening a browser.",
         rich_help_panel=MORE,
     ),
 ]
 Count = Annotated[
     int | None,
-    typer.Option("--count", help="Walk this many episodes.", min=1, show_default="all"),
+    typer.Option("--count", help="Number of episodes to walk.", min=1, show_default="all"),
 ]
 Seed = Annotated[
-    int, typer.Option("--seed", help="The seed of agents that draw.", rich_help_panel=MORE)
+    int, typer.Option("--seed", help="Random seed of the agent.", rich_help_panel=MORE)
 ]
 Server = Annotated[
     str,
     typer.Option(
-        "--server", metavar="HOST[:PORT]", help="Walk with a player on a game server where the "
-        "scene stands at its own position; see w2m vln server.",
+        "--server", metavar="HOST[:PORT]", help="Walk with a player on a game server that contains "
+        "the scene at its original position; see w2m vln server.",
     ),
 ]  # fmt: skip
-Video = Annotated[bool, typer.Option("--video/--no-video", help="Write walk.mp4 of each walk.")]
+Video = Annotated[bool, typer.Option("--video/--no-video", help="Write a walk.mp4 for each walk.")]
 
 
 @option.with_model_options()
@@ -127,14 +134,17 @@ def run(
     *,
     model_options: option.ModelOptions,
 ) -> None:
-    """Let an agent walk by an instruction, and score it beside Stop, Random and the oracle.
+    """Let an agent follow an instruction, and score it next to Stop, Random and the oracle.
 
-    The goal is the object that the instruction names last. The same command continues where it was
-    interrupted: OUT/replies.jsonl has the replies of a model, which are not requested again.
+    The goal is the last object named in the instruction. Repeat the command to resume an
+    interrupted run. OUT/replies.jsonl contains the replies of a model, which are not requested
+    again.
 
     Raises:
-        UsageError: a name or an option is wrong. InputError: the scene or the goal is not found.
-        ServerError: a model does not reply. BudgetError: a cap is reached.
+        UsageError: If a name or an option is invalid.
+        InputError: If the scene or the goal is not found.
+        ServerError: If the model does not reply.
+        BudgetError: If a limit on requests or cost is reached.
     """
     from world2minecraft.api import run_agent
     from world2minecraft.cli.browser import open_link
@@ -172,7 +182,7 @@ def run(
 
 
 def _numbers(text: str) -> list[float] | None:
-    """Return the numbers of ``--start``, which are checked with the other options."""
+    """Return the numbers given with ``--start``, which are checked with the other options."""
     from world2minecraft.core.errors import UsageError
 
     if not text:
@@ -180,7 +190,7 @@ def _numbers(text: str) -> list[float] | None:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError as error:
-        raise UsageError(f"--start is X,Y,Z or X,Y,Z,YAW, not {text!r}") from error
+        raise UsageError(f"--start must be X,Y,Z or X,Y,Z,YAW, got {text!r}") from error
 
 
 def _print_summary(walked: "AgentRun", video: bool) -> None:
@@ -189,9 +199,9 @@ def _print_summary(walked: "AgentRun", video: bool) -> None:
     print()
     print(f"{table_text(compare_runs([walked.folder]).walks)}\n{walks_note()}")
     if walked.cost:
-        print(f"asked: {option.cost_line(walked.cost)}")
+        print(f"cost: {option.cost_line(walked.cost)}")
     place = walked.walk_folder()
     if video:
         print(f"\n  look   {place / 'walk.mp4'}")
-    print(f"  read   {place / 'trace.jsonl'}: each view, thought and move")
+    print(f"  read   {place / 'trace.jsonl'}: all views, thoughts and moves")
     print(f"  next   w2m vln table {walked.folder}")

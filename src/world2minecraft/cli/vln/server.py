@@ -1,25 +1,25 @@
-"""``w2m vln server``: check and install what a player on a game server needs."""
+"""Check and install the requirements for a player on a game server: ``w2m vln server``."""
 
 from typing import Annotated
 
 import typer
 
 EXAMPLES = """\
-w2m vln server                            are Node and mineflayer installed?
-w2m vln server --install                  fetch mineflayer by npm, in the pinned versions
+w2m vln server                            check that Node and mineflayer are installed
+w2m vln server --install                  install the pinned version of mineflayer with npm
 w2m vln server localhost:25565            join, look around, and leave
 """
 
 Address = Annotated[
-    str, typer.Argument(metavar="[HOST[:PORT]]", help="A server with online-mode=false.")
+    str, typer.Argument(metavar="[HOST[:PORT]]", help="Server with online-mode=false.")
 ]
 Install = Annotated[
-    bool, typer.Option("--install", help="Fetch mineflayer (MIT) and its dependencies, 470 MB.")
+    bool, typer.Option("--install", help="Install mineflayer (MIT) and its dependencies, 470 MB.")
 ]
-Name = Annotated[str, typer.Option("--name", help="The name of the player.")]
+Name = Annotated[str, typer.Option("--name", help="Player name.")]
 Version = Annotated[
     str,
-    typer.Option("--version", help="The game version.", show_default="that of the server"),
+    typer.Option("--version", help="Minecraft version.", show_default="that of the server"),
 ]
 
 
@@ -29,15 +29,18 @@ def run(
     name: Name = "w2m_walker",
     version: Version = "",
 ) -> None:
-    """Join a server with a player and report what it sees; without an address, check the install.
+    """Join a server with a player and report its surroundings, or check the installation.
+
+    Without an address, only the installation is checked.
 
     Raises:
-        UsageError: something is missing, or a name is wrong. ServerError: the server refuses it.
+        UsageError: If a requirement is missing or a name is invalid.
+        ServerError: If the server refuses the player.
     """
     from world2minecraft.api.agents import mineflayer_folder
 
     if install:
-        print("fetching mineflayer, in the pinned versions; nothing of it is executed")
+        print("installing mineflayer in the pinned version, without running install scripts")
     print(f"  found  {mineflayer_folder(install=install)}")
     if not address:
         print("  next   w2m vln server localhost:25565")
@@ -51,6 +54,7 @@ def _check_server(address: str, name: str, version: str) -> None:
     seen = check_server(address, name=name, version=version)
     x, y, z = seen.position
     print(f"  game   {seen.version}, as {seen.name}")
-    print(f"  stands {x:.1f} {y:.1f} {z:.1f}")
-    print(f"  sees   {seen.blocks:,} blocks of {seen.states} states around it")
-    print(f"  next   op {name} on its console, then: w2m vln run HOUSE ... --server {address}")
+    print(f"  at     {x:.1f} {y:.1f} {z:.1f}")
+    print(f"  sees   {seen.blocks:,} blocks of {seen.states} states around the player")
+    print(f"  next   run op {name} on the server console, then:")
+    print(f"         w2m vln run HOUSE ... --server {address}")

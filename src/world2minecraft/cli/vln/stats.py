@@ -1,4 +1,4 @@
-"""``w2m vln stats``: what a navigation set holds, beside the paper's, and what guessing scores."""
+"""Report statistics and baseline scores of a navigation set: ``w2m vln stats``."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,18 +12,18 @@ if TYPE_CHECKING:
     from world2minecraft.api.navigation import BaselineRow
 
 EXAMPLES = """\
-w2m vln stats SET                          lengths beside the paper's, balance, baselines
-w2m vln stats SET --no-baselines           without reading the pictures
-w2m vln stats SET --json                   every figure, as JSON
-w2m vln stats SET --plot lengths.png       the paper's histograms
+w2m vln stats SET                          lengths next to the paper's, balance, baselines
+w2m vln stats SET --no-baselines           skip the baselines, without reading images
+w2m vln stats SET --json                   print all results as JSON
+w2m vln stats SET --plot lengths.png       draw histograms as in the paper
 """
 
-SetPath = Annotated[Path, typer.Argument(help="A set of w2m vln build, or an items.jsonl.")]
-Baselines = Annotated[
-    bool, typer.Option("--baselines/--no-baselines", help="Score what guessing reaches.")
+SetPath = Annotated[
+    Path, typer.Argument(help="Navigation set from w2m vln build, or an items.jsonl.")
 ]
+Baselines = Annotated[bool, typer.Option("--baselines/--no-baselines", help="Score the baselines.")]
 PlotFile = Annotated[
-    Path | None, typer.Option("--plot", help="Draw the lengths as PNG.", metavar="FILE")
+    Path | None, typer.Option("--plot", help="Draw the lengths as a PNG file.", metavar="FILE")
 ]
 
 
@@ -33,14 +33,14 @@ def run(
     json_file: JsonOutput = None,
     plot: PlotFile = None,
 ) -> None:
-    """Count items, lengths of instructions, answers and wrong choices, as the paper's table does.
+    """Count items, instruction lengths, answers and wrong choices, as in the paper's table.
 
-    Base are reconstructions, extend all other worlds. Lengths are in characters. Baselines are
-    scored on the held-out splits; one that sees no picture and is ten points above chance is
-    flagged, as such a set does not test vision.
+    Base items are from reconstructions, and extend items from all other worlds. Lengths are in
+    characters. Baselines are scored on the held-out splits. A baseline that uses no image and is
+    ten points above chance is flagged, because such a set does not test vision.
 
     Raises:
-        InputError: it is no set, or a picture is missing.
+        InputError: If the path is not a navigation set or an image is missing.
     """
     from world2minecraft.api.navigation import navigation_statistics
     from world2minecraft.cli.json_output import print_json, prints_json
@@ -64,10 +64,10 @@ def run(
 
 def _print_baselines(rows: "Sequence[BaselineRow]") -> None:
     if rows:
-        print(f"\nWithout understanding, on {_where(rows)} (95 % interval):")
+        print(f"\nBaselines on {_where(rows)} (95 % interval):")
     for row in rows:
         low, high = row.accuracy.low, row.accuracy.high
-        flag = "  FLAG: needs no picture" if row.is_flagged else ""
+        flag = "  FLAG: uses no image" if row.is_flagged else ""
         print(
             f"  {row.task:<12}{row.name:<16}{row.accuracy.share:6.3f}  "
             f"[{low:.3f}, {high:.3f}]  of {row.accuracy.total:,}, chance {row.chance:.3f}{flag}"
@@ -76,10 +76,10 @@ def _print_baselines(rows: "Sequence[BaselineRow]") -> None:
 
 
 def _where(rows: "Sequence[BaselineRow]") -> str:
-    """Return what the baselines were scored on, in words."""
+    """Return a description of the splits that the baselines were scored on."""
     trained = sorted({row.task for row in rows if not row.is_held})
     if not trained:
         return "the held-out splits"
     if len(trained) == len({row.task for row in rows}):
-        return "train, as nothing is held out"
-    return f"the held-out splits; {', '.join(trained)} on train, as none of it is held out"
+        return "train, because nothing is held out"
+    return f"the held-out splits; {', '.join(trained)} on train, because none of it is held out"
