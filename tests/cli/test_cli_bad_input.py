@@ -192,7 +192,7 @@ def test_a_full_disk_is_said(good, tmp_path, capsys, monkeypatch):
         (["reconstruct"], "CAPTURE|argument"),
         (["reconstruct", "x", "--out", "o", "--voxel", "9"], "voxel_m must be 0.01 to 0.5"),
         (["reconstruct", "x", "--out", "o", "--set", "find.cluster_radus=1"], "did you mean"),
-        (["reconstruct", "x", "--out", "o", "--set", "find"], "takes key=value"),
+        (["reconstruct", "x", "--out", "o", "--set", "find"], "--set must be KEY=VALUE"),
         (
             ["reconstruct", "x", "--out", "o", "--set", "fuse.min_points=two"],
             "must be a whole number",

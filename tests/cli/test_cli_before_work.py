@@ -14,7 +14,7 @@ WORDS = [
     ("demo --palette no.yaml", 3, "no.yaml: "),
     ("reconstruct scan --out OUT --palette vanila", 2, "did you mean 'vanilla'?"),
     ("reconstruct scan --out OUT --from reprt", 2, "did you mean 'report'?"),
-    ("build room.npz --out OUT --air some", 2, "--air must be room, box, none, not 'some'"),
+    ("build room.npz --out OUT --air some", 2, "--air must be one of room, box, none, got 'some'"),
     ("build room.npz --out OUT --air none", 2, "--air requires --into WORLD or --rcon"),
     ("build room.npz --out OUT --new-chunks", 2, "--new-chunks requires --into WORLD"),
     ("build room.npz --into W --at 1 2", 2, "requires 3 arguments; see w2m build --help"),

@@ -57,7 +57,7 @@ def test_repairs_are_made_listed_undone_and_redone(out, capsys):
     assert clean(out, "--dry-run") == 0
     assert capsys.readouterr().out == (
         "  1  fill     wall       1 block at 0 68 6: a hole in the wall\n"
-        "  2  move     chair 1    16 blocks at 5 64 5: it hung in the air, 2 blocks off\n"
+        "  2  move     chair 1    16 blocks at 5 64 5: floating piece, 2 blocks from a support\n"
     )
     assert (texts(read_built(out / "build")) == before).all()
     assert clean(out) == 0
@@ -99,7 +99,7 @@ def test_a_world_that_was_played_in_is_left_alone(out, capsys):
     path.write_bytes(pack_gzip(write_nbt(data)))
     before = {p: p.read_bytes() for p in (out / "build" / "world").rglob("*") if p.is_file()}
     assert clean(out) == 3
-    assert "holds a world that has been played in" in capsys.readouterr().err
+    assert "has been played in or was not created by World2Minecraft" in capsys.readouterr().err
     assert before == {p: p.read_bytes() for p in before}
     assert not (out / "build" / "edits.journal").exists()
 
@@ -112,7 +112,7 @@ def test_a_journal_of_another_build_is_told(out, capsys):
     assert clean(out, "--list") == 3
     err = capsys.readouterr().err
     assert "edits.journal: does not belong to the build in this folder" in err
-    assert err.endswith("remove it, or build again\n")
+    assert err.endswith("delete this file or build the room again\n")
     write_edits(out / "build", ())
     assert clean(out, "--list") == 0
 
@@ -128,7 +128,7 @@ def test_a_journal_of_another_build_is_told(out, capsys):
         ),
         (["{out}", "--json"], 2, "--json requires --list"),
         (["{out}", "--undo", "1"], 2, "there is nothing to undo"),
-        (["{out}", "--redo", "4"], 2, "edit 4 was not taken back"),
+        (["{out}", "--redo", "4"], 2, "edit 4 has not been undone"),
         (["{out}", "--only", "hole"], 2, "no clean-up rule is named 'hole'; did you mean 'holes'?"),
     ],
 )

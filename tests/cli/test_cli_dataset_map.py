@@ -29,7 +29,7 @@ def test_a_map_is_shown_and_exported(name, tmp_path, capsys):
     assert cli.run(["dataset", "map", "--map", name, "--json", str(path)]) == 0
     tree = json.loads(path.read_text())
     assert tree["name"] == name and tree["blocks"]["minecraft:bookshelf"] == "furn"
-    assert "every block of the game" in capsys.readouterr().out
+    assert "all vanilla blocks" in capsys.readouterr().out
 
 
 def test_mistakes_have_their_exit_codes(tmp_path, capsys):

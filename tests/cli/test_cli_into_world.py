@@ -148,12 +148,12 @@ def test_force_brings_the_old_files_back(schem, world):
         (
             ["{schem}", "--into", "{world}", "--at", "1", "2", "3", "--air", "all"],
             2,
-            "--air must be room, box, none, not 'all'",
+            "--air must be one of room, box, none, got 'all'",
         ),
         (
             ["{schem}", "--into", "{world}", "--at", "1", "400", "3"],
             2,
-            "the build would reach from layer 400 to 401, but the world has -64 to 319",
+            "the build would span y 400 to 401, but the world spans y -64 to 319",
         ),
         (
             ["{schem}", "--out", "x"],

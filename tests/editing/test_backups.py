@@ -167,7 +167,7 @@ def test_too_little_disk_space_is_reported_first(world, monkeypatch):
     monkeypatch.setattr(backups.shutil, "disk_usage", lambda _: type("", (), {"free": 5 << 20})())
     with pytest.raises(OutputError) as raised:
         commit_step(world, FILES, "a test")
-    assert str(raised.value) == (f"{world}: its disk has 5 MB free; 16 are needed with the backup")
+    assert str(raised.value) == (f"{world}: the disk has 5 MB free; 16 MB are needed for the backup")
     assert tree(world) == before
 
 
@@ -184,7 +184,7 @@ def test_later_changes_are_kept_after_an_interrupted_step(world, monkeypatch):
         commit_step(world, FILES, "a test")
     assert list_steps(world)[-1].state == "prepared"
     (world / "region/r.0.0.mca").write_bytes(b"the game saved")
-    with pytest.raises(ConflictError, match="was changed after a step on it was cut off"):
+    with pytest.raises(ConflictError, match="has changed since a build was interrupted"):
         recover(world)
     assert (world / "region/r.0.0.mca").read_bytes() == b"the game saved"
 
@@ -196,7 +196,7 @@ def test_a_damaged_backup_changes_nothing(world):
     number = [entry.path for entry in step.files].index("region/c.5.5.mcc")
     assert number == 1
     with pytest.raises(
-        DamagedFileError, match="is not the backup of region/c.5.5.mcc that it says"
+        DamagedFileError, match="does not match the recorded checksum of region/c.5.5.mcc"
     ):
         revert_step(step)
     assert {k: v for k, v in tree(world).items() if "old/1" not in k} == {

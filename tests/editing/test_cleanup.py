@@ -125,7 +125,7 @@ def test_a_chair_that_hangs_in_the_air_is_put_down_with_its_sign():
     room = Room().put((slice(12, 14), slice(4, 8), slice(12, 14)), WOOD, CHAIR, 5)
     result, edits = mend(room, block_entities=(sign,))
     assert kinds(edits) == ["move"]
-    assert edits[0].reason == "it hung in the air, 3 blocks too high"
+    assert edits[0].reason == "floating piece, 3 blocks too high"
     assert (result.instance[12:14, 1:5, 12:14] == 5).all()
     assert not result.states[12:14, 5:8, 12:14].any()
     assert result.block_entities == (replace(sign, block_pos=(12, 64, 12)),)
@@ -171,7 +171,7 @@ def test_a_piece_behind_a_wall_is_taken_away():
     room.put((13, 1, 8), WOOD, FURN, 4)
     result, edits = mend(room)
     assert kinds(edits) == ["trim"]
-    assert edits[0].reason == "a piece of it stands behind or in a wall"
+    assert edits[0].reason == "piece behind or inside a wall"
     assert not result.states[13, 1, 8]
 
 

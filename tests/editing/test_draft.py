@@ -91,7 +91,7 @@ def test_changed_text_of_a_sign_is_a_conflict():
     edit = Draft(volume).fill("clear", np.array([[1, 0, 0]], np.int32), AIR)
     other = small_volume()
     other.block_entities[1].nbt["Text1"] = "mine"
-    with pytest.raises(ConflictError, match="a sign, a chest or an entity changed since"):
+    with pytest.raises(ConflictError, match="a sign, a chest or an entity has changed since"):
         apply_edits(other, edit)
 
 

@@ -102,7 +102,7 @@ def test_what_a_later_edit_covers_is_not_undone_before_it(tmp_path):
         history.do(edit)
     with pytest.raises(ConflictError):
         history.undo(0)
-    with pytest.raises(UsageError, match=r"^edit 99 is not done; those that are: 1, 2"):
+    with pytest.raises(UsageError, match=r"^edit 99 is not applied; applied edits: 1, 2"):
         history.undo(98)
     assert all(history.journal.is_done)
 

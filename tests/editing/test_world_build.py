@@ -272,8 +272,8 @@ def test_missing_chunks_are_refused_outside_void_worlds(world):
     with pytest.raises(ConflictError) as raised:
         build_into_world(world, far)
     assert str(raised.value) == (
-        f"{world}: the game has not generated 4 of its chunks there, such as the one at x 192, "
-        "z 0; go there once in the game, or add --new-chunks to make them of air"
+        f"{world}: the game has not generated 4 of the chunks, such as the one at x 192, "
+        "z 0; visit the place in the game, or add --new-chunks to create them filled with air"
     )
     assert tree(world) == before
     build_into_world(world, far, new_chunks=True)
@@ -283,7 +283,7 @@ def test_missing_chunks_are_refused_outside_void_worlds(world):
 @pytest.mark.parametrize(
     ("corner", "text"),
     [
-        ((0, -65, 0), "would reach from layer -65 to -60, but the world has -64 to 319"),
+        ((0, -65, 0), "would span y -65 to -60, but the world spans y -64 to 319"),
         ((0, 316, 0), "would reach from layer 316 to 321"),
         ((31_000_000, 60, 0), "beyond the world's border"),
     ],
@@ -404,7 +404,7 @@ def test_a_moved_volume_keeps_its_room_points():
     there = np.array([*gone.entities[0].position, 1.0])
     assert np.allclose(gone.block_to_room @ there, volume.block_to_room @ point)
     assert gone.block_entities[0].block_pos == (2, 58, -4)
-    with pytest.raises(UsageError, match="there are no blocks to build"):
+    with pytest.raises(UsageError, match="the volume contains no blocks to build"):
         trim_air(plain(np.zeros((2, 2, 2)), (AIR,), (0, 0, 0)))
 
 

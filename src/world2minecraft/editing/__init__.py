@@ -1,1 +1,1 @@
-"""Editing of blocks and scenes with undo, clean-up of builds, and building into game worlds."""
+"""Undoable edits of scenes and game worlds, and the clean-up of builds."""

@@ -1,8 +1,8 @@
-"""Building into an existing world, and removal of a build.
+"""Building into an existing world, and removal of such a build.
 
-``build_into_world`` puts a volume into a world: blocks, what signs and chests hold, and entities;
-chunks keep everything else. ``remove_build`` undoes the last such step block by block, in a world
-that was played in since.
+``build_into_world`` places a volume into a world: blocks, the contents of signs and chests, and
+entities. Everything else in the chunks is kept. ``remove_build`` undoes the last build block by
+block, in a world that has been played in since.
 """
 
 from collections.abc import Sequence
@@ -43,13 +43,21 @@ FIRST_DISPLAY_VERSION = 3337  # 1.19.4, the first game with display entities.
 
 @dataclass(frozen=True)
 class BuildOutcome:
-    """What a step did: ``step`` is None where the world was so already."""
+    """The changes that a build or its removal made to a world.
+
+    Attributes:
+        step: The recorded step. None if the world already had the requested state.
+        blocks: Number of blocks that changed.
+        entities: Number of entities that were added or removed.
+        kept: Number of blocks that were not restored because they have changed since the build.
+        recovered: Number of interrupted steps that were undone first.
+    """
 
     step: Step | None
-    blocks: int  # That changed.
-    entities: int  # That came or went.
-    kept: int = 0  # Blocks that someone changed since and that were left so.
-    recovered: int = 0  # Steps that had been cut off and were brought back first.
+    blocks: int
+    entities: int
+    kept: int = 0
+    recovered: int = 0
 
 
 def build_into_world(
@@ -61,23 +69,27 @@ def build_into_world(
     extra: dict[str, bytes] | None = None,
     what: str = "a build",
 ) -> BuildOutcome:
-    """Build a volume into a world, where its ``corner`` says.
+    """Build a volume into a world at the position of its ``corner``.
+
+    Building the same volume again changes nothing.
 
     Args:
-        world: the world's folder; the game must not have it open.
-        volume: the blocks; labels are not kept in a world.
-        air: which air is built too: ``room``, what lies over a block of the volume; ``box``, all
-            of it; ``none``.
-        new_chunks: make chunks that the game never generated. In a void world that is always so.
-        extra: further files, by path in the world.
-        what: a line for the list of steps.
+        world: World folder. The world must not be open in the game.
+        volume: Blocks to build. Their labels are not stored in the world.
+        air: Which air of the volume replaces existing blocks: ``room`` (air above a block of the
+            volume), ``box`` (all air) or ``none``.
+        new_chunks: Create chunks that the game has not generated yet. Always done in a void world.
+        extra: Contents of further files to write, by path in the world.
+        what: Description of the step for the list of steps.
 
     Returns:
-        What changed. The same build again changes nothing.
+        The changes to the world.
 
     Raises:
-        ConflictError: the game has the world open. InputError: it is no world, or lacks chunks
-        there. UsageError: the build reaches out of the world. OutputError: the disk is full.
+        ConflictError: If the world is open in the game or lacks chunks at the position.
+        InputError: If the folder is not a world.
+        UsageError: If the build extends beyond the world limits.
+        OutputError: If the disk is full.
     """
     with session_lock(world):
         recovered = len(recover(world))
@@ -101,13 +113,14 @@ def build_into_world(
 
 
 def remove_build(world: Path) -> BuildOutcome:
-    """Undo the last step block by block, so that all that was done since stays.
+    """Undo the last step block by block, keeping all later changes.
 
-    A block that is no longer the one that the step set is left as it is.
+    A block is not restored if it is no longer the block that the step placed.
 
     Raises:
-        UsageError: there is no step. ConflictError: the game has the world open.
-        DamagedFileError: the step's record is broken.
+        UsageError: If there is no step to undo.
+        ConflictError: If the world is open in the game.
+        DamagedFileError: If the record of the step is damaged.
     """
     with session_lock(world):
         recovered = len(recover(world))
@@ -132,7 +145,7 @@ def remove_build(world: Path) -> BuildOutcome:
         gone, come = edit.after.entities, edit.before.entities
         files = box.changed_files(after, data) | found.changed_files(gone, come)
         files |= previous_data_packs(steps[-1])
-        step = commit_step(world, files, "taken back block by block")
+        step = commit_step(world, files, "undone block by block")
         for old in (steps[-1], step):
             if old is not None:
                 discard_step(old)
@@ -143,28 +156,31 @@ def edit_of_step(step: Step) -> BlockEdit:
     """Return the blocks that a step changed.
 
     Raises:
-        DamagedFileError: the record is broken. InputError: the step has none.
+        DamagedFileError: If the record is damaged.
+        InputError: If the step has no record of its blocks.
     """
     path = step.folder / JOURNAL
     if not path.is_file():
-        raise InputError(step.folder, "has no record of its blocks; use w2m undo without --blocks")
+        raise InputError(
+            step.folder, "contains no record of the changed blocks; use w2m undo without --blocks"
+        )
     edits = Journal(path).edits
     if len(edits) != 1 or not len(edits[0].cells):
-        raise DamagedFileError(path, "must hold one edit of blocks")
+        raise DamagedFileError(path, "must contain exactly one block edit")
     return edits[0]
 
 
 def check_air(air: str) -> None:
-    """Raise UsageError where ``air`` is none of ``AIR_CHOICES``."""
+    """Raise UsageError if ``air`` is not one of ``AIR_CHOICES``."""
     if air not in AIR_CHOICES:
-        raise UsageError(f"--air must be {', '.join(AIR_CHOICES)}, not {air!r}")
+        raise UsageError(f"--air must be one of {', '.join(AIR_CHOICES)}, got {air!r}")
 
 
 def affected_mask(volume: BlockVolume, air: str) -> np.ndarray:
-    """Return which cells, bool [X, Y, Z], of a volume a world takes over.
+    """Return a mask of the cells of a volume that replace blocks of a world, bool [X, Y, Z].
 
     Raises:
-        UsageError: ``air`` is none of ``AIR_CHOICES``.
+        UsageError: If ``air`` is not one of ``AIR_CHOICES``.
     """
     check_air(air)
     filled = np.asarray(volume.states > 0)
@@ -176,16 +192,16 @@ def affected_mask(volume: BlockVolume, air: str) -> np.ndarray:
 def _check_chunks(box: WorldBox, may_make: bool) -> None:
     if box.missing and not may_make:
         x, z = (side * 16 for side in box.missing[0])
-        count = f"{len(box.missing)} of its chunks there, such as the one at x {x}, z {z}"
-        advice = "go there once in the game, or add --new-chunks to make them of air"
+        count = f"{len(box.missing)} of the chunks, such as the one at x {x}, z {z}"
+        advice = "visit the place in the game, or add --new-chunks to create them filled with air"
         raise ConflictError(box.world, f"the game has not generated {count}; {advice}")
 
 
 def _check_entities(entities: Sequence[Entity], box: WorldBox) -> None:
     displays = any(entity.id.endswith("_display") for entity in entities)
     if displays and box.data_version < FIRST_DISPLAY_VERSION:
-        reason = "is of a game before 1.19.4, which has no display entities"
-        raise UsageError(f"{box.world} {reason}; build it with --style blocks")
+        reason = "is from a version before 1.19.4, which has no display entities"
+        raise UsageError(f"{box.world} {reason}; build with --style blocks")
 
 
 def _numbers_of(volume: BlockVolume, box: WorldBox) -> np.ndarray:

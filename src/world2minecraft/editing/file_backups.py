@@ -1,10 +1,11 @@
-"""Replacement of files of a world with backups, so that any step can be undone byte by byte.
+"""Replacement of world files with backups, so that any step can be undone byte by byte.
 
-A step lies in ``WORLD/w2m_undo/0001``: ``old/`` the files before it, ``new/`` the files to come,
-``manifest.json`` their names and checksums, ``edit.journal`` the blocks. Nothing of the world is
-touched before the manifest exists; then each file is exchanged by one rename; then the manifest is
-marked ``done``. Whenever the program is killed, either nothing was touched or the manifest states
-what to restore, and the next command does so (``recover``).
+A step is stored in ``WORLD/w2m_undo/0001``: the original files in ``old/``, the new files in
+``new/``, their names and checksums in ``manifest.json``, and the changed blocks in
+``edit.journal``. No world file is touched before the manifest exists. Then each file is replaced by
+one rename, and the manifest is marked ``done``. If the program is killed at any point, either
+nothing has been touched or the manifest states what to restore, which the next command does
+(``recover``).
 """
 
 import hashlib
@@ -34,7 +35,7 @@ MANIFEST, JOURNAL = "manifest.json", "edit.journal"
 PREPARED, DONE, UNDOING = "prepared", "done", "undoing"
 MAX_FILE_BYTES = 512 << 20
 SPARE_BYTES = 16 << 20
-# What a step may touch: a manifest in a world from elsewhere could name any file.
+# The files that a step may change. A manifest in an untrusted world could name any file.
 _ALLOWED = re.compile(
     r"(dimensions/minecraft/overworld/)?(region|entities)/(r\.-?\d{1,7}\.-?\d{1,7}\.mca"
     r"|c\.-?\d{1,8}\.-?\d{1,8}\.mcc)|datapacks/player_size\.zip"
@@ -43,7 +44,15 @@ _ALLOWED = re.compile(
 
 @dataclass(frozen=True)
 class FileChange:
-    """One file of a step: its path in the world and the SHA-256 before and after, None for none."""
+    """A file changed by a step: its path in the world and its SHA-256 checksums.
+
+    Attributes:
+        path: Path of the file relative to the world folder.
+        before: Checksum before the step. None if the file did not exist.
+        after: Checksum after the step. None if the step removed the file.
+        mode: Original file permissions.
+        time_ns: Original modification time in nanoseconds.
+    """
 
     path: str
     before: str | None
@@ -54,25 +63,33 @@ class FileChange:
 
 @dataclass(frozen=True)
 class Step:
-    """A step that was done to a world, as its manifest describes it."""
+    """A step applied to a world, as described by its manifest.
+
+    Attributes:
+        folder: Folder of the step in the world.
+        state: ``prepared``, ``done`` or ``undoing``.
+        what: Description of the step.
+        files: Changed files.
+        made: Folders that the step created.
+    """
 
     folder: Path
     state: str
     what: str
     files: tuple[FileChange, ...]
-    made: tuple[str, ...]  # Folders that were not there before.
+    made: tuple[str, ...]
 
     @property
     def world(self) -> Path:
-        """The world that it was done to."""
+        """The folder of the world that the step changed."""
         return self.folder.parent.parent
 
 
 def list_steps(world: Path) -> list[Step]:
-    """Return the steps that can be taken back, the first one first.
+    """Return the steps that can be undone, oldest first.
 
     Raises:
-        DamagedFileError: a manifest is none, or names files that no step touches.
+        DamagedFileError: If a manifest is invalid or names files that no step may change.
     """
     folders = sorted(
         path for path in (world / FOLDER).glob("[0-9]*") if (path / MANIFEST).is_file()
@@ -86,18 +103,18 @@ def commit_step(
     what: str,
     edit: BlockEdit | None = None,
 ) -> Step | None:
-    """Exchange files of a world, whole or not at all; return the step, or None for no change.
+    """Replace files of a world atomically, and return the step, or None if nothing changes.
 
-    The caller holds the world's lock and has called ``recover``.
+    The caller must hold the lock of the world and must have called ``recover``.
 
     Args:
-        world: its folder.
-        files: the new bytes by path in the world, with ``/``; None removes a file.
-        what: a line for whoever lists the steps.
-        edit: the blocks that change, kept with the step.
+        world: World folder.
+        files: New contents by path in the world, with ``/`` as separator. None removes a file.
+        what: Description of the step for the list of steps.
+        edit: Changed blocks to record with the step.
 
     Raises:
-        OutputError: a file cannot be written; then the world is as it was.
+        OutputError: If a file cannot be written. The world is then unchanged.
     """
     touched = [_describe_change(world, path, data) for path, data in sorted(files.items())]
     wanted = [entry for entry in touched if entry.before != entry.after]
@@ -122,10 +139,10 @@ def commit_step(
 
 
 def recover(world: Path) -> list[Step]:
-    """Bring back what steps that were cut off had touched; return those steps.
+    """Undo all interrupted steps and return them.
 
     Raises:
-        ConflictError: the world was changed since one of them was cut off.
+        ConflictError: If the world has changed since a step was interrupted.
     """
     for folder in sorted((world / FOLDER).glob("[0-9]*")):
         if not (folder / MANIFEST).is_file():  # Cut off before it touched anything.
@@ -134,8 +151,8 @@ def recover(world: Path) -> list[Step]:
     for step in reversed(cut_off):
         changed = changed_since(step)
         if changed:
-            reason = f"{changed[0]} was changed after a step on it was cut off"
-            raise ConflictError(world, f"{reason}; w2m undo --force brings back what was before")
+            reason = f"{changed[0]} has changed since a build was interrupted"
+            raise ConflictError(world, f"{reason}; restore the old files with w2m undo --force")
         _restore(step)
     with suppress(OSError):
         (world / FOLDER).rmdir()  # Where it is empty.
@@ -143,7 +160,7 @@ def recover(world: Path) -> list[Step]:
 
 
 def changed_since(step: Step) -> list[str]:
-    """Return the files that are neither as the step left them nor as they were before it."""
+    """Return the files that match neither the state before the step nor the state after it."""
     return [
         entry.path
         for entry in step.files
@@ -153,10 +170,13 @@ def changed_since(step: Step) -> list[str]:
 
 
 def previous_data_packs(step: Step) -> dict[str, bytes | None]:
-    """Return what a step's files beside the regions were before it, where they are as it left them.
+    """Return the previous contents of the data packs that a step changed.
+
+    Data packs that have changed since the step are omitted. None means that the data pack did not
+    exist.
 
     Raises:
-        InputError: a backup cannot be read.
+        InputError: If a backup cannot be read.
     """
     found: dict[str, bytes | None] = {}
     for number, entry in enumerate(step.files):
@@ -168,11 +188,11 @@ def previous_data_packs(step: Step) -> dict[str, bytes | None]:
 
 
 def revert_step(step: Step) -> None:
-    """Bring back every byte that a step changed, and forget the step.
+    """Restore all files that a step changed, and delete the step.
 
     Raises:
-        DamagedFileError: a backup is not what its checksum says; then nothing is changed.
-        OutputError: a file cannot be written; the next try goes on.
+        DamagedFileError: If a backup does not match its checksum. Nothing is changed then.
+        OutputError: If a file cannot be written. The next attempt continues.
     """
     _check_backups(step)
     try:
@@ -184,14 +204,15 @@ def revert_step(step: Step) -> None:
 
 
 def revert_last_step(world: Path, force: bool = False) -> Step:
-    """Restore the files of the last step, or of one that was interrupted; return that step.
+    """Undo the last step, or an interrupted step, by restoring its files, and return the step.
 
     Args:
-        world: its folder; its lock is held meanwhile.
-        force: restore files that were changed since, too.
+        world: World folder. Its lock is held during the operation.
+        force: Also restore files that have changed since the step.
 
     Raises:
-        UsageError: there is no step. ConflictError: a file was changed since, without ``force``.
+        UsageError: If there is no step to undo.
+        ConflictError: If a file has changed since the step and ``force`` is False.
     """
     with session_lock(world):
         cut_off = [step for step in list_steps(world) if step.state != DONE]
@@ -206,14 +227,16 @@ def revert_last_step(world: Path, force: bool = False) -> Step:
             raise UsageError(f"{world}: no build by World2Minecraft to undo")
         changed = changed_since(steps[-1])
         if changed and not force:
-            reason = f"{changed[0]} has been saved since; add --blocks to undo the build alone"
+            reason = (
+                f"{changed[0]} has changed since the build; add --blocks to undo only the build"
+            )
             raise ConflictError(world, f"{reason}, or --force to restore the old files")
         revert_step(steps[-1])
         return steps[-1]
 
 
 def discard_step(step: Step) -> None:
-    """Remove a step's backup; the world keeps what the step did."""
+    """Delete the backup of a step, keeping its changes to the world."""
     _forget(step)
     with suppress(OSError):
         (step.world / FOLDER).rmdir()
@@ -225,7 +248,7 @@ def _prepare(step: Step, files: Mapping[str, bytes | None], edit: BlockEdit | No
         if entry.before is not None:
             old = read_bytes(source, MAX_FILE_BYTES)
             if hashlib.sha256(old).hexdigest() != entry.before:
-                raise ConflictError(source, "changes while it is backed up; try again")
+                raise ConflictError(source, "changed during the backup; try again")
             write_bytes(step.folder / "old" / str(number), old)
         if data is not None:
             staged = step.folder / "new" / str(number)
@@ -274,7 +297,7 @@ def _check_backups(step: Step) -> None:
         if entry.before is None or (not copy.exists() and _checksum(target) == entry.before):
             continue
         if _checksum(copy) != entry.before:
-            raise DamagedFileError(copy, f"is not the backup of {entry.path} that it says")
+            raise DamagedFileError(copy, f"does not match the recorded checksum of {entry.path}")
 
 
 def _mark(step: Step, state: str) -> Step:
@@ -297,18 +320,18 @@ def _read_step(folder: Path) -> Step:
             if name not in ("region", "entities", "datapacks") and not re.fullmatch(
                 r"dimensions(/minecraft(/overworld(/(region|entities))?)?)?", name
             ):
-                raise ValueError(f"a folder {name!r}")
+                raise ValueError(f"unexpected folder {name!r}")
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DamagedFileError(path, f"is no manifest of a step ({error})") from error
+        raise DamagedFileError(path, f"is not a valid manifest ({error})") from error
     return step
 
 
 def _check_path(world: Path, name: Any, manifest: Path) -> None:
-    """Refuse a file that is none of those that steps touch, or lies elsewhere by a link."""
+    """Raise DamagedFileError for a file that no step may change, or a link to outside the world."""
     if not isinstance(name, str) or not _ALLOWED.fullmatch(name):
-        raise DamagedFileError(manifest, f"names {name!r}, which no step touches")
+        raise DamagedFileError(manifest, f"contains the unexpected file name {name!r}")
     if not (world / name).resolve().is_relative_to(world.resolve()):
-        raise DamagedFileError(manifest, f"names {name}, which is a link out of the world")
+        raise DamagedFileError(manifest, f"contains {name}, which is a link to outside the world")
 
 
 def _describe_change(world: Path, name: str, data: bytes | None) -> FileChange:
@@ -342,7 +365,7 @@ def _check_space(world: Path, step: Step, files: Mapping[str, bytes | None]) -> 
     needed = old + sum(len(files[e.path] or b"") for e in step.files) + SPARE_BYTES
     free = shutil.disk_usage(world).free
     if free < needed:
-        mb = f"its disk has {free >> 20} MB free; {needed >> 20} are needed with the backup"
+        mb = f"the disk has {free >> 20} MB free; {needed >> 20} MB are needed for the backup"
         raise OutputError(world, mb)
 
 
@@ -350,4 +373,4 @@ def _as_output_error(world: Path, error: Exception) -> OutputError:
     if isinstance(error, InputError):
         return OutputError(world, error.reason)
     reason = getattr(error, "strerror", None) or str(error)
-    return OutputError(world, f"cannot be changed ({reason}); it is as it was")
+    return OutputError(world, f"cannot be changed ({reason}); nothing was modified")

@@ -1,8 +1,8 @@
-"""The journal of block edits: a file of records, each of which does an edit or undoes it.
+"""The journal of block edits: a file of records that apply or undo edits.
 
-The verbs are ``+`` done, ``-`` undone and ``*`` done again. The number is that of the edit; a ``+``
-record also holds the edit itself, as an NBT tree, so that block data keep their tags.
-``record_log`` describes the file format.
+The verbs are ``+`` for apply, ``-`` for undo and ``*`` for redo. Each record contains the number of
+its edit. A ``+`` record also contains the edit as an NBT tree, which preserves the types of block
+data. ``record_log`` describes the file format.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,7 +25,7 @@ MAX_JOURNAL_BYTES = 256 << 20
 
 
 def pack_edit(edit: BlockEdit) -> bytes:
-    """Return an edit as NBT, not compressed; the same edit gives the same bytes."""
+    """Return an edit as uncompressed NBT. Equal edits give identical bytes."""
     return write_nbt(
         {
             "kind": edit.kind,
@@ -41,14 +41,15 @@ def pack_edit(edit: BlockEdit) -> bytes:
 
 
 def unpack_edit(data: bytes, path: str | Path) -> BlockEdit:
-    """Return the edit that ``pack_edit`` wrote.
+    """Parse an edit written by ``pack_edit``.
 
     Args:
-        data: the bytes.
-        path: the file that errors name.
+        data: Bytes of the edit.
+        path: File to name in errors.
 
     Raises:
-        DamagedFileError: the bytes are no edit. LimitError: they ask for too much.
+        DamagedFileError: If the bytes are not a valid edit.
+        LimitError: If the edit is too large.
     """
     _, root = read_nbt(data, path, EDIT_LIMITS)
     try:
@@ -63,7 +64,7 @@ def unpack_edit(data: bytes, path: str | Path) -> BlockEdit:
             instance=_none_if_negative(root["instance"]),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DamagedFileError(path, f"holds no edit of blocks ({error})") from error
+        raise DamagedFileError(path, f"does not contain a valid block edit ({error})") from error
 
 
 def _pack_blocks(blocks: Blocks) -> dict[str, Any]:
@@ -113,7 +114,7 @@ def _unpack_blocks(held: Mapping[str, Any]) -> Blocks:
 def _as_uint16(values: Any) -> np.ndarray:
     numbers = np.asarray(values, np.int32)
     if numbers.size and not 0 <= numbers.min() <= numbers.max() <= 0xFFFF:
-        raise ValueError("a number of it is none of a palette or an object")
+        raise ValueError("palette indices and object ids must be 0 to 65535")
     return numbers.astype(np.uint16)
 
 
@@ -127,16 +128,18 @@ def _none_if_negative(value: int) -> int | None:
 
 
 class Journal:
-    """The edits of one thing, in order, and which of them are done now.
+    """The edits of a build in order, and which of them are currently applied.
 
-    ``steps`` are all records: whether one did an edit (again) or took it back, and its number.
+    ``steps`` contains one entry per record: whether the record applied or undid an edit, and the
+    number of the edit.
     """
 
     def __init__(self, path: str | Path):
-        """Read the journal at ``path``; a missing file is an empty one.
+        """Read the journal at ``path``. A missing file is an empty journal.
 
         Raises:
-            DamagedFileError: it is no journal. LimitError: it is too large.
+            DamagedFileError: If the file is not a valid journal.
+            LimitError: If the file is too large.
         """
         self.path = Path(path)
         self._file = RecordFile(path, MARK, EDIT_LIMITS.bytes)
@@ -147,18 +150,30 @@ class Journal:
             self._read()
 
     def do(self, edit: BlockEdit) -> None:
-        """Add an edit that is done. Raises OutputError; then nothing is added."""
+        """Append an applied edit.
+
+        Raises:
+            OutputError: If the file cannot be written. Nothing is appended then.
+        """
         self._file.append(DO, len(self.edits), pack_edit(edit))
         self.edits.append(edit)
         self._step(True, len(self.edits) - 1)
 
     def undo(self, number: int) -> None:
-        """Record that the edit of this number is taken back. Raises OutputError."""
+        """Record that the edit with this number was undone.
+
+        Raises:
+            OutputError: If the file cannot be written.
+        """
         self._file.append(UNDO, number)
         self._step(False, number)
 
     def redo(self, number: int) -> None:
-        """Record that the edit of this number is done again. Raises OutputError."""
+        """Record that the edit with this number was redone.
+
+        Raises:
+            OutputError: If the file cannot be written.
+        """
         self._file.append(REDO, number)
         self._step(True, number)
 
@@ -169,7 +184,7 @@ class Journal:
     def _read(self) -> None:
         size = self.path.stat().st_size
         if size > MAX_JOURNAL_BYTES:
-            most = f"at most {MAX_JOURNAL_BYTES:,} are read"
+            most = f"the limit is {MAX_JOURNAL_BYTES:,}"
             raise LimitError(self.path, f"has {size:,} bytes; {most}")
         for record, packed in self._file.scan():
             if not record.is_whole:
@@ -180,21 +195,25 @@ class Journal:
         if verb == DO and number == len(self.edits):
             self.edits.append(unpack_edit(rest, self.path))
         elif verb not in (UNDO, REDO) or number >= len(self.edits):
-            raise DamagedFileError(self.path, f"has a record of edit {number} out of order")
+            raise DamagedFileError(self.path, f"contains a record of edit {number} out of order")
         self._step(verb != UNDO, number)
 
 
 def write_journal(path: str | Path, edits: Sequence[BlockEdit]) -> None:
-    """Write a whole journal of edits that are all done, atomically. Raises OutputError."""
+    """Write a journal of applied edits atomically.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     records = [pack_record(DO, number, pack_edit(edit)) for number, edit in enumerate(edits)]
     write_bytes(path, MARK + b"".join(records))
 
 
 def write_edits(build: Path, edits: Sequence[BlockEdit]) -> None:
-    """Write the repairs of a build to its folder, in place of those of an earlier build.
+    """Write the repairs of a build to its folder, replacing those of an earlier build.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: If the folder cannot be written.
     """
     path = build / EDITS_FILE
     if edits:

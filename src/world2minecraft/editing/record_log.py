@@ -1,9 +1,9 @@
-"""An append-only file of records that survives a kill in the middle of a write.
+"""An append-only file of records that survives a kill during a write.
 
-After the mark come records, each a length and a CRC-32 (big-endian, four bytes each) and that many
-bytes: a zlib stream of a verb of one byte, a number of four and what belongs to them. A record
-that the file ends within was never finished: it is left out and cut off before the next one is
-written. Both journals, of blocks and of scenes, are such files.
+The file starts with a mark. Each record consists of its length and its CRC-32 (big-endian, four
+bytes each), followed by a zlib stream of a one-byte verb, a four-byte number and the content. A
+record that is cut off by the end of the file was never finished: it is ignored, and removed before
+the next record is written. The journals of blocks and of scenes are such files.
 """
 
 import contextlib
@@ -23,7 +23,7 @@ _STREAM = zlib.compress(b"", LEVEL)[:2]  # What each stream begins with.
 
 
 class Record(NamedTuple):
-    """Where a record lies, and whether its bytes are those that were written."""
+    """The position of a record in the file, and whether its checksum is correct."""
 
     at: int
     length: int  # Of its stream.
@@ -31,32 +31,37 @@ class Record(NamedTuple):
 
     @property
     def end(self) -> int:
-        """The first byte after it."""
+        """The position of the first byte after the record."""
         return self.at + HEAD.size + self.length
 
 
 class RecordFile:
-    """The file: ``end`` is where the next record goes, 0 where the mark is still to be written."""
+    """A file of records.
+
+    ``end`` is the position of the next record, or 0 before the mark is written.
+    """
 
     def __init__(self, path: str | Path, mark: bytes, limit: int, name: str = "journal of edits"):
-        """Name the file; nothing is read.
+        """Set the path of the file without reading it.
 
         Args:
-            path: where it lies, or will.
-            mark: its first bytes.
-            limit: the most bytes that one record may unpack to.
-            name: what errors call it.
+            path: Path of the file, which may not exist yet.
+            mark: First bytes of the file.
+            limit: Maximum unpacked size of a record in bytes.
+            name: File type to name in errors.
         """
         self.path, self.mark, self.limit, self.name = Path(path), mark, limit, name
         self.end = 0
 
     def scan(self) -> Iterator[tuple[Record, bytes]]:
-        """Go through the records with their streams; ``end`` follows, past damaged ones too.
+        """Iterate over the records with their packed streams, including damaged records.
 
-        A damaged length is known by the whole records after it: without any it is a torn tail.
+        ``end`` is updated during the iteration. A record with a damaged length is recognised by
+        valid records after it. Without any, it is an unfinished record at the end of the file.
 
         Raises:
-            DamagedFileError: it is no such file. InputError: it cannot be read.
+            DamagedFileError: If the file does not start with the mark.
+            InputError: If the file cannot be read.
         """
         self.end = 0
         try:
@@ -66,7 +71,7 @@ class RecordFile:
                 if start != self.mark:
                     if self.mark.startswith(start):
                         return  # Killed while the first bytes were written.
-                    raise DamagedFileError(self.path, f"is no {self.name}")
+                    raise DamagedFileError(self.path, f"is not a {self.name}")
                 self.end = len(self.mark)
                 while size - self.end >= HEAD.size:
                     stream.seek(self.end)
@@ -81,10 +86,11 @@ class RecordFile:
             raise InputError(self.path, f"cannot be read: {error.strerror or error}") from error
 
     def read(self, record: Record) -> bytes:
-        """Return the stream of a record that was written or scanned.
+        """Return the packed stream of a record that was written or scanned.
 
         Raises:
-            DamagedFileError: other bytes are there now. InputError: it cannot be read.
+            DamagedFileError: If the record has changed since.
+            InputError: If the file cannot be read.
         """
         try:
             with open(self.path, "rb") as stream:
@@ -98,14 +104,15 @@ class RecordFile:
         return packed
 
     def unpack(self, packed: bytes, most: int | None = None) -> tuple[bytes, int, bytes]:
-        """Return the verb, the number and what belongs to them, of the stream of a record.
+        """Return the verb, the number and the content of a packed stream.
 
         Args:
-            packed: the stream.
-            most: stop after so many bytes of what belongs to them.
+            packed: Stream of a record.
+            most: Maximum number of content bytes to unpack. None unpacks all content.
 
         Raises:
-            DamagedFileError: it is none. LimitError: it unpacks to too much.
+            DamagedFileError: If the stream is not a valid record.
+            LimitError: If the unpacked record is too large.
         """
         stream = zlib.decompressobj()
         wanted = self.limit if most is None else NUMBER.size + most
@@ -113,20 +120,22 @@ class RecordFile:
             content = stream.decompress(packed, wanted)
             verb, number = NUMBER.unpack_from(content)
         except (zlib.error, struct.error) as error:
-            raise DamagedFileError(self.path, f"has a record that is none ({error})") from error
+            raise DamagedFileError(self.path, f"contains an invalid record ({error})") from error
         if stream.unconsumed_tail and most is None:
-            raise LimitError(self.path, f"has an edit of more than {self.limit:,} bytes")
+            raise LimitError(
+                self.path, f"contains an edit larger than the limit of {self.limit:,} bytes"
+            )
         return verb, number, content[NUMBER.size :]
 
     def append(self, verb: bytes, number: int, content: bytes = b"") -> Record:
-        """Write a record to the disk; when it returns, a kill or a power cut leaves it there.
+        """Append a record and flush it to the disk.
 
         Raises:
-            OutputError: it cannot be written; the file holds what it held. LimitError: it is
-            larger than a reader takes.
+            OutputError: If the record cannot be written. The file is then unchanged.
+            LimitError: If the record is too large to be read.
         """
         if NUMBER.size + len(content) > self.limit:
-            raise LimitError(self.path, f"takes no edit of more than {self.limit:,} bytes")
+            raise LimitError(self.path, f"cannot store an edit larger than {self.limit:,} bytes")
         packed = pack_record(verb, number, content)
         at = self.end or len(self.mark)
         is_new = not self.path.exists()
@@ -179,7 +188,7 @@ def pack_record(verb: bytes, number: int, content: bytes = b"") -> bytes:
 
 
 def sync_folder(folder: Path) -> None:
-    """Bring the names in a folder to the disk, where the system can."""
+    """Flush the file names in a folder to the disk, if the system supports it."""
     try:
         handle = os.open(folder, os.O_RDONLY)
     except OSError:  # Windows opens no folders.

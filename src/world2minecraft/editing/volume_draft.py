@@ -1,4 +1,4 @@
-"""A volume while it is edited: a draft that records its edits, and its history of undo and redo."""
+"""A draft of a volume that records its edits, and a history with undo and redo."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,7 +16,7 @@ Position = tuple[int, int, int]
 
 
 class Draft:
-    """The blocks of a volume, writable only through edits. Arrays are [X, Y, Z], block axes."""
+    """The blocks of a volume, changed only by edits. Arrays are [X, Y, Z] in block axes."""
 
     def __init__(self, volume: BlockVolume):
         self.start = volume
@@ -32,33 +32,33 @@ class Draft:
 
     @property
     def palette(self) -> tuple[str, ...]:
-        """The block states that ``states`` indexes; edits add to its end."""
+        """The block states that ``states`` indexes. Edits append states."""
         return tuple(self._palette)
 
     @property
     def entities(self) -> tuple[Entity, ...]:
-        """What stands free of the grid now."""
+        """The current entities, which are independent of the block grid."""
         return tuple(self._entities.values())
 
     def id_of(self, state: str) -> int:
-        """Return the number of a block state.
+        """Return the palette index of a block state, appending the state if necessary.
 
         Raises:
-            LimitError: the palette is full.
+            LimitError: If the palette is full.
         """
         if state not in self._ids:
             if len(self._palette) >= MAX_STATES:
-                raise LimitError("palette", f"has more than {MAX_STATES:,} block states")
+                raise LimitError("palette", f"exceeds the limit of {MAX_STATES:,} block states")
             self._ids[state] = len(self._palette)
             self._palette.append(state)
         return self._ids[state]
 
     def contents(self, cells: np.ndarray, entities: Sequence[Entity] = ()) -> Blocks:
-        """Return what some cells hold now.
+        """Return the current contents of cells.
 
         Args:
-            cells: int [N, 3], indices into the arrays.
-            entities: those that belong to the cells.
+            cells: Array indices, int [N, 3].
+            entities: Entities that belong to the cells.
         """
         at = tuple(cells.T)
         places = map(_position, cells + self.corner) if self._data else ()
@@ -70,11 +70,11 @@ class Draft:
         """Set cells and record the edit.
 
         Args:
-            kind: a verb.
-            cells: int [N, 3], indices into the arrays.
-            after: what they become; states index ``palette``.
-            details: ``reason``, ``class_id``, ``instance`` of the edit, and ``entities`` that go
-                with what was there before.
+            kind: Verb of the edit, such as ``drop``.
+            cells: Array indices, int [N, 3].
+            after: New contents of the cells. Their states index ``palette``.
+            details: ``reason``, ``class_id`` and ``instance`` of the edit, and ``entities`` that
+                are removed with the previous contents.
         """
         before = self.contents(cells, details.pop("entities", ()))
         used = np.unique(np.concatenate([before.states, after.states]))
@@ -96,11 +96,11 @@ class Draft:
         """Set all cells to one block state and record the edit.
 
         Args:
-            kind: a verb.
-            cells: int [N, 3], indices into the arrays.
-            state: what they become.
-            details: as in ``change``, and ``as_class`` and ``as_instance``, what they count as: 0
-                where left out.
+            kind: Verb of the edit, such as ``fill``.
+            cells: Array indices, int [N, 3].
+            state: New block state.
+            details: The details of ``change``, and the new class id ``as_class`` and object id
+                ``as_instance``, which default to 0.
         """
         numbers = np.full(len(cells), self.id_of(state), np.uint16)
         semantic = np.full(len(cells), details.pop("as_class", 0), np.uint8)
@@ -108,10 +108,11 @@ class Draft:
         return self.change(kind, cells, Blocks(numbers, semantic, instance), **details)
 
     def apply(self, edit: BlockEdit) -> None:
-        """Do an edit.
+        """Apply an edit.
 
         Raises:
-            ConflictError: the cells do not hold what it says they held; nothing is changed.
+            ConflictError: If the cells differ from the edit's previous contents. Nothing is
+                changed.
         """
         if reason := self._find_conflict(edit):
             raise ConflictError(f"edit {edit.kind}", reason)
@@ -119,11 +120,11 @@ class Draft:
         self.edits.append(edit)
 
     def holds(self, edit: BlockEdit) -> bool:
-        """Whether the cells hold what an edit says they held before it."""
+        """Return whether the cells match the previous contents recorded in an edit."""
         return not self._find_conflict(edit)
 
     def volume(self) -> BlockVolume:
-        """Return the blocks as they are now; the palette sorted, without unused states."""
+        """Return the current blocks as a volume with a sorted palette and no unused states."""
         names = sorted({self._palette[number] for number in np.unique(self.states)} - {AIR})
         order = {AIR: 0} | {name: number for number, name in enumerate(names, 1)}
         numbers = np.array([order.get(state, 0) for state in self._palette], np.uint16)
@@ -151,12 +152,12 @@ class Draft:
             at = int(np.argmax(wrong))
             place, was = _position(edit.cells[at]), names[edit.before.states[at]]
             held = self._palette[now.states[at]]
-            return f"block {place} holds {held} now, not {was} as before the edit"
+            return f"block {place} is now {held}, expected {was}"
         gone = {entity_key(entity) for entity in edit.before.entities} - self._entities.keys()
         if gone or block_entity_keys(now.block_entities) != block_entity_keys(
             edit.before.block_entities
         ):
-            return "a sign, a chest or an entity changed since"
+            return "a sign, a chest or an entity has changed since the edit"
         return ""
 
     def _set(self, cells: np.ndarray, edit: BlockEdit) -> None:
@@ -175,10 +176,10 @@ class Draft:
 
 
 def apply_edits(volume: BlockVolume, *edits: BlockEdit) -> BlockVolume:
-    """Return a volume with edits done, one after the other.
+    """Return a volume with edits applied in order.
 
     Raises:
-        ConflictError: a cell does not hold what an edit says it held.
+        ConflictError: If a cell differs from the previous contents recorded in an edit.
     """
     draft = Draft(volume)
     for edit in edits:
@@ -187,13 +188,13 @@ def apply_edits(volume: BlockVolume, *edits: BlockEdit) -> BlockVolume:
 
 
 def entity_key(entity: Entity) -> bytes:
-    """Return bytes that are the same for two entities of the same place, kind and data."""
+    """Return bytes that are equal for entities with the same position, type and data."""
     held = {"id": entity.id, "Pos": [float(v) for v in entity.position], "nbt": entity.nbt}
     return write_nbt(held)
 
 
 def block_entity_keys(entities: Sequence[BlockEntity]) -> set[bytes]:
-    """Return bytes for each block entity, the same for the same place, kind and data."""
+    """Return one key per block entity, equal for the same position, type and data."""
     return {
         write_nbt({"id": e.id, "pos": list(map(int, e.block_pos)), "nbt": e.nbt}) for e in entities
     }
@@ -205,36 +206,44 @@ def _position(cell: Any) -> Position:
 
 
 class History:
-    """The one that edits a volume. Each step is in the journal before it is seen here."""
+    """The undo and redo history of a volume. Each step is recorded in the journal first."""
 
     def __init__(self, volume: BlockVolume, journal: Journal):
-        """Take a volume with the edits of its journal.
+        """Open the history of a volume.
 
         Args:
-            volume: the blocks as they lie on disk: with all steps of the journal, or without
-                the last ones, where the program was ended before it wrote the blocks.
-            journal: the edits so far.
+            volume: Blocks as stored on disk. The last steps of the journal may be missing if the
+                program was killed before writing the blocks.
+            journal: Journal of the edits so far.
 
         Raises:
-            ConflictError: the volume is another one than the journal speaks of.
+            ConflictError: If the journal belongs to another volume.
         """
         self.journal = journal
         self.volume = _replay_missing(volume, journal)
         self._undone: list[int] = []
 
     def do(self, edit: BlockEdit) -> None:
-        """Do an edit. Raises ConflictError or OutputError; then nothing has changed."""
+        """Apply an edit and record it.
+
+        Raises:
+            ConflictError: If the edit does not match the volume. Nothing is changed then.
+            OutputError: If the journal cannot be written. Nothing is changed then.
+        """
         volume = apply_edits(self.volume, edit)
         self.journal.do(edit)
         self.volume = volume
         self._undone.clear()
 
     def undo(self, number: int | None = None) -> int:
-        """Take back the edit of a number, or the last one that is done; return its number.
+        """Undo an applied edit and return its number.
+
+        Args:
+            number: Number of the edit. None selects the last applied edit.
 
         Raises:
-            UsageError: there is no such edit, or it is not done.
-            ConflictError: a later edit changed the same blocks; take that back first.
+            UsageError: If the edit does not exist or is not applied.
+            ConflictError: If a later edit changed the same blocks.
         """
         done = [place for place, is_done in enumerate(self.journal.is_done) if is_done]
         if not done:
@@ -242,7 +251,7 @@ class History:
         chosen = done[-1] if number is None else number
         if chosen not in done:
             known = ", ".join(str(place + 1) for place in done)
-            raise UsageError(f"edit {chosen + 1} is not done; those that are: {known}")
+            raise UsageError(f"edit {chosen + 1} is not applied; applied edits: {known}")
         volume = apply_edits(self.volume, self.journal.edits[chosen].inverse())
         self.journal.undo(chosen)
         self.volume = volume
@@ -250,17 +259,20 @@ class History:
         return chosen
 
     def redo(self, number: int | None = None) -> int:
-        """Do again the edit of a number, or what was last undone here; return its number.
+        """Redo an edit that was undone and return its number.
+
+        Args:
+            number: Number of the edit. None selects the last edit undone in this history.
 
         Raises:
-            UsageError: nothing was undone since the last edit, or not that one.
-            ConflictError: a later edit changed the same blocks.
+            UsageError: If the edit has not been undone, or if there is nothing to redo.
+            ConflictError: If a later edit changed the same blocks.
         """
         if number is None and not self._undone:
             raise UsageError("there is nothing to redo")
         chosen = self._undone[-1] if number is None else number
         if chosen >= len(self.journal.edits) or self.journal.is_done[chosen]:
-            raise UsageError(f"edit {chosen + 1} was not taken back")
+            raise UsageError(f"edit {chosen + 1} has not been undone")
         volume = apply_edits(self.volume, self.journal.edits[chosen])
         self.journal.redo(chosen)
         self.volume = volume

@@ -1,4 +1,4 @@
-"""Relocation of a whole volume in the world: blocks, block data, entities and its frame."""
+"""Relocation of a volume in the world, including block data, entities and its frame."""
 
 from dataclasses import replace
 from typing import Any
@@ -14,17 +14,17 @@ from world2minecraft.minecraft.turn_and_mirror import turn_volume
 def place_volume(
     volume: BlockVolume, at: tuple[int, int, int], turns: int, ground_y: int | None
 ) -> BlockVolume:
-    """Return a volume without the air around it, turned and put to a place.
+    """Return a volume without surrounding air, rotated and moved to a position.
 
     Args:
-        volume: the blocks.
-        at: where its smallest x and z, and its ground, come to stand.
-        turns: quarter turns, counter-clockwise from above, before that.
-        ground_y: the layer of the volume's world on which one stands, which comes to stand at the
-            place's y; None takes the lowest layer.
+        volume: Blocks to move.
+        at: New position of the smallest x, the ground layer and the smallest z.
+        turns: Number of quarter turns, counter-clockwise from above, applied before the move.
+        ground_y: Layer of the volume on which a player stands, which is moved to the y of ``at``.
+            None uses the lowest layer.
 
     Raises:
-        UsageError: the volume is empty.
+        UsageError: If the volume is empty.
     """
     whole = trim_air(turn_volume(volume, turns))
     low = whole.corner[1] if ground_y is None else ground_y
@@ -36,10 +36,10 @@ def trim_air(volume: BlockVolume) -> BlockVolume:
     """Return a volume without the layers of air around its blocks.
 
     Raises:
-        UsageError: nothing else is in it.
+        UsageError: If the volume contains only air.
     """
     if not volume.states.any():
-        raise UsageError("there are no blocks to build")
+        raise UsageError("the volume contains no blocks to build")
     filled = np.argwhere(volume.states)
     low, high = filled.min(axis=0), filled.max(axis=0) + 1
     part = tuple(slice(start, end) for start, end in zip(low, high, strict=True))
@@ -54,7 +54,7 @@ def trim_air(volume: BlockVolume) -> BlockVolume:
 
 
 def translate_volume(volume: BlockVolume, step: np.ndarray) -> BlockVolume:
-    """Return a volume moved by whole blocks, int [3]; every block keeps its room point."""
+    """Return a volume moved by whole blocks, int [3]. Room coordinates of blocks are unchanged."""
     back = np.eye(4)
     back[:3, 3] = -step
     x, y, z = (np.array(volume.corner) + step).tolist()

@@ -1,7 +1,7 @@
-"""The blocks and entities of a box of an existing world, read so that some can be replaced.
+"""The blocks and entities in a box of an existing world, read so that some can be replaced.
 
-Nothing is written here: ``changed_files`` returns the new contents of the files. Entities of
-earlier builds are replaced; all others stay.
+This module writes no files: ``changed_files`` returns the new contents of the files. Entities of
+earlier builds are replaced, and all others are kept.
 """
 
 from collections import defaultdict
@@ -40,10 +40,10 @@ BUILT_TAG = "w2m_built"  # The tag of the entities that were built into a world.
 
 @dataclass
 class WorldBox:
-    """The blocks of a world from ``low`` on, as far as ``states`` goes.
+    """The blocks in a box of a world, starting at ``low``.
 
-    ``states`` [X, Y, Z] are numbers of ``numbers``; ``data`` are the block entities in the box.
-    ``missing`` are the chunks, of those that the box touches, which the game never finished.
+    ``states`` [X, Y, Z] are indices into ``numbers``. ``data`` contains the block entities in the
+    box. ``missing`` lists the chunks touched by the box that the game has not fully generated.
     """
 
     world: Path
@@ -57,10 +57,10 @@ class WorldBox:
     _chunks: dict[Place, dict[str, Any]] = field(default_factory=dict)
 
     def version_at(self, block_pos: Sequence[int]) -> int:
-        """Return the data version of the chunk that a block lies in: of a new one, the world's.
+        """Return the data version of the chunk that contains a block.
 
-        The game brings a chunk up to date when it loads it, so that one where nobody was for
-        long is older than its world.
+        The result for a new chunk is the data version of the world. The game upgrades a chunk when
+        it loads it, so a chunk that has not been visited for long is older than its world.
         """
         chunk = self._chunks.get((int(block_pos[0]) >> 4, int(block_pos[2]) >> 4))
         return self.data_version if chunk is None else int(chunk["DataVersion"])
@@ -68,11 +68,11 @@ class WorldBox:
     def changed_files(
         self, states: np.ndarray, data: Sequence[BlockEntity]
     ) -> dict[str, bytes | None]:
-        """Return the files, by path in the world, that differ when the box holds other blocks.
+        """Return the contents of the files, by path in the world, that change with new blocks.
 
         Args:
-            states: uint16 [X, Y, Z], numbers of ``numbers``.
-            data: all block entities of the box.
+            states: Indices into ``numbers``, uint16 [X, Y, Z].
+            data: All block entities in the box.
         """
         changed = self._changed_chunks(states, data)
         regions: dict[Place, dict[Place, bytes]] = defaultdict(dict)
@@ -142,21 +142,22 @@ class WorldBox:
 
 
 def read_world_box(world: Path, low: Corner, size: Sequence[int]) -> WorldBox:
-    """Read the blocks of a box of a world.
+    """Read the blocks in a box of a world.
 
     Args:
-        world: its folder.
-        low: the lowest block.
-        size: blocks along x, y, z.
+        world: World folder.
+        low: Minimum block position.
+        size: Number of blocks along x, y and z.
 
     Raises:
-        InputError: there is no world, or one of a game before 1.18. UsageError: the box reaches
-            out of the world's heights. DamagedFileError: a file of it is broken.
+        InputError: If the folder is not a world, or the world is from a version before 1.18.
+        UsageError: If the box extends beyond the world limits.
+        DamagedFileError: If a world file is damaged.
     """
     level = read_level(world)
     version = level.get("DataVersion")
     if not isinstance(version, int):
-        raise DamagedFileError(world / "level.dat", "does not say which game it is of")
+        raise DamagedFileError(world / "level.dat", "does not state a game version")
     _check_box(low, size)
     box = WorldBox(world, low, np.zeros(tuple(size), np.uint16), StateNumbers(), (), version)
     folder = overworld_folder(world)
@@ -186,25 +187,25 @@ def _read_chunk(box: WorldBox, place: Place, region: RegionFile) -> list[BlockEn
 
 
 def overworld_folder(world: Path) -> Path:
-    """Return the folder of a world that holds the overworld's ``region`` and ``entities``."""
+    """Return the folder of a world that contains ``region`` and ``entities`` of the overworld."""
     modern = world / MODERN_FOLDER
     return modern if (modern / "region").is_dir() else world
 
 
 def chunks_of(low: Sequence[int], size: Sequence[int]) -> Iterator[Place]:
-    """Yield the chunks that a box touches, sorted."""
+    """Yield the chunks that a box touches in sorted order."""
     for x in range(low[0] >> 4, ((low[0] + size[0] - 1) >> 4) + 1):
         for z in range(low[2] >> 4, ((low[2] + size[2] - 1) >> 4) + 1):
             yield x, z
 
 
 def region_of(place: Place) -> Place:
-    """Return the region that a chunk lies in."""
+    """Return the region that contains a chunk."""
     return place[0] >> 5, place[1] >> 5
 
 
 def is_void(level: Mapping[str, Any]) -> bool:
-    """Whether the game makes nothing but air in the overworld of a ``level.dat``."""
+    """Return whether the game generates only air in the overworld of a ``level.dat``."""
     try:
         overworld = level["WorldGenSettings"]["dimensions"]["minecraft:overworld"]
         settings = overworld["generator"]["settings"]
@@ -220,14 +221,14 @@ def _check_box(low: Corner, size: Sequence[int]) -> None:
     high = low[1] + size[1] - 1
     if low[1] < version.min_y or high > version.max_y:
         raise UsageError(
-            f"the build would reach from layer {low[1]} to {high}, but the world has "
-            f"{version.min_y} to {version.max_y}; choose another Y, or fewer blocks per metre"
+            f"the build would span y {low[1]} to {high}, but the world spans y "
+            f"{version.min_y} to {version.max_y}; choose another Y or fewer blocks per metre"
         )
     if max(abs(low[0]), abs(low[2])) > 29_000_000:
-        raise UsageError(f"x {low[0]}, z {low[2]} lie beyond the world's border at 29,999,984")
+        raise UsageError(f"x {low[0]}, z {low[2]} is beyond the world border at 29,999,984")
     if float(np.prod(np.array(size, float))) > MAX_CELLS:
         shown = " x ".join(map(str, size))
-        raise InputError("build", f"has {shown} blocks; at most {MAX_CELLS:,} are built at once")
+        raise InputError("build", f"has {shown} blocks; the limit is {MAX_CELLS:,}")
 
 
 def _overlap(
@@ -246,10 +247,10 @@ class WorldEntities:
     """The entities of the chunks that a box touches."""
 
     def __init__(self, world: Path, low: Sequence[int], size: Sequence[int], data_version: int):
-        """Read them.
+        """Read the entities.
 
         Raises:
-            DamagedFileError: a file of them is broken.
+            DamagedFileError: If an entity file is damaged.
         """
         self._world, self._low, self._size = world, np.array(low), np.array(size)
         self._data_version = data_version
@@ -265,7 +266,7 @@ class WorldEntities:
             self._held[place] = self._read(place, self._regions[region])
 
     def built(self) -> tuple[Entity, ...]:
-        """Return the entities in the box that an earlier build left there."""
+        """Return the entities of an earlier build that are in the box."""
         found = [
             entity_from_nbt(nbt) for held in self._held.values() for nbt in held if _is_built(nbt)
         ]
@@ -274,9 +275,10 @@ class WorldEntities:
     def changed_files(
         self, gone: Iterable[Entity], come: Iterable[Entity]
     ) -> dict[str, bytes | None]:
-        """Return the files that differ when some entities go and others come; none is written.
+        """Return the new contents of the files that change when entities are added and removed.
 
-        An entity is known by its UUID. Those that come replace those of the same UUID.
+        Entities are identified by their UUID. An added entity replaces an entity with the same
+        UUID.
         """
         wanted = {place: list(held) for place, held in self._held.items()}
         arriving = [dict(entity.nbt) for entity in map(with_uuid, come)]
@@ -307,7 +309,9 @@ class WorldEntities:
             for nbt in held:
                 entity_from_nbt(nbt)
         except (KeyError, TypeError, ValueError, AttributeError) as error:
-            raise DamagedFileError(region.path, "has an entity without id and place") from error
+            raise DamagedFileError(
+                region.path, "contains an entity without an id or a position"
+            ) from error
         return held
 
     def _pack_chunk(self, place: Place, held: list[dict[str, Any]]) -> bytes:
@@ -335,13 +339,13 @@ class WorldEntities:
 
 
 def entity_from_nbt(nbt: dict[str, Any]) -> Entity:
-    """Return an entity of its NBT; all of its tags stay in ``nbt``."""
+    """Return an entity from its NBT, keeping all tags in ``nbt``."""
     x, y, z = (float(value) for value in nbt["Pos"])
     return Entity((x, y, z), str(nbt["id"]), dict(nbt))
 
 
 def tag_entities(entities: Sequence[Entity]) -> tuple[Entity, ...]:
-    """Return entities with their UUID and the tag by which a later build knows them."""
+    """Return entities with a UUID and a tag that identifies them to later builds."""
     found = []
     for number, entity in enumerate(entities):
         nbt = entity_nbt(entity, number)
@@ -351,7 +355,7 @@ def tag_entities(entities: Sequence[Entity]) -> tuple[Entity, ...]:
 
 
 def with_uuid(entity: Entity) -> Entity:
-    """Return an entity whose NBT is whole, as a world holds it."""
+    """Return an entity with all NBT tags that a world requires, including a UUID."""
     return entity if "UUID" in entity.nbt and "Pos" in entity.nbt else tag_entities([entity])[0]
 
 

@@ -1,1 +1,1 @@
-"""Automatic clean-up of built rooms: each repair is an edit that can be undone."""
+"""Automatic clean-up of built rooms. Each repair is an edit that can be undone."""

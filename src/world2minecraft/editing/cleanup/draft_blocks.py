@@ -1,4 +1,4 @@
-"""Blocks of a draft by kind, and their removal and moves, as the clean-up rules need them."""
+"""Masks of blocks by kind, and removal and moves of blocks, for the clean-up rules."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,37 +15,37 @@ FREE = (AIR, "minecraft:cave_air", "minecraft:void_air", "minecraft:light")
 
 
 def visible_blocks(draft: Draft) -> np.ndarray:
-    """Return bool [X, Y, Z]: blocks that one sees; not air, light or barriers."""
+    """Return a mask of visible blocks, bool [X, Y, Z]: all except air, light and barriers."""
     return _by_state(draft, lambda state: len(visual_boxes(state)) > 0)
 
 
 def free_cells(draft: Draft) -> np.ndarray:
-    """Return bool [X, Y, Z]: air, and the light that stands in it."""
+    """Return a mask of air and light blocks, bool [X, Y, Z]."""
     return _by_state(draft, lambda state: state.partition("[")[0] in FREE)
 
 
 def structure_blocks(draft: Draft) -> np.ndarray:
-    """Return bool [X, Y, Z]: blocks of floor, walls, ceiling and windows that one sees."""
+    """Return a mask of visible floor, wall, ceiling and window blocks, bool [X, Y, Z]."""
     return np.isin(draft.semantic, STRUCTURE_CLASSES) & visible_blocks(draft)
 
 
 def object_blocks(draft: Draft) -> np.ndarray:
-    """Return bool [X, Y, Z]: blocks of objects that one sees."""
+    """Return a mask of visible blocks of objects, bool [X, Y, Z]."""
     return np.isin(draft.semantic, OBJECT_CLASSES) & visible_blocks(draft)
 
 
 def metres_to_blocks(draft: Draft, metres: float, least: int = 1) -> int:
-    """Return a length in whole blocks, at least ``least``."""
+    """Convert a length in metres to whole blocks, at least ``least``."""
     return max(least, round(metres * draft.start.blocks_per_metre))
 
 
 def max_crumb_blocks(draft: Draft) -> float:
-    """Return how many blocks a crumb has at most: without its object it is noise."""
+    """Return the maximum number of blocks in a crumb, a small piece that is considered noise."""
     return max(1.0, CRUMB_M3 * draft.start.blocks_per_metre**3)
 
 
 def remove_blocks(draft: Draft, cells: np.ndarray, kind: str, reason: str) -> BlockEdit:
-    """Make cells [N, 3] air and record it; the object is that of most of them."""
+    """Replace cells [N, 3] by air and record the edit for the object with most of the cells."""
     numbers = draft.instance[tuple(cells.T)]
     classes = draft.semantic[tuple(cells.T)]
     return draft.fill(
@@ -59,9 +59,9 @@ def remove_blocks(draft: Draft, cells: np.ndarray, kind: str, reason: str) -> Bl
 
 
 def move_blocks(draft: Draft, cells: np.ndarray, step: np.ndarray, reason: str) -> BlockEdit:
-    """Move what stands in cells [N, 3] by a step of whole blocks, int [3], and record it.
+    """Move the blocks in cells [N, 3] by whole blocks, int [3], and record the edit.
 
-    What signs and chests hold goes with them. What is in the cells that they come to is gone.
+    The contents of signs and chests move with them. Blocks at the new position are replaced.
     """
     old = draft.contents(cells)
     there = cells + step

@@ -1,8 +1,8 @@
-"""Clean-up of floating blocks: they are joined, lowered, hung up or removed.
+"""Clean-up of floating blocks, which are joined, lowered, suspended or removed.
 
-Blocks hold together where their shapes meet, not where their cells do: a lantern over a lower slab
-has half a block of air under it. What holds to the floor, or to a large enough piece of structure,
-is supported; everything else floats.
+Blocks are connected if their shapes touch, not just their cells: there is half a block of air
+between a lantern and a lower slab below it. Blocks connected to the floor, or to a large enough
+piece of structure, are supported. All other blocks float.
 """
 
 from functools import lru_cache
@@ -44,15 +44,15 @@ ASIDE = tuple(np.array(step) for step in ((1, 0, 0), (-1, 0, 0), (0, 0, 1), (0, 
 
 
 def touching_parts(states: np.ndarray, palette: tuple[str, ...], mask: np.ndarray) -> np.ndarray:
-    """Number the parts of a mask whose blocks hold together.
+    """Number the connected parts of a mask of blocks.
 
     Args:
-        states: uint16 [X, Y, Z] in block axes.
-        palette: their texts.
-        mask: bool [X, Y, Z], the cells that count.
+        states: Palette indices, uint16 [X, Y, Z] in block axes.
+        palette: Block states.
+        mask: Cells to include, bool [X, Y, Z].
 
     Returns:
-        int32 [X, Y, Z]: 0 outside, and 1 to n for the parts, in the order of their first cells.
+        Part numbers, int32 [X, Y, Z]: 0 outside the mask, 1 to n in the order of the first cells.
     """
     number = np.full(states.shape, -1, np.int64)
     cells = np.flatnonzero(mask)
@@ -88,7 +88,7 @@ def _touching_pairs(
 
 @lru_cache(maxsize=1 << 16)
 def touches(state: str, other: str, step: tuple[int, int, int]) -> bool:
-    """Whether the shapes of two block states touch, the other one lying ``step`` blocks away.
+    """Return whether the shapes of two block states touch if they are ``step`` blocks apart.
 
     Example:
         >>> touches("minecraft:stone", "minecraft:stone", (0, 1, 0))
@@ -106,7 +106,7 @@ def touches(state: str, other: str, step: tuple[int, int, int]) -> bool:
 
 
 def repair_floating(draft: Draft) -> None:
-    """Repair everything that floats in a draft, the largest part first; each repair is an edit."""
+    """Repair all floating parts of a draft, largest first. Each repair is an edit."""
     for tried in range(ROUNDS):
         parts, carried = _parts(draft)
         sizes = np.bincount(parts.ravel(), minlength=len(carried))
@@ -118,12 +118,12 @@ def repair_floating(draft: Draft) -> None:
             if tried < GENTLE_ROUNDS:
                 _mend(draft, cells, carried[parts])
             else:
-                remove_blocks(draft, cells, "drop", "it hangs in the air whatever is done")
+                remove_blocks(draft, cells, "drop", "floating block that cannot be supported")
             parts, carried = _again(draft, parts, carried, number)
 
 
 def floating_cells(draft: Draft) -> np.ndarray:
-    """Return bool [X, Y, Z]: the blocks that nothing carries."""
+    """Return a mask of unsupported blocks, bool [X, Y, Z]."""
     parts, carried = _parts(draft)
     return np.asarray((parts > 0) & ~carried[parts])
 
@@ -163,11 +163,11 @@ def _again(
 def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
     """Mend one part, int [N, 3]; ``carriers`` are the blocks that are carried."""
     classes = draft.semantic[tuple(cells.T)]
-    counted = f"{_count(len(cells))} of it"
+    counted = _count(len(cells))
     if np.isin(classes, (1, 2, 3, 4)).all():
-        remove_blocks(draft, cells, "drop", f"a piece of structure, {counted}, holds to nothing")
+        remove_blocks(draft, cells, "drop", f"unconnected piece of structure, {counted}")
     elif _is_crumb(draft, cells, carriers):
-        remove_blocks(draft, cells, "drop", f"a crumb, {counted}, hangs in the air")
+        remove_blocks(draft, cells, "drop", f"small floating piece, {counted}")
     elif not (
         _join(draft, cells, carriers)
         or close_gap(draft, cells, carriers)
@@ -175,7 +175,7 @@ def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
         or (not np.isin(classes, STANDING).any() and _hang(draft, cells, carriers))
         or _lower(draft, cells, carriers)
     ):
-        remove_blocks(draft, cells, "drop", f"{counted} hang in the air over nothing")
+        remove_blocks(draft, cells, "drop", f"floating piece with nothing below, {counted}")
 
 
 def _is_crumb(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
@@ -210,7 +210,7 @@ def _join(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
                         state,
                         as_class=int(draft.semantic[at]),
                         as_instance=number,
-                        reason="a part hangs beside the rest of its object",
+                        reason="part detached from the rest of its object",
                         class_id=int(draft.semantic[at]),
                         instance=number,
                     )
@@ -238,7 +238,7 @@ def _put(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     if not ways:
         return False
     length, _, step = min(ways, key=lambda way: way[:2])
-    move_blocks(draft, cells, step, f"it hung in the air, {_count(length)} off")
+    move_blocks(draft, cells, step, f"floating piece, {_count(length)} from a support")
     return True
 
 
@@ -265,7 +265,7 @@ def _hang(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
                 CORD,
                 as_class=class_id,
                 as_instance=number,
-                reason="it hung in the air without its cord",
+                reason="floating piece below a ceiling, suspended on a chain",
                 class_id=class_id,
                 instance=number,
             )
@@ -279,9 +279,7 @@ def _lower(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     while _fits(draft, cells, DOWN * (length + 1)):
         length += 1
         if _touches(draft, cells, DOWN * length, carriers):
-            move_blocks(
-                draft, cells, DOWN * length, f"it hung in the air, {_count(length)} too high"
-            )
+            move_blocks(draft, cells, DOWN * length, f"floating piece, {_count(length)} too high")
             return True
     return False
 

@@ -1,7 +1,7 @@
-"""Clean-up of gaps of less than a block between a thing and what it lies on.
+"""Clean-up of gaps of less than a block between an object and its support.
 
-A thing begins with the cell over a table's top, and the top may end below that: a lower slab, or a
-trapdoor that lies on the table's legs. Or the thing's own lowest blocks fill only the upper part of
+Objects start in the cell above a table top, which can end below that cell if it is a lower slab or
+a trapdoor on the table legs. The lowest blocks of an object can also fill only the upper part of
 their cells.
 """
 
@@ -19,15 +19,15 @@ SUNK_SHARE = 0.25  # A thing takes at most this share of the blocks of what it s
 
 
 def close_gap(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
-    """Close the gap under a part, where it is less than a block; each way is an edit.
+    """Close a gap of less than a block below a part. Each repair is an edit.
 
     Args:
-        draft: the blocks.
-        cells: int [N, 3], the part that hangs.
-        carriers: bool [X, Y, Z], the blocks that are carried.
+        draft: Blocks to repair.
+        cells: Cells of the floating part, int [N, 3].
+        carriers: Mask of supported blocks, bool [X, Y, Z].
 
     Returns:
-        Whether something was done.
+        True if the gap was closed.
     """
     bottom = cells[cells[:, 1] == cells[:, 1].min()]
     under = bottom + DOWN
@@ -43,7 +43,9 @@ def close_gap(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
 
 
 def full_block_of(state: str) -> str:
-    """Return the full block of a slab or a trapdoor, of the same material; others as they are.
+    """Return the full block of the same material as a slab or a trapdoor.
+
+    Other states are returned unchanged.
 
     Example:
         >>> full_block_of("minecraft:oak_trapdoor[facing=east,half=top,open=false]")
@@ -74,7 +76,7 @@ def _reach_down(draft: Draft, cells: np.ndarray, bottom: np.ndarray, names: list
         new = [full_block_of(name) for name in names]
     if new == names:
         return False
-    return _restate(draft, bottom, new, "it hung less than a block over what it lies on")
+    return _restate(draft, bottom, new, "gap of less than a block above its support")
 
 
 def _sink(draft: Draft, cells: np.ndarray) -> bool:
@@ -89,7 +91,7 @@ def _sink(draft: Draft, cells: np.ndarray) -> bool:
         taken = (draft.instance[tuple(new.T)] == number).sum()
         if number and taken > SUNK_SHARE * (draft.instance == number).sum():
             return False
-    move_blocks(draft, cells, DOWN, "it hung less than a block over the plate that it stands on")
+    move_blocks(draft, cells, DOWN, "gap of less than a block above the plate below")
     return True
 
 
@@ -105,7 +107,7 @@ def _raise(draft: Draft, under: np.ndarray) -> bool:
     if not any(low):
         return False
     chosen = [full_block_of(name) for name, is_low in zip(names, low, strict=True) if is_low]
-    return _restate(draft, under[low], chosen, "what lies on it hangs half a block over it")
+    return _restate(draft, under[low], chosen, "gap of half a block below the object on it")
 
 
 def _restate(draft: Draft, cells: np.ndarray, states: list[str], reason: str) -> bool:

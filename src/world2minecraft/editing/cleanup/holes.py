@@ -1,7 +1,7 @@
-"""Clean-up of small holes in shells one block thick: walls, floors and ceilings.
+"""Clean-up of small holes in walls, floors and ceilings that are one block thick.
 
-A hole is a small gap in one plane of the shell that structure surrounds on all sides, through
-which one sees out. Doorways and open windows are larger; what hangs in a hole is left alone.
+A hole is a small gap in one plane, surrounded by structure on all sides, through which the outside
+is visible. Doorways and open windows are larger. Holes that contain an object are not closed.
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ SHELLS = (SemanticClass.WALL, SemanticClass.FLOOR, SemanticClass.CEILING)
 
 
 def close_holes(draft: Draft) -> None:
-    """Close the holes of a draft; each is an edit."""
+    """Close the holes of a draft. Each repair is an edit."""
     solid, free = structure_blocks(draft), free_cells(draft)
     for axis in (1, 0, 2):
         for layer in range(draft.states.shape[axis]):
@@ -67,4 +67,4 @@ def _fill(draft: Draft, cells: np.ndarray, rim: np.ndarray, axis: int) -> None:
     numbers = draft.states[tuple(of_kind.T)]
     state = draft.palette[np.bincount(numbers).argmax()]
     name = SemanticClass(kind).name.lower()
-    draft.fill("fill", cells, state, as_class=kind, reason=f"a hole in the {name}", class_id=kind)
+    draft.fill("fill", cells, state, as_class=kind, reason=f"hole in the {name}", class_id=kind)

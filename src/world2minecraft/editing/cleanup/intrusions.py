@@ -1,8 +1,8 @@
 """Clean-up of furniture that intersects walls or other furniture.
 
-A cell holds one block, so where things met, one of them lost. What shows is a piece of an object
-cut off from it, behind a wall or on the other side of another object, and blocks that are no full
-cubes in the plane of a wall, past which one sees out.
+A cell contains one block, so one of two intersecting objects loses the cell. The visible faults are
+pieces of an object that are cut off by a wall or another object, and non-cubic blocks in the plane
+of a wall that leave gaps to the outside.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ WHOLE = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA)
 
 
 def trim_severed_pieces(draft: Draft) -> None:
-    """Take away the pieces of objects that a wall or another object cuts off; each is an edit."""
+    """Remove pieces of objects cut off by walls or other objects. Each repair is an edit."""
     things, structure = object_blocks(draft), structure_blocks(draft)
     for number in np.unique(draft.instance[things]).tolist():
         if not number:
@@ -45,9 +45,9 @@ def trim_severed_pieces(draft: Draft) -> None:
             at = tuple(between.T)
             is_one = draft.semantic[tuple(main[0])] in WHOLE and _is_stray(draft, cells)
             if len(between) and structure[at].any():
-                _take_out(draft, cells, "a piece of it stands behind or in a wall")
+                _take_out(draft, cells, "piece behind or inside a wall")
             elif is_one and (things[at] & (draft.instance[at] != number)).any():
-                _take_out(draft, cells, "a piece of it stands beyond another object")
+                _take_out(draft, cells, "piece cut off by another object")
 
 
 def _is_stray(draft: Draft, cells: np.ndarray) -> bool:
@@ -69,7 +69,7 @@ def _take_out(draft: Draft, cells: np.ndarray, reason: str) -> None:
 
 
 def close_see_through(draft: Draft) -> None:
-    """Put the wall back where an object in its plane lets one see out; each is an edit."""
+    """Restore the wall where an object in its plane leaves a gap. Each repair is an edit."""
     things, structure = object_blocks(draft), structure_blocks(draft)
     walls = draft.semantic == SemanticClass.WALL
     partial = things & ~_full(draft)
@@ -80,7 +80,7 @@ def close_see_through(draft: Draft) -> None:
             number = int(draft.instance[tuple(cell)])
             own = things & (draft.instance == number)
             if number and own.sum() > 2 * (own & in_plane & out).sum():
-                _put_wall(draft, cell, walls, "an object stood in the wall, and one saw past it")
+                _put_wall(draft, cell, walls, "object in the wall with a gap to the outside")
 
 
 def _between(cells: np.ndarray, main: np.ndarray) -> np.ndarray:

@@ -1,14 +1,14 @@
-"""The automatic clean-up of a built room; each repair is an edit that can be undone.
+"""Automatic clean-up of a built room, in which each repair is an edit that can be undone.
 
 ===========  ===================================================================================
-trim         pieces of furniture that a wall or other furniture cuts off
-see_through  the wall comes back where an object in its plane lets one see out
-holes        small holes in walls, floors and ceilings are closed
-floating     what hangs in the air is joined, put down, hung up or taken away
-steady       what would fall, pop off or change is set as the game would have it, or taken away
+trim         remove pieces of furniture cut off by a wall or other furniture
+see_through  restore the wall where an object in its plane leaves a gap to the outside
+holes        close small holes in walls, floors and ceilings
+floating     join, lower, suspend or remove floating blocks
+steady       update or remove blocks that would fall, break or change in the game
 ===========  ===================================================================================
 
-A room of one block a voxel is an exact copy of its cells and is left as it is.
+A room with one block per voxel is an exact copy of its cells and is not changed.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,7 +31,7 @@ STEADY_ROUNDS = 8  # What stood on something that is taken away goes next.
 
 
 def stabilize(draft: Draft) -> None:
-    """Set connections as the game would, and take away what would not stay; each is an edit."""
+    """Update block connections as in the game, and remove unstable blocks, as recorded edits."""
     for _ in range(STEADY_ROUNDS):
         _connect(draft)
         found = find_unstable(draft.volume())
@@ -51,7 +51,7 @@ def _connect(draft: Draft) -> None:
     if len(cells):
         old = draft.contents(cells)
         after = Blocks(new[tuple(cells.T)], old.semantic, old.instance, old.block_entities)
-        draft.change("connect", cells, after, reason="they join their neighbours otherwise")
+        draft.change("connect", cells, after, reason="connections to neighbours updated")
 
 
 RULES: dict[str, Callable[[Draft], None]] = {
@@ -66,17 +66,18 @@ RULES: dict[str, Callable[[Draft], None]] = {
 def repair_volume(
     volume: BlockVolume, rules: Sequence[str] = tuple(RULES)
 ) -> tuple[BlockVolume, tuple[BlockEdit, ...]]:
-    """Return a volume as a person would leave it, and the edits that made it so.
+    """Return a repaired volume and the edits that repaired it.
 
     Args:
-        volume: a built room; without labels only ``floating`` and ``stabilize`` find anything.
-        rules: which rules, in their order.
+        volume: Built room. Without labels, only ``floating`` and ``steady`` find faults.
+        rules: Rules to apply, in order.
 
     Returns:
-        The volume itself and no edits where nothing is to mend.
+        The repaired volume and the edits. If there is nothing to repair, the volume itself and no
+        edits.
 
     Raises:
-        UnknownNameError: there is no such rule.
+        UnknownNameError: If a rule is unknown.
     """
     for name in rules:
         if name not in RULES:
