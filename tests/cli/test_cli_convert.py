@@ -145,7 +145,7 @@ def test_a_write_that_fails_leaves_the_old_one_and_no_litter(schem, tmp_path, mo
         ("gone.schem", "b.schem", 3, "gone.schem: not found"),
         ("damaged.schem", "b.schem", 3, "damaged.schem: "),
         ("notes.txt", "b.schem", 3, "notes.txt: is no block file"),
-        ("a.schem", "b.xyz", 2, "b.xyz: no block format ends in .xyz; known: "),
+        ("a.schem", "b.xyz", 2, "b.xyz: unknown block format .xyz; known: "),
         ("a.schem", "My 1.20 World", 2, "; the name of a world folder has no dot"),
         ("a.schem", "notes.txt/b.schem", 3, "notes.txt: is a file"),
     ],
@@ -271,7 +271,7 @@ def test_meshes_of_others_are_refused(tmp_path, capsys):
     writer = GlbWriter("another program")
     (tmp_path / "a.glb").write_bytes(writer.to_bytes())
     assert convert(tmp_path / "a.glb", tmp_path / "b.schem") == 3
-    assert "holds meshes and no blocks; only a .glb that this program wrote is read" in (
+    assert "contains no blocks; only .glb files written by this program can be read" in (
         capsys.readouterr().err
     )
 

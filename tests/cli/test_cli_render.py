@@ -191,7 +191,7 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
         (["--box", "1,2,3,1,5,6"],
          "--box must have x0 < x1, y0 < y1 and z0 < z1, got '1,2,3,1,5,6'"),
         (["--box", "100,0,0,101,1,1"],
-         "--box lies beside the build, which is 8 x 5 x 7 blocks from"),
+         "--box does not overlap the build, which is 8 x 5 x 7 blocks from"),
         (["--format", "bmp"], "--format must be png, jpg or webp, got 'bmp'"),
         (["--depth-format", "tif"], "--depth-format must be png, exr or npy, got 'tif'"),
         (["--quality", "0"], "--quality must be 1 to 100, got 0"),
@@ -269,9 +269,9 @@ def test_bad_input_is_told(tmp_path, schem, capsys):
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("[]", "is no scene (no JSON object)"),
+        ("[]", "is not a valid scene (expected a JSON object)"),
         ("{", "is not JSON"),
-        ("{}", "is no scene ('corner')"),
+        ("{}", "is not a valid scene ('corner')"),
     ],
 )
 def test_a_broken_scene_is_told(build, text, reason, capsys):

@@ -251,15 +251,15 @@ def test_a_mutated_file_is_refused_or_read(tmp_path_factory, data):
 @pytest.mark.parametrize(
     ("raw", "reason"),
     [
-        (b"", "is no binary glTF 2.0"),
-        (b"glTF" + struct.pack("<II", 1, 20) + bytes(8), "is no binary glTF 2.0"),
+        (b"", "is not a valid binary glTF 2.0 file"),
+        (b"glTF" + struct.pack("<II", 1, 20) + bytes(8), "is not a valid binary glTF 2.0 file"),
         (
             b"glTF" + struct.pack("<IIII", 2, 28, 99, 0x4E4F534A) + bytes(8),
-            "says 99 bytes in a chunk and holds fewer",
+            "declares a chunk of 99 bytes but contains fewer",
         ),
         (
             b"glTF" + struct.pack("<IIII", 2, 24, 4, 0x4E4F534A) + b"[1] ",
-            "its JSON chunk is no object",
+            "the JSON chunk is not an object",
         ),
     ],
 )
@@ -275,10 +275,10 @@ def test_views_stay_within_the_file(tmp_path):
     writer.tree["bufferViews"][0]["byteLength"] = 5
     (tmp_path / "a.glb").write_bytes(writer.to_bytes())
     tree, numbers = read_glb(tmp_path / "a.glb")
-    with pytest.raises(InputError, match="reaches beyond its numbers"):
+    with pytest.raises(InputError, match="extends beyond the binary chunk"):
         view_bytes(tree, numbers, 0, "a.glb")
     for index in (1, -1, "x", None):
-        with pytest.raises(InputError, match="has no buffer view"):
+        with pytest.raises(InputError, match="does not contain buffer view"):
             view_bytes(tree, numbers, index, "a.glb")
 
 
@@ -365,7 +365,7 @@ def test_ids_have_colours_of_their_own():
 
 def test_ids_above_the_limit_and_bad_names_are_refused(tmp_path):
     bodies, _ = volume_meshes(replace(furnished(), instance=furnished().instance * 1200))
-    with pytest.raises(UsageError, match="Habitat reads ids up to 10,000; the objects go to 10,8"):
+    with pytest.raises(UsageError, match="Habitat supports ids up to 10,000, but the highest object id is 10,8"):
         semantic_ids(bodies)
     with pytest.raises(UsageError, match=r"scene name '\.\./x' must be"):
         write_habitat(furnished(), tmp_path, name="../x")

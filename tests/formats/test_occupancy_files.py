@@ -120,14 +120,14 @@ def test_centres_in_metres_are_taken_as_they_are(tmp_path):
 @pytest.mark.parametrize(
     ("value", "reason"),
     [
-        ([], "there is no voxel, and no shape"),
-        ({"voxels": [[0, 0, 0, 12]]}, "12 is no class; they are 0 to 11, 255 or their names"),
+        ([], "neither voxels nor a shape found"),
+        ({"voxels": [[0, 0, 0, 12]]}, "12 is not a class; expected 0 to 11, 255 or a class name"),
         ({"voxels": [[0, 0, 0, "sofas"]]}, "'sofas' is no class; they are 0 to 11, 255"),
-        ([[0, 0, 0]], "[0, 0, 0] is not x, y, z and a class"),
+        ([[0, 0, 0]], "expected x, y, z and a class, got [0, 0, 0]"),
         ([[0, None, 0, 2]], "float() argument must be"),
-        ([[0, "nan", 0, 2]], "a place is no number"),
+        ([[0, "nan", 0, 2]], "a position is not a number"),
         ({"voxels": [[0, 0, 0, 2], [0.5, 0, 0, 2]], "voxel_m": -1}, "must be above 0, not -1"),
-        (7, "there is no list of them"),
+        (7, "no list found"),
         ({"coords": [[0, 0, 0]], "labels": [1, 2]}, "1 places have 2 classes"),
     ],
 )

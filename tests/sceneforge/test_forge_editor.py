@@ -64,7 +64,7 @@ def test_a_command_is_given_by_name_as_a_value_or_as_its_plan(editor):
     assert editor.draft.labels.ravel()[3] == 3
     editor.do(planned)
     assert editor.draft.labels.ravel()[1:4].tolist() == [0, 0, 0]
-    with pytest.raises(ConflictError, match="the labels of its cells changed since"):
+    with pytest.raises(ConflictError, match="the labels of its cells has changed since"):
         editor.do(planned)
     assert editor.rev == 3
 

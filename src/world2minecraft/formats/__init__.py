@@ -1,1 +1,1 @@
-"""Readers and writers of the program's own files and of foreign formats that are not the game's."""
+"""File formats: the program's own, glTF, Habitat, RoomPlan and the paper's JSON."""

@@ -1,14 +1,13 @@
 """Meshes of a block volume: one for each object, wall, floor, ceiling and window.
 
-Meshes are in metres with y up (block axes times the block's size, from the room's origin), closed
-each for itself, with the colour of every face. Display entities belong to the object that they
-draw. What nobody sees (air, barriers, light blocks) has no mesh.
+Meshes are in metres with y up (block axes times the block size, from the room's origin). Each mesh
+is closed and has a colour for every face. Display entities belong to the object that they
+represent. Invisible blocks (air, barriers, light blocks) have no mesh.
 
-Boxes of one owner that touch hide each other's faces, and faces of one material that lie side by
-side become one rectangle (greedy meshing). What is left is exactly the surface of the union of an
-owner's boxes, where these share no volume. Owners do not hide each other: each is a closed mesh of
-its own, so that it can be moved. Through a clear material one sees what is behind, so it hides only
-what is clear too.
+Touching boxes of one owner hide each other's faces, and adjacent faces of one material are merged
+to rectangles (greedy meshing). The result is the exact surface of the union of an owner's boxes, if
+they do not overlap. Owners do not hide each other's faces: each has a closed mesh of its own that
+can be moved. A transparent material hides only other transparent materials.
 """
 
 from collections.abc import Iterable
@@ -38,9 +37,10 @@ _CLASSES = 1 << 16  # Owners below it are instances, above it classes without in
 
 
 class Faces(NamedTuple):
-    """Rectangles on planes across an axis; ``u`` and ``v`` are the two axes after it, in a ring.
+    """Rectangles on planes perpendicular to an axis.
 
-    Rows are sorted by owner. A face looks along its axis where ``side`` is 1, else against it.
+    ``u`` and ``v`` are the next two axes in cyclic order. Rows are sorted by owner. A face points
+    along its axis if ``side`` is 1, and against it otherwise.
     """
 
     owner: np.ndarray  # int32 [F]
@@ -69,7 +69,7 @@ class Faces(NamedTuple):
         return corners
 
     def normals(self) -> np.ndarray:
-        """Return the directions that the faces look, int32 [F, 3]."""
+        """Return the normals of the faces, int32 [F, 3]."""
         result = np.zeros((len(self.owner), 3), np.int32)
         result[np.arange(len(result)), self.axis] = 2 * self.side - 1
         return result
@@ -89,10 +89,10 @@ def visible_faces(
     """Return the surface of each owner's boxes.
 
     Args:
-        boxes: int32 [N, 6], x0 y0 z0 x1 y1 z1, each with some volume.
-        owner: int32 [N], the owner of each box.
-        material: int32 [N], indices into ``is_clear``.
-        is_clear: bool [M], whether one sees through a material.
+        boxes: Boxes x0 y0 z0 x1 y1 z1 with positive volume, int32 [N, 6].
+        owner: Owner of each box, int32 [N].
+        material: Index of each box's material into ``is_clear``, int32 [N].
+        is_clear: Whether each material is transparent, bool [M].
     """
     rows = np.concatenate([_side(boxes, owner, material, a, s) for a in range(3) for s in (0, 1)])
     rows = rows[np.lexsort((rows[:, 2], rows[:, 1], rows[:, 0]))]
@@ -206,7 +206,7 @@ def _is_all(drawn, side, u, v0, v1, kind):  # pragma: no cover
 
 @dataclass(frozen=True)
 class Look:
-    """How a face is drawn: its sRGB colour, how opaque it is (0 to 255), whether it glows."""
+    """The appearance of a face: sRGB colour, opacity (0 to 255), and whether it glows."""
 
     rgb: tuple[int, int, int]
     alpha: int = 255
@@ -214,16 +214,16 @@ class Look:
 
     @property
     def is_clear(self) -> bool:
-        """Whether one sees through."""
+        """Whether the face is transparent."""
         return self.alpha < 255
 
 
 @dataclass(frozen=True, eq=False)
 class BlockMesh:
-    """One closed mesh of rectangles, in metres, y up.
+    """A closed mesh of rectangles in metres with y up.
 
     ``corners`` are counter-clockwise seen from outside. ``instance`` is 0 for structure and for
-    what has no label; their meshes hold all blocks of their class.
+    blocks without labels, whose meshes contain all blocks of their class.
     """
 
     class_id: int
@@ -234,18 +234,18 @@ class BlockMesh:
 
     @property
     def name(self) -> str:
-        """A name that no other mesh of the volume has."""
+        """A name that is unique among the meshes of the volume."""
         kind = CLASS_NAMES[self.class_id] if self.class_id else "blocks"
         return f"{kind}_{self.instance}" if self.instance else kind
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """The lowest and the highest corner, float64 [3] each."""
+        """The minimum and maximum corner, float64 [3] each."""
         return self.corners.min(axis=(0, 1)), self.corners.max(axis=(0, 1))
 
 
 def volume_meshes(volume: BlockVolume) -> tuple[list[BlockMesh], list[Look]]:
-    """Return the meshes of a volume, structure first, then objects by number; and their looks."""
+    """Return the meshes of a volume, structure first, then objects by id, and their looks."""
     looks = _Looks()
     owners = _owners(volume)
     parts = [_block_faces(volume, owners, looks), *_display_faces(volume, looks)]

@@ -1,4 +1,4 @@
-"""Read any build as a volume: a run's folder, its build, any world, or a file of blocks."""
+"""Read any build as a volume: a run folder, its build, a world, or a block file."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -24,7 +24,7 @@ SCENE_MARGIN = 2  # Blocks around a scene: display entities may stand out of it.
 
 
 class PlayerStart(NamedTuple):
-    """Where the player of a world of this program starts, in world block coordinates."""
+    """The spawn point of a world written by this program, in world block coordinates."""
 
     x: float
     y: float
@@ -34,9 +34,10 @@ class PlayerStart(NamedTuple):
 
 @dataclass(eq=False)
 class BuildSource:
-    """A volume that was read; ``notes`` say what was chosen for the user.
+    """A volume with notes on choices that were made for the user.
 
-    ``folder`` holds the ``scene.json`` that the volume has its labels or scale from, or is None.
+    ``folder`` contains the ``scene.json`` with the labels or scale of the volume. It is None if
+    there is no such file.
     """
 
     volume: BlockVolume
@@ -48,7 +49,7 @@ class BuildSource:
 
 
 def box_around_spawn(world: Path) -> tuple[Box, str]:
-    """Return the blocks around a world's spawn as a box, and a note for the user."""
+    """Return a box around the spawn point of a world, and a note for the user."""
     x, y, z = level_spawn(read_level(world))
     wide, low, deep = SPAWN_REACH
     place = " ".join(str(value) for value in (x, y, z))
@@ -63,16 +64,17 @@ def read_build(
     *,
     choose: Callable[[Path], tuple[Box, str]] = box_around_spawn,
 ) -> BuildSource:
-    """Read a file, a world, a run's folder or its build.
+    """Read a block file, a world, a run folder or its build.
 
     Args:
-        path: where it is.
-        box: which blocks, the last ones not included; a world of this program says so itself.
-        choose: chooses the box of another world, and a note that says so.
+        path: Path of the build.
+        box: Box of blocks to read, with exclusive upper bounds. Worlds written by this program
+            record their own box.
+        choose: Function that selects the box of other worlds and returns it with a note.
 
     Raises:
-        InputError: it cannot be read, or nothing but air is there.
-        UsageError: the box lies beside the build.
+        InputError: If the build cannot be read or contains only air.
+        UsageError: If the box does not overlap the build.
     """
     if not path.exists():
         raise InputError(path, "not found")
@@ -84,12 +86,12 @@ def read_build(
     source.volume = trim_air(source.volume)
     if not source.volume.states.any():
         where = "in this box" if box else "here"
-        raise InputError(path, f"only air {where}; choose another --box")
+        raise InputError(path, f"contains only air {where}; choose another --box")
     return source
 
 
 def level_spawn(level: dict[str, Any]) -> tuple[int, int, int]:
-    """Return the spawn of a level, of old and new games; the world's middle where it has none."""
+    """Return the spawn point of a level of any game version, or the world origin if it has none."""
     try:
         if "spawn" in level:  # Since 1.21.9.
             x, y, z = (int(value) for value in level["spawn"]["pos"])
@@ -129,7 +131,9 @@ def _find_scene(path: Path) -> tuple[dict[str, Any] | None, Path | None]:
         if (folder / "scene.json").is_file():
             scene = read_json(folder / "scene.json")
             if not isinstance(scene, dict):
-                raise DamagedFileError(folder / "scene.json", "is no scene (no JSON object)")
+                raise DamagedFileError(
+                    folder / "scene.json", "is not a valid scene (expected a JSON object)"
+                )
             return scene, folder
     return None, None
 
@@ -139,7 +143,7 @@ def _box_of(scene: dict[str, Any], path: Path) -> Box:
         x, y, z = (int(value) for value in scene["corner"])
         east, up, south = (int(value) for value in scene["size"])
     except (KeyError, TypeError, ValueError) as error:
-        raise DamagedFileError(path, f"is no scene ({error})") from error
+        raise DamagedFileError(path, f"is not a valid scene ({error})") from error
     return (
         x - SCENE_MARGIN,
         y - SCENE_MARGIN,
@@ -157,7 +161,7 @@ def _with_labels(volume: BlockVolume, scene: dict[str, Any], folder: Path) -> Bl
     try:
         return replace(volume, block_to_room=np.array(scene["block_to_room"], np.float64))
     except (KeyError, TypeError, ValueError) as error:
-        raise DamagedFileError(folder / "scene.json", f"is no scene ({error})") from error
+        raise DamagedFileError(folder / "scene.json", f"is not a valid scene ({error})") from error
 
 
 def _start_of(scene: dict[str, Any]) -> PlayerStart | None:

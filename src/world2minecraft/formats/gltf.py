@@ -1,15 +1,15 @@
-"""glTF: a volume as a binary ``.glb`` with one mesh for each object.
+"""glTF export of volumes to binary ``.glb`` files with one mesh per object.
 
-Metres, y up, from the room's origin: room (x, y, z) stands at (x, z, -y). Each object is a node
-with the middle of its underside as origin, and ``extras``: ``class`` (the id), ``class_name``,
-``instance`` and ``size_m`` along x, y and z. Colours are texels of one small texture, so that every
-viewer, engine and editor shows them; a second texture holds what glows.
+Meshes are in metres with y up, from the room's origin: room (x, y, z) becomes (x, z, -y). Each
+object is a node whose origin is the centre of its underside, with ``extras``: ``class`` (the id),
+``class_name``, ``instance`` and ``size_m`` along x, y and z. Colours are texels of one small
+texture, which all viewers, engines and editors support. A second texture contains glowing colours.
 
-A ``.glb`` is one JSON chunk and one chunk of little-endian numbers; each view of the numbers starts
-at a multiple of four. The blocks themselves lie in a buffer view of their own, named by the root's
-``extras``: one NBT tree, packed by gzip, of sides, corner, ``block_to_room``, palette, states,
-labels, block entities and entities. From a file that no editor has written since, ``read_gltf``
-gives the volume back, labels and all.
+A ``.glb`` file consists of a JSON chunk and a chunk of little-endian numbers. Each buffer view
+starts at a multiple of four bytes. The blocks are stored in a separate buffer view named by the
+root's ``extras``: a gzip-compressed NBT tree with the size, corner, ``block_to_room``, palette,
+states, labels, block entities and entities. ``read_gltf`` restores the volume with its labels from
+a file that no editor has changed.
 """
 
 import io
@@ -47,19 +47,19 @@ OPAQUE, CLEAR = 0, 1  # The two materials.
 
 
 class GlbWriter:
-    """A glTF tree that grows: add arrays and rows of lists, then take the bytes."""
+    """A writer that collects arrays and JSON rows of a glTF file."""
 
     def __init__(self, generator: str) -> None:
         self.tree: dict[str, Any] = {"asset": {"version": "2.0", "generator": generator}}
         self._numbers = bytearray()
 
     def add(self, kind: str, row: dict[str, Any]) -> int:
-        """Add a row to a list of the tree, such as ``meshes``; return its index."""
+        """Append a row to a list of the tree, such as ``meshes``, and return its index."""
         self.tree.setdefault(kind, []).append(row)
         return len(self.tree[kind]) - 1
 
     def view(self, data: bytes, target: int | None = None) -> int:
-        """Add bytes; return the index of their buffer view."""
+        """Append bytes and return the index of their buffer view."""
         self._numbers += bytes(-len(self._numbers) % 4)
         row: dict[str, Any] = {"buffer": 0, "byteOffset": len(self._numbers)}
         row["byteLength"] = len(data)
@@ -69,9 +69,9 @@ class GlbWriter:
         return self.add("bufferViews", row)
 
     def accessor(self, values: np.ndarray, use: Literal["vertices", "indices"]) -> int:
-        """Add an array [N] or [N, 2 to 4] of float32, uint32 or uint16; return its accessor.
+        """Append an array [N] or [N, 2 to 4] of float32, uint32 or uint16, and return its accessor.
 
-        Bounds are written for vertices of three numbers, which positions need.
+        Bounds are written for vertices with three components, as required for positions.
         """
         target = VERTICES if use == "vertices" else INDICES
         packed = np.ascontiguousarray(values).astype(values.dtype.newbyteorder("<"))
@@ -87,7 +87,7 @@ class GlbWriter:
         return self.add("accessors", row)
 
     def to_bytes(self) -> bytes:
-        """Return the whole file; the same tree gives the same bytes."""
+        """Return the whole file. Equal trees give identical bytes."""
         numbers = bytes(self._numbers) + bytes(-len(self._numbers) % 4)
         tree = dict(self.tree)
         if numbers:
@@ -104,22 +104,23 @@ def read_glb(path: str | Path) -> tuple[dict[str, Any], memoryview]:
     """Read a binary glTF file.
 
     Returns:
-        The tree of its JSON chunk, and the bytes of its chunk of numbers (empty without one).
+        The tree of the JSON chunk, and the bytes of the binary chunk (empty if there is none).
 
     Raises:
-        InputError: there is no file. DamagedFileError: it is no binary glTF 2.0.
-        LimitError: it is too large.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a valid binary glTF 2.0 file.
+        LimitError: If the file is too large.
     """
     data = read_bytes(path, MAX_BYTES)
     if len(data) < _HEAD.size + _CHUNK.size or _HEAD.unpack_from(data)[:2] != (MAGIC, 2):
-        raise DamagedFileError(path, "is no binary glTF 2.0")
+        raise DamagedFileError(path, "is not a valid binary glTF 2.0 file")
     chunks: dict[int, memoryview] = {}
     at, end = _HEAD.size, min(len(data), _HEAD.unpack_from(data)[2])
     while at + _CHUNK.size <= end:
         size, kind = _CHUNK.unpack_from(data, at)
         at += _CHUNK.size
         if size > end - at:
-            raise DamagedFileError(path, f"says {size:,} bytes in a chunk and holds fewer")
+            raise DamagedFileError(path, f"declares a chunk of {size:,} bytes but contains fewer")
         chunks.setdefault(kind, memoryview(data)[at : at + size])
         at += size
     nothing = memoryview(b"")
@@ -130,40 +131,42 @@ def view_bytes(tree: dict[str, Any], numbers: memoryview, index: Any, path: str 
     """Return the bytes of a buffer view.
 
     Raises:
-        DamagedFileError: there is no such view, or it reaches beyond the numbers.
+        DamagedFileError: If the buffer view does not exist or extends beyond the binary chunk.
     """
     try:
         view = tree["bufferViews"][int(index)]
         start, size = int(view.get("byteOffset", 0)), int(view["byteLength"])
         if int(index) < 0 or int(view["buffer"]) != 0:
-            raise ValueError("it lies in another file")
+            raise ValueError("the buffer view is in another file")
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
-        raise DamagedFileError(path, f"has no buffer view {str(index)[:20]}") from error
+        raise DamagedFileError(path, f"does not contain buffer view {str(index)[:20]}") from error
     if start < 0 or size < 0 or start + size > len(numbers):
-        raise DamagedFileError(path, f"its buffer view {index} reaches beyond its numbers")
+        raise DamagedFileError(path, f"buffer view {index} extends beyond the binary chunk")
     return bytes(numbers[start : start + size])
 
 
 def _tree_of(text: memoryview, path: str | Path) -> dict[str, Any]:
     if len(text) > MAX_JSON_BYTES:
-        raise LimitError(path, f"has {len(text):,} bytes of JSON; at most {MAX_JSON_BYTES:,}")
+        raise LimitError(path, f"has {len(text):,} bytes of JSON; the limit is {MAX_JSON_BYTES:,}")
     try:
         tree = json.loads(bytes(text))
     except (ValueError, RecursionError) as error:
-        raise DamagedFileError(path, f"its JSON chunk is no JSON ({error})") from error
+        raise DamagedFileError(path, f"the JSON chunk is not valid JSON ({error})") from error
     if not isinstance(tree, dict):
-        raise DamagedFileError(path, "its JSON chunk is no object")
+        raise DamagedFileError(path, "the JSON chunk is not an object")
     return tree
 
 
 def pack_volume(volume: BlockVolume) -> bytes:
-    """Return the bytes of a volume; the same volume gives the same bytes.
+    """Return a volume as bytes. Equal volumes give identical bytes.
 
     Raises:
-        UsageError: it is larger than is read back.
+        UsageError: If the volume is too large to be read back.
     """
     if volume.states.size > MAX_CELLS:
-        raise UsageError(f"a .glb holds at most {MAX_CELLS:,} blocks, not {volume.states.size:,}")
+        raise UsageError(
+            f"a .glb file can store at most {MAX_CELLS:,} blocks, got {volume.states.size:,}"
+        )
     tree: dict[str, Any] = {
         "format": 1,
         "size": np.array(volume.states.shape, np.int32),
@@ -194,18 +197,19 @@ def pack_volume(volume: BlockVolume) -> bytes:
 
 
 def unpack_volume(data: bytes, path: str | Path) -> BlockVolume:
-    """Return the volume of ``pack_volume``'s bytes.
+    """Parse a volume written by ``pack_volume``.
 
     Raises:
-        DamagedFileError: they are no volume. LimitError: they ask for too much.
+        DamagedFileError: If the bytes are not a valid volume.
+        LimitError: If the volume is too large.
     """
     _, tree = read_nbt(unpack(data, path, LIMITS.bytes), path, LIMITS)
     try:
         if tree["format"] != 1:
-            raise ValueError(f"its blocks are of format {tree['format']}, not 1")
+            raise ValueError(f"block format must be 1, got {tree['format']}")
         x, y, z = (int(side) for side in tree["size"])
         if min(x, y, z) < 0 or x * y * z > MAX_CELLS:
-            raise LimitError(path, f"says {x} x {y} x {z} blocks; at most {MAX_CELLS:,} are read")
+            raise LimitError(path, f"declares {x} x {y} x {z} blocks; the limit is {MAX_CELLS:,}")
         east, up, south = (int(value) for value in tree["corner"])
         return BlockVolume(
             **{name: _array(tree[name], kind, (x, y, z)) for name, kind in _ARRAYS},
@@ -216,7 +220,7 @@ def unpack_volume(data: bytes, path: str | Path) -> BlockVolume:
             entities=tuple(map(_entity, tree["entities"])),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DamagedFileError(path, f"holds no volume of blocks ({error})") from error
+        raise DamagedFileError(path, f"does not contain a valid block volume ({error})") from error
 
 
 def _array(raw: np.ndarray, kind: type, shape: tuple[int, int, int]) -> np.ndarray:
@@ -242,16 +246,17 @@ def write_gltf(
     templates: Mapping[int, str] | None = None,
     keep_blocks: bool = True,
 ) -> None:
-    """Write a volume as ``.glb``.
+    """Write a volume as a ``.glb`` file.
 
     Args:
-        volume: the blocks; labels, where it has some, part them into objects.
-        path: the file.
-        templates: the template of each object by its number; it goes into the extras.
-        keep_blocks: whether the blocks go into the file too, so that it can be read again.
+        volume: Blocks to write. If they have labels, each object becomes a mesh.
+        path: Output file.
+        templates: Furniture template of each object by id, which is written to the extras.
+        keep_blocks: Whether to store the blocks in the file so that it can be read again.
 
     Raises:
-        UsageError: nothing of the volume can be seen. OutputError: it cannot be written.
+        UsageError: If the volume contains no visible blocks.
+        OutputError: If the file cannot be written.
     """
     write_bytes(path, gltf_bytes(volume, templates=templates, keep_blocks=keep_blocks))
 
@@ -262,10 +267,14 @@ def gltf_bytes(
     templates: Mapping[int, str] | None = None,
     keep_blocks: bool = True,
 ) -> bytes:
-    """Return the bytes of ``write_gltf``. Raises what it raises."""
+    """Return the contents of the file that ``write_gltf`` writes.
+
+    Raises:
+        UsageError: If the volume contains no visible blocks.
+    """
     meshes, looks = volume_meshes(volume)
     if not meshes:
-        raise UsageError("the volume holds no block that can be seen; glTF needs a mesh")
+        raise UsageError("the volume contains no visible blocks, which glTF requires for a mesh")
     writer = GlbWriter(f"World2Minecraft {__version__}")
     _put_materials(writer, looks)
     side = texture_side(len(looks))
@@ -282,23 +291,24 @@ def gltf_bytes(
 
 
 def read_gltf(path: str | Path) -> BlockVolume:
-    """Read the volume that ``write_gltf`` put into a file.
+    """Read a volume that was stored by ``write_gltf``.
 
     Raises:
-        InputError: there is no file, or it holds no blocks. DamagedFileError: it is no ``.glb``.
-        LimitError: it is too large.
+        InputError: If the file does not exist or contains no blocks.
+        DamagedFileError: If the file is not a valid ``.glb`` file.
+        LimitError: If the file is too large.
     """
     tree, numbers = read_glb(path)
     held = tree.get("extras")
     ours = held.get(EXTRAS_KEY) if isinstance(held, dict) else None
     if not isinstance(ours, dict) or "blocks" not in ours:
-        reason = "holds meshes and no blocks; only a .glb that this program wrote is read"
+        reason = "contains no blocks; only .glb files written by this program can be read"
         raise InputError(path, reason)
     return unpack_volume(view_bytes(tree, numbers, ours["blocks"], path), path)
 
 
 def body_extras(mesh: BlockMesh, template: str | None = None) -> dict[str, Any]:
-    """Return what a mesh is: ``class``, ``class_name``, ``instance``, ``size_m``."""
+    """Return the properties of a mesh: ``class``, ``class_name``, ``instance`` and ``size_m``."""
     low, high = mesh.bounds
     extras: dict[str, Any] = {
         "class": mesh.class_id,
@@ -310,19 +320,22 @@ def body_extras(mesh: BlockMesh, template: str | None = None) -> dict[str, Any]:
 
 
 def base_center(mesh: BlockMesh) -> np.ndarray:
-    """Return the middle of a mesh's underside, float64 [3], where its node stands."""
+    """Return the centre of a mesh's underside, the origin of its node, float64 [3]."""
     low, high = mesh.bounds
     return np.round([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2], 6)
 
 
 def add_default_scene(writer: GlbWriter, nodes: Sequence[int]) -> None:
-    """Put nodes into the one scene, which is the file's default."""
+    """Add a scene with the given nodes, and make it the default scene."""
     writer.add("scenes", {"name": "room", "nodes": list(nodes)})
     writer.tree["scene"] = 0
 
 
 def add_vertices(writer: GlbWriter, mesh: BlockMesh, rows: np.ndarray) -> dict[str, int]:
-    """Add positions and normals of some faces of a mesh, from its foot; return the attributes."""
+    """Add positions, relative to the mesh's base, and normals of faces.
+
+    Returns the accessors by attribute name.
+    """
     positions = (mesh.corners[rows].reshape(-1, 3) - base_center(mesh)).astype(np.float32)
     normals = np.repeat(mesh.normals[rows], 4, axis=0).astype(np.float32)
     return {
@@ -332,14 +345,14 @@ def add_vertices(writer: GlbWriter, mesh: BlockMesh, rows: np.ndarray) -> dict[s
 
 
 def add_triangles(writer: GlbWriter, count: int) -> int:
-    """Add the triangles of ``count`` rectangles; return their accessor."""
+    """Add the triangles of ``count`` rectangles and return their accessor."""
     corners = np.arange(count)[:, None] * 4 + TRIANGLES
     dtype = np.uint16 if count * 4 < 0xFFFF else np.uint32
     return writer.accessor(corners.ravel().astype(dtype), "indices")
 
 
 def texture_side(count: int) -> int:
-    """Return the side, a power of two, of the square texture that holds so many colours.
+    """Return the side, a power of two, of the smallest square texture for a number of colours.
 
     Example:
         >>> texture_side(26)

@@ -2,17 +2,17 @@
 
 ::
 
-    NAME.scene_dataset_config.json      give this file to Habitat
-    scenes/NAME.scene_instance.json     one scene: the stage, no loose objects
-    stages/NAME.stage_config.json       which files make the stage
-    stages/NAME.glb                     what is seen
-    stages/NAME.semantic.glb            the same, each object in a colour of its own
-    stages/NAME.semantic.txt            colour, id and class of each object, in HM3D's form
-    stages/info_semantic.json           classes, objects and their boxes, in Replica's form
+    NAME.scene_dataset_config.json      the file to open in Habitat
+    scenes/NAME.scene_instance.json     a scene with the stage and no separate objects
+    stages/NAME.stage_config.json       the files of the stage
+    stages/NAME.glb                     meshes for rendering
+    stages/NAME.semantic.glb            the same meshes with a unique colour per object
+    stages/NAME.semantic.txt            colour, id and class of each object, in HM3D's format
+    stages/info_semantic.json           classes, objects and their boxes, in Replica's format
 
-The id of an object is its ``instance``; walls, floor and the like have the ids after the last.
-Meshes are y up; the boxes of ``info_semantic.json`` are z up, as Habitat expects of Replica: in
-the room's frame.
+The id of an object is its ``instance``. Walls, floor and other structure have the ids after the
+last object. Meshes have y up. The boxes in ``info_semantic.json`` are in the room frame with z up,
+as Habitat expects for Replica.
 """
 
 import colorsys
@@ -46,21 +46,20 @@ _TURN = 0.618034  # Of the colour circle from one object to the next: neighbours
 
 
 def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room") -> None:
-    """Write a volume as a scene dataset of one scene.
+    """Write a volume as a Habitat scene dataset with one scene.
 
     Args:
-        volume: the blocks; labels, where it has some, part them into objects.
-        folder: where the files go; made when it is not there.
-        name: what the scene is called.
+        volume: Blocks to write. If they have labels, each object becomes a mesh.
+        folder: Output folder, which is created if necessary.
+        name: Name of the scene.
 
     Raises:
-        UsageError: nothing of the volume can be seen, it has more than 10,000 objects, or the
-            name is no file name. OutputError: a file cannot be written.
+        UsageError: If the volume contains no visible blocks or more than 10,000 objects, or if the
+            name is not a valid file name.
+        OutputError: If a file cannot be written.
     """
     if not name or not all(letter.isalnum() or letter in "_-" for letter in name):
-        raise UsageError(
-            f"scene name {name!r} must be letters, digits, _ and -; name it as room.habitat"
-        )
+        raise UsageError(f"scene name must consist of letters, digits, _ and -, got {name!r}")
     target, render = Path(folder), gltf_bytes(volume, keep_blocks=False)
     meshes, _ = volume_meshes(volume)
     ids = semantic_ids(meshes)
@@ -80,10 +79,10 @@ def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room"
 
 
 def semantic_ids(meshes: Sequence[BlockMesh]) -> list[int]:
-    """Return the id of each mesh: its instance, or for structure the next free number.
+    """Return the id of each mesh: its object id, or the next free id for structure.
 
     Raises:
-        UsageError: an id would be above what Habitat reads.
+        UsageError: If an id exceeds the limit of Habitat.
     """
     last = max(mesh.instance for mesh in meshes)
     ids = []
@@ -91,12 +90,14 @@ def semantic_ids(meshes: Sequence[BlockMesh]) -> list[int]:
         last += not mesh.instance
         ids.append(mesh.instance or last)
     if max(ids) > MAX_ID:
-        raise UsageError(f"Habitat reads ids up to {MAX_ID:,}; the objects go to {max(ids):,}")
+        raise UsageError(
+            f"Habitat supports ids up to {MAX_ID:,}, but the highest object id is {max(ids):,}"
+        )
     return ids
 
 
 def semantic_colour(number: int) -> tuple[int, int, int]:
-    """Return the sRGB colour of an id, another for each up to 10,000.
+    """Return the sRGB colour of an id, which is unique for ids up to 10,000.
 
     Example:
         >>> semantic_colour(1)
@@ -111,7 +112,7 @@ def semantic_colour(number: int) -> tuple[int, int, int]:
 
 
 def semantic_text(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> str:
-    """Return HM3D's list: a header, then id, colour, class and region of each object."""
+    """Return the object list in HM3D's format: a header, then id, colour, class and region."""
     rows = [
         f'{number},{"".join(f"{part:02X}" for part in semantic_colour(number))},"{_kind(mesh)}",0'
         for number, mesh in sorted(zip(ids, meshes, strict=True), key=lambda pair: pair[0])
@@ -120,9 +121,9 @@ def semantic_text(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> str:
 
 
 def semantic_json(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> dict[str, Any]:
-    """Return Replica's ``info_semantic.json``: classes, objects with boxes, the class of each id.
+    """Return Replica's ``info_semantic.json``: classes, objects with boxes, and classes of ids.
 
-    ``id_to_label`` holds the class of each id from 0, -1 where no object has it.
+    ``id_to_label`` contains the class of each id from 0, or -1 for ids without an object.
     """
     pairs = sorted(zip(ids, meshes, strict=True), key=lambda pair: pair[0])
     labels = [-1] * (max(ids) + 1)

@@ -1,8 +1,8 @@
-"""``layout.json``: the rooms of a place, each with its outline and its openings.
+"""``layout.json``: the rooms of a place with their outlines and openings.
 
-A list of ``{name, floor_polygon_m, floor_z_m, wall_height_m, openings}``; an opening is ``{kind,
-start_m, end_m, sill_m, head_m}``. Polygons run counter-clockwise from above; sills, heads and the
-height of the walls count from the room's floor. Objects are in ``objects.json``.
+The file is a list of ``{name, floor_polygon_m, floor_z_m, wall_height_m, openings}``. An opening is
+``{kind, start_m, end_m, sill_m, head_m}``. Polygons are counter-clockwise seen from above. Sills,
+heads and wall heights are relative to the floor of the room. Objects are in ``objects.json``.
 """
 
 from dataclasses import replace
@@ -19,19 +19,20 @@ from world2minecraft.formats.scan_record import read_room_size
 
 
 def write_layouts(path: str | Path, layouts: tuple[Layout, ...]) -> None:
-    """Write the rooms, in the order given."""
+    """Write rooms in the given order."""
     write_json(path, [layout_to_json(layout) for layout in layouts])
 
 
 def read_layouts(path: str | Path) -> tuple[Layout, ...]:
-    """Read the rooms; they have no objects.
+    """Read rooms, which have no objects.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: a row is no room.
+        InputError: If the file does not exist.
+        DamagedFileError: If a row is not a valid room.
     """
     rows = read_json(path)
     if not isinstance(rows, list):
-        raise DamagedFileError(path, f"must hold a list, not {type(rows).__name__}")
+        raise DamagedFileError(path, f"must contain a list, got {type(rows).__name__}")
     layouts = []
     for number, row in enumerate(rows):
         try:
@@ -42,7 +43,7 @@ def read_layouts(path: str | Path) -> tuple[Layout, ...]:
 
 
 def layout_to_json(layout: Layout) -> dict[str, Any]:
-    """Return a room as plain values, without its objects."""
+    """Return a room as JSON values without its objects."""
     return {
         "name": layout.name,
         "floor_polygon_m": _rounded(layout.floor_polygon_m),
@@ -62,10 +63,12 @@ def layout_to_json(layout: Layout) -> dict[str, Any]:
 
 
 def layout_from_json(row: dict[str, Any]) -> Layout:
-    """Return the room of a row.
+    """Return a room from JSON values.
 
     Raises:
-        KeyError, TypeError, ValueError: the row is no room.
+        KeyError: If a field is missing.
+        TypeError: If a field has the wrong type.
+        ValueError: If a field has an invalid value.
     """
     return Layout(
         floor_polygon_m=row["floor_polygon_m"],
@@ -84,17 +87,18 @@ def _rounded(values: np.ndarray) -> list:
 
 
 def read_rooms(folder: str | Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
-    """Return the rooms of a run's folder, none where no file holds any.
+    """Return the rooms of a run folder, or an empty tuple if no file contains any.
 
-    They come from ``layout.json``; where a run has none, or it found no outline, from
-    ``scan.json``: one room, as long, deep and high as the capture was aligned to.
+    The rooms are read from ``layout.json``. If a run has no such file, or no outline was found, one
+    room is read from ``scan.json``, with the size from the alignment of the capture.
 
     Args:
-        folder: where the run's files lie.
-        grid: its cells. Where none is ceiling, the rooms are as high as they reach.
+        folder: Folder of the run.
+        grid: Cells of the run. If none of them is ceiling, the height of the rooms is that of the
+            highest cells.
 
     Raises:
-        DamagedFileError: a file is not what it should be.
+        DamagedFileError: If a file is damaged.
     """
     found, scan = Path(folder) / "layout.json", Path(folder) / "scan.json"
     rooms = read_layouts(found) if found.is_file() else ()

@@ -1,7 +1,7 @@
-"""``objects.json`` and ``placements.json``: found objects, and the templates placed for them.
+"""``objects.json`` and ``placements.json``: detected objects and their furniture templates.
 
-``objects.json`` is a list of ``{id, class, center_m, size_m, yaw_deg, confidence}``; an object's
-cells are those of ``room.npz`` whose ``instance`` is its id. ``placements.json`` is a list of
+``objects.json`` is a list of ``{id, class, center_m, size_m, yaw_deg, confidence}``. The cells of
+an object are those in ``room.npz`` whose ``instance`` is its id. ``placements.json`` is a list of
 ``{object_id, class, template, parameters, center_m, size_m, quarter_turns, iou, alternatives}``.
 """
 
@@ -17,15 +17,16 @@ from world2minecraft.core.types import Alternative, ObjectInstance, OccupancyGri
 
 
 def write_objects(path: str | Path, instances: tuple[ObjectInstance, ...]) -> None:
-    """Write the objects, in the order given."""
+    """Write objects in the given order."""
     write_json(path, [_object_row(instance) for instance in instances])
 
 
 def read_objects(path: str | Path, grid: OccupancyGrid) -> tuple[ObjectInstance, ...]:
-    """Read the objects; their cells come from the grid.
+    """Read objects, with their cells from the grid.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: a row is no object.
+        InputError: If the file does not exist.
+        DamagedFileError: If a row is not a valid object.
     """
     at = np.argwhere(grid.instance > 0).astype(np.int32)
     owners = grid.instance[tuple(at.T)]
@@ -33,12 +34,17 @@ def read_objects(path: str | Path, grid: OccupancyGrid) -> tuple[ObjectInstance,
 
 
 def write_placements(path: str | Path, placements: tuple[Placement, ...]) -> None:
-    """Write the placements, in the order given."""
+    """Write placements in the given order."""
     write_json(path, [_placement_row(placement) for placement in placements])
 
 
 def read_placements(path: str | Path) -> tuple[Placement, ...]:
-    """Read the placements. Raises what ``read_objects`` raises."""
+    """Read placements.
+
+    Raises:
+        InputError: If the file does not exist.
+        DamagedFileError: If a row is not a valid placement.
+    """
     return tuple(_rows(path, _placement_of))
 
 
@@ -102,7 +108,7 @@ def _placement_of(row: dict[str, Any]) -> Placement:
 def _rows(path: str | Path, reader):
     rows = read_json(path)
     if not isinstance(rows, list):
-        raise DamagedFileError(path, f"must hold a list, not {type(rows).__name__}")
+        raise DamagedFileError(path, f"must contain a list, got {type(rows).__name__}")
     for number, row in enumerate(rows):
         try:
             yield reader(row)
@@ -111,5 +117,5 @@ def _rows(path: str | Path, reader):
 
 
 def round_metres(values: np.ndarray) -> list[float]:
-    """Return metres rounded to a tenth of a millimetre, as files state them."""
+    """Return lengths in metres rounded to 0.1 mm for writing to files."""
     return [round(float(value), 4) for value in values]

@@ -1,4 +1,4 @@
-"""Occupancy files: ours, the paper's, those of other programs, or a bare array of class ids.
+"""Occupancy files of this program, the paper and other programs, and plain label arrays.
 
 ===================  ==========================================================================
 ``room.npz``         all arrays of OccupancyGrid
@@ -8,17 +8,18 @@
 ===================  ==========================================================================
 
 The paper prints no schema for ``occ.json`` and ``centers.json``, so ``read_any_occ`` and
-``read_any_centers`` accept many. They read as voxels, whatever holds them (an object's first list
-of the names in ``_HOLDERS``):
+``read_any_centers`` accept several. The voxels are the top-level value, or the first list under a
+name in ``_HOLDERS``, in one of these forms:
 
 - ``[[x, y, z, class], ...]``; ``[{"x", "y", "z", "class"}, ...]``; ``[{"position": [x, y, z],
-  "class"}, ...]``; two lists of the same length, of places and of classes;
-- a list of places for each class: ``{"chair": [[x, y, z], ...], ...}`` or ``{"5": ...}``;
-- a class for each cell: ``[[[...]]]``, by x, y and z.
+  "class"}, ...]``; two lists of equal length with positions and classes;
+- a list of positions per class: ``{"chair": [[x, y, z], ...], ...}`` or ``{"5": ...}``;
+- a class for each cell: ``[[[...]]]``, indexed by x, y and z.
 
-Classes are numbers of 0 to 11, 255, or names. Places are cells where all are whole numbers, else
-metres: their middles. Further keys are ``voxel_m``, ``origin_m`` and ``shape`` or their synonyms;
-what is missing is 0.08 m (of metres: the smallest step) and just large enough.
+Classes are ids 0 to 11 or 255, or names. Positions are cell indices if all are integers, and
+otherwise cell centres in metres. Further keys are ``voxel_m``, ``origin_m`` and ``shape`` or their
+synonyms. The default cell size is 0.08 m (for metres, the smallest step between positions), and
+the default shape is the smallest that contains all voxels.
 """
 
 import math
@@ -56,21 +57,26 @@ _OTHER_NAMES = {"furniture": 10, "objects": 11, "object": 11, "tv": 9, "none": 0
 
 
 def read_occupancy(path: str | Path) -> OccupancyGrid:
-    """Read a grid from any of the files above, found out by suffix and content.
+    """Read a grid from any of these files. The format is detected from suffix and contents.
 
     Raises:
-        InputError: the file is missing or of another kind. DamagedFileError: it is not what its
-        format says. LimitError: it is too large.
+        InputError: If the file does not exist or is not an occupancy file.
+        DamagedFileError: If the file is not valid in its format.
+        LimitError: If the grid is too large.
     """
     source = Path(path)
     if not source.is_file():
-        raise InputError(source, "is not there; give a room.npz, occ.json, .npz or .npy of labels")
+        raise InputError(
+            source, "not found; give a room.npz, an occ.json, or labels as .npz or .npy"
+        )
     if source.suffix == ".json":
         return read_occ_json(source)
     if source.suffix == ".npy":
         return labels_grid(read_npy(source), source)
     if source.suffix != ".npz":
-        raise InputError(source, "is no occupancy file; those end with .npz, .npy or .json")
+        raise InputError(
+            source, "is not an occupancy file; expected the suffix .npz, .npy or .json"
+        )
     held = npz_array_names(source)
     if set(GRID_ARRAYS) <= set(held):
         return read_room(source)[0]
@@ -90,15 +96,15 @@ def labels_grid(
     voxel_m: float = DEFAULT_VOXEL_M,
     origin_m: np.ndarray | None = None,
 ) -> OccupancyGrid:
-    """Return a grid of labels alone: sure of everything, without colour.
+    """Return a grid with the given labels, full confidence and no colour.
 
     Raises:
-        DamagedFileError: they are no [X, Y, Z] array of class ids.
+        DamagedFileError: If the labels are not an [X, Y, Z] array of class ids.
     """
     try:
         whole = labels.astype(np.uint8)
         if not np.array_equal(whole, labels):
-            raise ValueError("labels must be whole numbers, 0 to 11 or 255")
+            raise ValueError("labels must be integers, 0 to 11 or 255")
         known = whole != 255
         return OccupancyGrid(
             labels=whole,
@@ -110,14 +116,16 @@ def labels_grid(
             origin_m=np.zeros(3) if origin_m is None else origin_m,
         )
     except (ValueError, TypeError) as error:
-        raise DamagedFileError(source, f"holds no grid of class ids ({error})") from error
+        raise DamagedFileError(
+            source, f"does not contain a valid grid of class ids ({error})"
+        ) from error
 
 
 def inner_corner_m(grid: OccupancyGrid) -> np.ndarray:
-    """Return the corner (x_min, y_max) of the room's inner box, float64 [2], whole cells.
+    """Return the corner (x_min, y_max) of the room's inner box in whole cells, float64 [2].
 
-    It is the inner face of the outermost wall layers; where there is no wall, the outermost
-    occupied cells.
+    The corner is on the inner faces of the outermost wall layers, or at the outermost occupied
+    cells if there are no walls.
     """
     walls = np.equal(grid.labels, SemanticClass.WALL)
     occupied = grid.occupied
@@ -137,18 +145,18 @@ def _inner_cell(wall_counts: np.ndarray, occupied: np.ndarray) -> int:
 
 
 class Center(NamedTuple):
-    """The middle of an object, float64 [3], in the room frame, and its class."""
+    """The centre of an object in the room frame in metres, float64 [3], and its class."""
 
     position_m: np.ndarray
     class_id: int
 
 
 def read_any_occ(path: str | Path) -> tuple[OccupancyGrid, str]:
-    """Read a grid, and whether its places were ``cells`` or ``metres``.
+    """Read a grid, and return it with the unit of its positions, ``cells`` or ``metres``.
 
     Raises:
-        DamagedFileError: it holds voxels in none of the forms above. LimitError: it asks for too
-        many cells.
+        DamagedFileError: If the file contains voxels in none of the supported forms.
+        LimitError: If the grid has too many cells.
     """
     value = read_json(path)
     if isinstance(value, dict) and value.get("format") == "world2minecraft/occ":
@@ -172,19 +180,22 @@ def read_any_occ(path: str | Path) -> tuple[OccupancyGrid, str]:
         low = np.array(origin, np.float64)
         return labels_grid(labels, path, voxel_m, np.round(low / voxel_m) * voxel_m), unit
     except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
-        raise DamagedFileError(path, f"holds voxels in no known form ({error})") from error
+        raise DamagedFileError(
+            path, f"does not contain voxels in a supported form ({error})"
+        ) from error
 
 
 def read_any_centers(path: str | Path, grid: OccupancyGrid, unit: str) -> tuple[Center, ...]:
     """Read the centres of objects.
 
     Args:
-        path: of ``centers.json``.
-        grid: the cells that they are of.
-        unit: of ``occ.json``; centres are in the same, but for keys that end with ``_m``.
+        path: Path of ``centers.json``.
+        grid: Occupancy grid of the objects.
+        unit: Unit of ``occ.json``, ``cells`` or ``metres``. Centres are in the same unit, except
+            under keys that end with ``_m``.
 
     Raises:
-        DamagedFileError: it holds centres in none of the forms above.
+        DamagedFileError: If the file contains centres in none of the supported forms.
     """
     value = read_json(path)
     try:
@@ -196,7 +207,9 @@ def read_any_centers(path: str | Path, grid: OccupancyGrid, unit: str) -> tuple[
             points = grid.origin_m + (points + 0.5) * grid.voxel_m
         return tuple(map(Center, points, map(int, classes)))
     except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
-        raise DamagedFileError(path, f"holds centres in no known form ({error})") from error
+        raise DamagedFileError(
+            path, f"does not contain centres in a supported form ({error})"
+        ) from error
 
 
 def _voxel_list(value: Any) -> Any:
@@ -229,7 +242,7 @@ def _dense_labels(held: Any) -> np.ndarray | None:
         return None
     labels = np.array(held)
     if labels.ndim != 3:
-        raise ValueError("its rows have different lengths")
+        raise ValueError("the rows have different lengths")
     return labels
 
 
@@ -238,7 +251,7 @@ def _points(held: Any) -> tuple[np.ndarray, np.ndarray]:
     pairs = list(_pairs(held))
     points = np.array([place for place, _ in pairs], np.float64).reshape(-1, 3)
     if not np.isfinite(points).all():
-        raise ValueError("a place is no number")
+        raise ValueError("a position is not a number")
     return points, np.array([_class(name) for _, name in pairs], np.int64)
 
 
@@ -247,7 +260,7 @@ def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
         places, classes = _first_of(held, _PLACES, None), _first_of(held, _CLASSES, None)
         if isinstance(places, list) and isinstance(classes, list):
             if len(places) != len(classes):
-                raise ValueError(f"{len(places)} places have {len(classes)} classes")
+                raise ValueError(f"{len(places)} positions but {len(classes)} classes")
             yield from zip(places, classes, strict=True)
             return
         for name, places in held.items():
@@ -257,10 +270,10 @@ def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
                 yield _place(row), name
         return
     if not isinstance(held, list):
-        raise ValueError("there is no list of them")
+        raise ValueError("no list found")
     for row in held:
         if isinstance(row, list) and len(row) < 4:
-            raise ValueError(f"{row} is not x, y, z and a class")
+            raise ValueError(f"expected x, y, z and a class, got {row}")
         yield _place(row), row[3] if isinstance(row, list) else _first_of(row, _CLASSES, None)
 
 
@@ -283,7 +296,7 @@ def _class(name: Any) -> int:
     except ValueError:
         number = -1.0
     if not (number in range(12) or number == 255):
-        raise ValueError(f"{name!r} is no class; they are 0 to 11, 255 or their names")
+        raise ValueError(f"{name!r} is not a class; expected 0 to 11, 255 or a class name")
     return int(number)
 
 
@@ -308,7 +321,7 @@ def _cells(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the cells int64 [N, 3] of places, from 0 up, and the origin in metres."""
     if not (math.isfinite(voxel_m) and voxel_m > 0):
-        raise ValueError(f"the side of a cell must be above 0, not {voxel_m}")
+        raise ValueError(f"the cell size must be above 0, got {voxel_m}")
     first = points.min(axis=0) if len(points) else np.zeros(3)
     if unit == CELLS:
         shift = np.minimum(first, 0)
@@ -320,13 +333,15 @@ def _cells(
 
 def _fill_grid(path: str | Path, cells: np.ndarray, classes: np.ndarray, shape: Any) -> np.ndarray:
     if not len(cells) and shape is None:
-        raise ValueError("there is no voxel, and no shape")
+        raise ValueError("neither voxels nor a shape found")
     least = cells.max(axis=0) + 1 if len(cells) else np.ones(3, np.int64)
     sides = least if shape is None else np.maximum(np.array(shape, np.int64).reshape(3), least)
     if (cells < 0).any():
-        raise ValueError("a voxel lies before the origin")
+        raise ValueError("a voxel has coordinates below the origin")
     if np.prod(sides.astype(np.float64)) > MAX_CELLS:
-        raise LimitError(path, f"takes a grid of {sides.tolist()}; at most {MAX_CELLS:,} cells")
+        raise LimitError(
+            path, f"requires a grid of {sides.tolist()}; the limit is {MAX_CELLS:,} cells"
+        )
     labels = np.zeros(tuple(sides), np.uint8)
     labels[tuple(cells.T)] = classes
     return labels

@@ -1,12 +1,12 @@
 """``occ.json`` and ``centers.json``: the two files that the paper's SceneForge reads.
 
-The paper gives no schema, so this is ours, one object a file:
+The paper prints no schema, so this one is our own, with one JSON object per file:
 
 - ``occ.json``: ``{"format": "world2minecraft/occ", "version": 1, "voxel_m", "origin_m": [x, y, z],
-  "shape": [X, Y, Z], "classes": [12 names], "voxels": [[x, y, z, class], ...]}``; occupied cells
-  only, sorted; centre of cell i is ``origin_m + (i + 0.5) * voxel_m``.
-- ``centers.json``: ``{"format": "world2minecraft/centers", "version": 1, "centers":
-  [{"id", "class", "class_id", "position_m": [x, y, z], "voxels"}]}``; ``voxels`` counts cells.
+  "shape": [X, Y, Z], "classes": [12 names], "voxels": [[x, y, z, class], ...]}``. It contains only
+  occupied cells, sorted. The centre of cell i is ``origin_m + (i + 0.5) * voxel_m``.
+- ``centers.json``: ``{"format": "world2minecraft/centers", "version": 1, "centers": [{"id",
+  "class", "class_id", "position_m": [x, y, z], "voxels"}]}``. ``voxels`` is the number of cells.
 """
 
 import json
@@ -25,7 +25,7 @@ _CHUNK = 1 << 18  # Rows that are made into text at once.
 
 
 def write_occ_json(path: str | Path, grid: OccupancyGrid) -> None:
-    """Write the occupied cells of a grid, one voxel a line."""
+    """Write the occupied cells of a grid, one voxel per line."""
     cells = np.argwhere(grid.occupied)
     rows = np.column_stack([cells, grid.labels[tuple(cells.T)]])
     head = (
@@ -57,10 +57,11 @@ def _lines(rows: np.ndarray) -> str:
 
 
 def read_occ_json(path: str | Path) -> OccupancyGrid:
-    """Read ``occ.json``; every cell that it does not name is empty.
+    """Read ``occ.json``. Cells that are not listed are empty.
 
     Raises:
-        DamagedFileError: it is not in the format. LimitError: its shape is too large.
+        DamagedFileError: If the file is not valid in the format.
+        LimitError: If the shape is too large.
     """
     value = read_json(path)
     try:
@@ -68,7 +69,9 @@ def read_occ_json(path: str | Path) -> OccupancyGrid:
         voxels = np.array(value["voxels"], np.int64).reshape(-1, 4)
         voxel_m, origin_m = float(value["voxel_m"]), np.array(value["origin_m"], np.float64)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise DamagedFileError(path, f"is not occ.json of this program ({error})") from error
+        raise DamagedFileError(
+            path, f"is not an occ.json file of this program ({error})"
+        ) from error
     _check_voxels(path, shape, voxels)
     labels = np.zeros(shape, np.uint8)
     labels[tuple(voxels[:, :3].T)] = voxels[:, 3]
@@ -86,16 +89,18 @@ def read_occ_json(path: str | Path) -> OccupancyGrid:
 
 def _check_voxels(path: str | Path, shape: tuple[int, ...], voxels: np.ndarray) -> None:
     if len(shape) != 3 or min(shape) < 1:
-        raise DamagedFileError(path, f"shape must be three sizes, not {list(shape)}")
+        raise DamagedFileError(path, f"shape must be three sizes, got {list(shape)}")
     if np.prod(np.array(shape, np.float64)) > MAX_CELLS:
-        raise LimitError(path, f"shape {list(shape)} has over {MAX_CELLS:,} cells")
+        raise LimitError(path, f"shape {list(shape)} exceeds the limit of {MAX_CELLS:,} cells")
     inside = ((voxels[:, :3] >= 0) & (voxels[:, :3] < shape)).all()
     if len(voxels) and not (inside and (voxels[:, 3] >= 1).all() and (voxels[:, 3] <= 11).all()):
-        raise DamagedFileError(path, "a voxel lies outside shape or its class is not 1 to 11")
+        raise DamagedFileError(
+            path, "a voxel is outside the shape or has a class other than 1 to 11"
+        )
 
 
 def write_centers_json(path: str | Path, instances: tuple[ObjectInstance, ...]) -> None:
-    """Write one centre for each object."""
+    """Write one centre per object."""
     rows: list[dict[str, Any]] = [
         {
             "id": instance.id,

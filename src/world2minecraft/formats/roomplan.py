@@ -1,11 +1,11 @@
 """Apple RoomPlan: the JSON of a ``CapturedRoom`` or a ``CapturedStructure``.
 
-Swift's ``JSONEncoder`` writes it as Apple's structures are declared: ``walls``, ``doors``,
-``windows``, ``openings``, ``floors`` and ``objects``, each a list of ``{identifier, category,
-dimensions, transform, confidence, ...}``; a structure holds ``rooms``, each a room in one common
-frame. ``transform`` is a 4x4 in column-major order, metres, y up; ``dimensions`` are along its
-own x, y and z. A surface lies in its x-y plane; an object's front looks along its z. Enumerations
-are ``{"table": {}}`` or ``"table"``. Here all is carried to a frame with z up: (x, -z, y).
+Swift's ``JSONEncoder`` writes Apple's structures as declared: ``walls``, ``doors``, ``windows``,
+``openings``, ``floors`` and ``objects``, each a list of ``{identifier, category, dimensions,
+transform, confidence, ...}``. A structure contains ``rooms`` in one common frame. ``transform`` is
+a column-major 4x4 matrix in metres with y up. ``dimensions`` are along the item's own x, y and z
+axes. A surface is in its x-y plane, and the front of an object faces its z axis. Enumerations are
+``{"table": {}}`` or ``"table"``. This module converts everything to a frame with z up: (x, -z, y).
 """
 
 from collections.abc import Iterator
@@ -33,9 +33,9 @@ Kind = Literal["window", "door", "doorway"]
 
 @dataclass(frozen=True, eq=False)
 class PlanSurface:
-    """An upright rectangle: a wall, a window, a door or a doorway, by the ends of its foot.
+    """A vertical rectangle, given by the ends of its base: a wall, window, door or doorway.
 
-    ``start_m`` and ``end_m`` are float64 [2]; it reaches from ``bottom_m`` to ``top_m``.
+    ``start_m`` and ``end_m`` are float64 [2]. The rectangle extends from ``bottom_m`` to ``top_m``.
     """
 
     kind: Literal["wall", "window", "door", "doorway"]
@@ -50,20 +50,20 @@ class PlanSurface:
         put(self, "start_m", checks.floats("start_m", self.start_m, (2,)))
         put(self, "end_m", checks.floats("end_m", self.end_m, (2,)))
         if not self.bottom_m < self.top_m:
-            raise ValueError(f"bottom_m must lie under top_m, not {self.bottom_m}, {self.top_m}")
+            raise ValueError(f"bottom_m must be below top_m, got {self.bottom_m} and {self.top_m}")
 
     @property
     def length_m(self) -> float:
-        """How long its foot is."""
+        """The length of the base in metres."""
         return float(np.linalg.norm(self.end_m - self.start_m))
 
 
 @dataclass(frozen=True, eq=False)
 class PlanObject:
-    """A piece of furniture: RoomPlan's category, its box as in LayoutObject, and more words.
+    """A piece of furniture: RoomPlan's category, its box as in LayoutObject, and attributes.
 
-    Where ``design`` names what stands for it (of the furniture library, or ``cells``), neither that
-    nor where its front looks is judged from its box and the walls.
+    If ``design`` names the furniture template of the object (or ``cells``), the template and the
+    front are not inferred from the box and the walls.
     """
 
     category: str
@@ -79,7 +79,7 @@ class PlanObject:
         put(self, "center_m", checks.floats("center_m", self.center_m, (3,)))
         put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
         if (self.size_m <= 0).any():
-            raise ValueError(f"size_m must be above 0, not {self.size_m.tolist()}")
+            raise ValueError(f"size_m must be above 0, got {self.size_m.tolist()}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,10 +95,10 @@ class PlanRoom:
 
 @dataclass(frozen=True, eq=False)
 class CapturedPlan:
-    """All rooms of a plan, in its own frame: metres, z up, turned and shifted in any way.
+    """All rooms of a floor plan in its own frame: metres, z up, arbitrary yaw and origin.
 
-    ``plan_to_session`` carries that frame to the one of the session in which it was captured,
-    which has y up. ``notes`` are sentences for the report.
+    ``plan_to_session`` transforms that frame to the frame of the capture session, which has y up.
+    ``notes`` are sentences for the report.
     """
 
     rooms: tuple[PlanRoom, ...]
@@ -107,10 +107,10 @@ class CapturedPlan:
 
 
 def find_roomplan(path: Path) -> AnyPath | None:
-    """Return the JSON of a RoomPlan capture: the path itself, or in a folder or a zip.
+    """Return the JSON file of a RoomPlan capture: the path itself, or a file in a folder or a zip.
 
-    Returns None where there is none. Of several one that has room in its name is taken, nearest to
-    the top, by name.
+    Returns None if there is none. Of several files, those with room in their name are preferred,
+    then those nearest to the top level, then the first by name.
     """
     if path.is_file():
         if is_zip(path):
@@ -120,7 +120,7 @@ def find_roomplan(path: Path) -> AnyPath | None:
 
 
 def is_roomplan(path: AnyPath) -> bool:
-    """Whether a JSON file is a RoomPlan capture, whole or damaged; unreadable ones are none."""
+    """Return whether a JSON file is a RoomPlan capture. Unreadable files are not."""
     try:
         return _document(read_json(path, MAX_BYTES)) is not None
     except InputError:
@@ -128,16 +128,17 @@ def is_roomplan(path: AnyPath) -> bool:
 
 
 def read_roomplan(path: AnyPath) -> CapturedPlan:
-    """Read a capture of RoomPlan.
+    """Read a RoomPlan capture.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is no such capture, or a part of it
-            is not what Apple's structures say. LimitError: it is too large.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a RoomPlan capture, or differs from Apple's structures.
+        LimitError: If the file is too large.
     """
     document = _document(read_json(path, MAX_BYTES))
     if document is None:
         raise DamagedFileError(
-            path, "is no RoomPlan capture: a JSON with walls, doors, windows and objects is needed"
+            path, "is not a RoomPlan capture; expected JSON with walls, doors, windows and objects"
         )
     notes: list[str] = []
     held = document.get("rooms")
@@ -145,7 +146,7 @@ def read_roomplan(path: AnyPath) -> CapturedPlan:
     rooms = [_room(path, part, number, notes) for number, part in enumerate(parts, start=1)]
     rooms = [room for room in rooms if room.walls or room.floors]
     if not rooms:
-        raise DamagedFileError(path, "holds no wall and no floor: scan the room again")
+        raise DamagedFileError(path, "contains neither walls nor floors; scan the room again")
     return CapturedPlan(tuple(rooms), tuple(dict.fromkeys(notes)))
 
 
@@ -177,7 +178,7 @@ def _document(value: Any) -> dict[str, Any] | None:
 
 def _room(path: AnyPath, room: Any, number: int, notes: list[str]) -> PlanRoom:
     if not isinstance(room, dict):
-        raise DamagedFileError(path, f"room {number} is no object")
+        raise DamagedFileError(path, f"room {number} must be an object")
     walls = [
         surface
         for item, where in _items(path, room, "walls")
@@ -198,9 +199,9 @@ def _room(path: AnyPath, room: Any, number: int, notes: list[str]) -> PlanRoom:
 def _items(path: AnyPath, room: dict[str, Any], name: str) -> Iterator[tuple[dict, str]]:
     found = room.get(name) or []
     if not isinstance(found, list):
-        raise DamagedFileError(path, f"{name} must be a list, not {type(found).__name__}")
+        raise DamagedFileError(path, f"{name} must be a list, got {type(found).__name__}")
     if len(found) > MAX_PARTS:
-        raise LimitError(path, f"has {len(found):,} {name}; {MAX_PARTS:,} at most are read")
+        raise LimitError(path, f"has {len(found):,} {name}; the limit is {MAX_PARTS:,}")
     for number, item in enumerate(found):
         if not isinstance(item, dict):
             raise DamagedFileError(path, f"{name}[{number}] must be an object")
@@ -256,7 +257,7 @@ def _floor(path: AnyPath, item: dict[str, Any], where: str) -> np.ndarray:
     pose = _transform(path, item, where)
     corners = item.get("polygonCorners") or []
     if not isinstance(corners, list) or len(corners) > MAX_PARTS:
-        raise DamagedFileError(path, f"{where}.polygonCorners is no list of corners")
+        raise DamagedFileError(path, f"{where}.polygonCorners must be a list of corners")
     if len(corners) < 3:
         width, height, _ = _dimensions(path, item, where)
         corners = [
@@ -269,7 +270,9 @@ def _floor(path: AnyPath, item: dict[str, Any], where: str) -> np.ndarray:
 def _dimensions(path: AnyPath, item: dict[str, Any], where: str) -> np.ndarray:
     sides = np.abs(_numbers(path, item.get("dimensions"), 3, f"{where}.dimensions"))
     if (sides > MAX_SIZE_M).any():
-        raise DamagedFileError(path, f"{where} is {sides.max():.4g} m large; metres are needed")
+        raise DamagedFileError(
+            path, f"{where} measures {sides.max():.4g} m; export the plan in metres"
+        )
     return sides
 
 
@@ -285,11 +288,11 @@ def _transform(path: AnyPath, item: dict[str, Any], where: str) -> np.ndarray:
     turn = pose[:3, :3]
     if np.abs(turn @ turn.T - np.eye(3)).max() > 0.02 or not np.allclose(pose[3], [0, 0, 0, 1]):
         raise DamagedFileError(
-            path, f"{where}.transform is no turn and shift in column-major order"
+            path, f"{where}.transform must be a rigid transform in column-major order"
         )
     if np.abs(pose[:3, 3]).max() > MAX_DISTANCE_M:
         raise DamagedFileError(
-            path, f"{where} lies over {MAX_DISTANCE_M:g} m away; metres are needed"
+            path, f"{where} is over {MAX_DISTANCE_M:g} m away; export the plan in metres"
         )
     return Y_UP_TO_Z_UP @ pose
 

@@ -1,12 +1,12 @@
-"""Arrays of a run's folder: ``room.npz``, ``evidence.npz`` and ``centers.npz``.
+"""Arrays of a run folder: ``room.npz``, ``evidence.npz`` and ``centers.npz``.
 
-- ``room.npz``, an OccupancyGrid and where it stands in the scan: ``labels``, ``confidence``,
-  ``colour``, ``source``, ``instance`` as in OccupancyGrid; ``voxel_m`` float64; ``origin_m``
+- ``room.npz``: an OccupancyGrid and its position in the scan: ``labels``, ``confidence``,
+  ``colour``, ``source`` and ``instance`` as in OccupancyGrid; ``voxel_m`` float64; ``origin_m``
   float64 [3]; ``scan_to_room`` float64 [4, 4].
-- ``evidence.npz``: FusedEvidence, enough to run the label stage and all after it again. Cells
-  without votes take most of the room, and compress to nothing.
-- ``centers.npz``, the paper's D, C and C': ``density`` float32 [X, Y, Z]; ``candidates`` int32
-  [M, 3], cells; ``cluster`` int32 [M], the number of each candidate's cluster, -1 for none.
+- ``evidence.npz``: FusedEvidence, which is sufficient to repeat the label stage and all later
+  stages. Cells without votes use most of the memory, but compress to almost nothing.
+- ``centers.npz``: the paper's D, C and C': ``density`` float32 [X, Y, Z]; ``candidates`` int32 [M,
+  3], cells; ``cluster`` int32 [M], the cluster of each candidate, or -1 for none.
 """
 
 from pathlib import Path
@@ -31,17 +31,18 @@ EVIDENCE_ARRAYS = (
 
 
 def write_room(path: str | Path, grid: OccupancyGrid, scan_to_room: np.ndarray) -> None:
-    """Write a grid; the same grid gives the same bytes."""
+    """Write a grid. Equal grids give identical files."""
     arrays = {name: np.asarray(getattr(grid, name)) for name in GRID_ARRAYS}
     write_npz(path, arrays | {"scan_to_room": np.asarray(scan_to_room, np.float64)})
 
 
 def read_room(path: str | Path) -> tuple[OccupancyGrid, np.ndarray]:
-    """Read a grid and its ``scan_to_room``.
+    """Read a grid and its ``scan_to_room`` transform.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it holds no valid grid.
-        LimitError: an array is too large.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file does not contain a valid grid.
+        LimitError: If an array is too large.
     """
     arrays = read_npz(path, (*GRID_ARRAYS, "scan_to_room"))
     scan_to_room = arrays.pop("scan_to_room")
@@ -49,11 +50,11 @@ def read_room(path: str | Path) -> tuple[OccupancyGrid, np.ndarray]:
         arrays["voxel_m"] = float(arrays["voxel_m"])  # type: ignore[assignment]
         return OccupancyGrid(**arrays), np.asarray(scan_to_room, np.float64).reshape(4, 4)  # type: ignore[arg-type]
     except (ValueError, TypeError) as error:
-        raise DamagedFileError(path, f"is no room ({error})") from error
+        raise DamagedFileError(path, f"does not contain a valid room ({error})") from error
 
 
 def write_evidence(path: str | Path, evidence: FusedEvidence) -> None:
-    """Write fused evidence; the same evidence gives the same bytes."""
+    """Write fused evidence. Equal evidence gives identical files."""
     write_npz(path, {name: np.asarray(getattr(evidence, name)) for name in EVIDENCE_ARRAYS})
 
 
@@ -61,15 +62,16 @@ def read_evidence(path: str | Path) -> FusedEvidence:
     """Read fused evidence.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it holds no valid evidence.
-        LimitError: an array is too large.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file does not contain valid evidence.
+        LimitError: If an array is too large.
     """
     arrays = read_npz(path, EVIDENCE_ARRAYS)
     try:
         arrays["voxel_m"] = float(arrays["voxel_m"])  # type: ignore[assignment]
         return FusedEvidence(**arrays)  # type: ignore[arg-type]
     except (ValueError, TypeError) as error:
-        raise DamagedFileError(path, f"is no evidence ({error})") from error
+        raise DamagedFileError(path, f"does not contain valid evidence ({error})") from error
 
 
 def write_centers(

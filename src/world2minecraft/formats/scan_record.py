@@ -1,7 +1,7 @@
-"""``scan.json``, how a capture was read and aligned, and ``poses.npz``, what registration changed.
+"""``scan.json`` (reading and alignment of a capture) and ``poses.npz`` (pose corrections).
 
-``poses.npz`` holds, frame by frame: ``names`` [F]; ``pose_change`` float64 [F, 4, 4], scan to scan,
-applied on the left of a frame's pose; ``depth_scale`` float64 [F], what its depth is multiplied by.
+``poses.npz`` contains for each frame: ``names`` [F]; ``pose_change`` float64 [F, 4, 4], scan to
+scan, applied on the left of the frame's pose; ``depth_scale`` float64 [F], a factor for the depth.
 """
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ MAX_NAME_LENGTH = 60
 
 
 def write_poses(path: str | Path, corrections: Corrections) -> None:
-    """Write corrections; the same corrections give the same bytes."""
+    """Write corrections. Equal corrections give identical files."""
     write_npz(
         path,
         {
@@ -32,22 +32,23 @@ def write_poses(path: str | Path, corrections: Corrections) -> None:
 
 
 def read_poses(path: str | Path) -> Corrections:
-    """Read corrections; their facts stay in ``scan.json``.
+    """Read corrections without their facts, which are stored in ``scan.json``.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it holds no corrections.
-        LimitError: an array is too large.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file does not contain valid corrections.
+        LimitError: If an array is too large.
     """
     arrays = read_npz(path, POSE_ARRAYS)
     try:
         names = tuple(str(name) for name in arrays["names"])
         return Corrections(names, arrays["pose_change"], arrays["depth_scale"])
     except (ValueError, TypeError) as error:
-        raise DamagedFileError(path, f"holds no corrections ({error})") from error
+        raise DamagedFileError(path, f"does not contain valid corrections ({error})") from error
 
 
 def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | None = None) -> None:
-    """Write everything of a scan but its pictures, and what registration found."""
+    """Write the properties of a scan, without its images, and the results of the registration."""
     write_json(
         path,
         {
@@ -68,49 +69,52 @@ def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | N
 
 
 def read_registration(path: str | Path) -> dict[str, Any]:
-    """Return what registration found, of a ``scan.json``; empty where it holds nothing of it.
+    """Return the results of the registration in a ``scan.json``, or an empty dictionary.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is no ``scan.json``.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a valid ``scan.json``.
     """
     found = read_json(path)
     if not isinstance(found, dict) or not isinstance(found.get("registration", {}), dict):
-        raise DamagedFileError(path, "is no scan.json")
+        raise DamagedFileError(path, "is not a valid scan.json")
     return found.get("registration", {})
 
 
 def read_scene_name(path: str | Path) -> str:
-    """Return the scene's name of a ``scan.json``, printable; empty where it holds none.
+    """Return the printable scene name in a ``scan.json``, or an empty string.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is no ``scan.json``.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a valid ``scan.json``.
     """
     found = read_json(path)
     if not isinstance(found, dict):
-        raise DamagedFileError(path, "is no scan.json")
+        raise DamagedFileError(path, "is not a valid scan.json")
     name = found.get("name", "")
     return name[:MAX_NAME_LENGTH] if isinstance(name, str) and name.isprintable() else ""
 
 
 def read_depth_kind(path: str | Path) -> str:
-    """Return what made the depth, of a ``scan.json``; ``sensor`` where none says so.
+    """Return the source of the depth in a ``scan.json``. Defaults to ``sensor``.
 
     Raises:
-        DamagedFileError: it is no ``scan.json``.
+        DamagedFileError: If the file is not a valid ``scan.json``.
     """
     if not Path(path).is_file():
         return "sensor"
     found = read_json(path)
     if not isinstance(found, dict):
-        raise DamagedFileError(path, "is no scan.json")
+        raise DamagedFileError(path, "is not a valid scan.json")
     return str(found.get("depth_kind", "sensor"))
 
 
 def with_recorded_alignment(scan: Scan, path: str | Path) -> Scan:
-    """Return a scan with the place of the room, and the notes, that a ``scan.json`` holds.
+    """Return a scan with the alignment and the notes recorded in a ``scan.json``.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it holds no place of a room.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file does not contain a valid alignment.
     """
     try:
         found = read_json(path)
@@ -122,7 +126,9 @@ def with_recorded_alignment(scan: Scan, path: str | Path) -> Scan:
             frame_sigmas=_frame_sigmas(found.get("frame_sigmas")),
         )
     except (KeyError, TypeError, ValueError) as error:
-        raise DamagedFileError(path, f"holds no place of a room ({error})") from error
+        raise DamagedFileError(
+            path, f"does not contain a valid room alignment ({error})"
+        ) from error
 
 
 def _frame_sigmas(stated: Any) -> FrameSigmas | None:
@@ -131,15 +137,16 @@ def _frame_sigmas(stated: Any) -> FrameSigmas | None:
 
 
 def read_room_size(path: str | Path) -> np.ndarray:
-    """Return ``room_size_m`` float64 [3] of a ``scan.json``.
+    """Return ``room_size_m`` from a ``scan.json``, float64 [3].
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it holds no size.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file does not contain a valid size.
     """
     try:
         size = np.array(read_json(path)["room_size_m"], np.float64).reshape(3)
     except (KeyError, TypeError, ValueError) as error:
-        raise DamagedFileError(path, f"has no room_size_m ({error})") from error
+        raise DamagedFileError(path, f"does not contain a valid room_size_m ({error})") from error
     if not (np.isfinite(size).all() and (size > 0).all()):
-        raise DamagedFileError(path, f"room_size_m must be above 0, not {size.tolist()}")
+        raise DamagedFileError(path, f"room_size_m must be above 0, got {size.tolist()}")
     return size

@@ -1,4 +1,4 @@
-"""Crop volumes: to the blocks of a box, or to all but the air around them."""
+"""Crop volumes to the blocks in a box, or remove the air around the blocks."""
 
 from dataclasses import replace
 
@@ -11,14 +11,14 @@ Box = tuple[int, int, int, int, int, int]
 
 
 def crop_volume(volume: BlockVolume, box: Box) -> BlockVolume:
-    """Return the blocks and entities of a volume that lie in a box of world coordinates.
+    """Return the blocks and entities of a volume inside a box of world coordinates.
 
     Args:
-        volume: the blocks.
-        box: x0 y0 z0 x1 y1 z1 in blocks, the last ones not included.
+        volume: Blocks to crop.
+        box: Box x0 y0 z0 x1 y1 z1 in blocks, with exclusive upper bounds.
 
     Raises:
-        UsageError: the box lies beside the volume.
+        UsageError: If the box does not overlap the volume.
     """
     corner = np.array(volume.corner)
     low = np.clip(np.array(box[:3]) - corner, 0, volume.states.shape)
@@ -26,7 +26,7 @@ def crop_volume(volume: BlockVolume, box: Box) -> BlockVolume:
     if (high == low).any():
         size = " x ".join(str(side) for side in volume.states.shape)
         at = ",".join(str(value) for value in volume.corner)
-        raise UsageError(f"--box lies beside the build, which is {size} blocks from {at}")
+        raise UsageError(f"--box does not overlap the build, which is {size} blocks from {at}")
     cut = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     x, y, z = (int(value) for value in corner + low)
     first, last = corner + low, corner + high
@@ -50,7 +50,7 @@ def crop_volume(volume: BlockVolume, box: Box) -> BlockVolume:
 
 
 def trim_air(volume: BlockVolume) -> BlockVolume:
-    """Return the volume without the layers of air around its blocks; its entities all stay."""
+    """Return the volume without the layers of air around its blocks, keeping all entities."""
     filled = volume.states != 0
     if not filled.any():
         return volume

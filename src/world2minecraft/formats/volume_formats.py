@@ -1,8 +1,8 @@
-"""Volumes in any format: the game's, and those of other programs.
+"""Reading and writing volumes in any format of the game and of other programs.
 
-A scene format is one class, as in ``minecraft.formats``, and one line of ``SCENE_FORMATS``. Where a
-run's folder or its ``build`` holds a ``scene.json``, the volume that is read takes its labels and
-its scale from there.
+A scene format is a class, as in ``minecraft.formats``, and a line in ``SCENE_FORMATS``. If a run
+folder or its ``build`` contains a ``scene.json``, the volume takes its labels and scale from that
+file.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,12 +36,12 @@ SCENE_FORMATS = Registry(
 
 
 def find_blocks(path: Path) -> Path:
-    """Return where the blocks of a place lie: of a run or a build, its world or its schematic.
+    """Return the path of the blocks of a run or a build: its world, or its schematic.
 
-    A player may have changed the world, so it comes first. Other places are their own.
+    The world has priority because a player may have changed it. Other paths are returned unchanged.
 
     Raises:
-        InputError: the folder of a build holds neither.
+        InputError: If a build folder contains neither.
     """
     build = next((p for p in (path, path / "build") if (p / SCENE_FILE).is_file()), None)
     if build is None:
@@ -51,19 +51,19 @@ def find_blocks(path: Path) -> Path:
         return world
     if schematic.is_file():
         return schematic
-    raise InputError(build, "holds a scene.json and neither world nor room.schem")
+    raise InputError(build, "contains a scene.json but neither world nor room.schem")
 
 
 def with_scene_labels(volume: BlockVolume, path: Path) -> BlockVolume:
     """Return the volume with the labels and the scale of the scene that it belongs to.
 
     Args:
-        volume: the blocks that were read.
-        path: where they were asked for: a run, its ``build``, or a file or world in it. A scene
-            counts only where all that it labels lies where the volume has its blocks.
+        volume: Blocks that were read.
+        path: Path that was requested: a run, its ``build``, or a file or world inside it. A scene
+            is used only if its labels match the blocks of the volume.
 
     Raises:
-        DamagedFileError: there is a scene, and it cannot be read.
+        DamagedFileError: If the scene exists and cannot be read.
     """
     places = (path, path / "build", path.parent)
     folder = next((place for place in places if (place / SCENE_FILE).is_file()), None)
@@ -74,7 +74,7 @@ def with_scene_labels(volume: BlockVolume, path: Path) -> BlockVolume:
 
 
 def apply_scene(volume: BlockVolume, scene: Scene) -> BlockVolume:
-    """Return the volume with a scene's labels on all blocks that are there, and its scale."""
+    """Return the volume with the scale of a scene and its labels on all existing blocks."""
     ours, theirs = overlapping_cells(volume, scene)
     semantic, instance = np.zeros_like(volume.semantic), np.zeros_like(volume.instance)
     is_block = volume.states[ours] > 0
@@ -94,7 +94,7 @@ def _overlaps(volume: BlockVolume, scene: Scene) -> bool:
 def overlapping_cells(
     volume: BlockVolume, scene: Scene
 ) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
-    """Return the cells that both hold, as slices of each."""
+    """Return the cells that a volume and a scene have in common, as slices of each."""
     low = np.maximum(volume.corner, scene.corner)
     high = np.minimum(
         np.add(volume.corner, volume.states.shape), np.add(scene.corner, scene.semantic.shape)
@@ -109,26 +109,26 @@ def overlapping_cells(
 
 
 class GltfFormat(FileFormat):
-    """Binary glTF; read only where this program wrote it."""
+    """Binary glTF, which can be read only if it was written by this program."""
 
     suffix = ".glb"
     keeps_labels = True
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read the blocks stored with the meshes."""
+        """Read the blocks stored in the file in addition to the meshes."""
         from world2minecraft.formats.gltf import read_gltf  # noqa: PLC0415  # It needs numba.
 
         return read_gltf(path)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write meshes, and the blocks with them."""
+        """Write meshes, and the blocks in addition."""
         from world2minecraft.formats.gltf import write_gltf  # noqa: PLC0415  # It needs numba.
 
         write_gltf(volume, path, templates=options.other.get("templates"))
 
 
 class HabitatFormat:
-    """A folder for Habitat-Sim; it is written and not read."""
+    """A folder for Habitat-Sim, which can be written but not read."""
 
     suffix = ".habitat"
     can_read = False
@@ -136,15 +136,15 @@ class HabitatFormat:
     keeps_labels = True
 
     def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
+        """Return whether the path ends with the suffix of this format."""
         return path.is_dir() and path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Refuse: meshes are no blocks."""
-        raise InputError(path, "holds meshes and no blocks; it is written and not read")
+        """Raise InputError, because meshes cannot be converted to blocks."""
+        raise InputError(path, "contains meshes without blocks and cannot be read")
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write the scene dataset; blocks become meshes."""
+        """Write the scene dataset with meshes of the blocks."""
         from world2minecraft.formats.habitat import write_habitat  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.entities import BLOCK_DISPLAY  # noqa: PLC0415
 
@@ -156,20 +156,20 @@ class HabitatFormat:
 
 
 def read_volume(path: str | Path, losses: Losses | None = None) -> BlockVolume:
-    """Read a volume from any form: a file, a world, a run's folder or its ``build``.
+    """Read a volume in any format: a block file, a world, a run folder or its ``build``.
 
-    What lies beside the blocks in ``scene.json`` says what they are and how large they are.
+    Labels and scale are read from a ``scene.json`` next to the blocks.
 
     Args:
-        path: the file or folder.
-        losses: what the file holds and the volume cannot is counted here.
+        path: File or folder to read.
+        losses: Counter of contents that a volume does not support.
 
     Raises:
-        InputError: nothing is there or no form knows it, or one of its kinds from the reader.
+        InputError: If the path does not exist, has an unknown format or cannot be read.
     """
     source, counted = Path(path), Losses() if losses is None else losses
     if not source.exists():
-        raise InputError(source, "is not there")
+        raise InputError(source, "not found")
     for form in scene_formats():
         if form.is_at(source):
             return form.read(source, counted)
@@ -179,7 +179,7 @@ def read_volume(path: str | Path, losses: Losses | None = None) -> BlockVolume:
         if not error.reason.startswith("is not in a supported format"):
             raise
         known = list_suffixes("read")
-        raise InputError(source, f"is no block file that is read; known: {known}") from None
+        raise InputError(source, f"is not a supported block file; supported: {known}") from None
     return with_scene_labels(volume, source)
 
 
@@ -189,10 +189,11 @@ def write_volume(
     options: WriteOptions | None = None,
     losses: Losses | None = None,
 ) -> None:
-    """Write a volume in the form that the path's suffix names; without one, as a world.
+    """Write a volume in the format given by the path's suffix, or as a world without a suffix.
 
     Raises:
-        UsageError: no form has this suffix. OutputError: the path cannot be written.
+        UsageError: If no format has this suffix.
+        OutputError: If the path cannot be written.
     """
     target, counted = Path(path), Losses() if losses is None else losses
     form = format_for_path(target)
@@ -202,20 +203,22 @@ def write_volume(
 
 
 def format_for_path(path: str | Path) -> BlockFormat:
-    """Return the form that a path's suffix names.
+    """Return the format with the suffix of a path.
 
     Raises:
-        UsageError: no form that is written has it.
+        UsageError: If no writable format has this suffix.
     """
     suffix = Path(path).suffix.lower()
     for form in [*block_formats(), *scene_formats()]:
         if suffix == form.suffix:
             if form.can_write:
                 return form
-            raise UsageError(f"{path}: {suffix} is read and not written; write a .schem instead")
+            raise UsageError(
+                f"{path}: {suffix} can be read but not written; write a .schem instead"
+            )
     known = list_suffixes("write")
     dots = "; the name of a world folder has no dot" if not suffix[1:].isalpha() else ""
-    raise UsageError(f"{path}: no block format ends in {suffix}; known: {known}{dots}")
+    raise UsageError(f"{path}: unknown block format {suffix}; known: {known}{dots}")
 
 
 def write_volume_formats(
@@ -226,21 +229,22 @@ def write_volume_formats(
     *,
     stem: str = "room",
 ) -> dict[str, Losses]:
-    """Write a volume into a folder as ``room.SUFFIX``, once for each form named.
+    """Write a volume to a folder as ``room.SUFFIX`` in several formats.
 
     Args:
-        folder: where to write; made when it is not there.
-        volume: the blocks.
-        names: names of forms, such as ``litematic``, or their suffixes, with a dot or without.
-        options: the game's version and more.
-        stem: what the files are called.
+        folder: Output folder, which is created if necessary.
+        volume: Blocks to write.
+        names: Names of formats, such as ``litematic``, or suffixes with or without a dot.
+        options: Game version and further options.
+        stem: File name without the suffix.
 
     Returns:
-        What each form could not carry, by its name as given.
+        The contents that each format does not support, by the given name of the format.
 
     Raises:
-        UnknownNameError: no form has the name. UsageError: one is a world folder or only read.
-        OutputError: a file cannot be written.
+        UnknownNameError: If a format is unknown.
+        UsageError: If a format is a world folder or cannot be written.
+        OutputError: If a file cannot be written.
     """
     forms = {name: format_by_name(name) for name in names}  # All are known before one is written.
     result: dict[str, Losses] = {}
@@ -251,10 +255,11 @@ def write_volume_formats(
 
 
 def format_by_name(name: str) -> BlockFormat:
-    """Return the form of a name or a suffix that can be written as a file of its own.
+    """Return the format with a name or suffix that can be written as a separate file.
 
     Raises:
-        UnknownNameError: there is none. UsageError: it is a world folder, or only read.
+        UnknownNameError: If the format is unknown.
+        UsageError: If the format is a world folder or cannot be written.
     """
     wanted = name.lower().removeprefix(".")
     for registry in (FORMATS, SCENE_FORMATS):
@@ -262,13 +267,13 @@ def format_by_name(name: str) -> BlockFormat:
             form = registry.load(known)()
             if wanted in (known, form.suffix.removeprefix(".")) and form.suffix:
                 if not form.can_write:
-                    raise UsageError(f"the form {name!r} is read and not written")
+                    raise UsageError(f"the format {name!r} can be read but not written")
                 return form
-    raise UnknownNameError("form", name, writable_format_names())
+    raise UnknownNameError("format", name, writable_format_names())
 
 
 def writable_format_names() -> list[str]:
-    """Return the names of the forms that are written as files of their own."""
+    """Return the names of the formats that can be written as separate files."""
     pairs = [
         (name, registry.load(name)())
         for registry in (FORMATS, SCENE_FORMATS)
@@ -278,22 +283,22 @@ def writable_format_names() -> list[str]:
 
 
 def scene_formats() -> list[BlockFormat]:
-    """Return the forms that are not the game's."""
+    """Return the formats that are not formats of the game."""
     return [SCENE_FORMATS.load(name)() for name in SCENE_FORMATS.names()]
 
 
 def list_suffixes(verb: Literal["read", "write"]) -> str:
-    """Return the suffixes that are read or written, as an error's end."""
+    """Return the suffixes that can be read or written, for error messages."""
     every = [*block_formats(), *scene_formats()]
     able = [form for form in every if (form.can_read if verb == "read" else form.can_write)]
     return ", ".join(form.suffix or "a world folder" for form in able)
 
 
 def read_run_templates(folder: str | Path) -> Mapping[int, str]:
-    """Return the template of each object of a run's folder; of any other place, none.
+    """Return the furniture template of each object of a run folder, or an empty mapping.
 
     Raises:
-        DamagedFileError: ``placements.json`` is there and cannot be read.
+        DamagedFileError: If ``placements.json`` exists and cannot be read.
     """
     path = Path(folder) / "placements.json"
     if not path.is_file():

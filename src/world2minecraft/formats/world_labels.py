@@ -1,10 +1,10 @@
-"""``scene.json`` and ``scene.npz``: labels and scale of every world that the program writes.
+"""``scene.json`` and ``scene.npz``: labels and scale of every world written by this program.
 
-``scene.json``: ``block_to_room`` [4][4], ``metres_per_block``, ``corner`` [3], ``size`` [3],
-``data_version``, ``mc_version``, ``spawn`` {position [3], yaw_deg}; of a made house ``light``
-{hour 0 to 24, lamps} too. ``scene.npz``: ``semantic`` uint8 and ``instance`` uint16, both
-[X, Y, Z] in block axes, cell (0, 0, 0) at ``corner``; where it is known, ``design`` uint16 too, an
-index into the names of ``designs.json``, whose first stands for none.
+``scene.json`` contains ``block_to_room`` [4][4], ``metres_per_block``, ``corner`` [3], ``size``
+[3], ``data_version``, ``mc_version``, ``spawn`` {position [3], yaw_deg}, and for generated houses
+``light`` {hour 0 to 24, lamps}. ``scene.npz`` contains ``semantic`` uint8 and ``instance`` uint16,
+both [X, Y, Z] in block axes, with cell (0, 0, 0) at ``corner``. If known, it also contains
+``design`` uint16, an index into the names in ``designs.json``, whose first entry means none.
 """
 
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ DESIGNS = "designs.json"
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What a world's blocks mean, and where they stand in the room."""
+    """The labels of a world's blocks, and their position in the room."""
 
     semantic: np.ndarray  # uint8 [X, Y, Z], block axes
     instance: np.ndarray  # uint16 [X, Y, Z]
@@ -47,11 +47,13 @@ class Scene:
         if self.design is not None:
             put(self, "design", checks.array("design", self.design, np.uint16, semantic.shape))
             if self.design.size and int(self.design.max()) >= len(self.designs):
-                raise ValueError(f"design goes to {self.design.max()} of {len(self.designs)} names")
+                raise ValueError(
+                    f"design index {self.design.max()} exceeds the {len(self.designs)} names"
+                )
 
     @property
     def metres_per_block(self) -> float:
-        """The side of a block in metres of the room."""
+        """The side length of a block in metres of the room."""
         return float(np.linalg.norm(self.block_to_room[:3, 0]))
 
 
@@ -66,7 +68,7 @@ def scene_from_volume(
     designs: tuple[str, ...] = ("",),
     light: Mapping[str, Any] | None = None,
 ) -> Scene:
-    """Return the scene of a volume that is written for a version of the game."""
+    """Return the scene of a volume that is written for a game version."""
     return Scene(
         volume.semantic,
         volume.instance,
@@ -83,10 +85,10 @@ def scene_from_volume(
 
 
 def write_scene(folder: str | Path, scene: Scene) -> None:
-    """Write ``scene.json`` and ``scene.npz`` into a folder, and ``designs.json`` where known.
+    """Write ``scene.json`` and ``scene.npz`` to a folder, and ``designs.json`` if known.
 
     Raises:
-        OutputError: a file cannot be written.
+        OutputError: If a file cannot be written.
     """
     target = Path(folder)
     arrays = {"semantic": scene.semantic, "instance": scene.instance}
@@ -110,11 +112,12 @@ def write_scene(folder: str | Path, scene: Scene) -> None:
 
 
 def read_scene(folder: str | Path) -> Scene:
-    """Read the scene that lies in a folder.
+    """Read the scene in a folder.
 
     Raises:
-        InputError: a file is missing. DamagedFileError: the files hold no scene.
-        LimitError: an array is too large.
+        InputError: If a file does not exist.
+        DamagedFileError: If the files do not contain a valid scene.
+        LimitError: If an array is too large.
     """
     source = Path(folder)
     raw = read_json(source / "scene.json")
@@ -139,4 +142,4 @@ def read_scene(folder: str | Path) -> Scene:
             dict(raw.get("light", {})),
         )
     except (KeyError, TypeError, ValueError) as error:
-        raise DamagedFileError(source / "scene.json", f"is no scene ({error})") from error
+        raise DamagedFileError(source / "scene.json", f"is not a valid scene ({error})") from error

@@ -158,20 +158,20 @@ def test_clusters_are_repeatable_and_separate_distant_cells(count, size, chance)
 
 def test_golden_refusals():
     assert refusal(op="split_object", id=TABLE, plane={"axis": "z", "at_m": 3}) == (
-        "object 2 (table) lies on one side of that; split it where its cells are"
+        "object 2 (table) is on one side of the plane; move the plane into its cells"
     )
     assert refusal(op="split_object", id=LAMP, parts=2) == (
-        "object 3 (object) lies on one side of that; split it where its cells are"
+        "object 3 (object) is on one side of the plane; move the plane into its cells"
     )
     assert refusal(op="split_object", id=TABLE) == (
-        "split_object: split_object: Value error, give parts or plane, one of them, not "
+        "split_object: split_object: Value error, specify either parts or plane, not "
         "{'op': 'split_object', 'id': 2}"
     )
     assert refusal(op="merge_objects", ids=[CHAIR, CHAIR]) == (
-        "name two different objects to merge"
+        "merging requires at least two different objects"
     )
     assert refusal(op="relabel_objects", ids=[CHAIR], class_id=5) == (
-        "no object changes: all are of this class already"
+        "nothing to change: all objects already have this class"
     )
     assert refusal(op="snap_object", id=CHAIR, to="floor") == (
         "object 1 (chair) is on the floor already"

@@ -93,6 +93,6 @@ def test_a_log_that_cannot_be_written_leaves_the_scene_as_it_is():
 def test_an_operation_of_another_scene_is_refused_unlogged():
     history, _, rng = done(1)
     foreign = random_operation(small_draft(99), rng)
-    with pytest.raises(ConflictError, match=r"^operation paint: .* changed since$"):
+    with pytest.raises(ConflictError, match=r"^operation paint: .* has changed since$"):
         history.do(foreign)
     assert len(history.log.operations) == 1

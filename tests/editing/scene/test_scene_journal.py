@@ -93,8 +93,8 @@ def changed(**fields):
 @pytest.mark.parametrize(
     ("fields", "reason"),
     [
-        ({"runs": np.array([0, 211], np.int32)}, "a run of cells leaves the grid of 210 cells"),
-        ({"runs": np.array([0, 5, 3, 4], np.int32)}, "two runs of cells name the same cell"),
+        ({"runs": np.array([0, 211], np.int32)}, "a run of cells extends beyond the grid of 210 cells"),
+        ({"runs": np.array([0, 5, 3, 4], np.int32)}, "two runs of cells overlap"),
         ({"runs": np.array([0, 1, 2], np.int32)}, "cannot reshape"),
         ({"runs": np.array([0, 9], np.int32)}, "labels is of "),
         ({"kind": "a/b"}, "kind must be a short printable name"),

@@ -183,26 +183,26 @@ def test_set_template_sets_the_box_and_counts_a_pure_turn():
 def test_golden_refusals():
     assert refusal(op="delete_objects", ids=[9]) == "object 9 not found; objects: 1, 2, 3"
     assert refusal(op="move_object", id=CHAIR, to_m=[0.72, 0.68, 0.25]) == (
-        "object 1 (chair) is there already: to_m is less than a cell away"
+        "object 1 (chair) is already at to_m, which is less than a cell away"
     )
     assert refusal(op="move_object", id=CHAIR, to_m=[9, 0.7, 0.25]) == (
-        "object 1 (chair) would leave the grid; its centre may be x 0.20 to 2.20, y 0.20 to 1.80, "
+        "object 1 (chair) would leave the grid; its centre must be in x 0.20 to 2.20, y 0.20 to 1.80, "
         "z 0.15 to 1.25 m"
     )
     assert refusal(op="turn_objects", ids=[CHAIR], quarter_turns=0) == (
-        "quarter_turns must be 1 to 3, or less than 0 for clockwise"
+        "quarter_turns must be 1 to 3, or negative for clockwise"
     )
     assert refusal(op="add_object", class_id=5, at_m=[-4, 0, 0]) == (
-        "at_m lies outside the grid, which spans x 0.00 to 2.40, y 0.00 to 2.00, z -0.10 to 1.50 m"
+        "at_m is outside the grid, which spans x 0.00 to 2.40, y 0.00 to 2.00, z -0.10 to 1.50 m"
     )
     assert refusal(op="add_object", class_id=5, at_m=[1, 1, 0], template="sofa") == (
-        "sofa is for class sofa, not chair; relabel the object first"
+        "sofa is for class sofa, but the object is a chair; relabel it first"
     )
     assert refusal(op="set_template", id=CHAIR, template="armchiar") == (
         "no template is named 'armchiar'; did you mean 'armchair'?"
     )
     assert refusal(op="rematch", ids=[LAMP]) == (
-        "object 3 has no cells to match; choose its template"
+        "object 3 has no cells to match; choose a template for it"
     )
     assert refusal(op="move_object", id=0, to_m=[0, 0, 0]) == (
         "move_object: id: Input should be greater than or equal to 1, not 0"

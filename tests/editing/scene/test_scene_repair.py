@@ -356,20 +356,20 @@ def test_floaters_that_are_kept_stay():
         ),
         (
             {"op": "fill_holes", "plane": "floor"},
-            "floor has no holes to fill; give a cell of an opening to close it",
+            "floor has no holes to fill; specify a cell of an opening to close it",
         ),
         (
             {"op": "fill_holes", "plane": "all"},
-            "any plane has no holes to fill; give a cell of an opening to close it",
+            "any plane has no holes to fill; specify a cell of an opening to close it",
         ),
         (
             {"op": "fill_holes", "plane": "floor", "cell": [3, 3, 3]},
-            "cell [3, 3, 3] is in no gap of floor",
+            "cell [3, 3, 3] is not in a gap of floor",
         ),
-        ({"op": "fill_holes", "plane": "object:x"}, "no object x; the tree on the left lists all"),
+        ({"op": "fill_holes", "plane": "object:x"}, "object x not found; see the object tree"),
         (
             {"op": "remove_floaters"},
-            "no floaters of up to 30 cells",
+            "no floaters with at most 30 cells found",
         ),
         ({"op": "smooth"}, "nothing to change: furniture is already smooth or locked"),
     ],

@@ -214,11 +214,11 @@ def test_a_mirrored_copy_stands_where_it_is_put():
     [
         (
             {"op": "set_cells", "cells": [[0, 2]], "class_id": 5},
-            "nothing to change: all cells have this class or a lock",
+            "nothing to change: all cells already have this class or are locked",
         ),
         (
             {"op": "set_cells", "cells": [[2, 2]], "class_id": 5, "instance": 77},
-            "no object 77; leave instance out and cells join what they touch",
+            "object 77 not found; omit instance to join the adjacent object",
         ),
         (
             {"op": "set_cells", "cells": [[2, 2]], "class_id": 5, "instance": 3},
@@ -226,23 +226,23 @@ def test_a_mirrored_copy_stands_where_it_is_put():
         ),
         (
             {"op": "set_cells", "cells": [[2, 99]], "class_id": 5},
-            "a run of cells leaves the grid of 30 cells",
+            "a run of cells extends beyond the grid of 30 cells",
         ),
         (
             {"op": "fill_box", "low": [9, 9, 9], "high": [8, 8, 8], "class_id": 5},
-            "the box from [9, 9, 9] to [8, 8, 8] lies outside the grid (5, 3, 2)",
+            "the box from [9, 9, 9] to [8, 8, 8] is outside the grid of shape (5, 3, 2)",
         ),
         (
             {"op": "fill_box", "low": [0, 0, 0], "high": [0, 0, 1], "class_id": 5},
-            "nothing to change: all cells in the box have this class or a lock",
+            "nothing to change: all cells in the box already have this class or are locked",
         ),
         (
             {"op": "delete_component", "cell": [5, 0, 0]},
-            "cell [5, 0, 0] lies outside the grid of [5, 3, 2] cells",
+            "cell [5, 0, 0] is outside the grid of [5, 3, 2] cells",
         ),
         (
             {"op": "delete_component", "cell": [1, 0, 0]},
-            "cell [1, 0, 0] is empty: name one that is occupied",
+            "cell [1, 0, 0] is empty; choose an occupied cell",
         ),
         (
             {"op": "delete_component", "cell": [0, 0, 0], "locked": [5]},
@@ -255,11 +255,11 @@ def test_a_mirrored_copy_stands_where_it_is_put():
         ),
         (
             {"op": "paste", "cells": [[2, 2]], "by": [0, 0, 0]},
-            "nothing to paste: none of these cells is occupied",
+            "nothing to paste: all of these cells are empty",
         ),
         (
             {"op": "paste", "cells": [[0, 2]], "by": [0, 0, 10**30]},
-            "nothing to change: the copy is outside the grid or on identical cells",
+            "nothing to change: the copy is outside the grid or identical to the existing cells",
         ),
     ],
 )

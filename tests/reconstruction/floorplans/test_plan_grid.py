@@ -174,11 +174,11 @@ def damage(document, how):
     [
         ("short transform", r"walls\[0\].transform must be 16 numbers"),
         ("not a number", r"objects\[0\].dimensions must be 3 numbers"),
-        ("a mirror", r"doors\[0\].transform is no turn and shift in column-major order"),
-        ("millimetres", r"walls\[2\] is 4000 m large; metres are needed"),
+        ("a mirror", r"doors\[0\].transform must be a rigid transform in column-major order"),
+        ("millimetres", r"walls\[2\] measures 4000 m; export the plan in metres"),
         ("too many", r"12,000 objects; 10,000 at most"),
         ("far away", r"windows\[0\] lies over 1000 m away"),
-        ("no list", "windows must be a list, not dict"),
+        ("no list", "windows must be a list, got dict"),
         ("empty", "holds no wall and no floor"),
     ],
 )

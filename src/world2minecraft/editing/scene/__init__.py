@@ -1,4 +1,4 @@
-"""Edits of a scene, its occupancy and its objects: what SceneForge, scripts and models share."""
+"""Edits of a scene (occupancy and objects), shared by SceneForge, scripts and models."""
 
 from world2minecraft.editing.scene.cell_patch import cells_of_runs, runs_of_cells
 from world2minecraft.editing.scene.command import Command, Tools

@@ -1,6 +1,6 @@
-"""Sets of cells as runs, and patches that combine several changes of cells into one operation.
+"""Cells as runs, and patches that combine several changes of cells into one operation.
 
-Runs are ``[[start, length], ...]`` of flat C-order cell numbers, sorted and without overlap.
+Runs are ``[[start, length], ...]`` of flat C-order cell indices, sorted and without overlap.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from world2minecraft.editing.scene.scene_draft import ARRAYS, SceneDraft
 
 
 def runs_of_cells(cells: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
-    """Return the runs, int64 [R, 2], that name the cells int [N, 3] of a grid."""
+    """Return the runs, int64 [R, 2], of the cells int [N, 3] of a grid."""
     flat = np.asarray(np.ravel_multi_index(tuple(cells.T), shape))
     if not (flat[1:] > flat[:-1]).all():  # np.unique takes seconds for millions of cells.
         flat = np.sort(flat)
@@ -27,10 +27,10 @@ def runs_of_cells(cells: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
 
 
 def cells_of_runs(runs: Sequence[Sequence[int]], shape: tuple[int, int, int]) -> np.ndarray:
-    """Return the cells, int32 [N, 3], that runs name; sizes are checked before memory is taken.
+    """Return the cells, int32 [N, 3], in runs. Sizes are checked before memory is allocated.
 
     Raises:
-        UsageError: a run is empty, leaves the grid, or lies over another.
+        UsageError: If a run is empty, extends beyond the grid or overlaps another run.
     """
     total = int(np.prod(shape))
     if not len(runs):
@@ -38,37 +38,39 @@ def cells_of_runs(runs: Sequence[Sequence[int]], shape: tuple[int, int, int]) ->
     try:
         pairs = np.array(runs, np.int64).reshape(len(runs), 2)
     except (ValueError, OverflowError) as error:
-        raise UsageError("cells must be pairs of a first number and a length") from error
+        raise UsageError("cells must be [start, length] pairs of integers") from error
     pairs = pairs[np.argsort(pairs[:, 0], kind="stable")]
     starts, lengths = pairs.T
     if (lengths < 1).any() or (starts < 0).any() or (lengths > total - starts).any():
-        raise UsageError(f"a run of cells leaves the grid of {total:,} cells")
+        raise UsageError(f"a run of cells extends beyond the grid of {total:,} cells")
     ends = starts + lengths
     if (starts[1:] < ends[:-1]).any():
-        raise UsageError("two runs of cells name the same cell")
+        raise UsageError("two runs of cells overlap")
     firsts = np.repeat(starts - np.concatenate([[0], np.cumsum(lengths)[:-1]]), lengths)
     flat = np.arange(int(lengths.sum())) + firsts
     return np.column_stack(np.unravel_index(flat, shape)).astype(np.int32)
 
 
 def box_cells(low: Sequence[int], high: Sequence[int], shape: tuple[int, int, int]) -> np.ndarray:
-    """Return the cells, int32 [N, 3] in C order, of a box; both corners are in it.
+    """Return the cells, int32 [N, 3] in C order, of a box with inclusive corners.
 
     Raises:
-        UsageError: the box has no cell in the grid.
+        UsageError: If the box contains no cell of the grid.
     """
     first = np.maximum(np.minimum(low, high), 0)
     last = np.minimum(np.maximum(low, high), np.array(shape) - 1)
     if (first > last).any():
-        raise UsageError(f"the box from {list(low)} to {list(high)} lies outside the grid {shape}")
+        raise UsageError(
+            f"the box from {list(low)} to {list(high)} is outside the grid of shape {shape}"
+        )
     sides = [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
     return np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 3).astype(np.int32)
 
 
 class Patch:
-    """What cells of a draft become; a later change of a cell takes the place of an earlier one.
+    """Changes to the cells of a draft, in which later changes of a cell replace earlier ones.
 
-    Nothing is done to the draft. ``plan_operation`` leaves out cells that stay as they are.
+    The draft is not changed. ``plan_operation`` omits cells that stay the same.
     """
 
     def __init__(self, draft: SceneDraft):
@@ -77,16 +79,16 @@ class Patch:
         self._held: list[GridCells] = []
 
     def put(self, cells: np.ndarray, held: GridCells) -> None:
-        """Let cells, int [N, 3], hold this."""
+        """Set the full contents of cells, int [N, 3]."""
         self._cells.append(cells.reshape(-1, 3))
         self._held.append(held)
 
     def empty(self, cells: np.ndarray) -> None:
-        """Let cells be seen to be empty."""
+        """Set cells to observed and empty."""
         self.fill(cells, 0, 0)
 
     def fill(self, cells: np.ndarray, class_id: int, instance: int) -> None:
-        """Let cells be of a class and of an object, surely and observed; colours stay."""
+        """Set the class and object id of cells, observed with full confidence, keeping colours."""
         count = len(cells)
         held = GridCells(
             np.full(count, class_id, np.uint8),
@@ -98,9 +100,9 @@ class Patch:
         self.put(cells, held)
 
     def give(self, cells: np.ndarray, instance: int, class_id: int | None = None) -> None:
-        """Let cells belong to another object, with 0 to none; and be of its class, if one is given.
+        """Assign cells to another object (0 for none) and, if given, to its class.
 
-        What they are stays else.
+        All other contents of the cells are kept.
         """
         owners = np.full(len(cells), instance, np.uint16)
         if class_id is None:
@@ -111,7 +113,7 @@ class Patch:
             self._change(cells, instance=owners, labels=labels, confidence=sure)
 
     def relabel(self, cells: np.ndarray, class_id: int) -> None:
-        """Let occupied cells be of another class, surely; whose they are stays."""
+        """Set the class of occupied cells with full confidence, keeping their object ids."""
         labels, sure = np.full(len(cells), class_id, np.uint8), np.ones(len(cells), np.float16)
         self._change(cells, labels=labels, confidence=sure)
 
@@ -120,7 +122,7 @@ class Patch:
         self.put(cells, GridCells(**{name: getattr(held, name) for name in ARRAYS} | values))
 
     def plan_operation(self, kind: str, **details: Any) -> Operation:
-        """Return the operation; ``details`` is what ``SceneDraft.plan_operation`` takes."""
+        """Return the operation. ``details`` are passed to ``SceneDraft.plan_operation``."""
         cells = np.concatenate([np.zeros((0, 3), np.int64), *self._cells]).astype(np.int64)
         flat = np.atleast_1d(np.ravel_multi_index(tuple(cells.T), self._draft.shape))
         # The last of equal numbers is the first of the reversed ones.

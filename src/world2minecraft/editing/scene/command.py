@@ -1,8 +1,8 @@
-"""Commands: the edits that a person, a script or a model requests, planned as ``Operation``.
+"""Commands: edits requested by a person, a script or a model, planned as ``Operation``.
 
-A command is a small checked value that says what is wanted. ``plan`` looks at the scene and
-returns what that means for each cell and object, or raises ``UsageError`` with what to do.
-Their JSON form is the local API of SceneForge; its TypeScript types are made from these classes.
+A command is a small validated value that describes an edit. ``plan`` returns the resulting change
+of cells and objects, or raises ``UsageError`` with advice. The JSON form of commands is the local
+API of SceneForge, and its TypeScript types are generated from these classes.
 """
 
 from abc import abstractmethod
@@ -20,17 +20,18 @@ MAX_RUNS = 200_000
 
 
 def unavailable_tool(*_given: Any) -> Any:
-    """Stand for a tool that was not given: raise ``UsageError``."""
-    raise UsageError("this edit needs a stage that is not at hand; open the scene with Editor")
+    """Raise ``UsageError`` in place of a tool that was not provided."""
+    raise UsageError("this edit requires a reconstruction stage; open the scene with Editor")
 
 
 class Tools(NamedTuple):
-    """What commands need of the stages, which edits do not know.
+    """Functions of the reconstruction stages that commands use.
 
-    ``match`` returns the furniture that stands for an object in a grid; ``find`` the instance of
-    each cell and the objects, by the parameters given (``InstanceParameters``). ``fit`` returns one
-    template in an object's place, in the turn given or the best, whatever is there. ``measure``
-    returns the object of an id and a class that cells int32 [N, 3] are: its box and its front.
+    ``match`` returns the furniture for an object in a grid. ``find`` returns the object id of each
+    cell and the objects, for given ``InstanceParameters``. ``fit`` returns one template fitted to
+    an object, with a given or the best rotation, regardless of its surroundings. ``measure``
+    returns the object with an id and a class that consists of cells int32 [N, 3], with its bounding
+    box and front.
     """
 
     match: Callable[[OccupancyGrid, ObjectInstance], tuple[Placement, ...]]
@@ -40,14 +41,15 @@ class Tools(NamedTuple):
 
 
 class Command(BaseModel):
-    """What all commands share; each adds ``op``, a literal that names it."""
+    """Base class of all commands. Each subclass adds ``op``, a literal with its name."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     @abstractmethod
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return what this does to a scene.
+        """Return the operation that this command performs on a scene.
 
         Raises:
-            UsageError: it cannot be done to this scene; the message says why.
+            UsageError: If the command cannot be applied to this scene. The message states the
+                reason.
         """

@@ -1,4 +1,4 @@
-"""All commands by name, and their parsing from JSON."""
+"""All commands by name, and a parser for their JSON form."""
 
 from typing import Any
 
@@ -61,13 +61,14 @@ COMMANDS: dict[str, type[Command]] = {
 
 
 def parse_command(value: Any) -> Command:
-    """Return the command that a JSON object says.
+    """Parse a command from a JSON object.
 
     Raises:
-        UsageError: it is none; the message names the field, what was expected and what was given.
+        UsageError: If the value is not a valid command. The message states the field, the expected
+            value and the given value.
     """
     if not isinstance(value, dict) or not isinstance(value.get("op"), str):
-        raise UsageError('a command is an object with "op", such as {"op": "set_cells", ...}')
+        raise UsageError('a command must be an object with "op", such as {"op": "set_cells", ...}')
     if value["op"] not in COMMANDS:
         raise UnknownNameError("command", value["op"], COMMANDS)
     try:
@@ -77,7 +78,7 @@ def parse_command(value: Any) -> Command:
 
 
 def first_error(name: str, error: ValidationError) -> str:
-    """Return the line that states what is wrong with the fields of a command or a query."""
+    """Return a line about the first invalid field of a command or a query."""
     first = error.errors(include_url=False, include_context=False)[0]
     where = ".".join(str(part) for part in first["loc"]) or name
     given = str(first.get("input"))[:80]

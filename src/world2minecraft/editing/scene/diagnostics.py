@@ -1,9 +1,10 @@
-"""Diagnostics of a scene: places that are worth a check, each with its reason.
+"""Diagnostics of a scene: places that should be checked, each with a reason.
 
-Objects: those that no piece of furniture fits, that another fits almost as well, whose cells are
-not sure, that nothing carries. Cells: what floats, crumbs of no object, regions that
-are rather wrong than right by their calibrated confidence, regions completed and never
-seen. What a person painted is sure and observed, so that a repaired place no longer appears.
+Objects are reported if no furniture fits, if two templates fit almost equally well, if the
+confidence of their cells is low, or if they have no support. Cells are reported if they float,
+belong to no object, are probably wrong by their calibrated confidence, or were completed without
+being observed. Painted cells count as observed with full confidence, so repaired places are no
+longer reported.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -33,7 +34,7 @@ STANDING = (5, 6, 7, 8)  # Chairs, beds, sofas and tables stand; other things ma
 
 @dataclass(frozen=True, eq=False)
 class Diagnostic:
-    """One place. ``doubt`` is 0 to 1; ``object_id`` is 0 where it is about no object."""
+    """A place to check. ``doubt`` is 0 to 1. ``object_id`` is 0 if no object is concerned."""
 
     kind: str
     why: str
@@ -43,7 +44,7 @@ class Diagnostic:
 
 
 def find_diagnostics(draft: SceneDraft, progress: Progress = no_progress) -> list[Diagnostic]:
-    """Return the doubts of a scene, one for each object and place, the most doubtful first.
+    """Return the diagnostics of a scene, one per object and place, most doubtful first.
 
     ``progress`` is called for each check.
     """
@@ -56,7 +57,7 @@ def find_diagnostics(draft: SceneDraft, progress: Progress = no_progress) -> lis
 
 
 def rank_diagnostics(found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return doubts, the most doubtful first; of an object only the worst."""
+    """Return diagnostics, most doubtful first, with only the most doubtful one of each object."""
     kept: list[Diagnostic] = []
     seen: set[int] = set()
     for one in sorted(found, key=lambda one: (-one.doubt, one.kind, one.object_id, *one.at_m)):
@@ -186,5 +187,5 @@ def template_words(template: str) -> str:
 
 
 def center_of_cells_m(draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
-    """Return the middle of cells int [N, 3] in the room, float64 [3]."""
+    """Return the centre of cells int [N, 3] in the room frame in metres, float64 [3]."""
     return draft.origin_m + (cells.mean(axis=0) + 0.5) * draft.voxel_m

@@ -12,10 +12,11 @@ from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """Masks bool [X, Y, Z] of a scene; cells that the other does not know are in none.
+    """Masks of the differences between a scene and another grid, bool [X, Y, Z].
 
-    ``added`` are occupied here alone, ``removed`` there alone, ``changed`` in both, with another
-    class. A cell that was not seen here counts as empty.
+    ``added`` cells are occupied only in the scene, ``removed`` cells only in the other grid, and
+    ``changed`` cells in both with different classes. Unobserved cells of the scene count as empty.
+    Cells that are unknown in the other grid are in no mask.
     """
 
     added: np.ndarray
@@ -24,7 +25,7 @@ class Difference:
 
 
 def compare_labels(labels: np.ndarray, other: np.ndarray) -> Difference:
-    """Return how labels uint8 [X, Y, Z] differ from others of the same shape."""
+    """Return the differences between two label arrays of the same shape, uint8 [X, Y, Z]."""
     here, there = labels % UNKNOWN > 0, other % UNKNOWN > 0
     known = other != UNKNOWN
     changed = here & there & (labels != other)
@@ -32,17 +33,20 @@ def compare_labels(labels: np.ndarray, other: np.ndarray) -> Difference:
 
 
 def resample_labels(grid: OccupancyGrid, draft: SceneDraft) -> np.ndarray:
-    """Return the labels of a grid, uint8 [X, Y, Z], in the cells of a scene.
+    """Return the labels of a grid resampled to the cells of a scene, uint8 [X, Y, Z].
 
-    A cell takes the label at its centre, so that a grid with smaller cells, or with the same ones
-    elsewhere, is read too; where the grid does not reach it is 255.
+    Each cell takes the label at its centre, so grids with smaller or shifted cells are accepted.
+    Cells outside the grid are 255.
 
     Raises:
-        UsageError: its cells are larger than the scene's, or it does not meet the scene.
+        UsageError: If the cells of the grid are larger than those of the scene, or if the grid does
+            not overlap the scene.
     """
     if grid.voxel_m > draft.voxel_m * (1 + 1e-6):
         sizes = f"{grid.voxel_m:g} m, larger than the scene's {draft.voxel_m:g} m"
-        raise UsageError(f"its voxel size is {sizes}; use a grid with voxels of that size or less")
+        raise UsageError(
+            f"the voxel size is {sizes}; use a grid with voxels of that size or smaller"
+        )
     at, inside = [], []
     for axis in range(3):
         middles_m = draft.origin_m[axis] + (np.arange(draft.shape[axis]) + 0.5) * draft.voxel_m
@@ -53,6 +57,6 @@ def resample_labels(grid: OccupancyGrid, draft: SceneDraft) -> np.ndarray:
     reached = x[:, None, None] & y[None, :, None] & z[None, None, :]
     if not reached.any():
         raise UsageError(
-            "it does not overlap this room; use a grid in the coordinate frame of the scene"
+            "the grid does not overlap this room; use a grid in the coordinate frame of the scene"
         )
     return np.where(reached, grid.labels[np.ix_(*at)], np.uint8(UNKNOWN))

@@ -1,4 +1,4 @@
-"""Commands on the furniture of objects: add a piece, choose a template, match again."""
+"""Commands for the furniture of objects: add a piece, choose a template, match again."""
 
 from typing import Annotated, Literal
 
@@ -28,11 +28,12 @@ TemplateName = Annotated[str, Field(min_length=1, max_length=200)]
 
 
 class AddObject(Command):
-    """Put a piece of furniture of its usual size at a place, on what is under it there.
+    """Add a piece of furniture of typical size at a position, on top of what is below.
 
-    What hangs on walls has its middle at ``at_m``, what hangs from a ceiling goes up to what is
-    over it. Without ``template`` it is the plainest of its class, without ``quarter_turns`` it
-    looks away from the nearest wall, or to the table beside it. It takes free cells alone.
+    Wall-mounted furniture is centred at ``at_m``, and ceiling-mounted furniture extends up to the
+    surface above. Without ``template``, the simplest template of the class is used. Without
+    ``quarter_turns``, the furniture faces away from the nearest wall, or towards an adjacent table.
+    It only occupies free cells.
     """
 
     op: Literal["add_object"] = "add_object"
@@ -42,7 +43,7 @@ class AddObject(Command):
     quarter_turns: QuarterTurns | None = None
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the new object and the cells that it fills."""
+        """Return the operation with the new object and its cells."""
         chosen = self._template()
         corner, counts, turns = standing_box(draft, chosen, self.at_m, self.quarter_turns)
         size_m = np.round(np.array(counts) * draft.voxel_m, 9)
@@ -50,7 +51,7 @@ class AddObject(Command):
         cells = solid[is_free(draft, solid)]
         if not len(cells):
             sides = " x ".join(f"{side:.2f}" for side in size_m)
-            raise UsageError(f"no free cells there for {chosen.title}, {sides} m")
+            raise UsageError(f"no free cells at this position for {chosen.title}, {sides} m")
         number = free_object_id(draft)
         sides = np.array(counts)[[1, 0, 2]] if turns % 2 else np.array(counts)
         middle = draft.origin_m + (corner + sides / 2) * draft.voxel_m
@@ -70,10 +71,11 @@ class AddObject(Command):
 
 
 class SetTemplate(Command):
-    """Choose the furniture that stands for an object, fitted to its cells.
+    """Choose the furniture template of an object, fitted to the object's cells.
 
-    Without ``quarter_turns`` it looks the way that fits best. The object takes the furniture's
-    box and turn; its cells stay. ``cells`` builds the object from its own cells.
+    Without ``quarter_turns``, the best-fitting rotation is used. The object adopts the bounding box
+    and rotation of the furniture, and keeps its cells. ``cells`` builds the object from its own
+    cells.
     """
 
     op: Literal["set_template"] = "set_template"
@@ -82,7 +84,7 @@ class SetTemplate(Command):
     quarter_turns: QuarterTurns | None = None
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the object with its furniture."""
+        """Return the operation with the object and its furniture."""
         one = object_by_id(draft, self.id)
         if self.template != OWN_CELLS:
             template_for(self.template, one.class_id)
@@ -98,31 +100,34 @@ class SetTemplate(Command):
 
 
 class Rematch(Command):
-    """Match the furniture of objects again, as the reconstruction does, from their cells."""
+    """Match the furniture of objects again from their cells, as in the reconstruction."""
 
     op: Literal["rematch"] = "rematch"
     ids: Ids
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the objects with their furniture."""
+        """Return the operation with the objects and their furniture."""
         grid, objects = draft.grid(), []
         for one in objects_by_ids(draft, self.ids):
             cells = draft.cells_of(one.id)
             if not len(cells):
-                raise UsageError(f"object {one.id} has no cells to match; choose its template")
+                raise UsageError(f"object {one.id} has no cells to match; choose a template for it")
             found = tools.measure(grid, one.id, one.class_id, cells)
             objects.append(object_of(found, tools.match(grid, found)))
         return Patch(draft).plan_operation("rematch", objects=objects)
 
 
 def template_for(name: str, class_id: int) -> Template:
-    """Return the template of a name, which must be one for a class.
+    """Return the template with a name, which must be a template for the given class.
 
     Raises:
-        UnknownNameError: there is none. UsageError: it is for another class.
+        UnknownNameError: If the template is unknown.
+        UsageError: If the template is for another class.
     """
     found = template(name)
     if found.class_id != class_id:
         own, other = display_name(found.class_id), display_name(class_id)
-        raise UsageError(f"{name} is for class {own}, not {other}; relabel the object first")
+        raise UsageError(
+            f"{name} is for class {own}, but the object is a {other}; relabel it first"
+        )
     return found

@@ -1,7 +1,7 @@
 """The linear history of a scene: do, undo and redo.
 
-The history is linear: what was undone is forgotten by the next edit, as in every editor. Each step
-is in the log, which may be a file, before the scene changes.
+The next edit discards undone edits, as in most editors. Each step is written to the log, which can
+be a file, before the scene changes.
 """
 
 from typing import NamedTuple, Protocol
@@ -12,68 +12,73 @@ from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 
 class Log(Protocol):
-    """Where the steps of a history are kept. Operations have numbers from 0, never used again.
+    """A log of the steps of a history.
 
-    A method that raises has kept nothing.
+    Operations are numbered from 0, and numbers are never reused. If a method raises an exception,
+    nothing was recorded.
     """
 
     def do(self, operation: Operation) -> int:
-        """Keep an operation that is done; return its number."""
+        """Record an applied operation and return its number."""
         ...
 
     def undo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
-        """Keep that an operation was taken back, by whom and when."""
+        """Record that an operation was undone, by whom and when."""
         ...
 
     def redo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
-        """Keep that an operation was done again, by whom and when."""
+        """Record that an operation was redone, by whom and when."""
         ...
 
     def operation(self, number: int) -> Operation:
-        """Return an operation."""
+        """Return the operation with a number."""
         ...
 
 
 class Timeline(NamedTuple):
-    """The operations that undo and redo can reach: numbers and kinds, and how many are done."""
+    """The operations that undo and redo can reach, and how many of them are applied."""
 
     numbers: tuple[int, ...] = ()
     kinds: tuple[str, ...] = ()
     done: int = 0
 
     def with_new(self, number: int, kind: str) -> "Timeline":
-        """Return the line after an edit: what was undone is out of reach."""
+        """Return the timeline after a new edit, which discards undone operations."""
         kept = self.done
         return Timeline((*self.numbers[:kept], number), (*self.kinds[:kept], kind), kept + 1)
 
     def within(self, first: int, last: int) -> "Timeline":
-        """Return the line of the operations at places ``first`` to before ``last`` alone."""
+        """Return the timeline restricted to the operations ``first`` to ``last`` (exclusive)."""
         return Timeline(self.numbers[first:last], self.kinds[first:last], self.done - first)
 
     def moved(self, steps: int) -> "Timeline":
-        """Return the line with one more (1) or fewer (-1) operations done."""
+        """Return the timeline after a redo (``steps`` 1) or an undo (``steps`` -1)."""
         return self._replace(done=self.done + steps)
 
     @property
     def undo_kind(self) -> str:
-        """The kind of what undo would take back; empty where there is nothing."""
+        """The kind of the operation that undo would undo. Empty if there is none."""
         return self.kinds[self.done - 1] if self.done else ""
 
     @property
     def redo_kind(self) -> str:
-        """The kind of what redo would do again; empty where there is nothing."""
+        """The kind of the operation that redo would redo. Empty if there is none."""
         return self.kinds[self.done] if self.done < len(self.kinds) else ""
 
 
 class SceneHistory:
-    """The one that changes a scene. A step that raises has changed nothing."""
+    """The undo and redo history of a scene. A step that raises an exception changes nothing."""
 
     def __init__(self, draft: SceneDraft, log: Log, line: Timeline | None = None):
-        """Take a scene with the line that leads to it; nothing is done yet where it is None."""
+        """Open the history of a scene with its timeline, which is empty if ``line`` is None."""
         self.draft, self.log, self.line = draft, log, line or Timeline()
 
     def do(self, operation: Operation) -> Operation:
-        """Do an operation. Raises ConflictError, or what the log raises."""
+        """Apply an operation and record it.
+
+        Raises:
+            ConflictError: If the operation does not match the scene.
+        """
         self.draft.check(operation)
         number = self.log.do(operation)
         self.draft.put(operation)
@@ -81,14 +86,14 @@ class SceneHistory:
         return operation
 
     def undo(self, actor: str = "", time_s: float = 0.0) -> Operation:
-        """Take the last operation back; return what was done to the scene, its inverse.
+        """Undo the last operation and return its inverse, which was applied to the scene.
 
         Args:
-            actor: who does so; only recorded.
-            time_s: when, in seconds since 1970; only recorded.
+            actor: Name of the user, for the record only.
+            time_s: Time in seconds since 1970, for the record only.
 
         Raises:
-            UsageError: nothing is done.
+            UsageError: If there is nothing to undo.
         """
         if not self.line.done:
             raise UsageError("nothing to undo")
@@ -101,14 +106,14 @@ class SceneHistory:
         return inverse
 
     def redo(self, actor: str = "", time_s: float = 0.0) -> Operation:
-        """Do again what was last undone; return it.
+        """Redo the last undone operation and return it.
 
         Args:
-            actor: who does so; only recorded.
-            time_s: when, in seconds since 1970; only recorded.
+            actor: Name of the user, for the record only.
+            time_s: Time in seconds since 1970, for the record only.
 
         Raises:
-            UsageError: nothing was undone since the last edit.
+            UsageError: If there is nothing to redo.
         """
         if not self.line.redo_kind:
             raise UsageError("nothing to redo")
@@ -122,22 +127,22 @@ class SceneHistory:
 
 
 class MemoryLog:
-    """A log that is kept nowhere."""
+    """A log that keeps operations in memory only."""
 
     def __init__(self):
         self.operations: list[Operation] = []
 
     def do(self, operation: Operation) -> int:
-        """Keep an operation; return its number."""
+        """Store an operation and return its number."""
         self.operations.append(operation)
         return len(self.operations) - 1
 
     def undo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
-        """Keep nothing."""
+        """Do nothing, because undo steps are not recorded."""
 
     def redo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
-        """Keep nothing."""
+        """Do nothing, because redo steps are not recorded."""
 
     def operation(self, number: int) -> Operation:
-        """Return an operation."""
+        """Return the operation with a number."""
         return self.operations[number]

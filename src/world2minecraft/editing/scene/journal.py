@@ -1,14 +1,15 @@
-"""The journal of a scene: a log of its history on disk that survives a kill.
+"""The journal of a scene: its history as a file that survives a kill.
 
-A file of records (``record_log``). The first has the verb ``@``: its number is the revision at
-which the journal starts, followed by the name of its generation and a line feed. Each further
-record is a step and raises the revision by one: ``+`` an operation with its number, its kind and
-the operation itself; ``-`` and ``*`` that the operation of this number was undone or redone, with
-who did so and when. Operations stay on the disk; memory holds their positions.
+The journal is a file of records (see ``record_log``). The first record has the verb ``@``. Its
+number is the revision at which the journal starts, and its content is the name of its generation
+and a line feed. Each further record is a step that increases the revision by one: ``+`` with the
+number, the kind and the content of an operation, or ``-`` and ``*`` for an operation that was
+undone or redone, with the user and the time. Operations are read from the disk when needed, and
+only their positions are kept in memory.
 
-An operation is stored as an NBT tree of runs of cells and what they hold. The bytes depend on the
-operation alone: cells are sorted, and an array of one repeated value is stored as that value.
-Reading checks sizes against those of the scene before it allocates memory.
+An operation is stored as an NBT tree of runs of cells and their contents. The bytes depend only on
+the operation: cells are sorted, and an array of one repeated value is stored as that value. Sizes
+are checked against the scene before memory is allocated.
 """
 
 import json
@@ -41,7 +42,7 @@ _KIND = 1024  # Bytes in which a kind ends: 200 characters of any alphabet.
 
 
 def pack_operation(operation: Operation, shape: Shape) -> bytes:
-    """Return an operation on a grid of a shape as NBT, not compressed."""
+    """Return an operation on a grid with the given shape as uncompressed NBT."""
     flat = np.ravel_multi_index(tuple(operation.cells.T), shape)
     order = None if (np.diff(flat) > 0).all() else np.argsort(flat)
     return write_nbt(
@@ -61,16 +62,16 @@ def pack_operation(operation: Operation, shape: Shape) -> bytes:
 
 
 def unpack_operation(data: bytes, shape: Shape, path: str | Path) -> Operation:
-    """Return the operation that ``pack_operation`` made bytes of; its cells are in C order.
+    """Parse an operation written by ``pack_operation``. Its cells are in C order.
 
     Args:
-        data: the bytes.
-        shape: of the grid it was done to.
-        path: the file that errors name.
+        data: Bytes of the operation.
+        shape: Shape of the grid.
+        path: File to name in errors.
 
     Raises:
-        DamagedFileError: the bytes are no operation on such a grid. LimitError: they ask for too
-        much.
+        DamagedFileError: If the bytes are not a valid operation on such a grid.
+        LimitError: If the operation is too large.
     """
     _, root = read_nbt(data, path, OPERATION_LIMITS)
     try:
@@ -88,25 +89,28 @@ def unpack_operation(data: bytes, shape: Shape, path: str | Path) -> Operation:
             time_s=float(root["time_s"]),
         )
     except (KeyError, TypeError, ValueError, AttributeError, UsageError) as error:
-        raise DamagedFileError(path, f"holds no operation on a scene ({error})") from error
+        raise DamagedFileError(
+            path, f"does not contain a valid scene operation ({error})"
+        ) from error
 
 
 def pack_objects(objects: Iterable[SceneObject]) -> bytes:
-    """Return objects as NBT, not compressed, exact to the last bit."""
+    """Return objects as uncompressed NBT, with exact floating-point values."""
     return write_nbt({"objects": _pack_objects(objects)})
 
 
 def unpack_objects(data: bytes, path: str | Path) -> tuple[SceneObject, ...]:
-    """Return the objects that ``pack_objects`` made bytes of.
+    """Parse objects written by ``pack_objects``.
 
     Raises:
-        DamagedFileError: the bytes are no objects. LimitError: they ask for too much.
+        DamagedFileError: If the bytes are not valid objects.
+        LimitError: If the objects are too large.
     """
     _, root = read_nbt(data, path, OPERATION_LIMITS)
     try:
         return tuple(map(_unpack_object, root["objects"]))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DamagedFileError(path, f"holds no objects of a scene ({error})") from error
+        raise DamagedFileError(path, f"does not contain valid scene objects ({error})") from error
 
 
 def _pack_cells(held: GridCells, order: np.ndarray | None) -> dict[str, np.ndarray]:
@@ -132,7 +136,7 @@ def _unpack_cells(held: Mapping[str, Any], count: int) -> GridCells:
             rows = np.repeat(rows, count, axis=0)
         arrays[name] = rows
         if len(rows) != count:
-            raise ValueError(f"{name} is of {len(rows)} cells, not {count}")
+            raise ValueError(f"{name} must have {count} cells, got {len(rows)}")
     return GridCells(**arrays)
 
 
@@ -191,12 +195,12 @@ def _unpack_placement(number: int, class_id: int, held: Mapping[str, Any]) -> Pl
 
 def _as_floats(values: Sequence[Any], count: int) -> np.ndarray:
     if len(values) != count:
-        raise ValueError(f"a box of {len(values)} numbers, not {count}")
+        raise ValueError(f"a box must have {count} numbers, got {len(values)}")
     return np.array(values, np.float64)
 
 
 class Step(NamedTuple):
-    """One record of the journal; ``kind`` is empty where its bytes are damaged."""
+    """A record of the journal. ``kind`` is empty if the record is damaged."""
 
     verb: bytes
     number: int
@@ -205,21 +209,22 @@ class Step(NamedTuple):
 
 
 class SceneJournal:
-    """The steps since revision ``start``, and the operations that they did.
+    """The steps since revision ``start``, and their operations.
 
-    ``steps`` are all of them; one with a damaged record has the verb ``b""``. ``generation`` is
-    the name that the journal was begun with, empty where there is none yet.
+    ``steps`` contains all steps. A step with a damaged record has the verb ``b""``. ``generation``
+    is the name of the journal's generation, or empty if the journal has not been started.
     """
 
     def __init__(self, path: str | Path, shape: tuple[int, int, int]):
-        """Read where the records of the journal at ``path`` lie; a missing file is an empty one.
+        """Read the positions of the records in a journal. A missing file is an empty journal.
 
         Args:
-            path: the file.
-            shape: of the scene's grid.
+            path: Path of the journal.
+            shape: Shape of the scene's grid.
 
         Raises:
-            DamagedFileError: it is no journal. InputError: it cannot be read.
+            DamagedFileError: If the file is not a valid journal.
+            InputError: If the file cannot be read.
         """
         self.file = RecordFile(path, MARK, OPERATION_LIMITS.bytes, "journal of a scene")
         self.shape, self.start, self.generation = shape, 0, ""
@@ -235,12 +240,20 @@ class SceneJournal:
         return self.start + len(self.steps)
 
     def begin(self, generation: str, start: int = 0) -> None:
-        """Write the first record of a new journal. Raises OutputError."""
+        """Write the first record of a new journal.
+
+        Raises:
+            OutputError: If the file cannot be written.
+        """
         self.file.append(START, start, f"{generation}\n".encode())
         self.generation, self.start = generation, start
 
     def do(self, operation: Operation) -> int:
-        """Keep an operation that is done; return its number. Raises OutputError."""
+        """Record an applied operation and return its number.
+
+        Raises:
+            OutputError: If the file cannot be written.
+        """
         number = self._next
         kind = operation.kind.encode() + b"\n"
         record = self.file.append(DO, number, kind + pack_operation(operation, self.shape))
@@ -249,39 +262,47 @@ class SceneJournal:
         return number
 
     def undo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
-        """Keep that an operation was taken back. Raises OutputError."""
+        """Record that an operation was undone.
+
+        Raises:
+            OutputError: If the file cannot be written.
+        """
         self._append_turn(UNDO, number, actor, time_s)
 
     def redo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
-        """Keep that an operation was done again. Raises OutputError."""
+        """Record that an operation was redone.
+
+        Raises:
+            OutputError: If the file cannot be written.
+        """
         self._append_turn(REDO, number, actor, time_s)
 
     def operation(self, number: int) -> Operation:
-        """Return an operation, read from the disk.
+        """Read an operation from the file.
 
         Raises:
-            DamagedFileError: its bytes are not those that were written.
+            DamagedFileError: If the record is damaged.
         """
         if number not in self._places:
-            raise DamagedFileError(self.file.path, f"has lost edit {number}")
+            raise DamagedFileError(self.file.path, f"does not contain edit {number}")
         _, _, content = self.file.unpack(self.file.read(self._places[number]))
         packed = content.partition(b"\n")[2]
         return unpack_operation(packed, self.shape, self.file.path)
 
     def author_of(self, step: Step) -> tuple[str, float]:
-        """Return who took a step of undo or redo, and when, in seconds since 1970."""
+        """Return the user and time, in seconds since 1970, of an undo or redo step."""
         _, _, content = self.file.unpack(self.file.read(step.record))
         try:
             actor, time_s = json.loads(content or b'["", 0]')
             return str(actor), float(time_s)
         except (ValueError, TypeError) as error:
-            raise DamagedFileError(self.file.path, f"has a step that is none ({error})") from error
+            raise DamagedFileError(self.file.path, f"contains an invalid step ({error})") from error
 
     def line_after(self, line: Timeline, steps: Sequence[Step]) -> Timeline:
-        """Return where a line comes to by some steps, none of them damaged.
+        """Return a timeline after some undamaged steps.
 
         Raises:
-            DamagedFileError: the steps do not follow from the line.
+            DamagedFileError: If the steps do not match the timeline.
         """
         for step in steps:
             done, numbers = line.done, line.numbers
@@ -292,11 +313,13 @@ class SceneJournal:
             elif step.verb == REDO and done < len(numbers) and numbers[done] == step.number:
                 line = line.moved(1)
             else:
-                raise DamagedFileError(self.file.path, f"has a step of edit {step.number} too many")
+                raise DamagedFileError(
+                    self.file.path, f"contains an unexpected step of edit {step.number}"
+                )
         return line
 
     def bytes_of(self, number: int) -> int:
-        """Return how many bytes of the disk an operation takes; 0 where it is not there."""
+        """Return the size of an operation in the file in bytes, or 0 if it does not exist."""
         record = self._places.get(number)
         return record.length if record else 0
 
@@ -316,11 +339,11 @@ class SceneJournal:
         word = content.partition(b"\n")[0].decode(errors="replace")
         if verb == START:
             if self.steps or self.generation:
-                raise DamagedFileError(self.file.path, "begins a second time")
+                raise DamagedFileError(self.file.path, "contains a second start record")
             self.generation, self.start = word, number
             return
         if verb not in (DO, UNDO, REDO):
-            raise DamagedFileError(self.file.path, f"has a record of the unknown kind {verb!r}")
+            raise DamagedFileError(self.file.path, f"contains a record of unknown type {verb!r}")
         if verb == DO:
             self._place(number, record)
         self.steps.append(Step(verb, number, word if verb == DO else "", record))

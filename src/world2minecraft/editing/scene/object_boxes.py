@@ -1,4 +1,4 @@
-"""Objects by their boxes: lookup by id, translation, rotation, extents and free ids."""
+"""Objects as bounding boxes: lookup by id, translation, rotation, extents and free ids."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -18,10 +18,10 @@ SHOWN = 12  # How many ids an error lists.
 
 
 def object_by_id(draft: SceneDraft, number: int) -> SceneObject:
-    """Return the object of an id.
+    """Return the object with an id.
 
     Raises:
-        UsageError: the scene has none; the message lists those it has.
+        UsageError: If the object does not exist. The message lists the existing objects.
     """
     if number in draft.objects:
         return draft.objects[number]
@@ -33,24 +33,28 @@ def object_by_id(draft: SceneDraft, number: int) -> SceneObject:
 
 
 def objects_by_ids(draft: SceneDraft, ids: Iterable[int]) -> list[SceneObject]:
-    """Return the objects of some ids, each once, in their order. Raises as ``object_by_id``."""
+    """Return the objects with some ids in order, without duplicates.
+
+    Raises:
+        UsageError: If an object does not exist.
+    """
     return [object_by_id(draft, number) for number in dict.fromkeys(ids)]
 
 
 def describe_object(one: SceneObject) -> str:
-    """Return what an error calls an object, such as ``object 3 (chair)``."""
+    """Return the description of an object for messages, such as ``object 3 (chair)``."""
     return f"object {one.id} ({display_name(one.class_id)})"
 
 
 def free_object_id(draft: SceneDraft, taken: Iterable[int] = ()) -> int:
-    """Return an id that neither an object nor a cell has, the next after the highest if it can be.
+    """Return an id that no object or cell uses, preferably the highest id plus one.
 
     Args:
-        draft: the scene.
-        taken: ids that are given away already.
+        draft: Scene to search.
+        taken: Additional ids that must not be used.
 
     Raises:
-        UsageError: all ids are taken.
+        UsageError: If all ids are in use.
     """
     highest = max([0, int(draft.instance.max(initial=0)), *draft.objects, *taken])
     if highest < MAX_OBJECTS:
@@ -59,11 +63,11 @@ def free_object_id(draft: SceneDraft, taken: Iterable[int] = ()) -> int:
     for number in range(1, MAX_OBJECTS + 1):
         if number not in used:
             return number
-    raise UsageError(f"a scene holds {MAX_OBJECTS:,} objects at most; delete some first")
+    raise UsageError(f"a scene can contain at most {MAX_OBJECTS:,} objects; delete some first")
 
 
 def translate_object(one: SceneObject, shift_m: np.ndarray) -> SceneObject:
-    """Return an object, with its placements, moved by metres, float64 [3]."""
+    """Return an object with its placements moved by a vector in metres, float64 [3]."""
     moved = tuple(
         replace(placed, center_m=_round(placed.center_m + shift_m)) for placed in one.placements
     )
@@ -71,7 +75,7 @@ def translate_object(one: SceneObject, shift_m: np.ndarray) -> SceneObject:
 
 
 def rotate_object(one: SceneObject, quarter_turns: int) -> SceneObject:
-    """Return an object turned about its centre, counter-clockwise from above."""
+    """Return an object rotated about its centre, counter-clockwise from above."""
     turn = rotation_about_z(90.0 * quarter_turns)[:3, :3]
     placements = tuple(
         replace(
@@ -88,9 +92,9 @@ def rotate_object(one: SceneObject, quarter_turns: int) -> SceneObject:
 def rotate_cells(
     cells: np.ndarray, center_m: np.ndarray, quarter_turns: int, draft: SceneDraft
 ) -> np.ndarray:
-    """Return cells int [N, 3] turned about the point that is nearest to a centre and keeps them.
+    """Return cells int [N, 3] rotated about the grid point nearest to a centre.
 
-    The point depends on the centre alone, so that four quarter turns bring every cell back.
+    The grid point depends only on the centre, so four quarter turns restore every cell.
     """
     x, y = ((center_m - draft.origin_m) / draft.voxel_m - 0.5)[:2]
     both, apart = (int(np.floor(value + 0.5 + 1e-6)) for value in (x + y, y - x))
@@ -101,12 +105,12 @@ def rotate_cells(
 
 
 def is_of_cells(one: SceneObject) -> bool:
-    """Whether an object is built from its own cells, wholly or in part."""
+    """Return whether an object is built from its own cells, at least in part."""
     return not one.placements or any(p.template == OWN_CELLS for p in one.placements)
 
 
 def with_placement(one: SceneObject, placement: Placement) -> SceneObject:
-    """Return an object that one piece of furniture stands for: its box and turn are its own."""
+    """Return an object with a single piece of furniture, adopting its bounding box and rotation."""
     return replace(
         one,
         center_m=placement.center_m,
@@ -118,19 +122,19 @@ def with_placement(one: SceneObject, placement: Placement) -> SceneObject:
 
 
 def plan_extent_m(one: SceneObject) -> np.ndarray:
-    """Return the sides along x, y and z, float64 [3], of the upright box around an object."""
+    """Return the axis-aligned side lengths of an object along x, y and z in metres, float64 [3]."""
     turn = np.abs(rotation_about_z(one.yaw_deg)[:3, :3])
     return turn @ one.size_m
 
 
 def copy_object(one: SceneObject, number: int) -> SceneObject:
-    """Return an object with its placements under another id."""
+    """Return a copy of an object and its placements with another id."""
     placements = tuple(replace(placed, object_id=number) for placed in one.placements)
     return replace(one, id=number, placements=placements)
 
 
 def common_class(objects: list[SceneObject]) -> int | None:
-    """Return the class that objects share, or None."""
+    """Return the class of all objects, or None if their classes differ."""
     classes = {one.class_id for one in objects}
     return classes.pop() if len(classes) == 1 else None
 

@@ -1,4 +1,4 @@
-"""Objects of a scene: their connected cells, and conversion from and to what the stages give."""
+"""Connected cells of objects, and conversion between scene objects and stage results."""
 
 from collections.abc import Iterable, Sequence
 
@@ -11,9 +11,9 @@ Box = tuple[slice, slice, slice]
 
 
 def box_of(cells: np.ndarray, shape: tuple[int, ...], margin: int = 0) -> tuple[np.ndarray, Box]:
-    """Return the lowest corner int [3] and the slices of a box around cells int [N, 3].
+    """Return the minimum corner int [3] and the slices of a box around cells int [N, 3].
 
-    The box is grown by ``margin`` cells and cut at the grid's sides.
+    The box is enlarged by ``margin`` cells and clipped to the grid.
     """
     low = np.maximum(cells.min(axis=0) - margin, 0)
     high = np.minimum(cells.max(axis=0) + margin + 1, shape)
@@ -22,9 +22,9 @@ def box_of(cells: np.ndarray, shape: tuple[int, ...], margin: int = 0) -> tuple[
 
 
 def connected_parts(cells: np.ndarray, *, corners: bool = False) -> list[np.ndarray]:
-    """Return the connected parts of cells int [N, 3], each as rows int [M] of it, by first cell.
+    """Return the connected parts of cells int [N, 3] as row indices int [M], ordered by first cell.
 
-    Cells are joined by faces; by edges and corners too where ``corners``.
+    Cells are connected by faces, or also by edges and corners if ``corners`` is True.
     """
     if not len(cells):
         return []
@@ -39,16 +39,16 @@ def connected_parts(cells: np.ndarray, *, corners: bool = False) -> list[np.ndar
 
 
 def connected_component(labels: np.ndarray, seed: tuple[int, int, int]) -> np.ndarray:
-    """Return the cells int32 [N, 3], in C order, that hold to a cell by faces and have its label.
+    """Return the cells int32 [N, 3], in C order, connected by faces with equal labels to a cell.
 
-    ``labels`` is uint8 [X, Y, Z]; the page finds the same in the browser.
+    ``labels`` is uint8 [X, Y, Z]. The web page implements the same rule.
     """
     numbers = label_components(labels == labels[seed], corners=False)[0]
     return np.argwhere(numbers == numbers[seed]).astype(np.int32)
 
 
 def shift_cells(cells: np.ndarray, axis: int, step: int) -> np.ndarray:
-    """Return cells int [N, 3] moved along one axis; they may lie outside the grid then."""
+    """Return cells int [N, 3] moved along one axis, possibly outside the grid."""
     moved = cells.copy()
     moved[:, axis] += step
     return moved
@@ -57,7 +57,7 @@ def shift_cells(cells: np.ndarray, axis: int, step: int) -> np.ndarray:
 def objects_of(
     instances: Sequence[ObjectInstance], placements: Sequence[Placement] = ()
 ) -> tuple[SceneObject, ...]:
-    """Return each object with the placements that stand for it."""
+    """Return scene objects from instances and their placements."""
     placed: dict[int, list[Placement]] = {}
     for one in placements:
         placed.setdefault(one.object_id, []).append(one)
@@ -65,13 +65,13 @@ def objects_of(
 
 
 def object_of(instance: ObjectInstance, placements: Iterable[Placement] = ()) -> SceneObject:
-    """Return one object with its placements."""
+    """Return a scene object from an instance and its placements."""
     fields = (instance.center_m, instance.size_m, instance.yaw_deg, instance.confidence)
     return SceneObject(instance.id, instance.class_id, *fields, tuple(placements))
 
 
 def instance_of(one: SceneObject, cells: np.ndarray) -> ObjectInstance:
-    """Return an object as the stages know it, with its cells int32 [N, 3]."""
+    """Return an object as an ``ObjectInstance`` with its cells int32 [N, 3]."""
     box = (one.center_m, one.size_m, one.yaw_deg)
     return ObjectInstance(one.id, one.class_id, *box, cells, one.confidence)
 
@@ -79,7 +79,10 @@ def instance_of(one: SceneObject, cells: np.ndarray) -> ObjectInstance:
 def instances_of(
     objects: Iterable[SceneObject], instance: np.ndarray
 ) -> tuple[ObjectInstance, ...]:
-    """Return objects as the stages know them, by id; ``instance`` is uint16 [X, Y, Z]."""
+    """Return objects as ``ObjectInstance`` values ordered by id.
+
+    ``instance`` contains the object id of each cell, uint16 [X, Y, Z].
+    """
     at = np.argwhere(instance > 0).astype(np.int32)
     owners = instance[tuple(at.T)]
     ordered = sorted(objects, key=lambda one: one.id)
@@ -87,17 +90,17 @@ def instances_of(
 
 
 def placements_of(objects: Iterable[SceneObject]) -> tuple[Placement, ...]:
-    """Return the placements of all objects, by id."""
+    """Return the placements of all objects, ordered by object id."""
     return tuple(p for one in sorted(objects, key=lambda one: one.id) for p in one.placements)
 
 
 def same_object(one: SceneObject, other: SceneObject) -> bool:
-    """Whether two objects have the same class, box, turn, confidence and placements."""
+    """Return whether two objects have equal class, box, rotation, confidence and placements."""
     return object_key(one) == object_key(other)
 
 
 def object_key(one: SceneObject) -> tuple:
-    """Return everything that an object holds, in values that compare and hash."""
+    """Return all properties of an object as comparable and hashable values."""
     box = (*map(float, one.center_m), *map(float, one.size_m), float(one.yaw_deg))
     placed = tuple(
         (

@@ -1,4 +1,4 @@
-"""Commands that change which cells form an object: split, merge, relabel and cluster again."""
+"""Commands that change which cells form an object: split, merge, relabel and recluster."""
 
 from dataclasses import replace
 from typing import Annotated, Literal
@@ -31,7 +31,7 @@ ROUNDS = 50  # Of two to eight clusters of an object's cells; most need ten.
 
 
 class CutPlane(BaseModel):
-    """A plane square to an axis of the room, such as x = 1.4 m."""
+    """A plane perpendicular to an axis of the room, such as x = 1.4 m."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -40,17 +40,17 @@ class CutPlane(BaseModel):
 
 
 class RelabelObjects(Command):
-    """Give objects another class, their cells too, and furniture of that class."""
+    """Change the class of objects and their cells, and match furniture of that class."""
 
     op: Literal["relabel_objects"] = "relabel_objects"
     ids: Ids
     class_id: ObjectClass
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells and the objects of the other class."""
+        """Return the operation with the relabelled cells and objects."""
         ones = [o for o in objects_by_ids(draft, self.ids) if o.class_id != self.class_id]
         if not ones:
-            raise UsageError("no object changes: all are of this class already")
+            raise UsageError("nothing to change: all objects already have this class")
         patch, grid, objects = Patch(draft), draft.grid(), []
         for one in ones:
             cells = draft.cells_of(one.id)
@@ -63,10 +63,10 @@ class RelabelObjects(Command):
 
 
 class SplitObject(Command):
-    """Split an object into a number of parts by where its cells lie, or in two by a plane.
+    """Split an object into several parts by the positions of its cells, or in two by a plane.
 
-    The largest part keeps the id; the others are new objects of the same class. Each is measured
-    and matched again.
+    The largest part keeps the id. The others become new objects of the same class. All parts are
+    measured and matched with furniture again.
     """
 
     op: Literal["split_object"] = "split_object"
@@ -77,18 +77,18 @@ class SplitObject(Command):
     @model_validator(mode="after")
     def _one_way(self) -> "SplitObject":
         if (self.parts is None) == (self.plane is None):
-            raise ValueError("give parts or plane, one of them")
+            raise ValueError("specify either parts or plane")
         return self
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells by part and the objects."""
+        """Return the operation with the cells of each part and the objects."""
         one = object_by_id(draft, self.id)
         cells = draft.cells_of(one.id)
         sides = self._sides(draft, cells)
         groups = _largest_first(cells, sides)
         if len(groups) < 2:
             raise UsageError(
-                f"{describe_object(one)} lies on one side of that; split it where its cells are"
+                f"{describe_object(one)} is on one side of the plane; move the plane into its cells"
             )
         numbers = [one.id]
         while len(numbers) < len(groups):
@@ -110,9 +110,10 @@ class SplitObject(Command):
 
 
 class SplitObjects(Command):
-    """Split each of several objects into a number of parts by where its cells lie.
+    """Split each of several objects into a number of parts by the positions of its cells.
 
-    As ``split_object`` does with each. Objects of fewer cells than parts stay as they are.
+    Each object is split as by ``split_object``. Objects with fewer cells than parts are not
+    changed.
     """
 
     op: Literal["split_objects"] = "split_objects"
@@ -120,7 +121,7 @@ class SplitObjects(Command):
     parts: Annotated[int, Field(ge=2, le=8)] = 2
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells by part and the objects."""
+        """Return the operation with the cells of each part and the objects."""
         patch, grid, objects, taken = Patch(draft), draft.grid(), [], []
         for one in objects_by_ids(draft, self.ids):
             cells = draft.cells_of(one.id)
@@ -131,23 +132,23 @@ class SplitObjects(Command):
                     patch.give(group, number)
                 objects.append(measure_object(grid, tools, number, one.class_id, group))
         if not objects:
-            raise UsageError(f"none of these objects has {self.parts} cells to be split into parts")
+            raise UsageError(f"none of these objects has at least {self.parts} cells to split")
         classes = {one.class_id for one in objects}
         details = {"class_id": classes.pop()} if len(classes) == 1 else {}
         return patch.plan_operation("split_objects", objects=objects, **details)
 
 
 class MergeObjects(Command):
-    """Make objects one, which has the id and the class of the first that is named."""
+    """Merge objects into one with the id and the class of the first object in the list."""
 
     op: Literal["merge_objects"] = "merge_objects"
     ids: Annotated[tuple[Id, ...], Field(min_length=2, max_length=65535)]
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells and the object that is left."""
+        """Return the operation with the cells and the merged object."""
         first, *others = objects_by_ids(draft, self.ids)
         if not others:
-            raise UsageError("name two different objects to merge")
+            raise UsageError("merging requires at least two different objects")
         patch, groups = Patch(draft), [draft.cells_of(first.id)]
         for one in others:
             cells = draft.cells_of(one.id)
@@ -155,7 +156,7 @@ class MergeObjects(Command):
             patch.give(cells, first.id, first.class_id if one.class_id != first.class_id else None)
         cells = np.concatenate(groups)
         if not len(cells):
-            raise UsageError("none of these objects has cells; delete all but one")
+            raise UsageError("none of these objects has cells; delete all but one instead")
         cells = cells[np.lexsort(cells.T[::-1])]
         merged = measure_object(draft.grid(), tools, first.id, first.class_id, cells)
         gone = [one.id for one in others]
@@ -165,9 +166,9 @@ class MergeObjects(Command):
 
 
 class Recluster(Command):
-    """Find the objects of a class, or all, again by other parameters of the paper's clustering.
+    """Detect the objects of one or all classes again with other clustering parameters.
 
-    An object that shares most of its cells with an old one keeps that one's id.
+    An object that consists mostly of the cells of an old object keeps its id.
     """
 
     op: Literal["recluster"] = "recluster"
@@ -177,7 +178,7 @@ class Recluster(Command):
     cluster_radius: Annotated[float, Field(gt=0, le=100)]
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells by object, and the objects."""
+        """Return the operation with the cells of each object and the objects."""
         grid = draft.grid()
         instance, found = tools.find(grid, self.model_dump(exclude={"op", "class_id"}))
         old = [o for o in draft.objects.values() if self.class_id in (None, o.class_id)]
@@ -201,15 +202,15 @@ class Recluster(Command):
 def measure_object(
     grid: OccupancyGrid, tools: Tools, number: int, class_id: int, cells: np.ndarray
 ) -> SceneObject:
-    """Return the object that cells int32 [N, 3] are, measured and matched."""
+    """Return the object made up of cells int32 [N, 3], measured and matched with furniture."""
     found = tools.measure(grid, number, class_id, cells)
     return object_of(found, tools.match(grid, found))
 
 
 def cluster_cells(cells: np.ndarray, count: int) -> np.ndarray:
-    """Return the cluster, int64 [N], of each of cells int [N, 3]: k-means, the same each time.
+    """Return the cluster, int64 [N], of each cell of int [N, 3] by deterministic k-means.
 
-    The first centres lie evenly along the direction in which the cells spread most.
+    The initial centres are evenly spaced along the direction of largest variance.
     """
     points = cells.astype(np.float64)
     if len(points) < 2:

@@ -1,4 +1,4 @@
-"""Where furniture comes to stand: a new piece at a point, or an object snapped to floor or wall."""
+"""Placement of furniture: a new piece at a point, or an object snapped to a floor or a wall."""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
@@ -20,7 +20,7 @@ WALL_SHARE = 0.5  # Of a side's face before which a wall must stand: a corner po
 
 
 class StandingBox(NamedTuple):
-    """The box of furniture in cells: its first cell, its sides along its own axes, its turn."""
+    """The box of furniture: minimum cell, side lengths in cells along its axes, and rotation."""
 
     corner: np.ndarray  # int64 [3]
     counts: tuple[int, int, int]
@@ -30,22 +30,22 @@ class StandingBox(NamedTuple):
 def standing_box(
     draft: SceneDraft, chosen: Template, at_m: Sequence[float], quarter_turns: int | None
 ) -> StandingBox:
-    """Return the box of a template of its usual size that is put at a place.
+    """Return the box of a template of typical size placed at a position.
 
     Args:
-        draft: the scene.
-        chosen: what is put.
-        at_m: x, y, z in metres, within the grid.
-        quarter_turns: which way it looks; None for away from walls and to tables.
+        draft: Scene to place the furniture in.
+        chosen: Template of the furniture.
+        at_m: Position x, y, z in metres, inside the grid.
+        quarter_turns: Rotation in quarter turns. None faces away from walls or towards tables.
 
     Raises:
-        UsageError: the place lies outside the grid.
+        UsageError: If the position is outside the grid.
     """
     cell = metres_to_cells(np.array(at_m), draft.origin_m, draft.voxel_m)
     if (cell < 0).any() or (cell >= draft.shape).any():
         low, high = draft.origin_m, draft.origin_m + np.array(draft.shape) * draft.voxel_m
         spans = [f"{n} {a:.2f} to {b:.2f}" for n, a, b in zip("xyz", low, high, strict=True)]
-        raise UsageError(f"at_m lies outside the grid, which spans {', '.join(spans)} m")
+        raise UsageError(f"at_m is outside the grid, which spans {', '.join(spans)} m")
     counts = size_in_cells(chosen.typical_m, draft.voxel_m)
     bottom = _bottom(draft, chosen, cell, counts[2])
     if quarter_turns is None:
@@ -69,7 +69,7 @@ def _bottom(draft: SceneDraft, chosen: Template, cell: np.ndarray, height: int) 
 
 
 def floor_layer(draft: SceneDraft) -> int:
-    """Return the first layer over the floor's top face, z = 0."""
+    """Return the first layer above the floor surface at z = 0."""
     return int(np.floor(-draft.origin_m[2] / draft.voxel_m + 0.5))
 
 
@@ -91,10 +91,10 @@ def _facing(
 
 
 class SnapObject(Command):
-    """Move an object down, or up, onto what is under it, or sideways to the nearest wall.
+    """Move an object vertically onto the surface below it, or sideways to the nearest wall.
 
-    It goes by whole cells, as far as its box touches. A wall counts where it stands before half
-    of the object's side or more.
+    The object moves by whole cells until its box touches the surface. A wall is used if it covers
+    at least half of the object's side.
     """
 
     op: Literal["snap_object"] = "snap_object"
@@ -102,21 +102,21 @@ class SnapObject(Command):
     to: Literal["floor", "wall"]
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the object and its cells where they go."""
+        """Return the operation with the object and its cells at the new position."""
         one = object_by_id(draft, self.id)
         low, high = box_in_cells(draft, one)
         way = _to_floor if self.to == "floor" else _to_wall
         shift = way(draft, one, low, high)
         if not shift.any():
             where = "on the floor" if self.to == "floor" else "at the wall"
-            raise UsageError(f"{describe_object(one)} is {where} already")
+            raise UsageError(f"{describe_object(one)} is already {where}")
         return plan_shift(draft, one, shift, "snap_object")
 
 
 def box_in_cells(draft: SceneDraft, one: SceneObject) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first cell and the one past the last, int64 [3] each, of an object.
+    """Return the minimum cell and the exclusive maximum cell of an object, int64 [3] each.
 
-    They are those of its cells, or where it has none of the upright box around it.
+    They are computed from the object's cells, or from its axis-aligned bounding box if it has none.
     """
     cells = draft.cells_of(one.id).astype(np.int64)
     if len(cells):
@@ -157,6 +157,6 @@ def _to_wall(draft: SceneDraft, one: SceneObject, low: np.ndarray, high: np.ndar
         if len(before):
             ways.append((axis, int(before[-1]) + 1 - int(low[axis])))
     if not ways:
-        raise UsageError(f"no wall stands beside {describe_object(one)}; move it instead")
+        raise UsageError(f"no wall found next to {describe_object(one)}; move it instead")
     axis, step = min(ways, key=lambda way: abs(way[1]))
     return step * np.eye(3, dtype=np.int64)[axis]

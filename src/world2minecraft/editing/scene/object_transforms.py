@@ -1,6 +1,6 @@
-"""Commands on whole objects: delete, move, turn and duplicate.
+"""Commands for whole objects: delete, move, rotate and duplicate.
 
-Cells move with their object: whole cells, onto free ones, within the grid.
+Cells move with their object by whole cells, onto free cells inside the grid.
 """
 
 from collections.abc import Sequence
@@ -40,7 +40,7 @@ def plan_shift(draft: SceneDraft, one: SceneObject, shift: np.ndarray, kind: str
     """Return the operation that moves an object by whole cells, int [3].
 
     Raises:
-        UsageError: it would leave the grid.
+        UsageError: If the object would leave the grid.
     """
     cells = draft.cells_of(one.id)
     check_within(draft, one, cells, shift)
@@ -53,19 +53,19 @@ def plan_shift(draft: SceneDraft, one: SceneObject, shift: np.ndarray, kind: str
 def put_cells(
     draft: SceneDraft, patch: Patch, one: SceneObject, cells: np.ndarray, there: np.ndarray
 ) -> None:
-    """Carry what an object's cells hold to other cells, [N, 3] each, as far as they are free."""
+    """Copy the contents of an object's cells to other cells, [N, 3] each, if these are free."""
     patch.empty(cells)
     free = is_free(draft, there) | (draft.instance[tuple(there.T)] == one.id)
     patch.put(there[free], select_cells(draft.contents(cells), free))
 
 
 def cells_to(draft: SceneDraft, one: SceneObject, to_m: Sequence[float]) -> np.ndarray:
-    """Return the whole cells, int64 [3], that bring an object's centre nearest to a point."""
+    """Return the shift in cells, int64 [3], that moves an object's centre nearest to a point."""
     return np.floor((np.array(to_m) - one.center_m) / draft.voxel_m + 0.5).astype(np.int64)
 
 
 def check_within(draft: SceneDraft, one: SceneObject, cells: np.ndarray, shift: np.ndarray) -> None:
-    """Raise ``UsageError`` where an object that is shifted by cells, int [3], leaves the grid."""
+    """Raise ``UsageError`` if an object shifted by cells, int [3], would leave the grid."""
     held = cells if len(cells) else middle_cell(draft, one)[None]
     if within_grid(draft, held + shift).all():
         return
@@ -75,46 +75,46 @@ def check_within(draft: SceneDraft, one: SceneObject, cells: np.ndarray, shift: 
         f"{name} {first:.2f} to {last:.2f}" for name, first, last in zip("xyz", *to, strict=True)
     ]
     raise UsageError(
-        f"{describe_object(one)} would leave the grid; its centre may be {', '.join(spans)} m"
+        f"{describe_object(one)} would leave the grid; its centre must be in {', '.join(spans)} m"
     )
 
 
 def within_grid(draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
-    """Return whether each of cells int [N, 3] lies in the grid, bool [N]."""
+    """Return whether each of the cells int [N, 3] is inside the grid, bool [N]."""
     return np.asarray(((cells >= 0) & (cells < draft.shape)).all(axis=1))
 
 
 def is_free(draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
-    """Return whether each of cells int [N, 3] lies in the grid and is empty or unseen, bool [N]."""
+    """Return which of the cells int [N, 3] are empty or unobserved and in the grid, bool [N]."""
     inside = within_grid(draft, cells)
     at = np.where(inside[:, None], cells, 0)
     return inside & (draft.labels[tuple(at.T)] % 255 == 0)
 
 
 def select_cells(held: GridCells, mask: np.ndarray) -> GridCells:
-    """Return what the cells hold that a bool mask [N] names."""
+    """Return the cell contents selected by a mask, bool [N]."""
     return GridCells(*(getattr(held, name)[mask] for name in ARRAYS))
 
 
 def with_owner(held: GridCells, number: int) -> GridCells:
-    """Return what cells hold, as those of another object."""
+    """Return cell contents with another object id."""
     fields = {name: getattr(held, name) for name in ARRAYS}
     return GridCells(**fields | {"instance": np.full(len(held.labels), number, np.uint16)})
 
 
 def middle_cell(draft: SceneDraft, one: SceneObject) -> np.ndarray:
-    """Return the cell, int64 [3], that holds an object's centre."""
+    """Return the cell, int64 [3], that contains an object's centre."""
     return metres_to_cells(one.center_m, draft.origin_m, draft.voxel_m)
 
 
 class DeleteObjects(Command):
-    """Remove objects: their cells are empty then; floor and walls behind them stay."""
+    """Delete objects and empty their cells, keeping the floor and walls behind them."""
 
     op: Literal["delete_objects"] = "delete_objects"
     ids: Ids
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells that become empty and the objects that go."""
+        """Return the operation with the emptied cells and the deleted objects."""
         gone = objects_by_ids(draft, self.ids)
         patch = Patch(draft)
         for one in gone:
@@ -124,10 +124,10 @@ class DeleteObjects(Command):
 
 
 class MoveObject(Command):
-    """Move an object, with its cells and its furniture, by whole cells to a new centre.
+    """Move an object with its cells and furniture by whole cells to a new centre.
 
-    The cells left behind are empty. Cells that come to lie in structure or in other objects are
-    lost: nothing that is there is overwritten.
+    The previous cells become empty. Cells that would overlap structure or other objects are
+    dropped, so nothing is overwritten.
     """
 
     op: Literal["move_object"] = "move_object"
@@ -135,22 +135,22 @@ class MoveObject(Command):
     to_m: Point
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells and the object where they go."""
+        """Return the operation with the object and its cells at the new position."""
         one = object_by_id(draft, self.id)
         shift = cells_to(draft, one, self.to_m)
         if not shift.any():
             raise UsageError(
-                f"{describe_object(one)} is there already: to_m is less than a cell away"
+                f"{describe_object(one)} is already at to_m, which is less than a cell away"
             )
         return plan_shift(draft, one, shift, "move_object")
 
 
 class TurnObjects(Command):
-    """Turn objects by quarters about their centres, counter-clockwise from above.
+    """Rotate objects by quarter turns about their centres, counter-clockwise from above.
 
-    Their furniture and their yaw turn. The cells of what is built from its own cells turn too,
-    and lose what comes to lie in structure or in other objects; the cells of an object that a
-    template stands for stay: they are what was seen there.
+    Their furniture and yaw are rotated. The cells of objects built from their own cells are also
+    rotated, and cells that would overlap structure or other objects are dropped. The cells of
+    objects with a furniture template are kept, because they record what was observed.
     """
 
     op: Literal["turn_objects"] = "turn_objects"
@@ -158,10 +158,10 @@ class TurnObjects(Command):
     quarter_turns: QuarterTurns
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the objects as they are turned."""
+        """Return the operation with the rotated objects."""
         ones = objects_by_ids(draft, self.ids)
         if self.quarter_turns % 4 == 0:
-            raise UsageError("quarter_turns must be 1 to 3, or less than 0 for clockwise")
+            raise UsageError("quarter_turns must be 1 to 3, or negative for clockwise")
         patch = Patch(draft)
         for one in ones:
             if is_of_cells(one):
@@ -175,15 +175,15 @@ class TurnObjects(Command):
         result = rotate_cells(cells, one.center_m, self.quarter_turns, draft)
         if not within_grid(draft, result).all():
             raise UsageError(
-                f"{describe_object(one)} would leave the grid; move it inward before it is turned"
+                f"{describe_object(one)} would leave the grid; move it inward before rotating it"
             )
         return result
 
 
 class DuplicateObject(Command):
-    """Put the same object again, centred at ``to_m``, or else beside itself where most is free.
+    """Duplicate an object, centred at ``to_m``, or next to the original where most space is free.
 
-    Cells that would lie in structure or in other objects are left out, as when it is moved.
+    Cells that would overlap structure or other objects are dropped.
     """
 
     op: Literal["duplicate_object"] = "duplicate_object"
@@ -191,7 +191,7 @@ class DuplicateObject(Command):
     to_m: Point | None = None
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the new object and its cells."""
+        """Return the operation with the new object and its cells."""
         one = object_by_id(draft, self.id)
         cells = draft.cells_of(one.id)
         shift = self._beside(draft, one, cells)
@@ -202,7 +202,7 @@ class DuplicateObject(Command):
         free = is_free(draft, cells + shift)
         if len(cells) and not free.any():
             raise UsageError(
-                f"no cell is free for another {describe_object(one)} there; give to_m elsewhere"
+                f"no free cells for a copy of {describe_object(one)}; choose another to_m"
             )
         patch.put((cells + shift)[free], select_cells(held, free))
         details = {"counts_as": "add", "class_id": one.class_id}

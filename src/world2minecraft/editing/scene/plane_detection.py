@@ -1,14 +1,14 @@
 """Detection of the planes of a room in its cells: floors, ceilings and walls, each a flat sheet.
 
-A floor or a ceiling is a layer that holds a square metre of its class that is flat. A wall is a
-flat connected region of wall and window cells in one layer across x or y, with something else than
-structure before or behind. The crossing of another wall, a slope and a wall at an angle to the
-axes are not flat in any layer, and are none. What noise put one layer before or behind belongs to
-the sheet. Rooms on one level share a floor; what a doorway parts is one wall, what a wider passage
-parts is two.
+A floor or a ceiling is a layer with at least one flat square metre of its class. A wall is a flat
+connected region of wall and window cells in one layer across x or y, with non-structure cells in
+front or behind. Crossings of other walls, slopes and walls at an angle to the axes are not flat in
+any layer and are not planes. Noise one layer in front or behind belongs to the sheet. Rooms on one
+level share a floor. Regions separated by a doorway are one wall, and regions separated by a wider
+passage are two.
 
-Planes are named ``floor``, ``floor:2`` (the largest first), ``ceiling`` and ``wall:1`` to
-``wall:N`` (by axis, layer and place, so that mending one leaves the names of the others).
+Planes are named ``floor``, ``floor:2`` (largest first), ``ceiling`` and ``wall:1`` to ``wall:N``
+(by axis, layer and position, so that repairing one keeps the names of the others).
 """
 
 from dataclasses import dataclass, replace
@@ -32,10 +32,10 @@ WALL_CLASSES = (SemanticClass.WALL, SemanticClass.WINDOW)
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """One sheet. ``axis`` is across it; 2D arrays are over the other two axes in order.
+    """A flat sheet perpendicular to ``axis``. Its 2D arrays span the other two axes in order.
 
-    ``low`` and ``high`` bound it there, ``high`` not included; ``meets`` tells whether a floor, a
-    ceiling or another wall stands at each of the two ends of each of them.
+    ``low`` and ``high`` (exclusive) are the bounds in these two axes. ``meets`` states for both
+    ends of each of them whether a floor, a ceiling or another wall adjoins.
     """
 
     name: str
@@ -49,13 +49,13 @@ class Plane:
 
     @property
     def window(self) -> tuple[slice, slice]:
-        """The part of a layer in which it lies."""
+        """The part of a layer that the plane covers."""
         return slice(self.low[0], self.high[0]), slice(self.low[1], self.high[1])
 
     def near(self, labels: np.ndarray) -> np.ndarray:
-        """Return labels [X, Y, Z] of its layer and the one before and behind, [3, A, B].
+        """Return the labels [X, Y, Z] of the plane's layer and the layers on both sides, [3, A, B].
 
-        Beyond the grid they are unknown.
+        Cells beyond the grid are unknown.
         """
         layers = np.full((3, *np.delete(labels.shape, self.axis)), UNKNOWN, labels.dtype)
         for number, layer in enumerate(range(self.layer - 1, self.layer + 2)):
@@ -64,12 +64,12 @@ class Plane:
         return layers
 
     def cells(self, flat: np.ndarray, layers: np.ndarray) -> np.ndarray:
-        """Return the cells int [N, 3] at places int [N, 2], each in its layer int [N]."""
+        """Return the cells int [N, 3] at positions int [N, 2] in the layers int [N]."""
         return np.insert(flat, self.axis, layers, axis=1)
 
 
 def find_planes(draft: SceneDraft) -> list[Plane]:
-    """Return all planes: floors and ceilings, the largest first, then walls by their place."""
+    """Return all planes: floors and ceilings, largest first, then walls by position."""
     level = [*_levels(draft, SemanticClass.FLOOR), *_levels(draft, SemanticClass.CEILING)]
     return [*level, *_walls(draft, level)]
 

@@ -1,4 +1,4 @@
-"""Commands that repair what a scan left: floaters, holes and rough surfaces.
+"""Commands that repair faults of a scan: floaters, holes and rough surfaces.
 
 **Floaters.** A piece is all occupied cells, of any class, that are connected by faces, edges or
 corners. It floats where it is small and not the largest of the scene. A piece with cells of
@@ -65,7 +65,7 @@ PIT = 17  # Of 26: one below a flat surface. An inner edge, as of seat and back,
 
 @dataclass(frozen=True, eq=False)
 class Floater:
-    """One piece: its cells int32 [N, 3], the class of most of them, the objects it is part of."""
+    """A floating piece: its cells int32 [N, 3], its most frequent class, and its object ids."""
 
     cells: np.ndarray
     class_id: int
@@ -73,7 +73,7 @@ class Floater:
 
 
 def find_floaters(draft: SceneDraft, max_cells: int = MAX_CELLS) -> list[Floater]:
-    """Return the pieces of at most ``max_cells`` that hold to nothing, the largest first."""
+    """Return the unconnected pieces with at most ``max_cells`` cells, largest first."""
     occupied = (draft.labels > 0) & (draft.labels < 255)
     parts, count = label_components(occupied)
     sizes = np.bincount(parts.ravel(), minlength=count + 1)
@@ -101,7 +101,7 @@ def _largest_first(one: Floater) -> tuple:
 
 @dataclass(frozen=True, eq=False)
 class PlaneGaps:
-    """What a plane lacks. Masks are bool [A, B] over the whole layer."""
+    """The gaps of a plane. Masks are bool [A, B] over the whole layer."""
 
     plane: Plane
     own: np.ndarray  # Where it has a cell, one layer before or behind too.
@@ -110,13 +110,13 @@ class PlaneGaps:
 
     @property
     def share(self) -> float:
-        """The part of the plane that is holes, openings left out."""
+        """The fraction of the plane that consists of holes, without openings."""
         whole = int(self.own[self.plane.window].sum() + self.holes.sum())
         return float(self.holes.sum()) / whole if whole else 0.0
 
 
 def plane_gaps(draft: SceneDraft, plane: Plane, *, hole_m2: float = HOLE_M2) -> PlaneGaps:
-    """Return what a plane lacks; seen gaps up to ``hole_m2`` are holes."""
+    """Return the gaps of a plane. Observed gaps up to ``hole_m2`` square metres are holes."""
     near = plane.near(draft.labels)
     wanted = WALL_CLASSES if plane.axis != 2 else (plane.class_id,)
     own = np.asarray(np.isin(near, wanted).any(axis=0))
@@ -132,9 +132,10 @@ def plane_gaps(draft: SceneDraft, plane: Plane, *, hole_m2: float = HOLE_M2) -> 
 
 
 def hole_cells(draft: SceneDraft, gaps: PlaneGaps, mask: np.ndarray) -> np.ndarray:
-    """Return the cells int [N, 3] that fill places bool [A, B] of a plane.
+    """Return the cells int [N, 3] that fill positions bool [A, B] of a plane.
 
-    Each is in the layer in which the plane is nearest, or in the middle where that is taken.
+    Each cell is in the layer of the nearest part of the plane, or in the middle layer if that cell
+    is occupied.
     """
     plane = gaps.plane
     near = plane.near(draft.labels)
@@ -151,7 +152,10 @@ def hole_cells(draft: SceneDraft, gaps: PlaneGaps, mask: np.ndarray) -> np.ndarr
 
 
 def gap_at(gaps: PlaneGaps, place: tuple[int, int]) -> np.ndarray:
-    """Return the gap bool [A, B], hole or opening, that a place of the plane is in; or nothing."""
+    """Return the gap (hole or opening) at a position of the plane, bool [A, B].
+
+    The mask is empty if the position is not in a gap.
+    """
     parts = label_components(gaps.holes | gaps.openings, corners=False)[0]
     return (parts == parts[place]) & (parts > 0)
 
@@ -222,10 +226,10 @@ def _up_to(mask: np.ndarray, most: float) -> np.ndarray:
 def smooth_labels(labels: np.ndarray) -> np.ndarray:
     """Return labels uint8 [X, Y, Z] after one pass of the majority filter.
 
-    A cell of furniture takes the class of more than half of the furniture cells of its 3x3x3 block.
-    An empty cell is filled where 17 of its neighbours are furniture: a pit in a surface. A bump is
-    removed: a cell that touches one face alone, of a cell that touches four others; ends of legs
-    and rims stay.
+    A furniture cell takes the class of more than half of the furniture cells in its 3x3x3 block. An
+    empty cell with at least 17 furniture neighbours is filled, because it is a pit in a surface. A
+    bump, which is a cell that touches only one cell, is removed if that cell touches four others.
+    Ends of legs and rims are kept.
     """
     furniture = np.isin(labels, OBJECT_CLASSES)
     counts = np.stack([_around(labels == one) for one in OBJECT_CLASSES])
@@ -266,9 +270,9 @@ def _bumps(occupied: np.ndarray) -> np.ndarray:
 
 
 class RemoveFloaters(CellCommand):
-    """Erase all pieces of at most ``max_cells`` that hold to nothing.
+    """Erase all unconnected pieces with at most ``max_cells`` cells.
 
-    A piece that has one of the cells ``keep``, flat numbers, stays.
+    Pieces that contain one of the cells ``keep`` (flat indices) are not erased.
     """
 
     op: Literal["remove_floaters"] = "remove_floaters"
@@ -276,7 +280,7 @@ class RemoveFloaters(CellCommand):
     keep: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(max_length=MAX_RUNS)] = ()
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the erased cells."""
+        """Return the operation with the erased cells."""
         found = [one.cells for one in find_floaters(draft, self.max_cells)]
         numbers = [np.ravel_multi_index(tuple(cells.T), draft.shape) for cells in found]
         gone = [
@@ -285,17 +289,18 @@ class RemoveFloaters(CellCommand):
             if not np.isin(flat, self.keep).any() and self.free(draft, cells).all()
         ]
         if not gone:
-            raise UsageError(f"no floaters of up to {self.max_cells} cells")
+            raise UsageError(f"no floaters with at most {self.max_cells} cells found")
         return plan_cells(draft, "delete", np.concatenate(gone), 0)
 
 
 class FillHoles(CellCommand):
     """Fill the holes of a plane, of an object's surface, or of all planes.
 
-    ``plane`` is ``floor``, ``ceiling``, ``wall:1`` and so on as the query ``holes`` lists them,
-    ``all`` of them, or ``object:7``: of an object, the empty cells that have its cells on both
-    sides along two axes. With ``cell``, only the gap of the plane that it lies in is filled,
-    be it a door; without, gaps that are no openings, the seen ones up to ``hole_m2``.
+    ``plane`` is ``floor``, ``ceiling``, ``wall:1`` and so on as listed by the query ``holes``,
+    ``all`` planes, or ``object:7``. The holes of an object are empty cells with cells of the object
+    on both sides along two axes. With ``cell``, only the gap that contains the cell is filled, even
+    if it is a door. Otherwise, all gaps except openings are filled, including observed gaps up to
+    ``hole_m2``.
     """
 
     op: Literal["fill_holes"] = "fill_holes"
@@ -304,7 +309,7 @@ class FillHoles(CellCommand):
     hole_m2: Annotated[float, Field(ge=0)] = HOLE_M2
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the filled cells."""
+        """Return the operation with the filled cells."""
         if self.plane.startswith("object:"):
             return self._object(draft)
         planes = find_planes(draft)
@@ -316,7 +321,9 @@ class FillHoles(CellCommand):
         cells, first = np.unique(cells, axis=0, return_index=True)  # Two planes meet in a corner.
         if not len(cells):
             where = "any plane" if self.plane == "all" else self.plane
-            raise UsageError(f"{where} has no holes to fill; give a cell of an opening to close it")
+            raise UsageError(
+                f"{where} has no holes to fill; specify a cell of an opening to close it"
+            )
         return plan_cells(draft, "fill", cells, classes[first], 0, counts_as="add")
 
     def _cells(self, draft: SceneDraft, plane: Plane) -> np.ndarray:
@@ -327,25 +334,25 @@ class FillHoles(CellCommand):
         place = tuple(np.delete(self.cell, plane.axis).tolist())
         mask = gap_at(gaps, place)
         if not mask.any():
-            raise UsageError(f"cell {list(self.cell)} is in no gap of {plane.name}")
+            raise UsageError(f"cell {list(self.cell)} is not in a gap of {plane.name}")
         return hole_cells(draft, gaps, mask)
 
     def _object(self, draft: SceneDraft) -> Operation:
         number = self.plane.partition(":")[2]
         if not number.isdecimal() or int(number) not in draft.objects:
-            raise UsageError(f"no object {number}; the tree on the left lists all")
+            raise UsageError(f"object {number} not found; see the object tree")
         one = draft.objects[int(number)]
         cells = pinholes(draft.labels, draft.instance == one.id)
         if not len(cells):
-            raise UsageError(f"object {one.id} has no hole of one cell")
+            raise UsageError(f"object {one.id} has no holes")
         return plan_cells(draft, "fill", cells, one.class_id, one.id, counts_as="add")
 
 
 class Smooth(CellCommand):
-    """Smooth furniture by a majority filter; structure never moves.
+    """Smooth furniture with a majority filter, without moving structure.
 
-    Only cells of ``class_id`` are changed or made where it is given, and only those of ``runs``
-    where they are.
+    If ``class_id`` is given, only cells of that class are changed or created. If ``runs`` is given,
+    only those cells are changed.
     """
 
     op: Literal["smooth"] = "smooth"
@@ -353,7 +360,7 @@ class Smooth(CellCommand):
     runs: Runs | None = None
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells that change."""
+        """Return the operation with the changed cells."""
         result = smooth_labels(draft.labels)
         changes = result != draft.labels
         if self.class_id is not None:
@@ -371,10 +378,10 @@ class Smooth(CellCommand):
 
 
 def named_plane(planes: list[Plane], name: str) -> Plane:
-    """Return the plane of a name; a 1 may be left out or added.
+    """Return the plane with a name. The suffix ``:1`` is optional.
 
     Raises:
-        UnknownNameError: the scene has no such plane.
+        UnknownNameError: If the scene has no such plane.
     """
     by_name = {plane.name: plane for plane in planes}
     for spelled in (name, name.removesuffix(":1"), f"{name}:1"):
@@ -384,7 +391,7 @@ def named_plane(planes: list[Plane], name: str) -> Plane:
 
 
 def pinholes(labels: np.ndarray, mine: np.ndarray) -> np.ndarray:
-    """Return the cells int [N, 3], empty or unseen, with cells of a mask on both sides of two axes.
+    """Return empty or unobserved cells int [N, 3] with masked cells on both sides of two axes.
 
     ``labels`` uint8 and ``mine`` bool are [X, Y, Z].
     """

@@ -1,4 +1,4 @@
-"""A scene while it is edited: every change is an operation that can be undone."""
+"""An edited scene, in which every change is an operation that can be undone."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -15,9 +15,9 @@ ARRAYS = ("labels", "confidence", "colour", "source", "instance")
 class SceneDraft:
     """The occupancy and the objects of a room, changed only by ``apply``.
 
-    ``labels`` uint8, ``confidence`` float16, ``source`` uint8 and ``instance`` uint16 are
-    [X, Y, Z], ``colour`` is uint8 [X, Y, Z, 3]; treat them as read-only. ``objects`` are by id,
-    ``counts`` int64 [256] tells how many cells have each label.
+    ``labels`` uint8, ``confidence`` float16, ``source`` uint8 and ``instance`` uint16 are [X, Y,
+    Z], and ``colour`` is uint8 [X, Y, Z, 3]. Treat these arrays as read-only. ``objects`` maps ids
+    to objects. ``counts`` int64 [256] is the number of cells with each label.
     """
 
     def __init__(self, grid: OccupancyGrid, objects: Iterable[SceneObject] = ()):
@@ -34,7 +34,7 @@ class SceneDraft:
         return self.labels.shape  # type: ignore[return-value]
 
     def contents(self, cells: np.ndarray) -> GridCells:
-        """Return what some cells, int [N, 3], hold now."""
+        """Return the current contents of cells, int [N, 3]."""
         at = tuple(cells.T)
         return GridCells(*(getattr(self, name)[at] for name in ARRAYS))
 
@@ -48,14 +48,14 @@ class SceneDraft:
         objects: Iterable[SceneObject] = (),
         **details: Any,
     ) -> Operation:
-        """Return an operation on the scene as it is now; nothing is done yet.
+        """Return an operation on the current scene without applying it.
 
         Args:
-            kind: a verb.
-            cells: int [N, 3], each once.
-            after: what they become.
-            gone: ids of objects that are removed.
-            objects: those that are new, or take the place of the ones with their ids.
+            kind: Verb of the operation, such as ``paint``.
+            cells: Cell indices, int [N, 3], without duplicates.
+            after: New contents of the cells.
+            gone: Ids of objects to remove.
+            objects: New objects, or replacements of objects with the same ids.
             details: ``counts_as``, ``class_id``, ``actor`` and ``time_s`` of the operation.
         """
         new = tuple(objects)
@@ -65,12 +65,16 @@ class SceneDraft:
         return Operation(kind, cells, self.contents(cells), after, before, new, **details)
 
     def apply(self, operation: Operation) -> None:
-        """Do an operation. Raises what ``check`` raises; then nothing is changed."""
+        """Apply an operation.
+
+        Raises:
+            ConflictError: If the operation does not match the scene. Nothing is changed then.
+        """
         self.check(operation)
         self.put(operation)
 
     def put(self, operation: Operation) -> None:
-        """Do an operation that was checked."""
+        """Apply an operation that has been checked."""
         at = tuple(operation.cells.T)
         for name in ARRAYS:
             getattr(self, name)[at] = getattr(operation.after, name)
@@ -82,21 +86,21 @@ class SceneDraft:
             self.objects[one.id] = one
 
     def check(self, operation: Operation) -> None:
-        """Look whether an operation can be done.
+        """Check that an operation can be applied.
 
         Raises:
-            ConflictError: the scene does not hold what it says was there.
+            ConflictError: If the scene differs from the operation's previous contents.
         """
         if reason := self._find_conflict(operation):
             raise ConflictError(f"operation {operation.kind}", reason)
 
     def grid(self) -> OccupancyGrid:
-        """Return the occupancy as it is now, a copy."""
+        """Return a copy of the current occupancy."""
         arrays = {name: getattr(self, name).copy() for name in ARRAYS}
         return OccupancyGrid(**arrays, voxel_m=self.voxel_m, origin_m=self.origin_m)
 
     def cells_of(self, number: int) -> np.ndarray:
-        """Return the cells int32 [N, 3] of an object, in C order."""
+        """Return the cells int32 [N, 3] of the object with an id, in C order."""
         return np.argwhere(self.instance == number).astype(np.int32)
 
     def _find_conflict(self, operation: Operation) -> str:
@@ -104,14 +108,14 @@ class SceneDraft:
         cells = operation.cells
         inside = ((cells >= 0) & (cells < self.shape)).all(axis=1)
         if not inside.all():
-            return f"cell {tuple(map(int, cells[~inside][0]))} lies outside the grid"
+            return f"cell {tuple(map(int, cells[~inside][0]))} is outside the grid"
         now = self.contents(cells)
         for name in ARRAYS:
             if not np.array_equal(getattr(now, name), getattr(operation.before, name)):
-                return f"the {name} of its cells changed since"
+                return f"the {name} of its cells has changed since"
         for one in operation.objects_before:
             if one.id not in self.objects or not same_object(self.objects[one.id], one):
-                return f"object {one.id} changed since"
+                return f"object {one.id} has changed since"
         new = {one.id for one in operation.objects_after}
         taken = new & self.objects.keys() - {one.id for one in operation.objects_before}
-        return f"object {min(taken)} is there already" if taken else ""
+        return f"object {min(taken)} already exists" if taken else ""

@@ -1,12 +1,12 @@
-"""Commands on cells, chosen by a person or by class: paint, erase, fill, paste, relabel.
+"""Commands for cells selected by a person or by class: paint, erase, fill, paste, relabel.
 
-A painted cell has full confidence and counts as observed. Its colour stays where it was occupied;
-elsewhere it takes the colour of the nearest cell of its class within half a metre, or black.
+A painted cell has full confidence and counts as observed. Occupied cells keep their colour. Other
+cells take the colour of the nearest cell of their class within half a metre, or black.
 
 Cells of an object class belong to an object of that class: each connected part of the painted cells
-to the one with which it shares most faces, the lowest id of a tie, or to none where it touches
-none. Cells of structure and erased cells belong to none. An object that loses its last cell is
-removed with its furniture; one that loses or gains some keeps its box and its furniture.
+joins the object with which it shares most faces (the lowest id if tied), or no object if it touches
+none. Structure cells and erased cells belong to no object. An object that loses its last cell is
+removed with its furniture. An object that loses or gains cells keeps its box and furniture.
 """
 
 from collections.abc import Iterable, Iterator
@@ -54,18 +54,19 @@ def plan_cells(
     objects: Iterable[SceneObject] = (),
     **details: Any,
 ) -> Operation:
-    """Return the operation that gives cells their classes, and removes objects left without any.
+    """Return the operation that sets the classes of cells and removes objects without cells.
 
     Args:
-        draft: the scene.
-        verb: the kind of the operation.
-        cells: int [N, 3], each once.
-        classes: ids 0 to 11, one for each cell or for all.
-        owners: ids of objects, 0 for none, likewise; None finds them by the rule above.
-        colours: uint8 [N, 3]; None finds them by the rule above.
-        gone: objects that are removed beside those that lose their last cell.
-        objects: those that are new, or take the place of the ones with their ids.
-        details: ``counts_as`` and ``class_id`` of the operation; found from the cells by default.
+        draft: Scene to edit.
+        verb: Kind of the operation.
+        cells: Cell indices, int [N, 3], without duplicates.
+        classes: Class ids 0 to 11, one per cell or one for all cells.
+        owners: Object ids (0 for none), one per cell or one for all cells. None applies the rule in
+            the module docstring.
+        colours: Colours, uint8 [N, 3]. None applies the rule in the module docstring.
+        gone: Objects to remove in addition to those that lose their last cell.
+        objects: New objects, or replacements of objects with the same ids.
+        details: ``counts_as`` and ``class_id`` of the operation. Derived from the cells by default.
     """
     labels = np.broadcast_to(np.asarray(classes, np.uint8), len(cells))
     if owners is None:
@@ -87,7 +88,7 @@ def plan_cells(
 
 
 def edit_category(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> str:
-    """Return what the paper's table counts a change as: what most of its cells undergo."""
+    """Return the category of a change in the paper's table, by what happens to most cells."""
     was = draft.labels[tuple(cells.T)] % UNKNOWN > 0
     erased, kept = labels == 0, (labels > 0) & was
     if 2 * erased.sum() > len(cells):
@@ -96,12 +97,12 @@ def edit_category(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> s
 
 
 def single_class(labels: np.ndarray) -> int | None:
-    """Return the class of all cells, None where they differ."""
+    """Return the class of all cells, or None if their classes differ."""
     return int(labels[0]) if len(labels) and (labels == labels[0]).all() else None
 
 
 def emptied_objects(draft: SceneDraft, cells: np.ndarray, instance: np.ndarray) -> list[int]:
-    """Return the objects, by id, that have no cell left when cells int [N, 3] change hands."""
+    """Return the ids of objects that lose all their cells if cells int [N, 3] change objects."""
     held = draft.instance[tuple(cells.T)]
     lost = np.unique(held[(held > 0) & (held != instance)])
     if not len(lost):
@@ -113,7 +114,7 @@ def emptied_objects(draft: SceneDraft, cells: np.ndarray, instance: np.ndarray) 
 
 
 def count_object_cells(draft: SceneDraft, numbers: np.ndarray) -> np.ndarray:
-    """Return how many cells some objects have, int64 [65536], by id; of others it may be 0."""
+    """Return the cell counts of some objects as int64 [65536] by id. Other entries can be 0."""
     if len(numbers) > FEW:
         return np.bincount(draft.instance.ravel(), minlength=MAX_IDS)
     total = np.zeros(MAX_IDS, np.int64)
@@ -123,7 +124,7 @@ def count_object_cells(draft: SceneDraft, numbers: np.ndarray) -> np.ndarray:
 
 
 def adjacent_owners(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> np.ndarray:
-    """Return the object, uint16 [N], that each painted cell belongs to by the rule above."""
+    """Return the object id, uint16 [N], that each painted cell joins."""
     owners = np.zeros(len(cells), np.uint16)
     for class_id in np.intersect1d(np.unique(labels), OBJECT_CLASSES):
         chosen = np.flatnonzero(labels == class_id)
@@ -162,7 +163,7 @@ def _beside(draft: SceneDraft, cells: np.ndarray) -> Iterator[np.ndarray]:
 
 
 def infer_colours(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> np.ndarray:
-    """Return the colour, uint8 [N, 3], that painted cells have by the rule above."""
+    """Return the colours, uint8 [N, 3], of painted cells."""
     at = tuple(cells.T)
     was = draft.labels[at] % UNKNOWN > 0
     colours = np.where((was & (labels > 0))[:, None], draft.colour[at], 0).astype(np.uint8)
@@ -186,20 +187,20 @@ def _nearest_colours(draft: SceneDraft, cells: np.ndarray, class_id: int) -> np.
 
 
 class CellCommand(Command):
-    """What commands on cells share: cells of ``locked`` classes stay as they are."""
+    """Base class of commands for cells. Cells of ``locked`` classes are not changed."""
 
     locked: tuple[ClassId, ...] = ()
 
     def free(self, draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
-        """Return bool [N]: which cells int [N, 3] are of no locked class."""
+        """Return a mask of the cells int [N, 3] whose classes are not locked, bool [N]."""
         return ~np.isin(draft.labels[tuple(cells.T)], self.locked)
 
 
 class SetCells(CellCommand):
-    """Give cells one class; 0 erases them.
+    """Set the class of cells. Class 0 erases them.
 
-    Whose they are then: of ``instance``, of none where that is 0, and where it is not given, of
-    the object of the class that they touch.
+    The cells are assigned to the object ``instance``, or to no object if it is 0. If it is not
+    given, they join the object of their class that they touch.
     """
 
     op: Literal["set_cells"] = "set_cells"
@@ -209,7 +210,7 @@ class SetCells(CellCommand):
     verb: Literal["paint", "erase", "relabel", "fill", "delete"] = "paint"
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells that change."""
+        """Return the operation with the changed cells."""
         check_owner(draft, self.instance, self.class_id)
         cells = cells_of_runs(self.cells, draft.shape)
         changes = draft.labels[tuple(cells.T)] != self.class_id
@@ -217,12 +218,12 @@ class SetCells(CellCommand):
             changes |= draft.instance[tuple(cells.T)] != self.instance
         cells = cells[changes & self.free(draft, cells)]
         if not len(cells):
-            raise UsageError("nothing to change: all cells have this class or a lock")
+            raise UsageError("nothing to change: all cells already have this class or are locked")
         return plan_cells(draft, self.verb, cells, self.class_id, self.instance)
 
 
 class FillBox(CellCommand):
-    """Give all cells of a box one class; 0 erases them. Both corners are in the box."""
+    """Set the class of all cells in a box with inclusive corners. Class 0 erases them."""
 
     op: Literal["fill_box"] = "fill_box"
     low: Cell
@@ -230,26 +231,28 @@ class FillBox(CellCommand):
     class_id: ClassId
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells of the box that change."""
+        """Return the operation with the changed cells of the box."""
         cells = box_cells(self.low, self.high, draft.shape)
         cells = cells[(draft.labels[tuple(cells.T)] != self.class_id) & self.free(draft, cells)]
         if not len(cells):
-            raise UsageError("nothing to change: all cells in the box have this class or a lock")
+            raise UsageError(
+                "nothing to change: all cells in the box already have this class or are locked"
+            )
         return plan_cells(draft, "fill" if self.class_id else "erase", cells, self.class_id)
 
 
 class DeleteComponent(CellCommand):
-    """Erase a cell and all of its class that hold to it by faces."""
+    """Erase a cell and all cells of its class that are connected to it by faces."""
 
     op: Literal["delete_component"] = "delete_component"
     cell: Cell
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the erased cells."""
+        """Return the operation with the erased cells."""
         check_cell(draft, self.cell)
         held = int(draft.labels[self.cell])
         if held in (EMPTY, UNKNOWN):
-            raise UsageError(f"cell {list(self.cell)} is empty: name one that is occupied")
+            raise UsageError(f"cell {list(self.cell)} is empty; choose an occupied cell")
         if held in self.locked:
             raise UsageError(f"{display_name(held)} is locked; unlock it in the class legend first")
         cells = connected_component(draft.labels, self.cell)
@@ -257,12 +260,12 @@ class DeleteComponent(CellCommand):
 
 
 class Paste(CellCommand):
-    """Copy what cells hold to ``by`` cells farther, mirrored first where ``mirror`` names an axis.
+    """Copy cells to a position ``by`` cells away, mirrored first if ``mirror`` names an axis.
 
-    The mirror stands in the middle of the cells' box. Only occupied cells are copied, with their
-    colour; what lands outside the grid is dropped. A copied cell belongs to the
-    object of its class that it touches, as a painted one: whoever wants a second object asks for
-    ``duplicate_object``.
+    The mirror plane is at the centre of the cells' bounding box. Only occupied cells are copied,
+    with their colours. Copies outside the grid are dropped. Like a painted cell, a copied cell
+    joins the object of its class that it touches. Use ``duplicate_object`` to create a second
+    object.
     """
 
     op: Literal["paste"] = "paste"
@@ -271,11 +274,11 @@ class Paste(CellCommand):
     mirror: Literal["x", "y", "z"] | None = None
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return the cells that are pasted over."""
+        """Return the operation with the pasted cells."""
         sources = cells_of_runs(self.cells, draft.shape)
         sources = sources[draft.labels[tuple(sources.T)] % 255 > 0]
         if not len(sources):
-            raise UsageError("nothing to paste: none of these cells is occupied")
+            raise UsageError("nothing to paste: all of these cells are empty")
         targets = self._target_cells(sources)
         inside = ((targets >= 0) & (targets < draft.shape)).all(axis=1)
         sources, targets = sources[inside], targets[inside]
@@ -284,7 +287,7 @@ class Paste(CellCommand):
         sources, targets = sources[changes], targets[changes]
         if not len(targets):
             raise UsageError(
-                "nothing to change: the copy is outside the grid or on identical cells"
+                "nothing to change: the copy is outside the grid or identical to the existing cells"
             )
         labels = draft.labels[tuple(sources.T)]
         colours = draft.colour[tuple(sources.T)]
@@ -300,15 +303,15 @@ class Paste(CellCommand):
 
 
 def check_owner(draft: SceneDraft, number: int | None, class_id: int) -> None:
-    """Look whether cells of a class may belong to an object.
+    """Check that cells of a class can belong to an object.
 
     Raises:
-        UsageError: there is no such object, or it is of another class.
+        UsageError: If the object does not exist or has another class.
     """
     if not number:
         return
     if number not in draft.objects:
-        raise UsageError(f"no object {number}; leave instance out and cells join what they touch")
+        raise UsageError(f"object {number} not found; omit instance to join the adjacent object")
     held = draft.objects[number].class_id
     if held != class_id:
         names = f"{display_name(held)}, not {display_name(class_id)}"
@@ -316,20 +319,20 @@ def check_owner(draft: SceneDraft, number: int | None, class_id: int) -> None:
 
 
 def check_cell(draft: SceneDraft, cell: tuple[int, int, int]) -> None:
-    """Look whether a cell is in the grid.
+    """Check that a cell is inside the grid.
 
     Raises:
-        UsageError: it is not.
+        UsageError: If the cell is outside the grid.
     """
     if not all(0 <= at < side for at, side in zip(cell, draft.shape, strict=True)):
-        raise UsageError(f"cell {list(cell)} lies outside the grid of {list(draft.shape)} cells")
+        raise UsageError(f"cell {list(cell)} is outside the grid of {list(draft.shape)} cells")
 
 
 class RelabelClass(CellCommand):
-    """Give all cells and all objects of one class another.
+    """Change the class of all cells and objects of one class.
 
-    Objects take the class of their cells, and furniture of that class is found for them; where
-    the new class is structure they are none any more.
+    Objects take the new class, and furniture of that class is matched. If the new class is
+    structure, the objects are removed.
     """
 
     op: Literal["relabel_class"] = "relabel_class"
@@ -343,7 +346,7 @@ class RelabelClass(CellCommand):
         return self
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return all cells of the class, and its objects with their new class."""
+        """Return the operation with all cells of the class and its relabelled objects."""
         check_class(draft, self.from_id, self.locked)
         cells = np.argwhere(draft.labels == self.from_id)
         owners = draft.instance[tuple(cells.T)]
@@ -369,13 +372,13 @@ class RelabelClass(CellCommand):
 
 
 class DeleteClass(CellCommand):
-    """Erase all cells and all objects of a class."""
+    """Erase all cells and delete all objects of a class."""
 
     op: Literal["delete_class"] = "delete_class"
     class_id: OccupiedId
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
-        """Return all cells of the class."""
+        """Return the operation with all erased cells and deleted objects of the class."""
         check_class(draft, self.class_id, self.locked)
         cells = np.argwhere(draft.labels == self.class_id)
         gone = objects_without_cells(draft, self.class_id)
@@ -384,10 +387,10 @@ class DeleteClass(CellCommand):
 
 
 def check_class(draft: SceneDraft, class_id: int, locked: tuple[int, ...]) -> None:
-    """Look whether a class may be changed.
+    """Check that a class can be changed.
 
     Raises:
-        UsageError: it is locked, or the scene has nothing of it.
+        UsageError: If the class is locked, or if the scene has no cells or objects of it.
     """
     name = display_name(class_id)
     if class_id in locked:
@@ -397,7 +400,7 @@ def check_class(draft: SceneDraft, class_id: int, locked: tuple[int, ...]) -> No
 
 
 def objects_without_cells(draft: SceneDraft, class_id: int) -> list[int]:
-    """Return the objects, by id, of a class that have no cells: centres alone."""
+    """Return the ids of the objects of a class that have no cells."""
     held = np.bincount(draft.instance.ravel(), minlength=65536)
     ordered = sorted(draft.objects.values(), key=lambda one: one.id)
     return [one.id for one in ordered if one.class_id == class_id and held[one.id] == 0]

@@ -17,7 +17,7 @@ export const CLASS_DISPLAY_NAMES: readonly string[] = [
   "object",
 ];
 
-/** Give cells one class; 0 erases them. */
+/** Set the class of cells. Class 0 erases them. */
 export interface SetCells {
   locked?: number[];
   op: "set_cells";
@@ -28,7 +28,7 @@ export interface SetCells {
   verb?: "paint" | "erase" | "relabel" | "fill" | "delete";
 }
 
-/** Give all cells of a box one class; 0 erases them. Both corners are in the box. */
+/** Set the class of all cells in a box with inclusive corners. Class 0 erases them. */
 export interface FillBox {
   locked?: number[];
   op: "fill_box";
@@ -38,14 +38,14 @@ export interface FillBox {
   class_id: number;
 }
 
-/** Erase a cell and all of its class that hold to it by faces. */
+/** Erase a cell and all cells of its class that are connected to it by faces. */
 export interface DeleteComponent {
   locked?: number[];
   op: "delete_component";
   cell: [number, number, number];
 }
 
-/** Copy what cells hold to ``by`` cells farther, mirrored first where ``mirror`` names an axis. */
+/** Copy cells to a position ``by`` cells away, mirrored first if ``mirror`` names an axis. */
 export interface Paste {
   locked?: number[];
   op: "paste";
@@ -54,7 +54,7 @@ export interface Paste {
   mirror?: "x" | "y" | "z" | null;
 }
 
-/** Give all cells and all objects of one class another. */
+/** Change the class of all cells and objects of one class. */
 export interface RelabelClass {
   locked?: number[];
   op: "relabel_class";
@@ -64,7 +64,7 @@ export interface RelabelClass {
   to_id: number;
 }
 
-/** Erase all cells and all objects of a class. */
+/** Erase all cells and delete all objects of a class. */
 export interface DeleteClass {
   locked?: number[];
   op: "delete_class";
@@ -72,7 +72,7 @@ export interface DeleteClass {
   class_id: number;
 }
 
-/** Erase all pieces of at most ``max_cells`` that hold to nothing. */
+/** Erase all unconnected pieces with at most ``max_cells`` cells. */
 export interface RemoveFloaters {
   locked?: number[];
   op: "remove_floaters";
@@ -91,7 +91,7 @@ export interface FillHoles {
   hole_m2?: number;
 }
 
-/** Smooth furniture by a majority filter; structure never moves. */
+/** Smooth furniture with a majority filter, without moving structure. */
 export interface Smooth {
   locked?: number[];
   op: "smooth";
@@ -99,7 +99,7 @@ export interface Smooth {
   runs?: [number, number][] | null;
 }
 
-/** Put a piece of furniture of its usual size at a place, on what is under it there. */
+/** Add a piece of furniture of typical size at a position, on top of what is below. */
 export interface AddObject {
   op: "add_object";
   /** >= 5, <= 11 */
@@ -109,13 +109,13 @@ export interface AddObject {
   quarter_turns?: number | null;
 }
 
-/** Remove objects: their cells are empty then; floor and walls behind them stay. */
+/** Delete objects and empty their cells, keeping the floor and walls behind them. */
 export interface DeleteObjects {
   op: "delete_objects";
   ids: number[];
 }
 
-/** Put the same object again, centred at ``to_m``, or else beside itself where most is free. */
+/** Duplicate an object, centred at ``to_m``, or next to the original where most space is free. */
 export interface DuplicateObject {
   op: "duplicate_object";
   /** >= 1, <= 65535 */
@@ -123,13 +123,13 @@ export interface DuplicateObject {
   to_m?: [number, number, number] | null;
 }
 
-/** Make objects one, which has the id and the class of the first that is named. */
+/** Merge objects into one with the id and the class of the first object in the list. */
 export interface MergeObjects {
   op: "merge_objects";
   ids: number[];
 }
 
-/** Move an object, with its cells and its furniture, by whole cells to a new centre. */
+/** Move an object with its cells and furniture by whole cells to a new centre. */
 export interface MoveObject {
   op: "move_object";
   /** >= 1, <= 65535 */
@@ -137,7 +137,7 @@ export interface MoveObject {
   to_m: [number, number, number];
 }
 
-/** Find the objects of a class, or all, again by other parameters of the paper's clustering. */
+/** Detect the objects of one or all classes again with other clustering parameters. */
 export interface Recluster {
   op: "recluster";
   class_id?: number | null;
@@ -149,7 +149,7 @@ export interface Recluster {
   cluster_radius: number;
 }
 
-/** Give objects another class, their cells too, and furniture of that class. */
+/** Change the class of objects and their cells, and match furniture of that class. */
 export interface RelabelObjects {
   op: "relabel_objects";
   ids: number[];
@@ -157,13 +157,13 @@ export interface RelabelObjects {
   class_id: number;
 }
 
-/** Match the furniture of objects again, as the reconstruction does, from their cells. */
+/** Match the furniture of objects again from their cells, as in the reconstruction. */
 export interface Rematch {
   op: "rematch";
   ids: number[];
 }
 
-/** Choose the furniture that stands for an object, fitted to its cells. */
+/** Choose the furniture template of an object, fitted to the object's cells. */
 export interface SetTemplate {
   op: "set_template";
   /** >= 1, <= 65535 */
@@ -172,7 +172,7 @@ export interface SetTemplate {
   quarter_turns?: number | null;
 }
 
-/** Move an object down, or up, onto what is under it, or sideways to the nearest wall. */
+/** Move an object vertically onto the surface below it, or sideways to the nearest wall. */
 export interface SnapObject {
   op: "snap_object";
   /** >= 1, <= 65535 */
@@ -180,7 +180,7 @@ export interface SnapObject {
   to: "floor" | "wall";
 }
 
-/** Split an object into a number of parts by where its cells lie, or in two by a plane. */
+/** Split an object into several parts by the positions of its cells, or in two by a plane. */
 export interface SplitObject {
   op: "split_object";
   /** >= 1, <= 65535 */
@@ -189,7 +189,7 @@ export interface SplitObject {
   plane?: CutPlane | null;
 }
 
-/** Split each of several objects into a number of parts by where its cells lie. */
+/** Split each of several objects into a number of parts by the positions of its cells. */
 export interface SplitObjects {
   op: "split_objects";
   ids: number[];
@@ -197,7 +197,7 @@ export interface SplitObjects {
   parts?: number;
 }
 
-/** Turn objects by quarters about their centres, counter-clockwise from above. */
+/** Rotate objects by quarter turns about their centres, counter-clockwise from above. */
 export interface TurnObjects {
   op: "turn_objects";
   ids: number[];
@@ -248,7 +248,7 @@ export type DoubtfulQuery = Record<string, never>;
 /** Furniture that collides or extends beyond its room, by the metrics of the report. */
 export type WarningsQuery = Record<string, never>;
 
-/** A plane square to an axis of the room, such as x = 1.4 m. */
+/** A plane perpendicular to an axis of the room, such as x = 1.4 m. */
 export interface CutPlane {
   axis: "x" | "y" | "z";
   /** >= -10000, <= 10000 */
