@@ -106,8 +106,8 @@ def test_the_phase_of_the_grid_is_free_a_wrong_frame_is_not(folder, tmp_path):
 @pytest.mark.parametrize(
     ("arrays", "objects", "message"),
     [
-        ({"labels": np.full((2, 2, 2), 12)}, "[]", "holds no grid of class ids"),
-        ({"labels": np.zeros((2, 2))}, "[]", "holds no grid of class ids"),
+        ({"labels": np.full((2, 2, 2), 12)}, "[]", "does not contain a valid grid of class ids"),
+        ({"labels": np.zeros((2, 2))}, "[]", "does not contain a valid grid of class ids"),
         ({"grid_to_scan": np.eye(4) * 2}, "[]", "grid_to_scan must be a rotation and a transl"),
         ({"origin_m": np.zeros(2)}, "[]", "origin_m"),
         ({"voxel_m": 0.0}, "[]", "voxel_m"),

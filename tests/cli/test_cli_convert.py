@@ -144,7 +144,7 @@ def test_a_write_that_fails_leaves_the_old_one_and_no_litter(schem, tmp_path, mo
     [
         ("gone.schem", "b.schem", 3, "gone.schem: not found"),
         ("damaged.schem", "b.schem", 3, "damaged.schem: "),
-        ("notes.txt", "b.schem", 3, "notes.txt: is no block file"),
+        ("notes.txt", "b.schem", 3, "notes.txt: is not a supported block file"),
         ("a.schem", "b.xyz", 2, "b.xyz: unknown block format .xyz; known: "),
         ("a.schem", "My 1.20 World", 2, "; the name of a world folder has no dot"),
         ("a.schem", "notes.txt/b.schem", 3, "notes.txt: is a file"),

@@ -66,7 +66,7 @@ def test_a_damaged_scene_is_named(folder, tmp_path):
     for name in ("scene.json", "scene.npz"):
         (tmp_path / name).write_bytes((folder / name).read_bytes())
     (tmp_path / "scene.json").write_text('{"corner": [0, 0]}')
-    with pytest.raises(DamagedFileError, match=r"scene\.json: is no scene"):
+    with pytest.raises(DamagedFileError, match=r"scene\.json: is not a valid scene"):
         read_scene(tmp_path)
 
 

@@ -109,13 +109,13 @@ def write_named(path, name, mode=0):
 @pytest.mark.parametrize("name", ["../up.txt", "/etc/x", "a/../../b", "C:/x", "..\\x"])
 def test_names_that_leave_the_zip_are_refused(tmp_path, name):
     write_named(tmp_path / "x.zip", name)
-    with pytest.raises(DamagedFileError, match="a member whose name leaves it"):
+    with pytest.raises(DamagedFileError, match="a member with an unsafe name"):
         ArchivePath(tmp_path / "x.zip").exists()
 
 
 def test_links_are_refused(tmp_path):
     write_named(tmp_path / "x.zip", "link", stat.S_IFLNK | 0o777)
-    with pytest.raises(DamagedFileError, match="a member whose name leaves it: 'link'"):
+    with pytest.raises(DamagedFileError, match="a member with an unsafe name: 'link'"):
         ArchivePath(tmp_path / "x.zip").exists()
 
 
@@ -130,7 +130,7 @@ def test_a_bomb_is_refused_before_it_is_unpacked(tmp_path):
 def test_a_zip_cut_short_is_refused(packed, share):
     data = packed.path.read_bytes()
     packed.path.write_bytes(data[: int(share * len(data))])
-    with pytest.raises(DamagedFileError, match="is no whole zip .*copy it again"):
+    with pytest.raises(DamagedFileError, match="is not a complete zip file .*copy it again"):
         packed.exists()
 
 

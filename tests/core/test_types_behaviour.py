@@ -31,7 +31,7 @@ def test_a_resized_camera_sees_the_same_rays(width, height, times):
 def test_a_camera_is_not_stretched():
     camera = types.Camera(640, 480, 585.0, 585.0, 320.0, 240.0)
     assert camera.resized(1280, 965).height_px == 965  # Half a percent apart: rounding.
-    with pytest.raises(ValueError, match=r"^640x360 is no uniform scale of 640x480$"):
+    with pytest.raises(ValueError, match=r"^640x360 has another aspect ratio than 640x480$"):
         camera.resized(640, 360)
 
 

@@ -222,14 +222,14 @@ def test_a_manifest_from_elsewhere_names_no_other_file(world, name):
     raw = backups.read_json(path)
     raw["files"][0]["path"] = name
     backups.write_json(path, raw)
-    with pytest.raises(DamagedFileError, match="which no step touches"):
+    with pytest.raises(DamagedFileError, match="contains the unexpected file name"):
         list_steps(world)
 
 
 def test_a_link_out_of_the_world_is_not_followed(world, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (world / "entities").symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(DamagedFileError, match="is a link out of the world"):
+    with pytest.raises(DamagedFileError, match="is a link to outside the world"):
         commit_step(world, FILES, "a test")
     assert not list((tmp_path / "elsewhere").iterdir())
 

@@ -74,7 +74,7 @@ def test_an_edit_of_changed_blocks_is_refused_without_effect():
     changed = apply_edits(volume, first)
     draft = Draft(changed)
     x, y, z = first.cells[0].tolist()
-    with pytest.raises(ConflictError, match=rf"^edit paint: block \({x}, {y}, {z}\) holds "):
+    with pytest.raises(ConflictError, match=rf"^edit paint: block \({x}, {y}, {z}\) is now "):
         draft.apply(first)
     assert seen(draft.volume()) == seen(changed)
     assert not draft.edits

@@ -63,7 +63,7 @@ def test_a_changed_byte_is_seen(tmp_path_factory, place, change):
 
 def test_another_file_is_no_journal(tmp_path):
     (tmp_path / "j").write_text("my shopping list")
-    with pytest.raises(DamagedFileError, match="j: is no journal of edits$"):
+    with pytest.raises(DamagedFileError, match="j: is not a journal of edits$"):
         Journal(tmp_path / "j")
     assert (tmp_path / "j").read_text() == "my shopping list"
 

@@ -284,8 +284,8 @@ def test_missing_chunks_are_refused_outside_void_worlds(world):
     ("corner", "text"),
     [
         ((0, -65, 0), "would span y -65 to -60, but the world spans y -64 to 319"),
-        ((0, 316, 0), "would reach from layer 316 to 321"),
-        ((31_000_000, 60, 0), "beyond the world's border"),
+        ((0, 316, 0), "would span y 316 to 321"),
+        ((31_000_000, 60, 0), "beyond the world border"),
     ],
 )
 def test_a_build_out_of_the_world_is_refused(home, corner, text):

@@ -216,7 +216,7 @@ def test_the_same_volume_gives_the_same_bytes():
 
 def test_a_volume_without_anything_to_see_is_refused():
     empty = replace(furnished(), states=np.zeros((7, 5, 6), np.uint16))
-    with pytest.raises(UsageError, match="holds no block that can be seen"):
+    with pytest.raises(UsageError, match="contains no visible blocks"):
         gltf_bytes(empty)
 
 
@@ -367,7 +367,7 @@ def test_ids_above_the_limit_and_bad_names_are_refused(tmp_path):
     bodies, _ = volume_meshes(replace(furnished(), instance=furnished().instance * 1200))
     with pytest.raises(UsageError, match="Habitat supports ids up to 10,000, but the highest object id is 10,8"):
         semantic_ids(bodies)
-    with pytest.raises(UsageError, match=r"scene name '\.\./x' must be"):
+    with pytest.raises(UsageError, match=r"got '\.\./x'"):
         write_habitat(furnished(), tmp_path, name="../x")
 
 
@@ -384,7 +384,7 @@ def test_forms_are_written_by_name_or_suffix(tmp_path):
 
 
 def test_forms_that_are_not_are_named(tmp_path):
-    with pytest.raises(UsageError, match="no form is named 'gbl'; did you mean 'glb'"):
+    with pytest.raises(UsageError, match="no format is named 'gbl'; did you mean 'glb'"):
         write_volume_formats(tmp_path, furnished(), ["schem", "gbl"])
     assert not list(tmp_path.iterdir())
     assert "world" not in writable_format_names()

@@ -34,7 +34,7 @@ def test_rooms_there_and_back(tmp_path):
 @pytest.mark.parametrize(
     "rows, words",
     [
-        ({}, "must hold a list"),
+        ({}, "must contain a list"),
         ([{"name": "hall"}], "row 0 is not valid"),
         ([3], "row 0 is not valid"),
     ],

@@ -122,23 +122,23 @@ def test_centres_in_metres_are_taken_as_they_are(tmp_path):
     [
         ([], "neither voxels nor a shape found"),
         ({"voxels": [[0, 0, 0, 12]]}, "12 is not a class; expected 0 to 11, 255 or a class name"),
-        ({"voxels": [[0, 0, 0, "sofas"]]}, "'sofas' is no class; they are 0 to 11, 255"),
+        ({"voxels": [[0, 0, 0, "sofas"]]}, "'sofas' is not a class; expected 0 to 11, 255"),
         ([[0, 0, 0]], "expected x, y, z and a class, got [0, 0, 0]"),
         ([[0, None, 0, 2]], "float() argument must be"),
         ([[0, "nan", 0, 2]], "a position is not a number"),
-        ({"voxels": [[0, 0, 0, 2], [0.5, 0, 0, 2]], "voxel_m": -1}, "must be above 0, not -1"),
+        ({"voxels": [[0, 0, 0, 2], [0.5, 0, 0, 2]], "voxel_m": -1}, "must be above 0, got -1"),
         (7, "no list found"),
-        ({"coords": [[0, 0, 0]], "labels": [1, 2]}, "1 places have 2 classes"),
+        ({"coords": [[0, 0, 0]], "labels": [1, 2]}, "1 positions but 2 classes"),
     ],
 )
 def test_what_has_no_known_form_is_told(tmp_path, value, reason):
-    with pytest.raises(DamagedFileError, match="holds voxels in no known form") as refused:
+    with pytest.raises(DamagedFileError, match="does not contain voxels in a supported form") as refused:
         read_any_occ(put(tmp_path, value))
     assert reason in str(refused.value)
 
 
 def test_a_far_voxel_takes_no_memory(tmp_path):
-    with pytest.raises(LimitError, match="at most 200,000,000 cells"):
+    with pytest.raises(LimitError, match="the limit is 200,000,000 cells"):
         read_any_occ(put(tmp_path, [[0, 0, 0, 2], [10**6, 10**6, 10**6, 2]]))
 
 

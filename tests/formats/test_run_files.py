@@ -161,23 +161,23 @@ def test_the_inner_corner_is_the_inner_face_of_the_walls(tmp_path):
 @pytest.mark.parametrize(
     ("name", "content", "error", "text"),
     [
-        ("room.npz", None, InputError, "is not there"),
+        ("room.npz", None, InputError, "not found"),
         ("room.npz", b"PK\x03\x04 damaged", DamagedFileError, "is not a readable .npz"),
         ("labels.npy", b"\x93NUMPY\x01\x00", DamagedFileError, "is not a readable .npy"),
-        ("room.txt", b"hello", InputError, "is no occupancy file; those end with .npz"),
+        ("room.txt", b"hello", InputError, "is not an occupancy file; expected the suffix .npz"),
         ("occ.json", b"{", DamagedFileError, "is not JSON"),
-        ("occ.json", b"[]", DamagedFileError, "is not occ.json"),
+        ("occ.json", b"[]", DamagedFileError, "is not an occ.json file"),
         (
             "occ.json",
             b'{"shape":[9999,9999,9999],"voxels":[],"voxel_m":1,"origin_m":[0,0,0]}',
             LimitError,
-            "has over 200,000,000 cells",
+            "exceeds the limit of 200,000,000 cells",
         ),
         (
             "occ.json",
             b'{"shape":[2,2,2],"voxels":[[0,0,5,1]],"voxel_m":1,"origin_m":[0,0,0]}',
             DamagedFileError,
-            "a voxel lies outside shape",
+            "a voxel is outside the shape",
         ),
     ],
 )
@@ -192,12 +192,12 @@ def test_damage_is_named(tmp_path, name, content, error, text):
 
 def test_arrays_of_objects_and_lying_headers_are_refused(tmp_path):
     np.save(tmp_path / "o.npy", np.array([{"a": 1}], object), allow_pickle=True)
-    with pytest.raises(DamagedFileError, match="holds less"):
+    with pytest.raises(DamagedFileError, match="contains less"):
         read_occupancy(tmp_path / "o.npy")
     whole = tmp_path / "labels.npy"
     np.save(whole, np.zeros((4, 4, 4), np.uint8))
     whole.write_bytes(whole.read_bytes().replace(b"(4, 4, 4)", b"(9, 9, 9)"))
-    with pytest.raises(DamagedFileError, match=r"says \(9, 9, 9\) uint8, holds less"):
+    with pytest.raises(DamagedFileError, match=r"declares \(9, 9, 9\) uint8 but contains less"):
         read_occupancy(whole)
 
 

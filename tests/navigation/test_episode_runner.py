@@ -111,7 +111,7 @@ def test_an_unreachable_episode_is_refused_before_the_first_walk(tmp_path):
 
 def test_a_trace_of_anyone_is_checked(tmp_path):
     (tmp_path / "trace.jsonl").write_text('{"a": 1}\n[1]\n')
-    with pytest.raises(InputError, match="line 2 is no JSON object"):
+    with pytest.raises(InputError, match="line 2 is not a JSON object"):
         read_trace(tmp_path / "trace.jsonl")
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="cannot be written"):

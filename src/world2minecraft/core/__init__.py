@@ -1,1 +1,1 @@
-"""Foundation: value types, coordinates, classes, errors, files, registries, compilation."""
+"""Value types, coordinates, classes, errors, files, archives, locks, progress and registries."""

@@ -1,9 +1,9 @@
-"""Zip archives read in place, through the part of ``Path`` that readers use.
+"""Zip archives read in place, through the part of the ``Path`` interface that readers use.
 
 An ``ArchivePath`` is a file or a folder inside a zip: ``place / "rgb" / "0.jpg"``, ``is_file()``,
-``glob("*.jpg")``, ``open("rb")``, ``read_bytes()``. So one reader serves folders and zips. The
-archive is hostile until checked: names that leave it, encrypted members, too many members and
-members that swell beyond reason are refused before anything is unpacked.
+``glob("*.jpg")``, ``open("rb")``, ``read_bytes()``. This allows the same reader to process folders
+and zips. Archives are not trusted: names that point outside the archive, encrypted members, too
+many members and members with an extreme compression ratio are rejected before anything is unpacked.
 """
 
 import io
@@ -40,25 +40,29 @@ _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 
 
 class Archive:
-    """An opened zip: its members by name, checked, and its folders."""
+    """An open zip archive with its checked members by name, and its folders."""
 
     def __init__(self, path: Path):
         """Read the list of members.
 
         Raises:
-            InputError: it is missing. DamagedFileError: it is no zip, or a member's name leaves
-                it. LimitError: it has too many members.
+            InputError: If the file does not exist.
+            DamagedFileError: If the file is not a zip, or a member's name points outside the
+                archive.
+            LimitError: If the archive has too many members.
         """
         self.path = path
         try:
             self._zip = zipfile.ZipFile(path)
         except FileNotFoundError as error:
-            raise InputError(path, "is not there") from error
+            raise InputError(path, "not found") from error
         except UNREADABLE as error:
-            raise DamagedFileError(path, f"is no whole zip ({error}); copy it again") from error
+            raise DamagedFileError(
+                path, f"is not a complete zip file ({error}); copy it again"
+            ) from error
         if len(self._zip.infolist()) > MAX_MEMBERS:
             raise LimitError(
-                path, f"has over {MAX_MEMBERS:,} members; unpack it and give the folder"
+                path, f"has over {MAX_MEMBERS:,} members; unpack it and use the folder"
             )
         self.members = {
             _check_name(path, info): info for info in self._zip.infolist() if not info.is_dir()
@@ -78,21 +82,24 @@ class Archive:
             inner = folder
 
     def read(self, name: str) -> bytes:
-        """Return a member's bytes.
+        """Return the contents of a member.
 
         Raises:
-            LimitError: it is too large. DamagedFileError: it is packed in a way that is not read,
-                encrypted, or fails its check sum.
+            LimitError: If the member is too large.
+            DamagedFileError: If the member is encrypted, uses an unsupported compression method, or
+                fails its checksum.
         """
         info = self.members[name]
         where = f"{self.path}/{name}"
         swollen = info.file_size > RATIO_FROM_BYTES
         swollen = swollen and info.file_size > MAX_RATIO * max(info.compress_size, 1)
         if info.file_size > MAX_MEMBER_BYTES or swollen:
-            raise LimitError(where, f"would unpack to {info.file_size:,} bytes, more than is read")
+            raise LimitError(
+                where, f"would unpack to {info.file_size:,} bytes, which exceeds the limit"
+            )
         if info.compress_type not in _PACKED or info.flag_bits & 1:
             raise DamagedFileError(
-                where, "is encrypted or packed in a way that is not read; pack it anew"
+                where, "is encrypted or uses unsupported compression; pack it again as a plain zip"
             )
         try:
             return self._zip.read(info)
@@ -105,7 +112,9 @@ def _check_name(path: Path, info: zipfile.ZipInfo) -> str:
     parts = PurePosixPath(name).parts
     linked = stat.S_ISLNK(info.external_attr >> 16)
     if not parts or name.startswith("/") or ".." in parts or ":" in parts[0] or linked:
-        raise DamagedFileError(path, f"has a member whose name leaves it: {info.filename[:80]!r}")
+        raise DamagedFileError(
+            path, f"contains a member with an unsafe name: {info.filename[:80]!r}"
+        )
     return "/".join(part for part in parts if part != ".")
 
 
@@ -116,14 +125,14 @@ def _open_archive(path: Path, stamp: tuple[int, int]) -> Archive:
 
 @dataclass(frozen=True, order=True)
 class ArchivePath:
-    """A file or folder of a zip; ``inner`` is its name there, "" for the root."""
+    """A file or folder in a zip. ``inner`` is its name there, or "" for the root."""
 
     path: Path
     inner: str = ""
 
     @property
     def archive(self) -> Archive:
-        """The opened zip; it is opened once, and again where the file has changed."""
+        """The open archive, which is opened once, and again if the file changes."""
         try:
             found = self.path.stat()
         except OSError as error:
@@ -131,17 +140,17 @@ class ArchivePath:
         return _open_archive(self.path, (found.st_size, found.st_mtime_ns))
 
     def __str__(self) -> str:
-        """The zip's path and the name inside it, for messages."""
+        """Return the path of the zip and the name inside it, for messages."""
         return f"{self.path}/{self.inner}" if self.inner else str(self.path)
 
     def __truediv__(self, name: str) -> "ArchivePath":
-        """Return the place of a name below this one."""
+        """Return the path of a name below this path."""
         joined = PurePosixPath(self.inner) / name
         return ArchivePath(self.path, "" if str(joined) == "." else str(joined))
 
     @property
     def name(self) -> str:
-        """The last part: of the root, the zip's own name."""
+        """The last component of the path. For the root, the file name of the zip."""
         return PurePosixPath(self.inner).name if self.inner else self.path.name
 
     @property
@@ -156,29 +165,29 @@ class ArchivePath:
 
     @property
     def parent(self) -> "ArchivePath":
-        """The folder that holds it; the root's is the root."""
+        """The parent folder. The parent of the root is the root."""
         folder = self.inner.rpartition("/")[0]
         return ArchivePath(self.path, folder)
 
     def is_file(self) -> bool:
-        """Whether a member has this name."""
+        """Return whether a member has this name."""
         return self.inner in self.archive.members
 
     def is_dir(self) -> bool:
-        """Whether members lie below this name."""
+        """Return whether the archive has members below this name."""
         return self.inner in self.archive.folders
 
     def exists(self) -> bool:
-        """Whether there is a file or a folder of this name."""
+        """Return whether the archive has a file or folder with this name."""
         return self.is_file() or self.is_dir()
 
     def iterdir(self) -> Iterator["ArchivePath"]:
-        """Yield what lies in the folder, by name."""
+        """Yield the contents of the folder, sorted by name."""
         for name in sorted(self.archive.folders.get(self.inner, ())):
             yield self / name
 
     def glob(self, pattern: str) -> Iterator["ArchivePath"]:
-        """Yield what matches a pattern of one or more parts, such as ``seq-*/frame-*``."""
+        """Yield the paths that match a pattern such as ``seq-*/frame-*``."""
         first, _, rest = pattern.partition("/")
         for found in self.iterdir():
             if fnmatchcase(found.name, first):
@@ -188,7 +197,7 @@ class ArchivePath:
                     yield from found.glob(rest)
 
     def rglob(self, pattern: str) -> Iterator["ArchivePath"]:
-        """Yield what matches a pattern of one part here and in all folders below."""
+        """Yield the paths in this folder and all subfolders whose name matches a pattern."""
         for found in self.iterdir():
             if fnmatchcase(found.name, pattern):
                 yield found
@@ -196,21 +205,31 @@ class ArchivePath:
                 yield from found.rglob(pattern)
 
     def stat(self) -> SimpleNamespace:
-        """Return ``st_size``, the unpacked size in bytes."""
+        """Return ``st_size``, the unpacked size in bytes.
+
+        Raises:
+            FileNotFoundError: If the path is not a file.
+        """
         if not self.is_file():
             raise FileNotFoundError(str(self))
         return SimpleNamespace(st_size=self.archive.members[self.inner].file_size)
 
     def read_bytes(self) -> bytes:
-        """Return a member's bytes. Raises what ``Archive.read`` raises."""
+        """Return the contents of the file.
+
+        Raises:
+            FileNotFoundError: If the path is not a file.
+            LimitError: If the file is too large.
+            DamagedFileError: If the file cannot be unpacked.
+        """
         if not self.is_file():
             raise FileNotFoundError(str(self))
         return self.archive.read(self.inner)
 
     def open(self, mode: str = "rb") -> io.BytesIO:
-        """Open a member for reading bytes."""
+        """Open the file for reading bytes."""
         if mode != "rb":
-            raise ValueError(f"an archive is opened with rb, not {mode}")
+            raise ValueError(f"mode must be rb, got {mode}")
         return io.BytesIO(self.read_bytes())
 
 
@@ -218,7 +237,7 @@ AnyPath = Path | ArchivePath
 
 
 def is_zip(path: Path) -> bool:
-    """Whether a file begins as a zip does, whatever it is named."""
+    """Return whether a file starts with the signature of a zip, regardless of its name."""
     try:
         with path.open("rb") as stream:
             return stream.read(4) in (b"PK\x03\x04", b"PK\x05\x06")

@@ -1,7 +1,7 @@
 """The 12 classes of NYU semantic occupancy, and 255 for unknown.
 
-The order and the ids are those of SSCNet, MonoScene and the paper's tables. The colours are the
-legend that the paper prints beside its result tables.
+The order and the ids are those of SSCNet, MonoScene and the paper's tables. The colours are those
+of the legend in the paper's result tables.
 """
 
 from enum import IntEnum
@@ -10,7 +10,7 @@ from world2minecraft.core.errors import UnknownNameError
 
 
 class SemanticClass(IntEnum):
-    """What a cell is."""
+    """The semantic class of a cell."""
 
     EMPTY = 0
     CEILING = 1
@@ -29,7 +29,7 @@ class SemanticClass(IntEnum):
 UNKNOWN = 255
 CLASS_COUNT = 12
 CLASS_NAMES: tuple[str, ...] = tuple(member.name.lower() for member in SemanticClass)
-# For people; files and APIs use CLASS_NAMES.
+# Readable names. Files and APIs use CLASS_NAMES.
 CLASS_DISPLAY_NAMES: tuple[str, ...] = (
     *("empty", "ceiling", "floor", "wall", "window", "chair"),
     *("bed", "sofa", "table", "television", "furniture", "object"),
@@ -57,7 +57,7 @@ def class_id(name: str) -> int:
     """Return the id of a class name.
 
     Raises:
-        UnknownNameError: no class has this name.
+        UnknownNameError: If the class is unknown.
 
     Example:
         >>> class_id("sofa")
@@ -69,7 +69,7 @@ def class_id(name: str) -> int:
 
 
 def display_name(class_id: int) -> str:
-    """Return the name of a class as people read it: ``"television"``, where files say ``"tvs"``.
+    """Return the readable name of a class, such as ``"television"`` for the class ``"tvs"``.
 
     Example:
         >>> display_name(SemanticClass.TVS), display_name(UNKNOWN)

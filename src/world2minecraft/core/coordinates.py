@@ -1,16 +1,16 @@
-"""Axis conventions and transforms; no other file knows them.
+"""Axis conventions and transforms, which no other module defines.
 
-- **Room frame**: metres, right-handed, z up, walls along x and y; the floor's top face is z = 0.
-- **Camera**: OpenCV axes (x right, y down, z forward); pixel centres at +0.5.
-- **Grid**: ``labels[x, y, z]``; ``origin_m`` is the minimum corner of cell (0, 0, 0).
-- **Blocks**: x east, y up, z south, right-handed too. Room (x, y, z) goes to block (x, z, -y)
-  times ``blocks_per_metre``; the corner (x_min, y_max, 0) of the room's inner box stands at
-  ``ROOM_CORNER_BLOCK``, so the floor is the layer under it.
-- **Angles**: ``yaw_deg`` counter-clockwise from above, 0 looks along room +x. The game's yaw 0
-  looks to +z (south) and grows clockwise from above; its pitch grows downward.
+- **Room frame**: metres, right-handed, z up, walls along x and y. The top of the floor is z = 0.
+- **Camera**: OpenCV axes (x right, y down, z forward), with pixel centres at +0.5.
+- **Grid**: ``labels[x, y, z]``. ``origin_m`` is the minimum corner of cell (0, 0, 0).
+- **Blocks**: x east, y up, z south, also right-handed. Room (x, y, z) becomes block (x, z, -y)
+  times ``blocks_per_metre``. The corner (x_min, y_max, 0) of the room's inner box is at
+  ``ROOM_CORNER_BLOCK``, so the floor is the layer below.
+- **Angles**: ``yaw_deg`` is counter-clockwise from above, and 0 points along room +x. The game's
+  yaw 0 points to +z (south) and increases clockwise from above. Its pitch increases downward.
 
-A transform says both its ends (``camera_to_room``); a product reads as a chain of cancelling
-names: ``camera_to_room = scan_to_room @ camera_to_scan``.
+The name of a transform contains both frames (``camera_to_room``), so adjacent names in a product
+cancel: ``camera_to_room = scan_to_room @ camera_to_scan``.
 """
 
 import numpy as np
@@ -26,17 +26,17 @@ OPENGL_TO_OPENCV = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 def apply(transform: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Carry points [..., 3] by a 4x4 ``a_to_b`` transform from frame a to frame b."""
+    """Transform points [..., 3] from frame a to frame b with a 4x4 ``a_to_b`` transform."""
     return points @ transform[:3, :3].T + transform[:3, 3]
 
 
 def invert(transform: np.ndarray) -> np.ndarray:
-    """Return ``b_to_a`` of a 4x4 ``a_to_b`` (rigid or scaled)."""
+    """Return the inverse of a 4x4 transform, which can be rigid or scaled."""
     return np.linalg.inv(transform)
 
 
 def invert_rigid(transform: np.ndarray) -> np.ndarray:
-    """Return the inverse of a rotation and translation, exactly orthonormal again."""
+    """Return the inverse of a 4x4 rigid transform with an exactly transposed rotation."""
     inverse = np.eye(4)
     inverse[:3, :3] = transform[:3, :3].T
     inverse[:3, 3] = -transform[:3, :3].T @ transform[:3, 3]
@@ -44,7 +44,7 @@ def invert_rigid(transform: np.ndarray) -> np.ndarray:
 
 
 def rotation_about_z(yaw_deg: float) -> np.ndarray:
-    """Return the 4x4 turn by ``yaw_deg`` counter-clockwise from above, exact at quarters."""
+    """Return the 4x4 rotation by ``yaw_deg`` counter-clockwise from above, exact at quarters."""
     cosine, sine = np.cos(np.radians(yaw_deg)), np.sin(np.radians(yaw_deg))
     if yaw_deg % 90 == 0:
         cosine, sine = np.round(cosine), np.round(sine)
@@ -54,12 +54,12 @@ def rotation_about_z(yaw_deg: float) -> np.ndarray:
 
 
 def opengl_to_opencv_pose(camera_to_world: np.ndarray) -> np.ndarray:
-    """Turn the pose of an OpenGL camera into that of the same camera with OpenCV axes."""
+    """Convert the pose of an OpenGL camera to the pose of the same camera with OpenCV axes."""
     return camera_to_world @ OPENGL_TO_OPENCV
 
 
 def look_at(eye_m: np.ndarray, target_m: np.ndarray) -> np.ndarray:
-    """Return ``camera_to_room`` of an upright OpenCV camera at ``eye_m`` that sees ``target_m``."""
+    """Return ``camera_to_room`` of an upright camera at ``eye_m`` that looks at ``target_m``."""
     forward = np.asarray(target_m, np.float64) - np.asarray(eye_m, np.float64)
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, [0.0, 0.0, 1.0])
@@ -76,19 +76,19 @@ def look_at(eye_m: np.ndarray, target_m: np.ndarray) -> np.ndarray:
 
 
 def cell_centers_m(cells: np.ndarray, origin_m: np.ndarray, voxel_m: float) -> np.ndarray:
-    """Return the centres, float64 [..., 3] in metres, of cell indices [..., 3]."""
+    """Return the centres of cell indices [..., 3] in metres, float64 [..., 3]."""
     return np.asarray(origin_m) + (np.asarray(cells) + 0.5) * voxel_m
 
 
 def metres_to_cells(points_m: np.ndarray, origin_m: np.ndarray, voxel_m: float) -> np.ndarray:
-    """Return the indices, int64 [..., 3], of the cells that hold points in metres."""
+    """Return the indices of the cells that contain points in metres, int64 [..., 3]."""
     return np.floor((np.asarray(points_m) - origin_m) / voxel_m).astype(np.int64)
 
 
 def turn_grid(values: np.ndarray, quarter_turns: int) -> np.ndarray:
-    """Turn a grid [X, Y, Z, ...] counter-clockwise from above by quarter turns.
+    """Rotate a grid [X, Y, Z, ...] counter-clockwise from above by quarter turns.
 
-    Cell (i, j, k) of an X x Y grid goes to (Y-1-j, i, k) with each turn: room +x becomes +y.
+    With each turn, cell (i, j, k) of an X x Y grid moves to (Y-1-j, i, k), so room +x becomes +y.
     """
     return np.rot90(values, quarter_turns, axes=(0, 1))
 
@@ -97,11 +97,13 @@ def turn_grid(values: np.ndarray, quarter_turns: int) -> np.ndarray:
 
 
 def room_to_block(corner_m: np.ndarray, blocks_per_metre: float) -> np.ndarray:
-    """Return the 4x4 from room metres to world block coordinates (a block spans [n, n + 1]).
+    """Return the 4x4 transform from room metres to world block coordinates.
+
+    A block spans [n, n + 1].
 
     Args:
-        corner_m: float64 [2], the corner (x_min, y_max) of the room's inner box, in metres.
-        blocks_per_metre: how many blocks stand for one metre.
+        corner_m: Corner (x_min, y_max) of the room's inner box in metres, float64 [2].
+        blocks_per_metre: Number of blocks per metre.
 
     Example:
         >>> apply(room_to_block(np.array([0.0, 3.0]), 4.0), np.array([1.0, 3.0, 0.5])).tolist()
@@ -114,22 +116,25 @@ def room_to_block(corner_m: np.ndarray, blocks_per_metre: float) -> np.ndarray:
 
 
 def block_to_room(corner_m: np.ndarray, blocks_per_metre: float) -> np.ndarray:
-    """Return the 4x4 from world block coordinates to room metres; see ``room_to_block``."""
+    """Return the 4x4 transform from world block coordinates to room metres.
+
+    This is the inverse of ``room_to_block``.
+    """
     return invert(room_to_block(corner_m, blocks_per_metre))
 
 
 def grid_to_block_axes(values: np.ndarray) -> np.ndarray:
-    """Carry a grid [X, Y, Z, ...] in room axes to block axes: cell (i, j, k) to (i, k, ny-1-j)."""
+    """Convert a grid [X, Y, Z, ...] from room to block axes: (i, j, k) moves to (i, k, ny-1-j)."""
     return np.ascontiguousarray(np.swapaxes(values[:, ::-1], 1, 2))
 
 
 def block_axes_to_grid(values: np.ndarray) -> np.ndarray:
-    """Undo ``grid_to_block_axes``."""
+    """Convert a grid from block axes to room axes, the inverse of ``grid_to_block_axes``."""
     return np.ascontiguousarray(np.swapaxes(values, 1, 2)[:, ::-1])
 
 
 def cells_to_block_axes(cells: np.ndarray, y_cells: int) -> np.ndarray:
-    """Carry cell indices [N, 3] of a grid with ``y_cells`` cells along y to block axes."""
+    """Convert cell indices [N, 3] of a grid with ``y_cells`` cells along y to block axes."""
     return np.stack([cells[:, 0], cells[:, 2], y_cells - 1 - cells[:, 1]], axis=1)
 
 
@@ -137,27 +142,27 @@ def cells_to_block_axes(cells: np.ndarray, y_cells: int) -> np.ndarray:
 
 
 def facing_of_quarter_turns(quarter_turns: int) -> str:
-    """Return the game's facing of a front turned from room +x: 0 east, 1 north, 2 west, 3 south."""
+    """Return the game's facing for quarter turns from room +x: 0 east, 1 north, 2 west, 3 south."""
     return FACING_OF_QUARTER_TURNS[quarter_turns % 4]
 
 
 def game_yaw_of_room_yaw(yaw_deg: float) -> float:
-    """Turn a room yaw into the game's yaw, from -180 up to 180."""
+    """Convert a room yaw to a game yaw in degrees from -180 (inclusive) to 180 (exclusive)."""
     return (-90.0 - yaw_deg + 180.0) % 360.0 - 180.0
 
 
 def room_yaw_of_game_yaw(game_yaw_deg: float) -> float:
-    """Turn a game yaw into a room yaw, from -180 up to 180."""
+    """Convert a game yaw to a room yaw in degrees from -180 (inclusive) to 180 (exclusive)."""
     return (-90.0 - game_yaw_deg + 180.0) % 360.0 - 180.0
 
 
 def camera_to_block_of_game_pose(
     eye_block: np.ndarray, game_yaw_deg: float, game_pitch_deg: float
 ) -> np.ndarray:
-    """Return the 4x4 pose, in block axes, of the game's camera with its eye at ``eye_block``.
+    """Return the 4x4 pose in block axes of the game's camera with its eye at ``eye_block``.
 
-    The rotation's columns are right, down and forward. The paper's matrix is the transpose
-    (world to camera): see ``paper_rotation``.
+    The columns of the rotation are right, down and forward. The paper's matrix is the transpose
+    (world to camera, see ``paper_rotation``).
     """
     yaw, pitch = np.radians(game_yaw_deg), np.radians(game_pitch_deg)
     forward = np.array([-np.sin(yaw) * np.cos(pitch), -np.sin(pitch), np.cos(yaw) * np.cos(pitch)])
@@ -169,15 +174,16 @@ def camera_to_block_of_game_pose(
 
 
 def eye_height_blocks(blocks_per_metre: float) -> float:
-    """Return how high a player's eye is over the feet, whose size is that of the room's scale."""
+    """Return the height of a player's eye above the feet in blocks, scaled to the room."""
     return PLAYER_EYE_BLOCKS * blocks_per_metre
 
 
 def game_pose_of_camera_to_block(camera_to_block: np.ndarray) -> tuple[np.ndarray, float, float]:
-    """Undo ``camera_to_block_of_game_pose``: the eye, float64 [3], the game's yaw and pitch.
+    """Return the eye position, float64 [3], game yaw and game pitch of a camera pose in block axes.
 
-    The yaw is from -180 up to 180, and holds where the camera looks straight up or down too. A
-    camera that leans to a side has no such pose: its lean is left out.
+    This is the inverse of ``camera_to_block_of_game_pose``. The yaw is from -180 (inclusive) to 180
+    (exclusive) and is also defined if the camera looks straight up or down. Camera roll cannot be
+    represented in a game pose and is dropped.
     """
     right, down, forward = camera_to_block[:3, :3].T
     yaw_deg = np.degrees(np.arctan2(-right[2], -right[0]))
@@ -187,10 +193,10 @@ def game_pose_of_camera_to_block(camera_to_block: np.ndarray) -> tuple[np.ndarra
 
 
 def carry_camera(camera_to_a: np.ndarray, a_to_b: np.ndarray) -> np.ndarray:
-    """Return ``camera_to_b``: frame a's scale moves the camera's place and not its own lengths.
+    """Return ``camera_to_b``, scaling the camera position but not its rotation.
 
-    Of blocks and rooms: ``camera_to_room = carry_camera(camera_to_block, block_to_room)``, and
-    back by the inverse of ``block_to_room``.
+    For blocks and rooms, ``camera_to_room = carry_camera(camera_to_block, block_to_room)``. Use the
+    inverse of ``block_to_room`` for the opposite direction.
     """
     scale = np.linalg.norm(a_to_b[:3, 0])
     pose = np.eye(4)
@@ -202,13 +208,14 @@ def carry_camera(camera_to_a: np.ndarray, a_to_b: np.ndarray) -> np.ndarray:
 def focal_px_of_fov(side_px: int, fov_deg: float) -> float:
     """Return the focal length in pixels of a field of view across ``side_px`` pixels.
 
-    The game's FOV is vertical: pass the height. The paper passes the width with the same angle.
+    The game's field of view is vertical, so pass the height. The paper passes the width with the
+    same angle.
     """
     return side_px / (2 * np.tan(np.radians(fov_deg) / 2))
 
 
 def fov_deg_of_focal_px(side_px: int, focal_px: float) -> float:
-    """Undo ``focal_px_of_fov``: the field of view across ``side_px`` pixels, in degrees."""
+    """Return the field of view in degrees across ``side_px`` pixels of a focal length in pixels."""
     return float(np.degrees(2 * np.arctan(side_px / (2 * focal_px))))
 
 
@@ -216,10 +223,10 @@ def fov_deg_of_focal_px(side_px: int, focal_px: float) -> float:
 
 
 def paper_rotation(game_yaw_deg: float, game_pitch_deg: float) -> np.ndarray:
-    """Return the paper's rotation R_pitch R_yaw, float64 [3, 3], as its equations print it.
+    """Return the paper's rotation R_pitch R_yaw as printed, float64 [3, 3].
 
-    The paper uses it as camera to world. It is world to camera: the transpose of the rotation
-    of ``camera_to_block_of_game_pose``.
+    The paper uses the matrix as camera to world, but it is world to camera: the transpose of the
+    rotation of ``camera_to_block_of_game_pose``.
     """
     yaw, pitch = np.radians([game_yaw_deg + 180.0, game_pitch_deg + 180.0])
     turn_yaw = [[np.cos(yaw), 0, np.sin(yaw)], [0, 1, 0], [-np.sin(yaw), 0, np.cos(yaw)]]
@@ -228,9 +235,9 @@ def paper_rotation(game_yaw_deg: float, game_pitch_deg: float) -> np.ndarray:
 
 
 def paper_focal_px(width_px: int, fov_deg: float) -> float:
-    """Return the paper's focal length in pixels: it takes the game's FOV as the horizontal one.
+    """Return the paper's focal length in pixels, which treats the game's FOV as horizontal.
 
-    The game's FOV is vertical, so that ``focal_px_of_fov(height_px, fov_deg)`` is right; the
-    paper's is too long by the image's width over its height.
+    The game's FOV is vertical, so ``focal_px_of_fov(height_px, fov_deg)`` is correct. The paper's
+    focal length is too long by the aspect ratio of the image.
     """
     return focal_px_of_fov(width_px, fov_deg)

@@ -1,7 +1,8 @@
-"""Files written whole or not at all, the same bytes for the same values.
+"""Atomic file writing with reproducible contents, and size-limited reading.
 
-Every file of the program is written through here: to a temporary neighbour, flushed to disk, then
-renamed, so that a crash leaves the old file or the new one. Time stamps inside archives are fixed.
+All files of the program are written by this module: to a temporary file in the same folder, flushed
+to disk, then renamed, so a crash leaves either the old or the new file. Time stamps inside archives
+are fixed, so equal values give identical bytes.
 """
 
 import io
@@ -30,10 +31,10 @@ MAX_ARRAY_BYTES = 4 << 30  # A 400 x 400 x 100 grid of FusedEvidence takes about
 
 
 def write_bytes(path: str | Path, data: bytes) -> None:
-    """Write ``data`` to ``path`` atomically, making parent folders.
+    """Write ``data`` to ``path`` atomically, creating parent folders.
 
     Raises:
-        OutputError: the folder cannot be written or the disk is full.
+        OutputError: If the folder cannot be written or the disk is full.
     """
     target = Path(path)
     temporary = None
@@ -56,12 +57,21 @@ def write_bytes(path: str | Path, data: bytes) -> None:
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write ``text`` as UTF-8, atomically. Raises what ``write_bytes`` raises."""
+    """Write ``text`` as UTF-8 atomically.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
     write_bytes(path, text.encode())
 
 
 def write_json(path: str | Path, value: Any) -> None:
-    """Write ``value`` as JSON with sorted keys, atomically. NaN and infinity are refused."""
+    """Write ``value`` as JSON with sorted keys atomically.
+
+    Raises:
+        OutputError: If the file cannot be written.
+        ValueError: If the value contains NaN or infinity.
+    """
     write_text(path, json.dumps(value, indent=1, sort_keys=True, allow_nan=False) + "\n")
 
 
@@ -69,7 +79,9 @@ def read_json(path: "str | Path | ArchivePath", limit_bytes: int = 256 << 20) ->
     """Read a JSON file.
 
     Raises:
-        InputError: it is missing. DamagedFileError: it is no JSON. LimitError: it is too large.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not valid JSON.
+        LimitError: If the file is too large.
     """
     data = read_bytes(path, limit_bytes)
     try:
@@ -79,10 +91,10 @@ def read_json(path: "str | Path | ArchivePath", limit_bytes: int = 256 << 20) ->
 
 
 def load_plain_yaml(text: str | bytes) -> Any:
-    """Return what a YAML text holds, without aliases: they make a huge tree of a small file.
+    """Parse a YAML text. Aliases are rejected because they can expand a small file to a huge tree.
 
     Raises:
-        ValueError: it is no YAML, or has aliases; one line.
+        ValueError: If the text is not valid YAML or contains aliases. The message is one line.
     """
     import yaml  # noqa: PLC0415  # Few commands read any.
 
@@ -101,35 +113,36 @@ def _plain_loader() -> Any:
 
         def compose_node(self, parent: Any, index: Any) -> Any:
             if self.check_event(yaml.AliasEvent):
-                raise yaml.YAMLError("aliases (*name) are not read")
+                raise yaml.YAMLError("aliases (*name) are not supported")
             return super().compose_node(parent, index)
 
     return PlainLoader
 
 
 def read_bytes(path: "str | Path | ArchivePath", limit_bytes: int) -> bytes:
-    """Read a whole file, or a member of an archive, of at most ``limit_bytes``.
+    """Read a whole file, or a member of an archive, of at most ``limit_bytes`` bytes.
 
     Raises:
-        InputError: it is missing or cannot be read. LimitError: it is larger.
+        InputError: If the file does not exist or cannot be read.
+        LimitError: If the file is larger than the limit.
     """
     source = Path(path) if isinstance(path, str) else path
     try:
         size = source.stat().st_size
         if size > limit_bytes:
-            raise LimitError(source, f"has {size:,} bytes; at most {limit_bytes:,} are read")
+            raise LimitError(source, f"has {size:,} bytes; the limit is {limit_bytes:,}")
         return source.read_bytes()
     except OSError as error:
         raise InputError(source, f"cannot be read: {error.strerror or error}") from error
 
 
 def write_npz(path: str | Path, arrays: Mapping[str, np.ndarray]) -> None:
-    """Write arrays as a compressed ``.npz`` whose bytes depend on the values alone."""
+    """Write arrays as a compressed ``.npz`` file whose bytes depend only on the values."""
     write_bytes(path, pack_npz(arrays))
 
 
 def pack_npz(arrays: Mapping[str, np.ndarray]) -> bytes:
-    """Return what ``write_npz`` writes."""
+    """Return the contents of the file that ``write_npz`` writes."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         for name in sorted(arrays):
@@ -142,15 +155,16 @@ def pack_npz(arrays: Mapping[str, np.ndarray]) -> bytes:
 
 
 def read_npz(path: str | Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """Read the named arrays of a ``.npz``, their sizes checked before any memory is taken.
+    """Read the named arrays of a ``.npz`` file, checking their sizes before allocating memory.
 
     Raises:
-        InputError: the file is missing. DamagedFileError: it is no ``.npz`` or lacks a name.
-        LimitError: an array is larger than ``MAX_ARRAY_BYTES``.
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a valid ``.npz`` file or lacks an array.
+        LimitError: If an array is larger than ``MAX_ARRAY_BYTES``.
     """
     source = Path(path)
     if not source.is_file():
-        raise InputError(source, "is not there")
+        raise InputError(source, "not found")
     try:
         with zipfile.ZipFile(source) as archive:
             return {name: _read_member(archive, name, source) for name in names}
@@ -161,9 +175,17 @@ def read_npz(path: str | Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
 def read_npz_bytes(
     data: bytes, names: tuple[str, ...], source: str | Path, limit_bytes: int
 ) -> dict[str, np.ndarray]:
-    """Read the named arrays of a ``.npz`` in memory, each of at most ``limit_bytes``.
+    """Read the named arrays of a ``.npz`` file in memory, each of at most ``limit_bytes`` bytes.
 
-    ``source`` is what errors call it. Raises what ``read_npz`` raises.
+    Args:
+        data: Contents of the file.
+        names: Names of the arrays.
+        source: File to name in errors.
+        limit_bytes: Maximum size of an array in bytes.
+
+    Raises:
+        DamagedFileError: If the data is not a valid ``.npz`` file or lacks an array.
+        LimitError: If an array is larger than ``limit_bytes``.
     """
     place = Path(source)
     try:
@@ -174,7 +196,11 @@ def read_npz_bytes(
 
 
 def npz_array_names(path: str | Path) -> tuple[str, ...]:
-    """Return the names of the arrays of a ``.npz``. Raises what ``read_npz`` raises."""
+    """Return the names of the arrays in a ``.npz`` file.
+
+    Raises:
+        DamagedFileError: If the file is not a valid ``.npz`` file.
+    """
     try:
         with zipfile.ZipFile(path) as archive:
             return tuple(sorted(name.removesuffix(".npy") for name in archive.namelist()))
@@ -183,7 +209,11 @@ def npz_array_names(path: str | Path) -> tuple[str, ...]:
 
 
 def read_npy(path: str | Path) -> np.ndarray:
-    """Read a ``.npy``, its size checked before any memory is taken. Raises as ``read_npz``."""
+    """Read a ``.npy`` file, checking its size before allocating memory.
+
+    Raises:
+        DamagedFileError: If the file is not a valid ``.npy`` file.
+    """
     source = Path(path)
     try:
         with source.open("rb") as stream:
@@ -200,13 +230,15 @@ def _read_member(
     member = f"{name}.npy"
     if member not in archive.namelist():
         held = ", ".join(sorted(entry.removesuffix(".npy") for entry in archive.namelist()))
-        raise DamagedFileError(source, f"has no array {name!r}; it holds: {held or 'nothing'}")
+        raise DamagedFileError(
+            source, f"does not contain the array {name!r}; available: {held or 'none'}"
+        )
     entry = archive.getinfo(member)
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise DamagedFileError(source, f"array {name!r} is packed in a way no .npz is")
+        raise DamagedFileError(source, f"array {name!r} uses unsupported compression")
     declared = entry.file_size
     if declared > (MAX_ARRAY_BYTES if limit_bytes is None else limit_bytes):
-        raise LimitError(source, f"array {name!r} has {declared:,} bytes; too large to read")
+        raise LimitError(source, f"array {name!r} has {declared:,} bytes, which exceeds the limit")
     with archive.open(member) as stream:
         _check_header(stream, declared, source, repr(name))
     with archive.open(member) as stream:
@@ -221,18 +253,20 @@ def _check_header(stream: Any, held: int, source: Path, name: str) -> None:
         (2, 0): np.lib.format.read_array_header_2_0,
     }.get(version)
     if reader is None:
-        raise DamagedFileError(source, f"array {name} has npy version {version}")
+        raise DamagedFileError(source, f"array {name} has the unsupported npy version {version}")
     shape, _, dtype = reader(stream)
     needed = int(np.prod(shape, dtype=np.float64)) * dtype.itemsize
     if dtype.hasobject or needed > held:
-        raise DamagedFileError(source, f"array {name} says {shape} {dtype}, holds less")
+        raise DamagedFileError(
+            source, f"array {name} declares {shape} {dtype} but contains less data"
+        )
 
 
 def parse_json_lines(text: str, source: Path) -> list[tuple[int, dict[str, Any]]]:
-    """Return the objects of a text with one JSON object a line, each with the number of its line.
+    """Return the objects in a text with one JSON object per line, with their line numbers.
 
     Raises:
-        DamagedFileError: a line is none; ``source`` is named.
+        DamagedFileError: If a line is not a JSON object. The message names ``source``.
     """
     rows = []
     for number, line in enumerate(text.splitlines(), 1):
@@ -241,8 +275,8 @@ def parse_json_lines(text: str, source: Path) -> list[tuple[int, dict[str, Any]]
         try:
             row = json.loads(line)
         except (ValueError, RecursionError) as error:
-            raise DamagedFileError(source, f"line {number} is no JSON") from error
+            raise DamagedFileError(source, f"line {number} is not valid JSON") from error
         if not isinstance(row, dict):
-            raise DamagedFileError(source, f"line {number} is no JSON object")
+            raise DamagedFileError(source, f"line {number} is not a JSON object")
         rows.append((number, row))
     return rows

@@ -1,7 +1,7 @@
-"""Compile kernels by numba with the project's settings, cached in the user's cache folder.
+"""Compilation of kernels with numba using project-wide settings and a cache in the user folder.
 
-Import ``njit``, ``lean`` and its like from here and never from numba, so that every kernel is
-cached, releases the GIL and computes the same bits on every run (no fast-math).
+Import ``njit``, ``lean`` and similar decorators from this module and never from numba, so that
+every kernel is cached, releases the GIL and computes identical bits on every run (no fast-math).
 """
 
 import hashlib
@@ -13,7 +13,7 @@ from typing import Any
 
 
 def user_cache_dir() -> Path:
-    """The folder where this program may keep what it can compute again."""
+    """Return the folder for files that this program can recompute."""
     if "W2M_CACHE_DIR" in os.environ:
         return Path(os.environ["W2M_CACHE_DIR"])
     home = Path.home()
@@ -27,8 +27,8 @@ def user_cache_dir() -> Path:
 def kernel_sources_digest() -> str:
     """Return a digest of all files with kernels.
 
-    numba's cache sees a change of a kernel's own file, but not of the kernels it calls from
-    another; so each state of the sources has its own folder.
+    The cache of numba detects changes of a kernel's own file, but not of kernels it calls in other
+    files. Therefore, each state of the sources has a separate cache folder.
     """
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parents[1].rglob("*.py")):
@@ -39,9 +39,10 @@ def kernel_sources_digest() -> str:
 
 
 def kernel_cache_dir() -> Path:
-    """Make and return the folder of compiled kernels, a temporary one where it is not writable.
+    """Create and return the folder of compiled kernels, or a temporary one if it is read-only.
 
-    What lies in it is run as code, so it is never a folder that others could have filled.
+    The files in the folder are executed as code, so it is never a folder that others could have
+    filled.
     """
     folder = user_cache_dir() / "kernels" / kernel_sources_digest()
     try:
@@ -54,7 +55,7 @@ def kernel_cache_dir() -> Path:
 
 
 def is_compiled(kernel: str) -> bool:
-    """Whether an earlier run has cached a kernel, named by its module and its own name: ``a.b``."""
+    """Return whether an earlier run has cached a kernel, given as ``module.kernel``."""
     return any(KERNEL_CACHE.rglob(f"{kernel}-*.nbi"))
 
 

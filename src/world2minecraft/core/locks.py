@@ -1,7 +1,7 @@
-"""Locks on folders; the system releases them when their process ends, however it ends.
+"""Locks on folders, which the system releases when their process ends for any reason.
 
-The file holds ``{"pid", "host"}`` of the holder, for the messages of other processes. On Windows
-they cannot read it while it is locked, and report "another process".
+The lock file contains ``{"pid", "host"}`` of the holder, for the messages of other processes. On
+Windows, other processes cannot read the locked file and report "another process".
 """
 
 import contextlib
@@ -18,10 +18,10 @@ _acquired: set[FileLock] = set()  # filelock releases those that nothing refers 
 
 
 class Lock:
-    """The lock at a path, held from ``acquire`` to ``release``."""
+    """A lock at a path, held from ``acquire`` to ``release``."""
 
     def __init__(self, path: Path, work: str = "edited"):
-        """Name the lock and what is done under it; nothing is taken."""
+        """Set the path of the lock and the verb for messages, without acquiring the lock."""
         self.path, self._work = path, work
         self._lock = FileLock(
             path,
@@ -32,10 +32,11 @@ class Lock:
         )
 
     def acquire(self) -> None:
-        """Take the lock, over from a process that is dead if need be.
+        """Acquire the lock, if necessary from a process that has ended.
 
         Raises:
-            ConflictError: another process has it. OutputError: the folder cannot be written.
+            ConflictError: If another process holds the lock.
+            OutputError: If the folder cannot be written.
         """
         try:
             self._lock.acquire()
@@ -48,14 +49,14 @@ class Lock:
         _acquired.add(self._lock)
 
     def release(self) -> None:
-        """Let go of the lock, where it is held."""
+        """Release the lock if it is held."""
         if self._lock.is_locked:
             with contextlib.suppress(OSError):
                 os.truncate(self.path, 0)
             self._release()
 
     def remove(self) -> None:
-        """Let go of the lock and leave no file of it behind."""
+        """Release the lock and delete its file."""
         if self._lock.is_locked:
             with contextlib.suppress(OSError):  # Windows keeps a file that is open.
                 self.path.unlink(missing_ok=True)
@@ -65,7 +66,7 @@ class Lock:
                     self.path.unlink(missing_ok=True)
 
     def holder(self) -> str:
-        """Return who has the lock, in words."""
+        """Return a description of the process that holds the lock."""
         try:
             holder = json.loads(self.path.read_bytes()[:4096])
             pid, host = int(holder["pid"]), str(holder["host"])

@@ -1,8 +1,8 @@
-"""Declare and describe the parameters of a stage.
+"""Declaration and description of the parameters of a stage.
 
-A stage's parameters are a frozen dataclass whose fields are made by ``parameter``, each with its
-default, its unit and the origin of the default; the docstring of the class says what each one
-means. Everything that lists parameters reads these declarations.
+The parameters of a stage are the fields of a frozen dataclass. Each field is created by
+``parameter`` with its default, its unit and the origin of the default, and the docstring of the
+class states its meaning. All listings of parameters read these declarations.
 """
 
 import re
@@ -18,13 +18,14 @@ ENTRY = re.compile(r"(?P<names>[a-z][\w*]*(?:, [a-z][\w*]*)*): (?P<meaning>.*)")
 
 @dataclass(frozen=True)
 class ParameterInfo:
-    """One parameter as a listing shows it.
+    """The description of a parameter in listings.
 
-    key: its name, after the names of the groups that hold it: ``find.cluster_radius``.
-    default: its default value.
-    unit: such as ``m``; nothing for a name or a switch.
-    meaning: one sentence or more, of the docstring of its class.
-    origin: where the default comes from.
+    Attributes:
+        key: Name of the parameter after the names of its groups, such as ``find.cluster_radius``.
+        default: Default value.
+        unit: Unit, such as ``m``. Empty for a name or a switch.
+        meaning: One or more sentences from the docstring of its class.
+        origin: Source of the default value.
     """
 
     key: str
@@ -38,10 +39,10 @@ def parameter(default: Any = None, *, unit: str = "", origin: str = "", **facts:
     """Return a dataclass field that declares a parameter.
 
     Args:
-        default: its default value; a class is called to make a new value for each instance.
-        unit: such as ``m`` or ``cells``; nothing for a name, a switch or a group.
-        origin: where the default comes from.
-        **facts: further facts for listings, such as the bounds that a check names.
+        default: Default value. A class is called to create a new value for each instance.
+        unit: Unit, such as ``m`` or ``cells``. Empty for a name, a switch or a group.
+        origin: Source of the default value.
+        **facts: Further facts for listings, such as the limits of the value.
     """
     metadata = {"unit": unit, "origin": origin, **facts}
     if isinstance(default, type):
@@ -50,7 +51,7 @@ def parameter(default: Any = None, *, unit: str = "", origin: str = "", **facts:
 
 
 def names_where(parameters: Any, **facts: Any) -> tuple[str, ...]:
-    """Return the names of the parameters that were declared with these facts, in order."""
+    """Return the names of the parameters declared with the given facts, in order."""
     return tuple(
         entry.name
         for entry in fields(parameters)
@@ -59,7 +60,7 @@ def names_where(parameters: Any, **facts: Any) -> tuple[str, ...]:
 
 
 def fact_by_name(parameters: Any, fact: str) -> dict[str, Any]:
-    """Return a fact, such as the limits, by the names of the parameters declared with it, in order.
+    """Return a fact, such as the limits, by the names of the parameters declared with it.
 
     Example:
         >>> from dataclasses import dataclass
@@ -76,10 +77,10 @@ def fact_by_name(parameters: Any, fact: str) -> dict[str, Any]:
 
 
 def describe_parameters(parameters: type) -> tuple[ParameterInfo, ...]:
-    """Return a description of each parameter of a class and of its groups, in order.
+    """Return a description of each parameter of a class and its groups, in order.
 
-    Parameters that only copy another one, and dictionaries, which have no keys of their own, are
-    left out.
+    Parameters that only copy another parameter, and dictionaries, which have no fixed keys, are
+    omitted.
 
     Example:
         >>> @dataclass(frozen=True)
@@ -109,10 +110,10 @@ def _describe(value: Any, prefix: str) -> Iterator[ParameterInfo]:
 
 
 def docstring_entries(docstring: str) -> dict[str, str]:
-    """Return the entries ``name: meaning.`` of a docstring, by the text before the colon.
+    """Return the entries ``name: meaning.`` of a docstring by the text before the colon.
 
-    An entry may name several parameters (``width, height: ...``), or all that match a pattern
-    (``bed_*: ...``). Its further lines are indented.
+    An entry can describe several parameters (``width, height: ...``), or all that match a pattern
+    (``bed_*: ...``). Continuation lines are indented.
 
     Example:
         >>> docstring_entries("bed_*: a side of a bed.")

@@ -1,18 +1,20 @@
-"""Progress reports of long work to its caller."""
+"""The interface for progress reports of long operations."""
 
 from typing import Protocol
 
 
 class Progress(Protocol):
-    """Called with the stage, the steps done, the steps in all (0 = not known) and a short note.
+    """A callback for progress reports of an operation with several stages.
 
-    ``done`` never falls within a stage, and the last call of a stage has ``done == total``.
+    It receives the stage, the number of completed steps, the total number of steps (0 if unknown)
+    and a short note. ``done`` never decreases within a stage, and the last call of a stage has
+    ``done == total``.
     """
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
-        """Report one step."""
+        """Report a step."""
         ...
 
 
 def no_progress(stage: str, done: int, total: int, note: str = "") -> None:
-    """Ignore every report: the default of library calls."""
+    """Ignore all reports. This is the default of library functions."""

@@ -1,8 +1,8 @@
-"""Names to implementations: built-in ones by one line each, others by entry points.
+"""Registries that map names to implementations, built-in or added by other packages.
 
-A registry is made with ``{"name": "module:attribute"}``; the module is imported when its name is
-asked for, so that a registry costs nothing until it is used. Packages outside add theirs through
-the entry point group ``world2minecraft.<kind>``.
+A registry is created with ``{"name": "module:attribute"}``. A module is imported only when its name
+is requested. Other packages register implementations with the entry point group
+``world2minecraft.<kind>``.
 """
 
 from collections.abc import Mapping
@@ -14,22 +14,22 @@ from world2minecraft.core.errors import UnknownNameError
 
 
 class Registry:
-    """A closed set of built-in names, open to entry points."""
+    """A registry of built-in names that entry points can extend."""
 
     def __init__(self, kind: str, builtins: Mapping[str, str]):
         self.kind = kind
         self._builtins = dict(builtins)
 
     def names(self) -> tuple[str, ...]:
-        """All names: the built-in ones in their order, then those of other packages, sorted."""
+        """Return the built-in names in order, then the names of other packages, sorted."""
         found = {point.name for point in self._points()} - set(self._builtins)
         return (*self._builtins, *sorted(found))
 
     def load(self, name: str) -> Any:
-        """Return what is registered under ``name``.
+        """Return the implementation registered under ``name``.
 
         Raises:
-            UnknownNameError: nothing is; the message suggests the nearest name.
+            UnknownNameError: If the name is not registered. The message suggests the closest match.
         """
         if name in self._builtins:
             module, _, attribute = self._builtins[name].partition(":")

@@ -95,7 +95,7 @@ def test_the_mount_of_another_sensor_is_found(seed):
         (
             random_poses(np.random.default_rng(0), 3),
             random_poses(np.random.default_rng(0), 4),
-            "wanted must have shape 3x4x4, not (4, 4, 4)",
+            "wanted must have shape 3x4x4, got (4, 4, 4)",
         ),
     ],
 )

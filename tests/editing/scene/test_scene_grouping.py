@@ -174,7 +174,7 @@ def test_golden_refusals():
         "nothing to change: all objects already have this class"
     )
     assert refusal(op="snap_object", id=CHAIR, to="floor") == (
-        "object 1 (chair) is on the floor already"
+        "object 1 (chair) is already on the floor"
     )
     assert refusal(op="recluster", density_kernel=0, density_threshold=0, cluster_radius=1) == (
         "recluster: density_kernel: Input should be greater than or equal to 1, not 0"

@@ -96,7 +96,7 @@ def changed(**fields):
         ({"runs": np.array([0, 211], np.int32)}, "a run of cells extends beyond the grid of 210 cells"),
         ({"runs": np.array([0, 5, 3, 4], np.int32)}, "two runs of cells overlap"),
         ({"runs": np.array([0, 1, 2], np.int32)}, "cannot reshape"),
-        ({"runs": np.array([0, 9], np.int32)}, "labels is of "),
+        ({"runs": np.array([0, 9], np.int32)}, "labels must have "),
         ({"kind": "a/b"}, "kind must be a short printable name"),
         ({"counts_as": "much"}, "counts_as must be one of add, delete"),
         ({"before": {}}, "'labels'"),
@@ -105,7 +105,7 @@ def changed(**fields):
     ],
 )
 def test_bytes_that_are_no_operation_are_refused(fields, reason):
-    with pytest.raises(DamagedFileError, match="^j: holds no operation on a scene") as refused:
+    with pytest.raises(DamagedFileError, match="^j: does not contain a valid scene operation") as refused:
         unpack_operation(changed(**fields), SHAPE, "j")
     assert reason in str(refused.value)
 
@@ -113,7 +113,7 @@ def test_bytes_that_are_no_operation_are_refused(fields, reason):
 def test_no_more_memory_is_taken_than_the_scene_has():
     # Two thousand million cells in one run: refused before anything is made of them.
     packed = changed(runs=np.array([0, 2_000_000_000], np.int32))
-    with pytest.raises(DamagedFileError, match="leaves the grid"):
+    with pytest.raises(DamagedFileError, match="extends beyond the grid"):
         unpack_operation(packed, SHAPE, "j")
     many = write_nbt({"objects": [{"id": 1}] * 10})
     with pytest.raises((DamagedFileError, LimitError)):

@@ -204,7 +204,7 @@ def test_a_hostile_npz_is_refused(folders, tmp_path):
     with pytest.raises(DamagedFileError):
         next(iter(open_occupancy(tmp_path, "npz")))
     np.savez(tmp_path / "train" / "a.npz", labels=np.zeros(3, np.uint8))
-    with pytest.raises(DamagedFileError, match="has no array"):
+    with pytest.raises(DamagedFileError, match="does not contain the array"):
         next(iter(open_occupancy(tmp_path, "npz")))
 
 

@@ -189,7 +189,7 @@ def test_arrays_with_a_huge_header_are_refused():
     members = pack_sample(sample(1), TABLE, SampleFiles())
     huge = dict.fromkeys(("labels", "fine", "instance", "hits", "in_frustum", "free"))
     members["occ.npz"] = pack_npz({name: np.zeros(10**6, np.uint8) for name in huge})
-    with pytest.raises(Exception, match="1,000,128 bytes; too large to read"):
+    with pytest.raises(Exception, match="1,000,128 bytes, which exceeds the limit"):
         unpack_sample(members, TABLE, "here")
 
 

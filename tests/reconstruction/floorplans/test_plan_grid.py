@@ -176,10 +176,10 @@ def damage(document, how):
         ("not a number", r"objects\[0\].dimensions must be 3 numbers"),
         ("a mirror", r"doors\[0\].transform must be a rigid transform in column-major order"),
         ("millimetres", r"walls\[2\] measures 4000 m; export the plan in metres"),
-        ("too many", r"12,000 objects; 10,000 at most"),
-        ("far away", r"windows\[0\] lies over 1000 m away"),
+        ("too many", r"12,000 objects; the limit is 10,000"),
+        ("far away", r"windows\[0\] is over 1000 m away"),
         ("no list", "windows must be a list, got dict"),
-        ("empty", "holds no wall and no floor"),
+        ("empty", "contains neither walls nor floors"),
     ],
 )
 def test_damaged_plans_are_refused_in_one_line(tmp_path, document, how, text):
@@ -196,7 +196,7 @@ def test_a_cut_off_file_and_another_json_are_refused(tmp_path, document):
     with pytest.raises(InputError):
         read_roomplan(path)
     assert find_roomplan(path) is None
-    with pytest.raises(DamagedFileError, match="is no RoomPlan capture"):
+    with pytest.raises(DamagedFileError, match="is not a RoomPlan capture"):
         read_roomplan(written(tmp_path, {"walls": 3}))
 
 

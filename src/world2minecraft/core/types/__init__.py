@@ -1,7 +1,7 @@
-"""Value types that pass between the stages: frozen, and checked in their constructors.
+"""Immutable value types that pass between the stages, checked in their constructors.
 
-Arrays are held as read-only views; a stage that changes something makes a new value with
-``dataclasses.replace``. Conventions (frames, axes, angles) are in ``coordinates``.
+Arrays are stored as read-only views. To change a value, a stage creates a new one with
+``dataclasses.replace``. ``coordinates`` defines the frames, axes and angles.
 """
 
 from world2minecraft.core.types.block_volume import AIR, BlockEntity, BlockVolume, Entity

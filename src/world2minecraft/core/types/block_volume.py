@@ -14,7 +14,7 @@ AIR = "minecraft:air"
 
 @dataclass(frozen=True)
 class BlockEntity:
-    """The data of one block that a state cannot hold, such as a sign's text."""
+    """The data of a block beyond its state, such as the text of a sign."""
 
     block_pos: tuple[int, int, int]  # world block coordinates
     id: str
@@ -23,7 +23,7 @@ class BlockEntity:
 
 @dataclass(frozen=True)
 class Entity:
-    """A thing that stands free of the block grid; part of an object, where it says of which."""
+    """An entity independent of the block grid, with the class and id of its object, if any."""
 
     position: tuple[float, float, float]  # world block coordinates, not whole
     id: str
@@ -33,17 +33,17 @@ class Entity:
 
     def __post_init__(self):
         if not all(map(math.isfinite, self.position)):
-            raise ValueError(f"position must be three finite numbers, not {self.position}")
+            raise ValueError(f"position must be three finite numbers, got {self.position}")
 
 
 @dataclass(frozen=True, eq=False)
 class BlockVolume:
     """A box of blocks in block axes: x east, y up, z south.
 
-    ``states[x, y, z]`` indexes ``palette`` of full block states, such as
-    ``minecraft:oak_stairs[facing=east,half=bottom,...]``; ``palette[0]`` is air. ``corner`` is
-    the world position of cell (0, 0, 0). ``block_to_room`` carries world block coordinates
-    (a block spans [n, n+1]) to room metres: a turn of axes, a scale and a shift.
+    ``states[x, y, z]`` indexes ``palette``, which contains full block states, such as
+    ``minecraft:oak_stairs[facing=east,half=bottom,...]``. ``palette[0]`` is air. ``corner`` is the
+    world position of cell (0, 0, 0). ``block_to_room`` transforms world block coordinates (a block
+    spans [n, n+1]) to room metres by a change of axes, a scale and a translation.
     """
 
     states: np.ndarray  # uint16 [X, Y, Z]
@@ -61,18 +61,20 @@ class BlockVolume:
         put(self, "states", states)
         put(self, "palette", tuple(self.palette))
         if not self.palette or self.palette[0] != AIR:
-            raise ValueError(f"palette must begin with {AIR}, not {self.palette[:1]}")
+            raise ValueError(f"palette must start with {AIR}, got {self.palette[:1]}")
         if states.size and int(states.max()) >= len(self.palette):
-            raise ValueError(f"states go to {states.max()}, the palette has {len(self.palette)}")
+            raise ValueError(
+                f"states has index {states.max()}, but the palette has {len(self.palette)} entries"
+            )
         put(self, "semantic", checks.labels("semantic", self.semantic, states.shape))
         put(self, "instance", checks.array("instance", self.instance, np.uint16, states.shape))
         corner = tuple(int(value) for value in self.corner)
         if len(corner) != 3:
-            raise ValueError(f"corner must be three whole numbers, not {self.corner}")
+            raise ValueError(f"corner must be three integers, got {self.corner}")
         put(self, "corner", corner)
         put(self, "block_to_room", checks.floats("block_to_room", self.block_to_room, (4, 4)))
 
     @property
     def blocks_per_metre(self) -> float:
-        """How many blocks stand for one metre of the room."""
+        """The number of blocks per metre of the room."""
         return float(1 / np.linalg.norm(self.block_to_room[:3, 0]))

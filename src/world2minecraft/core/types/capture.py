@@ -1,4 +1,4 @@
-"""Captures: cameras, posed views, the scan that they form, and the corrections of its frames."""
+"""Captures: cameras, posed views, scans, and the corrections of frames."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ IDENTITY = np.eye(4)
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera with OpenCV distortion k1 k2 p1 p2 k3; pixel centres lie at +0.5."""
+    """A pinhole camera with OpenCV distortion k1 k2 p1 p2 k3 and pixel centres at +0.5."""
 
     width_px: int
     height_px: int
@@ -28,7 +28,7 @@ class Camera:
         for name in ("width_px", "height_px"):
             size = getattr(self, name)
             if int(size) != size or not 0 < size <= MAX_SIDE_PX:
-                raise ValueError(f"{name} must be 1 to {MAX_SIDE_PX}, not {size}")
+                raise ValueError(f"{name} must be 1 to {MAX_SIDE_PX}, got {size}")
             object.__setattr__(self, name, int(size))
         checks.positive("fx_px", self.fx_px)
         checks.positive("fy_px", self.fy_px)
@@ -47,17 +47,18 @@ class Camera:
         """Return the camera of the same image resampled to another size.
 
         Raises:
-            ValueError: the new size is no uniform scale of the old one (over 1 % apart).
+            ValueError: If the aspect ratio changes by more than 1 %.
         """
         across, down = width_px / self.width_px, height_px / self.height_px
         if abs(across / down - 1) > 0.01:
             raise ValueError(
-                f"{width_px}x{height_px} is no uniform scale of {self.width_px}x{self.height_px}"
+                f"{width_px}x{height_px} has another aspect ratio than "
+                f"{self.width_px}x{self.height_px}"
             )
         return self.scaled_to(width_px, height_px)
 
     def scaled_to(self, width_px: int, height_px: int) -> "Camera":
-        """Return the camera of the same image at another size, of whatever proportions."""
+        """Return the camera of the same image resampled to another size with any aspect ratio."""
         across, down = width_px / self.width_px, height_px / self.height_px
         return Camera(
             width_px,
@@ -72,11 +73,11 @@ class Camera:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """One posed frame. Colour and depth may differ in size, lens and place.
+    """A frame with its pose. Colour and depth can have different sizes, lenses and positions.
 
-    ``depth_m`` is z-depth in metres, 0 where there is none. ``camera_to_scan`` is that of the
-    colour camera, or of the depth camera where there is no colour. ``trust`` uint8 [h, w] says how
-    far each pixel of the depth is to be trusted, 255 wholly.
+    ``depth_m`` is the z-depth in metres, or 0 without a measurement. ``camera_to_scan`` is the pose
+    of the colour camera, or of the depth camera if there is no colour. ``trust`` uint8 [h, w] is
+    the reliability of each depth pixel, up to 255.
     """
 
     name: str
@@ -95,26 +96,26 @@ class View:
         put(self, "camera_to_scan", checks.transform("camera_to_scan", self.camera_to_scan))
         put(self, "depth_to_colour", checks.transform("depth_to_colour", self.depth_to_colour))
         if (self.colour is None) != (self.colour_camera is None):
-            raise ValueError("colour and colour_camera come together")
+            raise ValueError("colour and colour_camera must be given together")
         if (self.depth_m is None) != (self.depth_camera is None):
-            raise ValueError("depth_m and depth_camera come together")
+            raise ValueError("depth_m and depth_camera must be given together")
         if self.colour_camera is not None:
             shape = (self.colour_camera.height_px, self.colour_camera.width_px)
             put(self, "colour", checks.array("colour", self.colour, np.uint8, (*shape, 3)))
             if self.labels is not None:
                 put(self, "labels", checks.labels("labels", self.labels, shape))
         elif self.labels is not None:
-            raise ValueError("labels lie on the colour image; there is none")
+            raise ValueError("labels require a colour image")
         if self.depth_camera is not None:
             shape = (self.depth_camera.height_px, self.depth_camera.width_px)
             depth = checks.array("depth_m", self.depth_m, np.float32, shape)
             if not (np.isfinite(depth).all() and (depth >= 0).all()):
-                raise ValueError("depth_m must be finite and not negative; holes are 0")
+                raise ValueError("depth_m must be finite and not negative (0 for missing depth)")
             put(self, "depth_m", depth)
             if self.trust is not None:
                 put(self, "trust", checks.array("trust", self.trust, np.uint8, shape))
         elif self.trust is not None:
-            raise ValueError("trust lies on the depth image; there is none")
+            raise ValueError("trust requires a depth image")
 
     @property
     def depth_camera_to_scan(self) -> np.ndarray:
@@ -123,14 +124,14 @@ class View:
 
 
 class ViewStream(Protocol):
-    """Views that can be read again, one at a time: a capture never lies in memory whole."""
+    """Views that can be iterated repeatedly, one at a time, without loading the whole capture."""
 
     def __iter__(self) -> Iterator[View]:
-        """Read the views from the first."""
+        """Iterate over the views from the first."""
         ...
 
     def __len__(self) -> int:
-        """The number of views."""
+        """Return the number of views."""
         ...
 
 
@@ -157,7 +158,7 @@ class FrameSigmas:
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """A capture that is aligned: where the room is in it, and how sure its scale is.
+    """An aligned capture with the position of the room and the reliability of its scale.
 
     ``scan_to_room`` carries the scan's frame to the room frame; the inner box of the room is
     from (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report; ``name`` is what
@@ -185,13 +186,13 @@ class Scan:
         if self.world_up is not None:
             put(self, "world_up", checks.floats("world_up", self.world_up, (3,)))
             if abs(np.linalg.norm(self.world_up) - 1) > 1e-6:
-                raise ValueError(f"world_up must be a unit vector, not {self.world_up.tolist()}")
+                raise ValueError(f"world_up must be a unit vector, got {self.world_up.tolist()}")
         put(self, "scan_to_room", checks.transform("scan_to_room", self.scan_to_room))
         put(self, "room_size_m", checks.floats("room_size_m", self.room_size_m, (3,)))
         if (self.room_size_m <= 0).any():
-            raise ValueError(f"room_size_m must be above 0, not {self.room_size_m.tolist()}")
+            raise ValueError(f"room_size_m must be above 0, got {self.room_size_m.tolist()}")
         if self.scale not in ("metric", "estimated", "unknown"):
-            raise ValueError(f"scale must be metric, estimated or unknown, not {self.scale!r}")
+            raise ValueError(f"scale must be metric, estimated or unknown, got {self.scale!r}")
         put(self, "frames_used", tuple(self.frames_used))
         put(self, "frames_skipped", tuple(self.frames_skipped))
         put(self, "notes", tuple(self.notes))
@@ -199,11 +200,11 @@ class Scan:
 
 @dataclass(frozen=True, eq=False)
 class Corrections:
-    """What registration corrects in a scan: the pose and the depth scale of each frame.
+    """The corrections by registration: the pose and the depth scale of each frame.
 
-    ``pose_change`` float64 [F, 4, 4] is rigid, scan to scan, applied on the left of a frame's
-    pose; ``depth_scale`` float64 [F] is what its depth is multiplied by. ``facts`` are the figures
-    for ``scan.json``. A frame that is not among ``names`` stays as it is.
+    ``pose_change`` float64 [F, 4, 4] is a rigid transform, scan to scan, applied on the left of a
+    frame's pose. ``depth_scale`` float64 [F] is a factor for the depth. ``facts`` are the results
+    for ``scan.json``. A frame that is not in ``names`` is not changed.
     """
 
     names: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Undoable edits of a scene or of blocks, shared by clean-up, SceneForge and ``w2m undo``."""
+"""Undoable edits of a scene or of blocks, used by clean-up, SceneForge and ``w2m undo``."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,7 +15,7 @@ COUNTED = ("add", "delete", "orient", "move", "relabel", "other")
 
 @dataclass(frozen=True, eq=False)
 class GridCells:
-    """What N cells of an ``OccupancyGrid`` hold."""
+    """The contents of N cells of an ``OccupancyGrid``."""
 
     labels: np.ndarray  # uint8 [N], 0 to 11 or 255
     confidence: np.ndarray  # float16 [N]
@@ -38,15 +38,15 @@ class GridCells:
         if not np.array_equal(labels == 255, self.source == UNSEEN):
             raise ValueError("labels must be 255 exactly where source is 0 (unseen)")
         if not ((self.confidence >= 0) & (self.confidence <= 1)).all():
-            raise ValueError("confidence must lie between 0 and 1")
+            raise ValueError("confidence must be between 0 and 1")
 
 
 @dataclass(frozen=True, eq=False)
 class SceneObject:
-    """One object of a scene with the furniture that stands for it.
+    """An object of a scene with its furniture.
 
-    Fields are those of ``ObjectInstance``; its cells are those of the grid whose ``instance`` is
-    its id. ``placements`` all have its id and its class.
+    The fields are those of ``ObjectInstance``. The cells of the object are those of the grid whose
+    ``instance`` is its id. All ``placements`` have the id and the class of the object.
     """
 
     id: int
@@ -68,17 +68,19 @@ class SceneObject:
         for placed in self.placements:
             if (placed.object_id, placed.class_id) != (self.id, self.class_id):
                 other = f"object {placed.object_id} of class {placed.class_id}"
-                raise ValueError(f"placements of object {self.id} must be its own, not of {other}")
+                raise ValueError(
+                    f"placements of object {self.id} must have its id and class, got {other}"
+                )
 
 
 @dataclass(frozen=True, eq=False)
 class Operation:
-    """One edit of a scene: cells and objects, before and after.
+    """An edit of a scene: cells and objects, before and after.
 
-    ``kind`` is a verb, such as ``fill``. ``counts_as`` is what the effort tables count it as.
-    ``cells`` are indices into the grid, each once. An object that is only in
-    ``objects_before`` goes, one that is only in ``objects_after`` is new, one in both changes.
-    ``actor`` is who did it, ``time_s`` when, in seconds since 1970; both are for display only.
+    ``kind`` is a verb, such as ``fill``. ``counts_as`` is the category of the edit in the effort
+    tables. ``cells`` are grid indices without duplicates. An object only in ``objects_before`` is
+    removed, an object only in ``objects_after`` is added, and an object in both is changed.
+    ``actor`` is the user and ``time_s`` the time in seconds since 1970, both for display only.
     """
 
     kind: str
@@ -97,23 +99,23 @@ class Operation:
         checks.identifier("kind", self.kind)
         if self.counts_as not in COUNTED:
             raise ValueError(
-                f"counts_as must be one of {', '.join(COUNTED)}, not {self.counts_as!r}"
+                f"counts_as must be one of {', '.join(COUNTED)}, got {self.counts_as!r}"
             )
         put(self, "cells", checks.array("cells", self.cells, np.int32, (None, 3)))
         if not rows_are_unique(self.cells):
-            raise ValueError("cells must be named once each")
+            raise ValueError("cells must not contain duplicates")
         for name in ("before", "after"):
             count = len(getattr(self, name).labels)
             if count != len(self.cells):
-                raise ValueError(f"{name} must hold {len(self.cells)} cells, not {count}")
+                raise ValueError(f"{name} must have {len(self.cells)} cells, got {count}")
         for name in ("objects_before", "objects_after"):
             put(self, name, tuple(getattr(self, name)))
             ids = [one.id for one in getattr(self, name)]
             if len(set(ids)) != len(ids):
-                raise ValueError(f"{name} must name each object once, not {ids}")
+                raise ValueError(f"{name} must not contain duplicate objects, got {ids}")
 
     def inverse(self) -> "Operation":
-        """The operation that takes this one back."""
+        """Return the operation that undoes this one."""
         swapped = {
             "before": self.after,
             "after": self.before,
@@ -124,7 +126,7 @@ class Operation:
 
 
 def rows_are_unique(cells: np.ndarray) -> bool:
-    """Whether no cell of [N, 3] is named twice."""
+    """Return whether cells [N, 3] contain no duplicates."""
     if not len(cells):
         return True
     low = cells.min(axis=0).astype(np.int64)
@@ -142,9 +144,9 @@ def rows_are_unique(cells: np.ndarray) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Blocks:
-    """What N cells of a volume hold, and the data and entities that are there with them.
+    """The contents of N cells of a volume, with their block entities and entities.
 
-    ``states`` indexes the palette of the edit that holds this value.
+    ``states`` indexes the palette of the edit that contains this value.
     """
 
     states: np.ndarray  # uint16 [N]
@@ -165,11 +167,11 @@ class Blocks:
 
 @dataclass(frozen=True, eq=False)
 class BlockEdit:
-    """Blocks before and after: the twin of ``Operation`` for a volume or a world.
+    """Blocks before and after an edit of a volume or a world, the equivalent of ``Operation``.
 
-    ``cells`` are world block positions, each once. ``kind`` is a verb, such as ``drop``;
-    ``reason`` is a plain sentence for whoever reads the list. ``class_id`` and ``instance`` say
-    which object it is about, where it is about one.
+    ``cells`` are world block positions without duplicates. ``kind`` is a verb, such as ``drop``.
+    ``reason`` is a readable explanation. ``class_id`` and ``instance`` identify the edited object,
+    if any.
     """
 
     kind: str
@@ -186,7 +188,7 @@ class BlockEdit:
         checks.identifier("kind", self.kind)
         cells = checks.array("cells", self.cells, np.int32, (None, 3))
         if not rows_are_unique(cells):
-            raise ValueError("cells must be named once each")
+            raise ValueError("cells must not contain duplicates")
         put(self, "cells", cells)
         put(self, "palette", tuple(self.palette))
         for name in ("before", "after"):
@@ -194,16 +196,20 @@ class BlockEdit:
 
     def _check(self, name: str, blocks: Blocks) -> None:
         if len(blocks.states) != len(self.cells):
-            counts = f"{len(self.cells)} cells, not {len(blocks.states)}"
-            raise ValueError(f"{name} must hold the blocks of {counts}")
+            counts = f"{len(self.cells)} cells, got {len(blocks.states)}"
+            raise ValueError(f"{name} must have the blocks of {counts}")
         if blocks.states.size and int(blocks.states.max()) >= len(self.palette):
             highest = int(blocks.states.max())
-            raise ValueError(f"{name} goes to {highest}, the palette has {len(self.palette)}")
+            raise ValueError(
+                f"{name} has index {highest}, but the palette has {len(self.palette)} entries"
+            )
         for entity in blocks.block_entities:
             if not (self.cells == entity.block_pos).all(axis=1).any():
-                raise ValueError(f"{name} has data of {entity.block_pos}, which is no cell of it")
+                raise ValueError(
+                    f"{name} has data at {entity.block_pos}, which is not one of its cells"
+                )
 
     def inverse(self) -> "BlockEdit":
-        """The edit that takes this one back."""
+        """Return the edit that undoes this one."""
         held: dict[str, Any] = vars(self)
         return BlockEdit(**{**held, "before": self.after, "after": self.before})

@@ -1,4 +1,4 @@
-"""A room as shapes in metres: floor polygon, walls, openings and furniture boxes."""
+"""A room as geometry in metres: floor polygon, walls, openings and furniture boxes."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -23,14 +23,14 @@ class Opening:
         put(self, "start_m", checks.floats("start_m", self.start_m, (2,)))
         put(self, "end_m", checks.floats("end_m", self.end_m, (2,)))
         if self.kind not in ("window", "door", "doorway"):
-            raise ValueError(f"kind must be window, door or doorway, not {self.kind!r}")
+            raise ValueError(f"kind must be window, door or doorway, got {self.kind!r}")
         if not 0 <= self.sill_m < self.head_m:
-            raise ValueError(f"sill_m must lie under head_m, not {self.sill_m}, {self.head_m}")
+            raise ValueError(f"sill_m must be below head_m, got {self.sill_m} and {self.head_m}")
 
 
 @dataclass(frozen=True, eq=False)
 class LayoutObject:
-    """A piece of furniture as an oriented box; axes and angles as in ObjectInstance."""
+    """A piece of furniture as an oriented box, with axes and angles as in ObjectInstance."""
 
     class_id: int
     center_m: np.ndarray  # float64 [3]
@@ -43,7 +43,7 @@ class LayoutObject:
         put(self, "center_m", checks.floats("center_m", self.center_m, (3,)))
         put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
         if (self.size_m <= 0).any():
-            raise ValueError(f"size_m must be above 0, not {self.size_m.tolist()}")
+            raise ValueError(f"size_m must be above 0, got {self.size_m.tolist()}")
         checks.floats("yaw_deg", [self.yaw_deg], (1,))
 
 
@@ -51,8 +51,8 @@ class LayoutObject:
 class Layout:
     """A room: its floor polygon (counter-clockwise from above), walls, openings and objects.
 
-    ``floor_z_m`` is the height of its floor in the frame, above 0 for an upper storey. Sills,
-    heads and the wall's height count from it; places of objects are in the frame.
+    ``floor_z_m`` is the height of the floor in the frame, above 0 for an upper storey. Sills, heads
+    and the wall height are relative to the floor. Object positions are in the frame.
     """
 
     floor_polygon_m: np.ndarray  # float64 [N, 2]
@@ -66,7 +66,7 @@ class Layout:
         put = object.__setattr__
         polygon = checks.floats("floor_polygon_m", self.floor_polygon_m, (None, 2))
         if len(polygon) < 3:
-            raise ValueError(f"floor_polygon_m needs 3 corners or more, not {len(polygon)}")
+            raise ValueError(f"floor_polygon_m must have 3 or more corners, got {len(polygon)}")
         put(self, "floor_polygon_m", polygon)
         checks.positive("wall_height_m", self.wall_height_m)
         checks.floats("floor_z_m", [self.floor_z_m], (1,))

@@ -12,10 +12,10 @@ from world2minecraft.core.types import checks
 
 @dataclass(frozen=True, eq=False)
 class ObjectInstance:
-    """One object of the room. ``size_m`` is along its own axes: front-to-back, side, height.
+    """An object of the room. ``size_m`` is along its own axes: front to back, side to side, height.
 
-    ``yaw_deg`` is counter-clockwise from above, 0 = the front looks along room +x. ``center_m``
-    is the middle of its box, in the room frame. ``cells`` are indices into the grid.
+    ``yaw_deg`` is counter-clockwise from above. At 0, the front faces room +x. ``center_m`` is the
+    centre of its bounding box in the room frame. ``cells`` are grid indices.
     """
 
     id: int
@@ -29,9 +29,9 @@ class ObjectInstance:
     def __post_init__(self):
         put = object.__setattr__
         if not 1 <= self.id <= 65535:
-            raise ValueError(f"id must be 1 to 65535, not {self.id}")
+            raise ValueError(f"id must be 1 to 65535, got {self.id}")
         if self.class_id not in OBJECT_CLASSES:
-            raise ValueError(f"class_id must be an object class, 5 to 11, not {self.class_id}")
+            raise ValueError(f"class_id must be an object class, 5 to 11, got {self.class_id}")
         put(self, "center_m", checks.floats("center_m", self.center_m, (3,)))
         put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
         checks.floats("yaw_deg", [self.yaw_deg], (1,))
@@ -41,7 +41,7 @@ class ObjectInstance:
 
 @dataclass(frozen=True)
 class Alternative:
-    """Another template that was tried for the same object, with its score."""
+    """Another template that was considered for the same object, with its IoU."""
 
     template: str
     quarter_turns: int
@@ -50,12 +50,12 @@ class Alternative:
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """One template in its place, in metres only, so that any block scale can be built from it.
+    """A placed furniture template in metres, from which it can be built at any block scale.
 
-    ``size_m`` is along the template's own axes (front-to-back, side, height) before it is
-    turned; ``quarter_turns`` is counter-clockwise from above, 0 = front along room +x.
-    The template named ``cells`` stands for "built from the object's own cells within the box".
-    An object that was cut into runs has several placements with the same ``object_id``.
+    ``size_m`` is along the template's own axes (front to back, side to side, height) before
+    rotation. ``quarter_turns`` is counter-clockwise from above, and at 0 the front faces room +x.
+    The template name ``cells`` means that the object is built from its own cells inside the box. An
+    object that was cut into pieces has several placements with the same ``object_id``.
     """
 
     object_id: int
@@ -74,7 +74,7 @@ class Placement:
         put(self, "center_m", checks.floats("center_m", self.center_m, (3,)))
         put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
         if self.quarter_turns not in (0, 1, 2, 3):
-            raise ValueError(f"quarter_turns must be 0 to 3, not {self.quarter_turns}")
+            raise ValueError(f"quarter_turns must be 0 to 3, got {self.quarter_turns}")
         put(self, "iou", checks.fraction("iou", self.iou))
         put(self, "parameters", MappingProxyType(dict(sorted(self.parameters.items()))))
         put(self, "alternatives", tuple(self.alternatives))

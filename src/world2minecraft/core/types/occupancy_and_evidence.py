@@ -14,9 +14,9 @@ UNSEEN, OBSERVED, COMPLETED = 0, 1, 2
 class OccupancyGrid:
     """The paper's O_scene: ``labels[x, y, z]`` in the room frame, z up, C order.
 
-    ``labels`` are 0 to 11 or 255 unknown; ``source`` is 0 unseen, 1 observed, 2 completed;
-    ``instance`` is 0 or the id of an ObjectInstance. ``origin_m`` is the minimum corner of cell
-    (0, 0, 0). An unseen cell is labelled 255, and only an unseen one is.
+    ``labels`` are 0 to 11, or 255 for unknown. ``source`` is 0 (unseen), 1 (observed) or 2
+    (completed). ``instance`` is the id of an ObjectInstance, or 0. ``origin_m`` is the minimum
+    corner of cell (0, 0, 0). A cell is labelled 255 if and only if it is unseen.
     """
 
     labels: np.ndarray  # uint8 [X, Y, Z]
@@ -32,7 +32,7 @@ class OccupancyGrid:
         labels = checks.labels("labels", self.labels, (None, None, None))
         shape = labels.shape
         if not labels.size:
-            raise ValueError(f"labels must have cells, not shape {shape}")
+            raise ValueError(f"labels must not be empty, got shape {shape}")
         put(self, "labels", labels)
         put(self, "confidence", checks.array("confidence", self.confidence, np.float16, shape))
         put(self, "colour", checks.array("colour", self.colour, np.uint8, (*shape, 3)))
@@ -41,11 +41,11 @@ class OccupancyGrid:
         put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
         put(self, "origin_m", checks.origin(self.origin_m, self.voxel_m))
         if self.source.max() > COMPLETED:
-            raise ValueError(f"source must be 0, 1 or 2, not {int(self.source.max())}")
+            raise ValueError(f"source must be 0, 1 or 2, got {int(self.source.max())}")
         if not np.array_equal(labels == 255, self.source == UNSEEN):
             raise ValueError("labels must be 255 exactly where source is 0 (unseen)")
         if not ((self.confidence >= 0) & (self.confidence <= 1)).all():
-            raise ValueError("confidence must lie between 0 and 1")
+            raise ValueError("confidence must be between 0 and 1")
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -54,20 +54,20 @@ class OccupancyGrid:
 
     @property
     def occupied(self) -> np.ndarray:
-        """A bool [X, Y, Z] mask of the cells that hold a surface or an object."""
+        """A mask of the cells that contain a surface or an object, bool [X, Y, Z]."""
         return (self.labels > 0) & (self.labels != 255)
 
 
 @dataclass(frozen=True, eq=False)
 class PointEvidence:
-    """What depth or stereo says of one view: surface points, in the scan frame.
+    """The surface points of one view from depth or stereo, in the scan frame.
 
-    ``weight`` is the area in square metres that the point's pixel covers, square to its ray:
-    ``z^2 / (fx fy)``. Fusion divides its sum in a cell by the cell's face to learn how much of
-    the cell the view really saw. ``normals`` are unit vectors towards the camera, (0, 0, 0) where
-    none is known; without them surfaces are taken to face the camera. ``labels`` are a shorter
-    form of ``votes``: one whole vote for one class. ``trust`` says how far each point is to be
-    trusted, 1 wholly; without it all are.
+    ``weight`` is the area in square metres that the point's pixel covers perpendicular to its ray:
+    ``z^2 / (fx fy)``. Fusion divides the sum of weights in a cell by the area of the cell's face to
+    determine how much of the cell the view observed. ``normals`` are unit vectors towards the
+    camera, or (0, 0, 0) if unknown. Without normals, surfaces are assumed to face the camera.
+    ``labels`` are a compact form of ``votes`` with one full vote for one class. ``trust`` is the
+    reliability of each point, 0 to 1. Without it, all points have trust 1.
     """
 
     view: str
@@ -101,9 +101,9 @@ class PointEvidence:
 
 @dataclass(frozen=True, eq=False)
 class GridEvidence:
-    """What a network says of one view, the paper's O_mono: class probabilities of its own grid.
+    """The class probabilities that a network predicts for one view, the paper's O_mono.
 
-    ``colour`` is what the view shows of each cell, of no meaning where it is free.
+    ``colour`` is the colour that the view shows for each cell. It is undefined for free cells.
     """
 
     view: str
@@ -128,11 +128,11 @@ class GridEvidence:
 
 @dataclass(frozen=True, eq=False)
 class FusedEvidence:
-    """What all views say together, in the room frame. It is what ``evidence.npz`` holds.
+    """The combined evidence of all views in the room frame, as stored in ``evidence.npz``.
 
-    A cell was seen where ``log_odds`` is not 0: above 0 it is occupied, below 0 free.
-    ``colour_sum`` and ``offset_sum`` are sums over the ``hits`` points of the cell;
-    ``offset_sum / hits`` is the mean surface point, in metres from the cell's centre.
+    A cell was observed if ``log_odds`` is not 0: it is occupied above 0 and free below 0.
+    ``colour_sum`` and ``offset_sum`` are sums over the ``hits`` points of the cell. ``offset_sum /
+    hits`` is the mean surface point relative to the cell centre in metres.
     """
 
     log_odds: np.ndarray  # float16 [X, Y, Z]

@@ -1,4 +1,4 @@
-"""Photos without depth, and what structure from motion and stereo give: poses, points, depth."""
+"""Photos without depth, and the results of structure from motion and stereo."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -12,11 +12,11 @@ from world2minecraft.core.types.capture import Camera
 
 @dataclass(frozen=True, eq=False)
 class Photo:
-    """One picture, whose camera and place may be unknown.
+    """A photo whose camera and pose may be unknown.
 
-    ``colour`` is upright, uint8 [H, W, 3] sRGB. ``camera`` is of its size; None where nothing is
-    stated of the lens. ``camera_guessed`` says that it is a start (EXIF), not a statement.
-    ``camera_to_scan`` 4x4 is None where no pose is stated.
+    ``colour`` is upright, uint8 [H, W, 3] in sRGB. ``camera`` has the size of the photo, or is None
+    if the lens is unknown. ``camera_guessed`` means that the camera is an initial estimate (from
+    EXIF). ``camera_to_scan`` 4x4 is None if the pose is unknown.
     """
 
     name: str
@@ -31,34 +31,34 @@ class Photo:
         put(self, "colour", checks.array("colour", self.colour, np.uint8, (None, None, 3)))
         size = (self.colour.shape[1], self.colour.shape[0])
         if self.camera is not None and (self.camera.width_px, self.camera.height_px) != size:
-            raise ValueError(f"the camera is of another size than the picture, {size}")
+            raise ValueError(f"the camera must have the size of the photo, {size}")
         if self.camera_to_scan is not None:
             pose = checks.transform("camera_to_scan", self.camera_to_scan)
             put(self, "camera_to_scan", pose)
 
 
 class PhotoStream(Protocol):
-    """Photos that can be read again, one at a time."""
+    """Photos that can be iterated repeatedly, one at a time."""
 
     def __iter__(self) -> Iterator[Photo]:
-        """Read the photos from the first."""
+        """Iterate over the photos from the first."""
         ...
 
     def __len__(self) -> int:
-        """The number of photos."""
+        """Return the number of photos."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class SparseScene:
-    """Where photos were taken, and the points that several of them see.
+    """The camera poses of photos, and the points that are visible in several of them.
 
-    ``cameras`` (one a frame, at its photo's size) and ``camera_to_scan`` float64 [F, 4, 4] belong
-    to ``names``; ``points_m`` float32 [N, 3] lie in the same frame, ``colour`` uint8 [N, 3].
-    Observation t is point ``track_point[t]`` seen by frame ``track_frame[t]`` (both int32 [T]) at
-    ``track_px[t]`` (float32 [T, 2], pixel centres at +0.5). ``error_px`` is the mean reprojection
-    error. Frames that could not be placed are ``left_out`` with reasons. ``facts`` are figures for
-    the report, ``notes`` sentences.
+    ``cameras`` (one per frame, at the size of its photo) and ``camera_to_scan`` float64 [F, 4, 4]
+    correspond to ``names``. ``points_m`` float32 [N, 3] are in the same frame, with ``colour``
+    uint8 [N, 3]. Observation t is point ``track_point[t]`` seen by frame ``track_frame[t]`` (both
+    int32 [T]) at ``track_px[t]`` (float32 [T, 2], pixel centres at +0.5). ``error_px`` is the mean
+    reprojection error. ``left_out`` lists the frames that could not be registered with reasons.
+    ``facts`` are results for the report, and ``notes`` are sentences.
     """
 
     names: tuple[str, ...]
@@ -95,10 +95,10 @@ class SparseScene:
 
 @dataclass(frozen=True, eq=False)
 class DepthMap:
-    """Depth that was computed for a photo.
+    """A depth map computed for a photo, with the pose of the photo.
 
-    ``camera`` has no distortion; ``depth_m`` float32 [h, w] is z-depth, 0 where there is none;
-    ``trust`` uint8 [h, w] is 255 where it is sure. The pose is that of the photo.
+    ``camera`` has no distortion. ``depth_m`` float32 [h, w] is the z-depth in metres, or 0 if
+    unknown. ``trust`` uint8 [h, w] is the reliability of each pixel, up to 255.
     """
 
     name: str
