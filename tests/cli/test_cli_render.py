@@ -161,7 +161,7 @@ def test_a_world_without_a_scene_is_read_around_its_spawn(tmp_path, capsys):
     write_blocks(room(), tmp_path / "plain", WriteOptions(spawn=(2.5, 64.0, 2.5)))
     assert render("plain", "--outputs", "rgb,class") == 0
     told = capsys.readouterr().out
-    assert "this world has no scene.json: drawing the blocks around its spawn (2 64 2)" in told
+    assert "the world has no scene.json; using the blocks around the spawn point (2 64 2)" in told
     assert not image(tmp_path / "plain.class.png").any()
 
 

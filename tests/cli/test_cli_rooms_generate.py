@@ -53,7 +53,10 @@ def test_houses_become_worlds(tmp_path, capsys):
     [
         (["--houses", "2"], "--houses N and --worlds DIR must be used together"),
         (["--houses", "0", "--worlds", "W"], "houses must be 1 or more, got 0"),
-        (["--houses", "1", "--worlds", "W", "--rooms", "5"], "--houses cannot be combined with --kind"),
+        (
+            ["--houses", "1", "--worlds", "W", "--rooms", "5"],
+            "--houses cannot be combined with --kind",
+        ),
         (["--houses", "1", "--worlds", "W", "--style", "retrro"], "did you mean 'retro'?"),
         (["--houses", "1", "--worlds", "W", "--seed", "-1"], "seed must be 0 or more, got -1"),
     ],

@@ -45,7 +45,7 @@ def test_another_s_file_is_left_alone(capture, tmp_path, capsys):
     (tmp_path / "here" / "den-scan.png").write_bytes(b"mine")
     assert w2m(["scan", str(capture)]) == 0
     assert (
-        "image: not written; den-scan.png: already exists and was not written by w2m scan; choose another"
+        "image: not written; den-scan.png: already exists and was not written by w2m scan; "
         in capsys.readouterr().out
     )
     assert (tmp_path / "here" / "den-scan.png").read_bytes() == b"mine"

@@ -148,7 +148,9 @@ def test_bytes_that_are_no_text_are_no_json(tmp_path):
 
 def test_a_missing_array_is_named_with_those_that_are_there(tmp_path):
     files.write_npz(tmp_path / "a.npz", {"labels": np.zeros(1), "colour": np.zeros(1)})
-    with pytest.raises(DamagedFileError, match="does not contain the array 'instance'; available: colour, labels"):
+    with pytest.raises(
+        DamagedFileError, match="does not contain the array 'instance'; available: colour, labels"
+    ):
         files.read_npz(tmp_path / "a.npz", ("instance",))
 
 
@@ -176,7 +178,9 @@ def test_a_zip_bomb_is_refused_by_its_declared_size(tmp_path, monkeypatch):
     monkeypatch.setattr(files, "MAX_ARRAY_BYTES", 1 << 20)
     path = pack(tmp_path / "a.npz", {"x.npy": npy(np.zeros(1 << 20, np.uint8))})
     assert path.stat().st_size < 5000
-    with pytest.raises(LimitError, match=r"array 'x' has 1,048,\d\d\d bytes, which exceeds the limit"):
+    with pytest.raises(
+        LimitError, match=r"array 'x' has 1,048,\d\d\d bytes, which exceeds the limit"
+    ):
         files.read_npz(path, ("x",))
 
 
@@ -245,7 +249,7 @@ def test_json_rows_have_line_numbers_and_errors_name_them():
         (1, {"a": 1}),
         (3, {"b": 2}),
     ]
-    for text, told in (("{}\n{", "line 2 is not valid JSON"), ("[1]", "line 1 is not a JSON object")):
+    for text, told in (("{}\n{", "line 2 is not valid"), ("[1]", "line 1 is not a JSON object")):
         with pytest.raises(DamagedFileError) as caught:
             files.parse_json_lines(text, source)
         assert str(caught.value) == f"rows.jsonl: {told}"

@@ -167,7 +167,7 @@ def test_too_little_disk_space_is_reported_first(world, monkeypatch):
     monkeypatch.setattr(backups.shutil, "disk_usage", lambda _: type("", (), {"free": 5 << 20})())
     with pytest.raises(OutputError) as raised:
         commit_step(world, FILES, "a test")
-    assert str(raised.value) == (f"{world}: the disk has 5 MB free; 16 MB are needed for the backup")
+    assert str(raised.value) == f"{world}: the disk has 5 MB free; 16 MB are needed for the backup"
     assert tree(world) == before
 
 

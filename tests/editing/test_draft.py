@@ -82,7 +82,7 @@ def test_an_edit_of_changed_blocks_is_refused_without_effect():
 
 def test_an_edit_beyond_the_volume_is_refused():
     edit = random_edits(small_volume(shape=(9, 9, 9)), 20, 1)
-    with pytest.raises(ConflictError, match="lies outside the volume$"):
+    with pytest.raises(ConflictError, match="is outside the volume$"):
         apply_edits(small_volume(), *edit)
 
 

@@ -365,7 +365,9 @@ def test_ids_have_colours_of_their_own():
 
 def test_ids_above_the_limit_and_bad_names_are_refused(tmp_path):
     bodies, _ = volume_meshes(replace(furnished(), instance=furnished().instance * 1200))
-    with pytest.raises(UsageError, match="Habitat supports ids up to 10,000, but the highest object id is 10,8"):
+    with pytest.raises(
+        UsageError, match="Habitat supports ids up to 10,000, but the highest object id is 10,8"
+    ):
         semantic_ids(bodies)
     with pytest.raises(UsageError, match=r"got '\.\./x'"):
         write_habitat(furnished(), tmp_path, name="../x")

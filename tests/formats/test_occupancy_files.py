@@ -132,7 +132,9 @@ def test_centres_in_metres_are_taken_as_they_are(tmp_path):
     ],
 )
 def test_what_has_no_known_form_is_told(tmp_path, value, reason):
-    with pytest.raises(DamagedFileError, match="does not contain voxels in a supported form") as refused:
+    with pytest.raises(
+        DamagedFileError, match="does not contain voxels in a supported form"
+    ) as refused:
         read_any_occ(put(tmp_path, value))
     assert reason in str(refused.value)
 

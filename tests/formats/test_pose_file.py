@@ -36,5 +36,7 @@ def test_no_frames_come_back_too(tmp_path):
 def test_what_is_no_correction_is_refused(tmp_path, name, value, text):
     arrays = {"names": np.array(["a"]), "pose_change": np.eye(4)[None], "depth_scale": np.ones(1)}
     write_npz(tmp_path / "poses.npz", arrays | {name: value})
-    with pytest.raises(DamagedFileError, match=f"poses.npz.*does not contain valid corrections.*{text}"):
+    with pytest.raises(
+        DamagedFileError, match=f"poses.npz.*does not contain valid corrections.*{text}"
+    ):
         read_poses(tmp_path / "poses.npz")

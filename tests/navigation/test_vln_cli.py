@@ -139,7 +139,11 @@ def test_the_words_say_where_to_go(flat):
 GOLDEN = [
     (["SCENE"], 2, 'error: INSTRUCTION is missing; for example: w2m vln run OUT "Go to the table"'),
     (["SCENE", "Go to the piano", "--agent", "oracl"], 2, "did you mean 'oracle'?"),
-    (["SCENE", "Go to the piano", "--start", "1,2"], 2, "--start must be X,Y,Z or X,Y,Z,YAW, got '1,2'"),
+    (
+        ["SCENE", "Go to the piano", "--start", "1,2"],
+        2,
+        "--start must be X,Y,Z or X,Y,Z,YAW, got '1,2'",
+    ),
     (
         ["SCENE", "Go to the piano", "--map", "globe"],
         2,

@@ -147,7 +147,8 @@ def test_what_cannot_be_compared_is_said(editor, tmp_path):
     said = {
         "coarse.npz": "the voxel size is 0.16 m, larger than the scene's 0.08 m; use a grid with "
         "voxels of that size or smaller",
-        "far.npz": "the grid does not overlap this room; use a grid in the coordinate frame of the scene",
+        "far.npz": "the grid does not overlap this room; use a grid in the coordinate frame of "
+        "the scene",
         "../out.npz": "'../out.npz' is outside the scene's folder; copy the file into it",
         "/etc/passwd": "'/etc/passwd' is outside the scene's folder; copy the file into it",
     }

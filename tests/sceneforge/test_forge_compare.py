@@ -48,7 +48,11 @@ def test_a_file_is_compared_over_http(tmp_path):
         ("a.npz", b"x", "a.npz: is not a readable .npz"),
         ("a.json", b"[" * 100_000, "a.json: is not JSON"),
         ("a.npy", npy(np.full((2, 2, 2), 77)), "a.npy: does not contain a valid grid of class ids"),
-        ("a.npy", npy(np.full((2, 2, 2), 0.5)), "a.npy: does not contain a valid grid of class ids"),
+        (
+            "a.npy",
+            npy(np.full((2, 2, 2), 0.5)),
+            "a.npy: does not contain a valid grid of class ids",
+        ),
     ],
 )
 def test_files_that_are_none_say_so(tmp_path, name, data, words):

@@ -255,7 +255,7 @@ def _view_of(
     if poses is None:
         return View("spawn" if view == "start" else view, (), None, frames, fps, opened)  # type: ignore[arg-type]
     if view != "start":
-        raise UsageError(f"poses and view={view!r} exclude each other; give one of them")
+        raise UsageError(f"poses and view={view!r} exclude each other; use only one of them")
     if isinstance(poses, str | Path):
         return View("poses", (), Path(poses), frames, fps, opened)
     given = tuple(one if isinstance(one, GamePose) else game_pose(one) for one in poses)

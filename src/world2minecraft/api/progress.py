@@ -40,7 +40,7 @@ STAGE_TEXTS = {
     "photos": "Reading photos",
     "plan": "Building the floor plan",
     "poses": "Estimating camera poses",
-    "quality": "Measuring picture quality",
+    "quality": "Measuring image quality",
     "register": "Refining camera poses",
     "render": "Rendering views",
     "report": "Writing the report",

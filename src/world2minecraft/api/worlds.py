@@ -386,7 +386,7 @@ def undo_build(world: str | Path, *, blocks: bool = False, force: bool = False) 
     from world2minecraft.editing.file_backups import DONE, revert_last_step
 
     if blocks and force:
-        raise UsageError("--blocks and --force exclude each other; give one of them")
+        raise UsageError("--blocks and --force exclude each other; omit one of them")
     if blocks:
         done = remove_build(Path(world))
         return Undone(blocks=done.blocks, unchanged=done.kept)

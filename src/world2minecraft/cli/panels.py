@@ -38,7 +38,7 @@ def out_option(help: str, *names: str, **facts: Any) -> Any:
         **facts: Further arguments of ``typer.Option``.
 
     Example:
-        >>> Picture = Annotated[Path, out_option("Write the picture to this file.")]
+        >>> Picture = Annotated[Path, out_option("Write the image to this file.")]
     """
     return typer.Option("--out", "-o", *names, help=help, **facts)
 

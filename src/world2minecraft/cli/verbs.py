@@ -293,7 +293,7 @@ class VerbGroup(TyperGroup):
 
 
 def _indent_families(summaries: dict[str, str]) -> list[tuple[str, str]]:
-    """Return the rows of a group; a first word is written once for the verbs that share it."""
+    """Return the rows of a group, in which a common first word is written only once."""
     rows, previous = [], ""
     for verb, summary in summaries.items():
         first, _, second = verb.partition(" ")
@@ -323,7 +323,7 @@ def _module_of(words: list[str]) -> str:
 
 
 def _name_values(command: Any, function: Callable[..., Any]) -> None:
-    """Give each argument and value its placeholder, the same in help and errors."""
+    """Set the placeholder of each argument and value, equal in help and errors."""
     declared = signature(function).parameters
     for one in command.params:
         if one.param_type_name == "argument":
@@ -336,7 +336,7 @@ def _name_values(command: Any, function: Callable[..., Any]) -> None:
 
 
 def _family(word: str, prefix: str = "") -> Any:
-    """Return the group of the verbs that begin with a word, or None where none does."""
+    """Return the group of the verbs that start with a word, or None if there are none."""
     first = f"{prefix}{word}"
     if not any(verb.startswith(f"{first} ") for verb in VERBS):
         return None
@@ -350,11 +350,11 @@ def _family(word: str, prefix: str = "") -> Any:
 
 
 def _no_options() -> None:
-    """Take no options: a group of verbs has its help alone."""
+    """Accept no options, because a group of verbs only has a help page."""
 
 
 def _help(verb: str, function: Callable[..., Any]) -> str:
-    """Return the verb's summary and its docstring, without the first line and the sections."""
+    """Return the verb's summary and its docstring without the first line and the sections."""
     details = cleandoc(function.__doc__ or "").partition("\n\n")[2]
     for section in ("Args:", "Raises:"):
         details = details.partition(section)[0]
@@ -387,7 +387,7 @@ def _global_options(
         typer.Option("--traceback", help="Show a traceback on errors; allowed anywhere."),
     ] = False,
 ) -> None:
-    """Accept the options before the verb; ``_show_version`` and ``cli.run`` act on them."""
+    """Accept the options before the verb, which ``_show_version`` and ``cli.run`` process."""
 
 
 def _write_examples(formatter: Any, examples: str) -> None:

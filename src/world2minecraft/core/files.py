@@ -246,7 +246,7 @@ def _read_member(
 
 
 def _check_header(stream: Any, held: int, source: Path, name: str) -> None:
-    """Refuse an array that says it is larger than the bytes it comes in, or holds objects."""
+    """Raise DamagedFileError for an array that is larger than its data or contains objects."""
     version = np.lib.format.read_magic(stream)
     reader = {
         (1, 0): np.lib.format.read_array_header_1_0,

@@ -81,7 +81,7 @@ class Lock:
 
 
 def _write_holder(handle: int) -> None:
-    """Write who has the lock into its file."""
+    """Write the process that holds the lock into its file."""
     data = json.dumps({"pid": os.getpid(), "host": socket.gethostname()}).encode()
     with contextlib.suppress(OSError):  # A full disk: the lock holds all the same.
         os.ftruncate(handle, 0)

@@ -133,7 +133,7 @@ def docstring_entries(docstring: str) -> dict[str, str]:
 
 
 def _meaning(name: str, entries: dict[str, str]) -> str:
-    """Return the text of the entry of a parameter, else of the first that mentions it."""
+    """Return the text of a parameter's entry, or of the first entry that mentions it."""
     for names, text in entries.items():
         if any(fnmatchcase(name, pattern) for pattern in names.split(", ")):
             return text

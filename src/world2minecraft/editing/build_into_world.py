@@ -205,7 +205,7 @@ def _check_entities(entities: Sequence[Entity], box: WorldBox) -> None:
 
 
 def _numbers_of(volume: BlockVolume, box: WorldBox) -> np.ndarray:
-    """The volume's states as the box numbers them, their blocks named as the world's game does."""
+    """Return the states of the volume as indices of the box, with names of the world's version."""
     numbers = np.zeros(len(volume.palette), np.uint16)
     for index, state in enumerate(volume.palette):
         parsed = parse_state(state)
@@ -215,7 +215,7 @@ def _numbers_of(volume: BlockVolume, box: WorldBox) -> np.ndarray:
 
 
 def _merged_data(box: WorldBox, come: Sequence[BlockEntity], mask: np.ndarray) -> list[BlockEntity]:
-    """The block entities of the box: the volume's where it is built, else the world's."""
+    """Return the block entities of the box after the build."""
 
     def is_built(entity: BlockEntity) -> bool:
         return bool(mask[_cell_of(entity, box)])
@@ -230,7 +230,7 @@ def _edit_of(
     gone: Sequence[Entity],
     come: Sequence[Entity],
 ) -> BlockEdit | None:
-    """The change as an edit of blocks: of those that change, or hold data."""
+    """Return the change as a block edit of the cells that change or contain data."""
     moved = after != box.states
     changed = block_entity_keys(box.data) ^ block_entity_keys(data)
     old, new = ([e for e in held if block_entity_keys([e]) <= changed] for held in (box.data, data))
@@ -266,7 +266,7 @@ def _cell_of(entity: BlockEntity, box: WorldBox) -> tuple[int, ...]:
 
 
 def _block_kinds(*palettes: Sequence[str]) -> list[np.ndarray]:
-    """For each palette a number a state, the same for states of the same block."""
+    """Return a number for each state of each palette, equal for states of the same block."""
     numbers: dict[str, int] = {}
     return [
         np.array([numbers.setdefault(s.partition("[")[0], len(numbers)) for s in palette])

@@ -161,7 +161,7 @@ class RecordFile:
 
 
 def _next(stream: BinaryIO, at: int, size: int) -> tuple[Record | None, bytes]:
-    """Return the record that begins here, what is damaged up to the next whole one, or None."""
+    """Return the record at this position, the damaged bytes up to the next valid one, or None."""
     length, checksum = HEAD.unpack(stream.read(HEAD.size))
     record = Record(at, length)
     if record.end <= size:
@@ -199,6 +199,6 @@ def sync_folder(folder: Path) -> None:
 
 
 def _truncate(handle: int, size: int) -> None:
-    """Take away what a failed write left; where that fails too, it is cut off when read."""
+    """Remove the rest of a failed write. If that fails, it is ignored by readers."""
     with contextlib.suppress(OSError):
         os.ftruncate(handle, size)

@@ -139,11 +139,11 @@ class Draft:
         )
 
     def _find_conflict(self, edit: BlockEdit) -> str:
-        """Why an edit cannot be done here; empty where it can."""
+        """Return why an edit cannot be applied, or an empty string."""
         cells = edit.cells - self.corner
         inside = ((cells >= 0) & (cells < self.states.shape)).all(axis=1)
         if not inside.all():
-            return f"block {_position(edit.cells[~inside][0])} lies outside the volume"
+            return f"block {_position(edit.cells[~inside][0])} is outside the volume"
         now, names = self.contents(cells), np.array(edit.palette, object)
         wrong = np.array(self._palette, object)[now.states] != names[edit.before.states]
         wrong |= now.semantic != edit.before.semantic
@@ -282,7 +282,7 @@ class History:
 
 
 def _replay_missing(volume: BlockVolume, journal: Journal) -> BlockVolume:
-    """Return the volume with all steps of the journal: blocks are written after their records."""
+    """Return the volume with all steps of the journal, because blocks are written after records."""
     edits = [
         journal.edits[number] if is_done else journal.edits[number].inverse()
         for is_done, number in journal.steps

@@ -79,7 +79,7 @@ def translate_volume(volume: BlockVolume, step: np.ndarray) -> BlockVolume:
 
 
 def _moved_nbt(entity: Entity, step: tuple[int, int, int]) -> dict[str, Any]:
-    """Tags that repeat an entity's place go with it; its UUID must be another elsewhere."""
+    """Return the NBT with moved position tags and a new UUID."""
     x, y, z = (place + by for place, by in zip(entity.position, step, strict=True))
     moved = move_attachment(entity.nbt, (x, y, z), step)
     return {key: value for key, value in moved.items() if key not in ("UUID", "Pos")}

@@ -121,7 +121,7 @@ class WorldBox:
         return write_nbt(root)
 
     def _part(self, place: Place) -> tuple[slice, ...]:
-        """The cells of the box that lie in a chunk."""
+        """Return the slices of the box that are inside a chunk."""
         sides = [slice(None)] * 3
         for axis, chunk in ((0, place[0]), (2, place[1])):
             start = chunk * 16 - self.low[axis]
@@ -234,7 +234,7 @@ def _check_box(low: Corner, size: Sequence[int]) -> None:
 def _overlap(
     corner: Sequence[int], low: Sequence[int], states: np.ndarray
 ) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
-    """Where a section at ``corner`` and a box from ``low`` meet: slices of each."""
+    """Return the slices in which a section at ``corner`` and a box from ``low`` overlap."""
     here, there = [], []
     for start, first, size in zip(corner, low, states.shape, strict=True):
         begin, end = max(start, first), max(start, first, min(start + 16, first + size))
@@ -315,10 +315,10 @@ class WorldEntities:
         return held
 
     def _pack_chunk(self, place: Place, held: list[dict[str, Any]]) -> bytes:
-        """Return a chunk of entities; with those of others in it, it stays as old as it was.
+        """Return a chunk of entities, keeping its data version if it contains other entities.
 
-        The game brings entities up to date by what their chunk says: one with too new a version
-        would leave what they carry in the form of an older game, which the newer one drops.
+        The game upgrades entities from the data version of their chunk. With a version that is too
+        new, it would not upgrade old data and would drop it.
         """
         root = {
             "DataVersion": self._data_version,

@@ -76,7 +76,7 @@ class Faces(NamedTuple):
 
 
 class _Ranks(NamedTuple):
-    """The different values of each plane along one axis, and the number of each row's two ends."""
+    """The distinct values of each plane along one axis, and the ranks of each row's two ends."""
 
     values: np.ndarray  # int32 [K], plane by plane
     starts: np.ndarray  # int64 [P + 1], where each plane's values begin
@@ -112,11 +112,11 @@ def visible_faces(
 
 
 def _ranks(plane: np.ndarray, ends: np.ndarray) -> _Ranks:
-    """Number the different values of each plane in rising order.
+    """Number the distinct values of each plane in ascending order.
 
     Args:
-        plane: int64 [N], rising, the plane of each row.
-        ends: int32 [N, 2], values of the rows.
+        plane: Plane of each row in ascending order, int64 [N].
+        ends: Values of the rows, int32 [N, 2].
     """
     wide = np.int64(1) << 32
     keys = plane[:, None] * wide + (ends.astype(np.int64) + (wide >> 1))
@@ -141,10 +141,10 @@ def _side(
 
 @njit
 def _visible(rows, starts, us, vs, is_clear, found):  # pragma: no cover
-    """Fill ``found`` as far as it has room; return how many rows there are.
+    """Fill ``found`` as far as it has space, and return the number of rows.
 
-    ``rows`` [N, 9] are those of ``_side`` plane by plane, which begin at ``starts`` [P + 1];
-    ``us`` and ``vs`` are their ``_Ranks`` along u and v.
+    ``rows`` [N, 9] are those of ``_side``, grouped by plane with offsets ``starts`` [P + 1]. ``us``
+    and ``vs`` are their ``_Ranks`` along u and v.
     """
     count = 0
     for plane in range(len(starts) - 1):
@@ -268,7 +268,7 @@ def volume_meshes(volume: BlockVolume) -> tuple[list[BlockMesh], list[Look]]:
 
 
 class _Looks:
-    """Table of the different looks of a volume."""
+    """The distinct looks of a volume."""
 
     def __init__(self) -> None:
         self.held: list[Look] = []
@@ -290,14 +290,14 @@ class _Looks:
 
 
 def _owners(volume: BlockVolume) -> np.ndarray:
-    """Return the owner of each block, int32 [X, Y, Z]: an instance, else a class of structure."""
+    """Return the owner of each block, int32 [X, Y, Z]: an object id or a structure class."""
     semantic = volume.semantic.astype(np.int32)
     kind = np.where(semantic < len(CLASS_NAMES), semantic, 0)
     return np.where(volume.instance > 0, volume.instance, _CLASSES + kind).astype(np.int32)
 
 
 def _classes_of(volume: BlockVolume, owners: np.ndarray) -> dict[int, int]:
-    """Return the class of each instance: of most of its blocks, else of its entities."""
+    """Return the class of each object by its blocks, or by its entities if it has none."""
     found = {instance: class_id for class_id, instance in map(owner_of, volume.entities)}
     labelled = (volume.instance > 0) & (volume.semantic > 0)
     labelled &= volume.semantic < len(CLASS_NAMES)
@@ -326,7 +326,7 @@ def _block_faces(volume: BlockVolume, owners: np.ndarray, looks: _Looks) -> tupl
 
 
 def _part_boxes(where: np.ndarray, owners: np.ndarray, boxes: np.ndarray, look: int) -> np.ndarray:
-    """Return int64 [N, 8]: the boxes of all blocks of one state in steps, owner, look."""
+    """Return the boxes of all blocks of one state with owner and look, int64 [N, 8]."""
     cells = np.argwhere(where)
     parts = np.rint(boxes.astype(np.float64) * STEPS).astype(np.int64)
     parts = parts[(parts[:, 3:] > parts[:, :3]).all(axis=1)]
@@ -338,7 +338,7 @@ def _part_boxes(where: np.ndarray, owners: np.ndarray, boxes: np.ndarray, look: 
 def _cube_boxes(
     volume: BlockVolume, owners: np.ndarray, full: list[int], looks: _Looks
 ) -> np.ndarray:
-    """Return the boxes of whole blocks as ``_part_boxes`` does, equal neighbours as one."""
+    """Return the boxes of full blocks like ``_part_boxes``, merging equal neighbours."""
     look_of = np.full(len(volume.palette), -1, np.int64)
     look_of[full] = [looks.of(volume.palette[number]) for number in full]
     kinds = look_of[volume.states]
@@ -353,7 +353,7 @@ def _cube_boxes(
 
 
 def _display_faces(volume: BlockVolume, looks: _Looks) -> Iterable[tuple[np.ndarray, ...]]:
-    """Yield as ``_block_faces`` what each block display draws."""
+    """Yield the faces of each block display like ``_block_faces``."""
     for cube in display_cubes(volume.entities):
         boxes = visual_boxes(cube.state).astype(np.float64)
         if not len(boxes):

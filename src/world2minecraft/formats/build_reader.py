@@ -53,9 +53,9 @@ def box_around_spawn(world: Path) -> tuple[Box, str]:
     x, y, z = level_spawn(read_level(world))
     wide, low, deep = SPAWN_REACH
     place = " ".join(str(value) for value in (x, y, z))
-    note = f"this world has no scene.json: drawing the blocks around its spawn ({place}); "
+    note = f"the world has no scene.json; using the blocks around the spawn point ({place}); "
     box = (x - wide, y - low, z - deep, x + wide, y + SPAWN_REACH_UP, z + deep)
-    return box, note + "--box x0,y0,z0,x1,y1,z1 chooses others"
+    return box, note + "select others with --box x0,y0,z0,x1,y1,z1"
 
 
 def read_build(
@@ -111,7 +111,7 @@ def _read_file(path: Path, box: Box | None) -> BuildSource:
 def _read_world(
     world: Path, given: Path, box: Box | None, choose: Callable[[Path], tuple[Box, str]]
 ) -> BuildSource:
-    """Read the given box of a world, that of its scene, or the one chosen."""
+    """Read the given box of a world, the box of its scene, or the selected box."""
     scene, folder = _find_scene(given)
     if scene is None or folder is None:
         chosen, note = (box, "") if box else choose(world)
@@ -155,7 +155,7 @@ def _box_of(scene: dict[str, Any], path: Path) -> Box:
 
 
 def _with_labels(volume: BlockVolume, scene: dict[str, Any], folder: Path) -> BlockVolume:
-    """Return the volume with the scene's labels, or with its scale alone where they are gone."""
+    """Return the volume with the scene's labels, or only its scale if the labels are missing."""
     if (folder / "scene.npz").is_file():
         return with_scene_labels(volume, folder)
     try:

@@ -176,7 +176,7 @@ def _stage(name: str) -> dict[str, Any]:
 
 
 def _semantic_glb(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> bytes:
-    """Return the meshes in plain colours of vertices, which glTF keeps linear."""
+    """Return the meshes with uniform vertex colours, which are linear in glTF."""
     writer = GlbWriter(f"World2Minecraft {__version__}")
     nodes = []
     for number, mesh in zip(ids, meshes, strict=True):

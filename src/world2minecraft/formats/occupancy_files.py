@@ -136,7 +136,7 @@ def inner_corner_m(grid: OccupancyGrid) -> np.ndarray:
 
 
 def _inner_cell(wall_counts: np.ndarray, occupied: np.ndarray) -> int:
-    """Return the first cell past the outermost large wall layer, or the first occupied cell."""
+    """Return the first cell after the outermost large wall layer, or the first occupied cell."""
     half = len(wall_counts) // 2
     layers = np.flatnonzero(wall_counts[: half + 1] >= 0.5 * max(wall_counts.max(), 1))
     if len(layers):
@@ -213,7 +213,7 @@ def read_any_centers(path: str | Path, grid: OccupancyGrid, unit: str) -> tuple[
 
 
 def _voxel_list(value: Any) -> Any:
-    """Return what holds the voxels: the value itself, or a part of it under a known name."""
+    """Return the value that contains the voxels: the value itself, or a part under a known name."""
     for name in _HOLDERS:
         if isinstance(value, dict) and isinstance(value.get(name), list | dict):
             names = (*_CLASSES, *_PLACES)
@@ -225,7 +225,7 @@ def _voxel_list(value: Any) -> Any:
 
 
 def _has_class_list(value: Mapping[str, Any], name: str) -> bool:
-    """Whether a list of places has its classes in a second list."""
+    """Return whether a list of positions has its classes in a second list."""
     return any(
         isinstance(value.get(other), list) and len(value[other]) == len(value[name])
         for other in _CLASSES
@@ -233,7 +233,7 @@ def _has_class_list(value: Mapping[str, Any], name: str) -> bool:
 
 
 def _dense_labels(held: Any) -> np.ndarray | None:
-    """Return labels [X, Y, Z] where there is a class for each cell, else None."""
+    """Return labels [X, Y, Z] if there is a class for each cell, else None."""
     try:
         is_deep = isinstance(held, list) and isinstance(held[0][0], list)
     except (IndexError, KeyError, TypeError):
@@ -247,7 +247,7 @@ def _dense_labels(held: Any) -> np.ndarray | None:
 
 
 def _points(held: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return places float64 [N, 3] and classes int [N]."""
+    """Return positions float64 [N, 3] and classes int [N]."""
     pairs = list(_pairs(held))
     points = np.array([place for place, _ in pairs], np.float64).reshape(-1, 3)
     if not np.isfinite(points).all():
@@ -301,7 +301,7 @@ def _class(name: Any) -> int:
 
 
 def _first_of(row: Mapping[str, Any], names: Iterable[str], default: Any) -> Any:
-    """Return the value of the first of some keys that a row has."""
+    """Return the value of the first of several keys in a row."""
     return next((row[name] for name in names if name in row), default)
 
 
@@ -310,7 +310,7 @@ def _has_any_key(rows: Iterable[Any], names: Iterable[str]) -> bool:
 
 
 def _smallest_step(points: np.ndarray) -> float:
-    """Return the smallest step between places, which is the side of a cell."""
+    """Return the smallest step between positions, which is the cell size."""
     steps = [np.diff(np.unique(np.round(axis, 4))) for axis in points.T]
     found = [float(step.min()) for step in steps if len(step)]
     return round(min(found), 4) if found else DEFAULT_VOXEL_M
@@ -319,7 +319,7 @@ def _smallest_step(points: np.ndarray) -> float:
 def _cells(
     points: np.ndarray, unit: str, voxel_m: float, origin: Any
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the cells int64 [N, 3] of places, from 0 up, and the origin in metres."""
+    """Return the cells int64 [N, 3] of positions, starting at 0, and the origin in metres."""
     if not (math.isfinite(voxel_m) and voxel_m > 0):
         raise ValueError(f"the cell size must be above 0, got {voxel_m}")
     first = points.min(axis=0) if len(points) else np.zeros(3)

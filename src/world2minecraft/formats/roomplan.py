@@ -159,7 +159,7 @@ def _first_plan(folder: AnyPath) -> AnyPath | None:
 
 
 def _document(value: Any) -> dict[str, Any] | None:
-    """Return the room or structure that a file holds, itself or one level below."""
+    """Return the room or structure in a file, at the top level or one level below."""
     if not isinstance(value, dict):
         return None
     for inner in (value, *value.values()):
@@ -214,12 +214,12 @@ def _surface(
     width, height, _ = _dimensions(path, item, where)
     pose = _transform(path, item, where)
     if abs(pose[2, 1]) < MIN_UPRIGHT_COSINE:
-        notes.append("a surface that does not stand upright was left out")
+        notes.append("a surface that is not vertical was skipped")
         return None
     if item.get("curve"):
-        notes.append("a curved wall was taken for its chord")
+        notes.append("a curved wall was replaced by its chord")
     if width <= 0 or height <= 0:
-        notes.append("a surface without a size was left out")
+        notes.append("a surface without a size was skipped")
         return None
     along, middle = pose[:2, 0] * width / 2, pose[:3, 3]
     bottom, top = middle[2] - height / 2, middle[2] + height / 2
@@ -228,7 +228,7 @@ def _surface(
 
 
 def _kind_of(item: dict[str, Any], kind: str) -> str:
-    """Return the kind of an opening: a door that stood open is a doorway."""
+    """Return the kind of an opening. An open door is a doorway."""
     category = item.get("category")
     inner = category.get("door") if isinstance(category, dict) else None
     if isinstance(inner, dict) and (inner.get("isOpen") is True or inner.get("_0") is True):
@@ -306,14 +306,14 @@ def _numbers(path: AnyPath, value: Any, count: int, where: str) -> np.ndarray:
 
 
 def _word(value: Any) -> str:
-    """Return the name of an enumeration's case, "" where there is none."""
+    """Return the name of an enumeration's case, or "" if there is none."""
     if isinstance(value, dict):
         value = next(iter(value), "")
     return value if isinstance(value, str) and value.isidentifier() else ""
 
 
 def _words(value: Any, depth: int = 0) -> Iterator[str]:
-    """Yield all words of an object's attributes, however they are nested."""
+    """Yield all words in an object's attributes at any nesting level."""
     if depth > 6:
         return
     if isinstance(value, str):
@@ -332,7 +332,7 @@ def _confidence(item: dict[str, Any]) -> float:
 
 
 def _label(room: dict[str, Any]) -> str:
-    """Return what a room's sections call it: "" where there are several, or none."""
+    """Return the name of a room from its sections, or "" if it is ambiguous."""
     sections = room.get("sections")
     names = [
         _word(section.get("label"))

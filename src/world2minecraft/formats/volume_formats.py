@@ -84,7 +84,7 @@ def apply_scene(volume: BlockVolume, scene: Scene) -> BlockVolume:
 
 
 def _overlaps(volume: BlockVolume, scene: Scene) -> bool:
-    """Whether most of what the scene labels is still a block: else it is another's scene."""
+    """Return whether most labelled cells of the scene are still blocks, so that it matches."""
     ours, theirs = overlapping_cells(volume, scene)
     wanted = int((scene.semantic > 0).sum())
     met = int(((scene.semantic[theirs] > 0) & (volume.states[ours] > 0)).sum())
@@ -149,10 +149,10 @@ class HabitatFormat:
         from world2minecraft.minecraft.entities import BLOCK_DISPLAY  # noqa: PLC0415
 
         write_habitat(volume, path, name=path.stem)
-        losses.add("block states (the scene holds meshes)", int((volume.states > 0).sum()))
+        losses.add("block states (the scene contains only meshes)", int((volume.states > 0).sum()))
         losses.add("block entities", len(volume.block_entities))
         undrawn = sum(entity.id != BLOCK_DISPLAY for entity in volume.entities)
-        losses.add("entities that are no block displays", undrawn)
+        losses.add("entities other than block displays", undrawn)
 
 
 def read_volume(path: str | Path, losses: Losses | None = None) -> BlockVolume:

@@ -93,7 +93,10 @@ def changed(**fields):
 @pytest.mark.parametrize(
     ("fields", "reason"),
     [
-        ({"runs": np.array([0, 211], np.int32)}, "a run of cells extends beyond the grid of 210 cells"),
+        (
+            {"runs": np.array([0, 211], np.int32)},
+            "a run of cells extends beyond the grid of 210 cells",
+        ),
         ({"runs": np.array([0, 5, 3, 4], np.int32)}, "two runs of cells overlap"),
         ({"runs": np.array([0, 1, 2], np.int32)}, "cannot reshape"),
         ({"runs": np.array([0, 9], np.int32)}, "labels must have "),
@@ -105,7 +108,9 @@ def changed(**fields):
     ],
 )
 def test_bytes_that_are_no_operation_are_refused(fields, reason):
-    with pytest.raises(DamagedFileError, match="^j: does not contain a valid scene operation") as refused:
+    with pytest.raises(
+        DamagedFileError, match="^j: does not contain a valid scene operation"
+    ) as refused:
         unpack_operation(changed(**fields), SHAPE, "j")
     assert reason in str(refused.value)
 

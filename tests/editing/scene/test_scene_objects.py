@@ -186,8 +186,8 @@ def test_golden_refusals():
         "object 1 (chair) is already at to_m, which is less than a cell away"
     )
     assert refusal(op="move_object", id=CHAIR, to_m=[9, 0.7, 0.25]) == (
-        "object 1 (chair) would leave the grid; its centre must be in x 0.20 to 2.20, y 0.20 to 1.80, "
-        "z 0.15 to 1.25 m"
+        "object 1 (chair) would leave the grid; its centre must be in x 0.20 to 2.20, "
+        "y 0.20 to 1.80, z 0.15 to 1.25 m"
     )
     assert refusal(op="turn_objects", ids=[CHAIR], quarter_turns=0) == (
         "quarter_turns must be 1 to 3, or negative for clockwise"

@@ -145,8 +145,8 @@ def test_curves_and_leaning_surfaces_are_told(tmp_path, document):
     document["walls"][1]["transform"][4:7] = (-np.array(leaning[8:11])).tolist()
     document["walls"][1]["transform"][8:11] = leaning[4:7]
     notes = read_roomplan(written(tmp_path, document)).notes
-    assert "a curved wall was taken for its chord" in notes
-    assert "a surface that does not stand upright was left out" in notes
+    assert "a curved wall was replaced by its chord" in notes
+    assert "a surface that is not vertical was skipped" in notes
 
 
 def damage(document, how):

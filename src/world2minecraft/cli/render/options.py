@@ -17,7 +17,7 @@ def _option(*names: str, text: str, metavar: str | None = None, default: str | b
 
 
 def _more(*names: str, text: str, metavar: str | None = None, default: str | bool = True) -> Any:
-    """Return an option that is rarely used, listed under the others."""
+    """Return an option in the section "More options"."""
     return typer.Option(
         *names, help=text, metavar=metavar, show_default=default, rich_help_panel=MORE
     )

@@ -72,7 +72,7 @@ def touching_parts(states: np.ndarray, palette: tuple[str, ...], mask: np.ndarra
 def _touching_pairs(
     states: np.ndarray, palette: tuple[str, ...], number: np.ndarray, step: tuple[int, int, int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The pairs of counted cells that touch across a step, by their numbers."""
+    """Return pairs of cell numbers that touch across a step."""
     here = tuple(slice(max(0, -s), min(n, n - s)) for s, n in zip(step, states.shape, strict=True))
     there = tuple(slice(max(0, s), min(n, n + s)) for s, n in zip(step, states.shape, strict=True))
     both = (number[here] >= 0) & (number[there] >= 0)
@@ -129,7 +129,7 @@ def floating_cells(draft: Draft) -> np.ndarray:
 
 
 def _parts(draft: Draft) -> tuple[np.ndarray, np.ndarray]:
-    """The parts that hold together, int32 [X, Y, Z], and which of them are carried, bool [N]."""
+    """Return the connected parts, int32 [X, Y, Z], and whether each is supported, bool [N]."""
     seen = visible_blocks(draft)
     parts = touching_parts(draft.states, draft.palette, seen)
     count = int(parts.max(initial=0)) + 1
@@ -150,7 +150,7 @@ def _parts(draft: Draft) -> tuple[np.ndarray, np.ndarray]:
 def _again(
     draft: Draft, parts: np.ndarray, carried: np.ndarray, number: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The parts after the one of ``number`` was repaired: where it went, carried things stand."""
+    """Update the parts after one was repaired, whose new blocks and neighbours are supported."""
     parts[parts == number] = 0
     for cell in (draft.edits[-1].cells - draft.corner).tolist():
         at = tuple(cell)
@@ -161,7 +161,7 @@ def _again(
 
 
 def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
-    """Mend one part, int [N, 3]; ``carriers`` are the blocks that are carried."""
+    """Repair a floating part, int [N, 3]. ``carriers`` is the mask of supported blocks."""
     classes = draft.semantic[tuple(cells.T)]
     counted = _count(len(cells))
     if np.isin(classes, (1, 2, 3, 4)).all():
@@ -179,7 +179,7 @@ def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
 
 
 def _is_crumb(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
-    """Whether a part is small, and of no object or of one that stands elsewhere."""
+    """Return whether a part is small and belongs to no object, or to one that exists elsewhere."""
     if len(cells) > max_crumb_blocks(draft):
         return False
     numbers = np.unique(draft.instance[tuple(cells.T)])
@@ -187,7 +187,7 @@ def _is_crumb(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
 
 
 def _join(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
-    """Fill the shortest straight gap to the carried rest of the same object."""
+    """Fill the shortest straight gap to the supported rest of the same object."""
     numbers = np.setdiff1d(draft.instance[tuple(cells.T)], [0])
     rest = carriers & np.isin(draft.instance, numbers)
     if not rest.any():
@@ -219,14 +219,14 @@ def _join(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
 
 
 def _bridges(state: str, ends: tuple[str, str], step: np.ndarray) -> bool:
-    """Whether a row of a state along a step holds to itself and to what is at its ends."""
+    """Return whether a row of a state along a step is connected, including at its ends."""
     x, y, z = step.tolist()
     pairs = ((ends[0], state), (state, state), (state, ends[1]))
     return all(touches(one, other, (x, y, z)) for one, other in pairs)
 
 
 def _put(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
-    """Move a part down or aside, by no more than half a metre, to something carried."""
+    """Move a part down or sideways by at most half a metre to supported blocks."""
     ways = []
     for order, step in enumerate((DOWN, *ASIDE)):
         for length in range(1, metres_to_blocks(draft, STEP_M) + 1):
@@ -247,7 +247,7 @@ def _count(length: int) -> str:
 
 
 def _hang(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
-    """Hang a part on a chain from something carried above it."""
+    """Suspend a part on a chain from supported blocks above."""
     top = cells[cells[:, 1] == cells[:, 1].max()]
     middle = top[np.abs(top - top.mean(axis=0)).sum(axis=1).argmin()]
     free = free_cells(draft)
@@ -274,7 +274,7 @@ def _hang(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
 
 
 def _lower(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
-    """Lower a part, as far as it goes, to whatever lies under it."""
+    """Lower a part to the surface below."""
     length = 0
     while _fits(draft, cells, DOWN * (length + 1)):
         length += 1
@@ -285,7 +285,7 @@ def _lower(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
 
 
 def _fits(draft: Draft, cells: np.ndarray, step: np.ndarray) -> bool:
-    """Whether a part can stand a step away: within the volume, where air or itself is now."""
+    """Return whether a part fits at an offset: inside the volume, in air or its own cells."""
     there = cells + step
     if not ((there >= 0) & (there < draft.states.shape)).all():
         return False
@@ -295,7 +295,7 @@ def _fits(draft: Draft, cells: np.ndarray, step: np.ndarray) -> bool:
 
 
 def _touches(draft: Draft, cells: np.ndarray, step: np.ndarray, carriers: np.ndarray) -> bool:
-    """Whether a part that is moved a step would hold to something carried."""
+    """Return whether a part moved by a step would touch supported blocks."""
     there = cells + step
     low = np.maximum(there.min(axis=0) - 1, 0)
     high = there.max(axis=0) + 2

@@ -67,7 +67,7 @@ def _lowest(state: str) -> float:
 
 
 def _reach_down(draft: Draft, cells: np.ndarray, bottom: np.ndarray, names: list[str]) -> bool:
-    """Put a flat thing's upper halves down; make the lowest blocks of a higher one whole."""
+    """Move the upper halves of a flat object down, or make its lowest blocks full if it is taller."""
     if np.ptp(cells[:, 1]) == 0:
         new = [
             n.replace("type=top", "type=bottom").replace("half=top", "half=bottom") for n in names
@@ -80,7 +80,7 @@ def _reach_down(draft: Draft, cells: np.ndarray, bottom: np.ndarray, names: list
 
 
 def _sink(draft: Draft, cells: np.ndarray) -> bool:
-    """Let a part take the place of the plates that it lies on, one block lower."""
+    """Lower a part by one block, replacing the plates below."""
     there = cells + DOWN
     own = {tuple(cell) for cell in cells.tolist()}
     new = np.array([cell for cell in there.tolist() if tuple(cell) not in own])
@@ -101,7 +101,7 @@ def _is_plate(state: str) -> bool:
 
 
 def _raise(draft: Draft, under: np.ndarray) -> bool:
-    """Make the lower slabs under a part whole."""
+    """Replace the lower slabs below a part by full blocks."""
     names = [draft.palette[number] for number in draft.states[tuple(under.T)]]
     low = ["type=bottom" in name for name in names]
     if not any(low):

@@ -49,14 +49,14 @@ def _close_in_plane(
 
 
 def _rim(cells: np.ndarray, axis: int, solid: np.ndarray) -> np.ndarray:
-    """The structure around a hole, in its plane."""
+    """Return the structure cells around a hole in its plane."""
     steps = np.delete(np.eye(3, dtype=int), axis, axis=0)
     around = np.concatenate([cells + side * step for step in steps for side in (-1, 1)])
     return np.unique(around[solid[tuple(around.T)]], axis=0)
 
 
 def _fill(draft: Draft, cells: np.ndarray, rim: np.ndarray, axis: int) -> None:
-    """Fill a hole with the commonest block around it of the commonest class of shell."""
+    """Fill a hole with the most frequent block and class around it."""
     classes = draft.semantic[tuple(rim.T)]
     wanted = SHELLS[1:] if axis == 1 else SHELLS[:1]
     counts = {int(kind): int((classes == kind).sum()) for kind in wanted}

@@ -51,14 +51,14 @@ def trim_severed_pieces(draft: Draft) -> None:
 
 
 def _is_stray(draft: Draft, cells: np.ndarray) -> bool:
-    """Whether a piece is a crumb that stands on no floor: not a leg, nor a back of its own."""
+    """Return whether a piece is a crumb that does not reach the floor."""
     under = np.maximum(cells - [0, 1, 0], 0)
     on_floor = (draft.semantic[tuple(under.T)] == SemanticClass.FLOOR).any()
     return len(cells) <= max_crumb_blocks(draft) and not on_floor
 
 
 def _take_out(draft: Draft, cells: np.ndarray, reason: str) -> None:
-    """Take a piece away; where it stood in a wall, the wall comes back."""
+    """Remove a piece, restoring the wall in its place."""
     walls = draft.semantic == SemanticClass.WALL
     in_wall = _in_plane(walls, 0) | _in_plane(walls, 2)
     for cell in cells[in_wall[tuple(cells.T)]]:
@@ -84,7 +84,7 @@ def close_see_through(draft: Draft) -> None:
 
 
 def _between(cells: np.ndarray, main: np.ndarray) -> np.ndarray:
-    """The cells on the straight line between the nearest two cells of two pieces."""
+    """Return the cells on the straight line between the nearest cells of two pieces."""
     distance = np.abs(cells[:, None] - main[None]).sum(axis=2)
     first, second = np.unravel_index(int(distance.argmin()), distance.shape)
     start, end = cells[first], main[second]
@@ -98,7 +98,7 @@ def _full(draft: Draft) -> np.ndarray:
 
 
 def _both_sides(mask: np.ndarray, axis: int) -> np.ndarray:
-    """Cells that have the mask on both sides along an axis."""
+    """Return the cells with masked cells on both sides along an axis."""
     padded = np.pad(mask, [(1, 1) if one == axis else (0, 0) for one in range(3)])
     size = mask.shape[axis]
     low = np.take(padded, range(size), axis)
@@ -106,7 +106,7 @@ def _both_sides(mask: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _in_plane(walls: np.ndarray, axis: int) -> np.ndarray:
-    """Cells with wall on two of the four sides in their plane, and on neither side of it."""
+    """Return the cells with wall on two of four sides in their plane, but not across it."""
     padded = np.pad(walls, 1)
     inner = tuple(slice(1, size + 1) for size in walls.shape)
 
@@ -118,7 +118,7 @@ def _in_plane(walls: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _open_to_the_end(empty: np.ndarray, axis: int) -> np.ndarray:
-    """Cells from which nothing stands in the way out of the volume, along an axis, one way."""
+    """Return the cells with a free line to the end of the volume along an axis."""
     from_low = np.logical_and.accumulate(empty, axis=axis)
     from_high = np.flip(np.logical_and.accumulate(np.flip(empty, axis), axis=axis), axis)
     edge = np.ones_like(np.take(empty, [0], axis))
@@ -129,7 +129,7 @@ def _open_to_the_end(empty: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _put_wall(draft: Draft, cell: np.ndarray, walls: np.ndarray, reason: str) -> None:
-    """Set a cell to the commonest wall block neighbours it."""
+    """Set a cell to the most frequent wall block among its neighbours."""
     around = cell + np.concatenate([np.eye(3, dtype=int), -np.eye(3, dtype=int)])
     around = around[((around >= 0) & (around < walls.shape)).all(axis=1)]
     around = around[walls[tuple(around.T)]]

@@ -109,7 +109,7 @@ def _is_other(placed: Placement, other) -> bool:
 
 
 def _check_support(draft: SceneDraft, one: SceneObject) -> Iterator[Diagnostic]:
-    """An object that should stand, with nothing but seen air under its lowest cells."""
+    """Report an object that should stand but has only observed air below its lowest cells."""
     if one.class_id not in STANDING:
         return
     cells = draft.cells_of(one.id)
@@ -161,7 +161,7 @@ CHECKS: tuple[Callable[[SceneDraft], Iterator[Diagnostic]], ...] = (
 
 
 def _parts(mask: np.ndarray, least: int, most: int | None = None) -> Iterator[np.ndarray]:
-    """Yield the cells int [N, 3] of each connected part of a mask that has so many."""
+    """Yield the cells int [N, 3] of each connected part of a mask with an allowed size."""
     parts, count = label_components(mask)
     at = np.argwhere(parts > 0)
     if not count:

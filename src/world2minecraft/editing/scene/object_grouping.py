@@ -241,9 +241,9 @@ def _largest_first(cells: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
 def _numbered_parts(
     draft: SceneDraft, first: int, cells: np.ndarray, parts: int, taken: list[int]
 ) -> list[tuple[int, np.ndarray]]:
-    """Return the parts of an object, the largest first, with ids: its own and free ones.
+    """Return the parts of an object with ids, largest first: its own id and free ids.
 
-    ``taken`` are ids that other new objects have; those that are given here are added.
+    ``taken`` are ids used by other new objects. The new ids are appended to it.
     """
     found = [(first, group) for group in _largest_first(cells, cluster_cells(cells, parts))]
     for at in range(1, len(found)):
@@ -253,7 +253,7 @@ def _numbered_parts(
 
 
 def _matched_ids(draft: SceneDraft, old: set[int], groups: list[np.ndarray]) -> list[int]:
-    """Return an id for each group of cells: that of the old object it shares most with, or new."""
+    """Return the id of each group of cells: that of the most similar old object, or a new id."""
     numbers: list[int] = []
     taken: set[int] = set()
     for cells in groups:

@@ -55,7 +55,7 @@ def standing_box(
 
 
 def _bottom(draft: SceneDraft, chosen: Template, cell: np.ndarray, height: int) -> int:
-    """Return the layer where it begins."""
+    """Return the lowest layer of the furniture."""
     column = draft.labels[cell[0], cell[1]] % 255 > 0
     if chosen.mount == "wall":
         return int(cell[2]) - height // 2
@@ -76,7 +76,7 @@ def floor_layer(draft: SceneDraft) -> int:
 def _corner(
     draft: SceneDraft, at_m: Sequence[float], counts: tuple[int, int, int], turns: int, bottom: int
 ) -> np.ndarray:
-    """Return the first cell of a turned box whose middle is nearest to a place."""
+    """Return the minimum cell of a rotated box whose centre is nearest to a position."""
     sides = np.array(counts)[[1, 0]] if turns % 2 else np.array(counts)[[0, 1]]
     low = (np.array(at_m[:2]) - draft.origin_m[:2]) / draft.voxel_m - sides / 2
     return np.array([*np.floor(low + 0.5 + 1e-6).astype(np.int64), bottom])
@@ -85,7 +85,7 @@ def _corner(
 def _facing(
     draft: SceneDraft, chosen: Template, corner: np.ndarray, counts: tuple[int, int, int]
 ) -> int:
-    """Return which way a full box of its size would look."""
+    """Return the direction in which a solid box of the same size would face."""
     cells = (np.argwhere(np.ones(counts, bool)) + corner).astype(np.int32)
     return estimate_facing(cells, chosen.class_id, read_surroundings(draft.labels)).quarter_turns
 
@@ -129,7 +129,7 @@ def box_in_cells(draft: SceneDraft, one: SceneObject) -> tuple[np.ndarray, np.nd
 
 
 def _to_floor(draft: SceneDraft, one: SceneObject, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Return the shift onto the highest thing that is under an object."""
+    """Return the shift onto the highest surface below an object."""
     under = np.s_[low[0] : high[0], low[1] : high[1], : low[2]]
     solid = (draft.labels[under] % 255 > 0) & (draft.instance[under] != one.id)
     layers = np.flatnonzero(solid.any(axis=(0, 1)))
@@ -138,10 +138,10 @@ def _to_floor(draft: SceneDraft, one: SceneObject, low: np.ndarray, high: np.nda
 
 
 def _to_wall(draft: SceneDraft, one: SceneObject, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Return the shift to the wall that is nearest along x or y.
+    """Return the shift to the nearest wall along x or y.
 
     Raises:
-        UsageError: no wall stands before any of its sides.
+        UsageError: If there is no wall next to the object.
     """
     window = [slice(a, b) for a, b in zip(low, high, strict=True)]
     ways = []

@@ -209,7 +209,7 @@ class DuplicateObject(Command):
         return patch.plan_operation("duplicate_object", objects=[copy], **details)
 
     def _beside(self, draft: SceneDraft, one: SceneObject, cells: np.ndarray) -> np.ndarray:
-        """Return the shift in cells: to ``to_m``, or to the side that has most room."""
+        """Return the shift in cells to ``to_m``, or to the side with most free space."""
         if self.to_m is not None:
             return cells_to(draft, one, self.to_m)
         sides = np.ceil(plan_extent_m(one) / draft.voxel_m + 1e-6).astype(int)
@@ -218,6 +218,6 @@ class DuplicateObject(Command):
 
 
 def _room(draft: SceneDraft, one: SceneObject, cells: np.ndarray, way: np.ndarray) -> int:
-    """Return how many cells would find room; -1 where the grid ends."""
+    """Return the number of cells that fit at an offset, or -1 beyond the grid."""
     there = cells + way if len(cells) else middle_cell(draft, one)[None] + way
     return int(is_free(draft, there).sum()) if within_grid(draft, there).all() else -1

@@ -75,7 +75,7 @@ def find_planes(draft: SceneDraft) -> list[Plane]:
 
 
 def _levels(draft: SceneDraft, class_id: SemanticClass) -> list[Plane]:
-    """The floors or the ceilings."""
+    """Return the floors or the ceilings."""
     mask = np.moveaxis(draft.labels == class_id, 2, 0)
     # Its face to the room alone: what is solid above a slope is no stack of ceilings.
     inward = -1 if class_id == SemanticClass.FLOOR else 1
@@ -116,7 +116,7 @@ def _walls(draft: SceneDraft, levels: list[Plane]) -> list[Plane]:
 
 
 def _is_flat(mask: np.ndarray, side: int) -> np.ndarray:
-    """Where most of the square around a cell, in its layer (the first axis), is of the mask."""
+    """Return where most of the square around a cell in its layer (the first axis) is masked."""
     count = mask.astype(np.uint8)
     for axis in (1, 2):
         count = ndimage.convolve1d(count, np.ones(side, np.uint8), axis=axis, mode="constant")
@@ -124,7 +124,7 @@ def _is_flat(mask: np.ndarray, side: int) -> np.ndarray:
 
 
 def _is_face(labels: np.ndarray) -> np.ndarray:
-    """Where one of the two cells before and behind, along the first axis, is no structure."""
+    """Return where one of the two neighbours along the first axis is not structure."""
     other = np.ones((labels.shape[0] + 2, *labels.shape[1:]), bool)
     other[1:-1] = ~np.isin(labels, STRUCTURE_CLASSES)
     return other[:-2] | other[2:]
@@ -134,7 +134,7 @@ Region = tuple[tuple[int, int], tuple[int, int], int]
 
 
 def _regions(mask: np.ndarray, flat: np.ndarray, least: float) -> list[Region]:
-    """The corners and the area of each large flat region of a layer, bool [A, B]."""
+    """Return the bounds and the area of each large flat region of a layer, bool [A, B]."""
     parts, count = label_components(flat)
     found = []
     for number, box in enumerate(ndimage.find_objects(parts, count), 1):
@@ -151,7 +151,7 @@ def _regions(mask: np.ndarray, flat: np.ndarray, least: float) -> list[Region]:
 
 
 def _merge_regions(regions: list[Region], voxel_m: float) -> list[Region]:
-    """Join what a doorway parts: regions side by side that share heights."""
+    """Join adjacent regions with common heights, which a doorway separates."""
     joined: list[Region] = []
     for low, high, area in sorted(regions):
         if joined:
@@ -167,7 +167,7 @@ def _merge_regions(regions: list[Region], voxel_m: float) -> list[Region]:
 
 
 def _meeting(wall: Plane, planes: list[Plane], voxel_m: float) -> Plane:
-    """Let a wall meet the floor, the ceiling and the walls that it ends near, and note where."""
+    """Extend a wall to the floor, the ceiling and the walls near its ends, and record them."""
     beside = wall.layer, wall.layer + 1
     reach = round(DOORWAY_M / voxel_m)
     across = [one for one in planes if one.axis == 1 - wall.axis and _near(beside, one, reach)]
@@ -192,12 +192,12 @@ def _meeting(wall: Plane, planes: list[Plane], voxel_m: float) -> Plane:
 
 
 def _nearest(end: int, planes: list[Plane], reach: int) -> int | None:
-    """The layer nearest to the cell after the end of a wall, up to ``reach`` farther on."""
+    """Return the nearest layer after the end of a wall within ``reach``, or None."""
     side = 1 if reach > 0 else -1
     near = [one.layer for one in planes if -2 <= (one.layer - end) * side <= abs(reach)]
     return min(near, key=lambda layer: abs(layer - end), default=None)
 
 
 def _near(span: tuple[int, int], other: Plane, reach: int) -> bool:
-    """Whether a span lies within the extent of a wall, grown by the reach."""
+    """Return whether a span is within the extent of a wall enlarged by ``reach``."""
     return span[1] > other.low[0] - reach and span[0] < other.high[0] + reach

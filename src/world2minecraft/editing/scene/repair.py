@@ -1,26 +1,28 @@
 """Commands that repair faults of a scan: floaters, holes and rough surfaces.
 
-**Floaters.** A piece is all occupied cells, of any class, that are connected by faces, edges or
-corners. It floats where it is small and not the largest of the scene. A piece with cells of
-structure floats only where it is smaller than the smallest wall, whatever size is asked for. A lamp
-whose cord was not seen floats by this rule too, so the list names its object.
+**Floaters.** A piece consists of all occupied cells, of any class, that are connected by faces,
+edges or corners. It is a floater if it is small and not the largest piece of the scene. A piece
+with structure cells is a floater only if it is smaller than the smallest wall, regardless of the
+requested size. A lamp whose cord was not observed is also a floater by this rule, so the list names
+its object.
 
-**Holes.** A gap is where a plane has no cell, nothing else stands in its layer, and structure
-bounds it on three of the four sides in the plane. In a floor or a ceiling something must have been
-seen over or under it too; where nothing was, it must be bounded on all four sides and have at most
-four square metres, as the floor under a wardrobe. Behind a slope or another wall a wall or a
-ceiling ends. Window cells are part of their wall. Which gaps are holes:
+**Holes.** A gap is a region of a plane without cells of the plane or of other objects in its
+layer, bounded by structure on three of the four sides in the plane. In a floor or a ceiling, cells
+above or below the gap must also have been observed. Otherwise, the gap must be bounded on all four
+sides and have at most four square metres, like the floor below a wardrobe. A wall or ceiling ends
+at a slope or another wall in front of it. Window cells belong to their wall. Gaps that are holes:
 
 ==================================  =============================================================
-hidden: neither the cell nor one    a hole: the wall behind a wardrobe, the floor under a bed
-before or behind it was seen
-unseen, but next to seen air        a hole in a floor or a ceiling; in a wall it may be the glass
-                                    of a window, so as below
-seen to be air                      a hole up to a quarter of a square metre; a larger one is a
-                                    door, a window or a stairwell, and stays open
+hidden: neither the cell nor its    a hole, such as the wall behind a wardrobe or the floor below
+neighbours in front or behind were  a bed
+observed
+unobserved, but next to observed    a hole in a floor or a ceiling; in a wall, it can be the glass
+air                                 of a window, so the next rule applies
+observed as air                     a hole up to a quarter of a square metre; larger gaps are
+                                    doors, windows or stairwells and stay open
 ==================================  =============================================================
 
-**Smoothing** is a majority filter over the 26 neighbours that never moves structure or unseen
+**Smoothing** is a majority filter over the 26 neighbours that never moves structure or unobserved
 cells.
 """
 
@@ -161,7 +163,7 @@ def gap_at(gaps: PlaneGaps, place: tuple[int, int]) -> np.ndarray:
 
 
 def _find_bounded(draft: SceneDraft, plane: Plane, near: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """Where structure bounds a place of the plane, bool [A, B]."""
+    """Return where structure bounds a position of the plane, bool [A, B]."""
     if plane.axis != 2:
         result = np.zeros(own.shape, bool)
         bounds = np.asarray(np.isin(near, STRUCTURE_CLASSES).any(axis=0))[plane.window]
@@ -181,10 +183,10 @@ def _find_bounded(draft: SceneDraft, plane: Plane, near: np.ndarray, own: np.nda
 
 
 def _behind_structure(draft: SceneDraft, plane: Plane) -> np.ndarray:
-    """Where a plane would lie behind a slope or another wall, bool [A, B]: there it is no more.
+    """Return where a plane would be behind a slope or another wall, bool [A, B].
 
-    That is where the first known cell on one side is structure, and on the other too, or nothing.
-    A floor lies under all of them.
+    There, the first known cell on one side is structure, and on the other side structure or none. A
+    floor continues below all of them.
     """
     if plane.class_id == SemanticClass.FLOOR:
         return np.zeros(np.delete(draft.shape, plane.axis), bool)
@@ -199,7 +201,7 @@ def _behind_structure(draft: SceneDraft, plane: Plane) -> np.ndarray:
 
 
 def _first_known(layers: np.ndarray) -> np.ndarray:
-    """The first label that is known along the first axis of [N, A, B]; 255 where none is."""
+    """Return the first known label along the first axis of [N, A, B], or 255 if there is none."""
     known = layers != UNKNOWN
     if not len(layers):
         return np.full(layers.shape[1:], UNKNOWN, np.uint8)
@@ -207,7 +209,7 @@ def _first_known(layers: np.ndarray) -> np.ndarray:
 
 
 def _sides(bounds: np.ndarray) -> np.ndarray:
-    """To how many of the four sides there is a bound, int [A, B]."""
+    """Return the number of bounded sides of the four sides, int [A, B]."""
     sides = np.zeros(bounds.shape, np.int64)
     for axis in (0, 1):
         sides += np.maximum.accumulate(bounds, axis=axis)
@@ -216,7 +218,7 @@ def _sides(bounds: np.ndarray) -> np.ndarray:
 
 
 def _up_to(mask: np.ndarray, most: float) -> np.ndarray:
-    """The parts, joined by edges, of a mask bool [A, B] that have at most so many cells."""
+    """Return the parts of a mask bool [A, B], connected by edges, with a limited number of cells."""
     parts = label_components(mask, corners=False)[0]
     small = np.bincount(parts.ravel()) <= most
     small[0] = False
@@ -246,7 +248,7 @@ def smooth_labels(labels: np.ndarray) -> np.ndarray:
 
 
 def _around(mask: np.ndarray) -> np.ndarray:
-    """How many of the 27 cells around each are of the mask, uint8 [X, Y, Z]."""
+    """Return the number of masked cells in the 3x3x3 block around each cell, uint8 [X, Y, Z]."""
     count = mask.astype(np.uint8)
     for axis in range(3):
         count = ndimage.convolve1d(count, np.ones(3, np.uint8), axis=axis, mode="constant")
@@ -254,7 +256,7 @@ def _around(mask: np.ndarray) -> np.ndarray:
 
 
 def _bumps(occupied: np.ndarray) -> np.ndarray:
-    """Which cells hold to one face alone, of a cell within a sheet; bool [X, Y, Z]."""
+    """Return the cells that touch only one cell, which is inside a sheet, bool [X, Y, Z]."""
     padded = np.pad(occupied, 1)
     faces = np.zeros(padded.shape, np.uint8)
     for axis in range(3):

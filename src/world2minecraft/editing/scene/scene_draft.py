@@ -104,7 +104,7 @@ class SceneDraft:
         return np.argwhere(self.instance == number).astype(np.int32)
 
     def _find_conflict(self, operation: Operation) -> str:
-        """Why an operation cannot be done here; empty where it can."""
+        """Return why an operation cannot be applied, or an empty string."""
         cells = operation.cells
         inside = ((cells >= 0) & (cells < self.shape)).all(axis=1)
         if not inside.all():

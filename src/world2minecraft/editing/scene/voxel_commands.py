@@ -134,7 +134,7 @@ def adjacent_owners(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) ->
 
 
 def _touching(draft: SceneDraft, cells: np.ndarray, class_id: int) -> int:
-    """Return the object of a class that shares most faces with cells int [N, 3], 0 for none."""
+    """Return the object of a class that shares most faces with cells int [N, 3], or 0."""
     found: list[np.ndarray] = []
     for beside in _beside(draft, cells):
         ids = draft.instance[tuple(beside.T)]
@@ -155,7 +155,7 @@ def _has_class(draft: SceneDraft, number: int, class_id: int) -> bool:
 
 
 def _beside(draft: SceneDraft, cells: np.ndarray) -> Iterator[np.ndarray]:
-    """Yield the neighbours int [M, 3] of cells over each of the six faces, inside the grid."""
+    """Yield the neighbours int [M, 3] of cells across each of the six faces, inside the grid."""
     for axis in range(3):
         for step in (-1, 1):
             beside = shift_cells(cells, axis, step)
@@ -358,7 +358,7 @@ class RelabelClass(CellCommand):
         return plan_cells(draft, "relabel", cells, self.to_id, owners, **fields)
 
     def _objects(self, draft: SceneDraft, tools: Tools) -> list[SceneObject]:
-        """The objects of the class as they are afterwards."""
+        """Return the objects of the class after relabelling."""
         grid = draft.grid()
         grid = replace(grid, labels=np.where(grid.labels == self.from_id, self.to_id, grid.labels))
         found = []
