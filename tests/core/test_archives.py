@@ -88,7 +88,7 @@ def test_files_and_images_are_read_from_inside(tmp_path):
     assert (read_raw(inside / "in/d.npy") == 1).all()
     with pytest.raises(InputError, match="x.zip/none: cannot be read"):
         read_bytes(inside / "none", 10)
-    with pytest.raises(LimitError, match="at most 3 are read"):
+    with pytest.raises(LimitError, match="the limit is 3"):
         read_bytes(inside / "a.json", 3)
 
 

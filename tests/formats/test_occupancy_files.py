@@ -127,7 +127,7 @@ def test_centres_in_metres_are_taken_as_they_are(tmp_path):
         ([[0, None, 0, 2]], "float() argument must be"),
         ([[0, "nan", 0, 2]], "a position is not a number"),
         ({"voxels": [[0, 0, 0, 2], [0.5, 0, 0, 2]], "voxel_m": -1}, "must be above 0, got -1"),
-        (7, "no list found"),
+        (7, "expected a list of positions"),
         ({"coords": [[0, 0, 0]], "labels": [1, 2]}, "1 positions but 2 classes"),
     ],
 )

@@ -63,7 +63,7 @@ def test_what_a_template_refuses():
         "seat_height of template chair must be between 0.36 and 0.56, got 2" + stale
     )
     assert isinstance(outside.value, World2MinecraftError)
-    with pytest.raises(ValueError, match="size_m must be above 0, not 0"):
+    with pytest.raises(ValueError, match="size_m must be above 0, got 0"):
         chair.parts((0.0, 0.5, 0.9))
     with pytest.raises(UnknownNameError) as name:
         template("armchiar")

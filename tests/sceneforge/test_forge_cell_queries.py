@@ -156,7 +156,7 @@ def test_what_cannot_be_compared_is_said(editor, tmp_path):
         with pytest.raises(UsageError) as refusal:
             editor.ask("compare", path=path)
         assert str(refusal.value) == text
-    with pytest.raises(InputError, match="is not there"):
+    with pytest.raises(InputError, match="not found"):
         editor.ask("compare", path="none.npz")
 
 

@@ -58,7 +58,7 @@ BAD = [
     ('{"op": "set_cells"}', "set_cells: "),
     (command(class_id="8e400"), "set_cells: class_id"),
     (command(cells=[[0, 10**30]]), "cells must be [start, length] pairs of integers"),
-    (command(cells=[[0, 2**63 - 1]]), "a run of cells leaves the grid"),
+    (command(cells=[[0, 2**63 - 1]]), "a run of cells extends beyond the grid"),
     (command(cells=[[-1, 2]]), "set_cells: cells.0.0"),
     (command(cells=[[1, 2], [2, 2]]), "two runs of cells overlap"),
     (command(cells=[[i, 1] for i in range(200_001)]), "set_cells: cells"),

@@ -109,7 +109,7 @@ def _plain_loader() -> Any:
     import yaml  # noqa: PLC0415
 
     class PlainLoader(yaml.SafeLoader):
-        """Reads plain values alone."""
+        """A YAML loader that accepts only plain values."""
 
         def compose_node(self, parent: Any, index: Any) -> Any:
             if self.check_event(yaml.AliasEvent):

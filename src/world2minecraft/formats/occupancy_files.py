@@ -57,7 +57,9 @@ _OTHER_NAMES = {"furniture": 10, "objects": 11, "object": 11, "tv": 9, "none": 0
 
 
 def read_occupancy(path: str | Path) -> OccupancyGrid:
-    """Read a grid from any of these files. The format is detected from suffix and contents.
+    """Read an occupancy grid from a file in any supported format.
+
+    The format is detected from the suffix and the contents of the file.
 
     Raises:
         InputError: If the file does not exist or is not an occupancy file.
@@ -152,7 +154,7 @@ class Center(NamedTuple):
 
 
 def read_any_occ(path: str | Path) -> tuple[OccupancyGrid, str]:
-    """Read a grid, and return it with the unit of its positions, ``cells`` or ``metres``.
+    """Read an occupancy grid, and return it with its position unit, ``cells`` or ``metres``.
 
     Raises:
         DamagedFileError: If the file contains voxels in none of the supported forms.
@@ -260,7 +262,7 @@ def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
         places, classes = _first_of(held, _PLACES, None), _first_of(held, _CLASSES, None)
         if isinstance(places, list) and isinstance(classes, list):
             if len(places) != len(classes):
-                raise ValueError(f"{len(places)} positions but {len(classes)} classes")
+                raise ValueError(f"got {len(places)} positions but {len(classes)} classes")
             yield from zip(places, classes, strict=True)
             return
         for name, places in held.items():
@@ -270,7 +272,7 @@ def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
                 yield _place(row), name
         return
     if not isinstance(held, list):
-        raise ValueError("no list found")
+        raise ValueError("expected a list of positions")
     for row in held:
         if isinstance(row, list) and len(row) < 4:
             raise ValueError(f"expected x, y, z and a class, got {row}")

@@ -31,13 +31,13 @@ EVIDENCE_ARRAYS = (
 
 
 def write_room(path: str | Path, grid: OccupancyGrid, scan_to_room: np.ndarray) -> None:
-    """Write a grid. Equal grids give identical files."""
+    """Write an occupancy grid. Equal grids give identical files."""
     arrays = {name: np.asarray(getattr(grid, name)) for name in GRID_ARRAYS}
     write_npz(path, arrays | {"scan_to_room": np.asarray(scan_to_room, np.float64)})
 
 
 def read_room(path: str | Path) -> tuple[OccupancyGrid, np.ndarray]:
-    """Read a grid and its ``scan_to_room`` transform.
+    """Read an occupancy grid and its ``scan_to_room`` transform.
 
     Raises:
         InputError: If the file does not exist.

@@ -67,7 +67,7 @@ def _lowest(state: str) -> float:
 
 
 def _reach_down(draft: Draft, cells: np.ndarray, bottom: np.ndarray, names: list[str]) -> bool:
-    """Move the upper halves of a flat object down, or make its lowest blocks full if it is taller."""
+    """Move the upper halves of a flat object down, or make its lowest blocks full otherwise."""
     if np.ptp(cells[:, 1]) == 0:
         new = [
             n.replace("type=top", "type=bottom").replace("half=top", "half=bottom") for n in names

@@ -27,7 +27,7 @@ def runs_of_cells(cells: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
 
 
 def cells_of_runs(runs: Sequence[Sequence[int]], shape: tuple[int, int, int]) -> np.ndarray:
-    """Return the cells, int32 [N, 3], in runs. Sizes are checked before memory is allocated.
+    """Return the cells, int32 [N, 3], that runs contain, checking sizes before allocating memory.
 
     Raises:
         UsageError: If a run is empty, extends beyond the grid or overlaps another run.

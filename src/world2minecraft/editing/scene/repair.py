@@ -218,7 +218,7 @@ def _sides(bounds: np.ndarray) -> np.ndarray:
 
 
 def _up_to(mask: np.ndarray, most: float) -> np.ndarray:
-    """Return the parts of a mask bool [A, B], connected by edges, with a limited number of cells."""
+    """Return the parts of a mask bool [A, B], connected by edges, up to a number of cells."""
     parts = label_components(mask, corners=False)[0]
     small = np.bincount(parts.ravel()) <= most
     small[0] = False
@@ -248,7 +248,7 @@ def smooth_labels(labels: np.ndarray) -> np.ndarray:
 
 
 def _around(mask: np.ndarray) -> np.ndarray:
-    """Return the number of masked cells in the 3x3x3 block around each cell, uint8 [X, Y, Z]."""
+    """Return the number of masked cells in the block of 27 around each cell, uint8 [X, Y, Z]."""
     count = mask.astype(np.uint8)
     for axis in range(3):
         count = ndimage.convolve1d(count, np.ones(3, np.uint8), axis=axis, mode="constant")
