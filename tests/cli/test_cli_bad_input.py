@@ -123,7 +123,7 @@ def huge_image(folder: Path) -> None:
 CASES = [
     (truncated, "is damaged"),
     (other_sizes, "size|80x60"),
-    (no_uniform_scale, "scale"),
+    (no_uniform_scale, "aspect ratio"),
     (eight_bit, "8"),
     (all_zero, "depth"),
     (no_poses, "pose|camera_to_world"),

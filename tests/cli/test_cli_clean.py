@@ -56,7 +56,7 @@ def test_repairs_are_made_listed_undone_and_redone(out, capsys):
     before = texts(read_built(out / "build"))
     assert clean(out, "--dry-run") == 0
     assert capsys.readouterr().out == (
-        "  1  fill     wall       1 block at 0 68 6: a hole in the wall\n"
+        "  1  fill     wall       1 block at 0 68 6: hole in the wall\n"
         "  2  move     chair 1    16 blocks at 5 64 5: floating piece, 2 blocks from a support\n"
     )
     assert (texts(read_built(out / "build")) == before).all()

@@ -114,8 +114,8 @@ def test_a_world_that_was_saved_since_is_not_overwritten(schem, world, capsys):
     capsys.readouterr()
     assert cli.run(["undo", str(world)]) == 3
     assert capsys.readouterr().err == (
-        f"error: {world}: region/r.0.0.mca has been saved since; add --blocks to undo "
-        "the build alone, or --force to restore the old files\n"
+        f"error: {world}: region/r.0.0.mca has changed since the build; add --blocks to "
+        "undo only the build, or --force to restore the old files\n"
     )
     assert cli.run(["undo", str(world), "--blocks"]) == 0
     assert f"{world}: 24 blocks restored." in capsys.readouterr().out

@@ -166,14 +166,14 @@ def test_a_set_is_counted_by_the_command(one_worker, tmp_path, capsys):
     assert min(Image.open(tmp_path / "lengths.png").size) > 200
     trained = sorted(set(by_task) - set(held))
     where = f"; {', '.join(trained)} on train, because none of it is held out" if trained else ""
-    assert f"Without understanding, on the held-out splits{where} (95 % interval)" in told
+    assert f"Baselines on the held-out splits{where} (95 % interval)" in told
     assert f"w2m vln evaluate {out} --agent oracle" in told
 
 
 def test_a_set_is_counted_without_its_pictures(one_worker, tmp_path, capsys):
     items = shutil.copy(one_worker[0] / "items.jsonl", tmp_path)
     assert cli.run(["vln", "stats", str(items), "--no-baselines"]) == 0
-    assert "Without understanding" not in capsys.readouterr().out
+    assert "Baselines on" not in capsys.readouterr().out
     assert cli.run(["vln", "stats", str(items)]) == 3
     assert "Traceback" not in capsys.readouterr().err
     assert cli.run(["vln", "stats", str(tmp_path / "none")]) == 3
