@@ -76,7 +76,7 @@ def test_repairs_are_made_listed_undone_and_redone(out, capsys):
     said = capsys.readouterr().out
     assert clean(out, "--list", "--json") == 0
     assert [one["is_done"] for one in json.loads(capsys.readouterr().out)] == [False, True]
-    assert "a hole in the wall  (undone)\n" in said
+    assert "hole in the wall  (undone)\n" in said
     assert texts(read_built(out / "build"))[0, 5, 6] == AIR
     assert clean(out, "--redo", 1) == 0
     assert (texts(read_built(out / "build")) == after).all()

@@ -249,7 +249,10 @@ def test_json_rows_have_line_numbers_and_errors_name_them():
         (1, {"a": 1}),
         (3, {"b": 2}),
     ]
-    for text, told in (("{}\n{", "line 2 is not valid"), ("[1]", "line 1 is not a JSON object")):
+    for text, told in (
+        ("{}\n{", "line 2 is not valid JSON"),
+        ("[1]", "line 1 is not a JSON object"),
+    ):
         with pytest.raises(DamagedFileError) as caught:
             files.parse_json_lines(text, source)
         assert str(caught.value) == f"rows.jsonl: {told}"
