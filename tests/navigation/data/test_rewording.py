@@ -52,7 +52,7 @@ def test_human_instructions_take_turns_and_can_be_deselected(folder, capsys):
         ("attic-t0", "Piano!", "ann", "goal"),
     )
     assert cli.run(["vln", "reword", str(folder), "--annotations", str(words)]) == 0
-    assert "items by the source of their words: 13 human, 26 template" in capsys.readouterr().out
+    assert "items by source of the instruction: 13 human, 26 template" in capsys.readouterr().out
     items = [item for item in read_items(folder) if item.scene_id == "kitchen"]
     who = Counter(item.instruction.annotator for item in items)
     assert who == {"bob": 7, "cleo": 6}  # Of the level of the words before; as often, in turn.
