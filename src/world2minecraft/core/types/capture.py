@@ -160,11 +160,11 @@ class FrameSigmas:
 class Scan:
     """An aligned capture with the position of the room and the reliability of its scale.
 
-    ``scan_to_room`` carries the scan's frame to the room frame; the inner box of the room is
-    from (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report; ``name`` is what
-    the scene is called; ``depth_kind`` says what made the depth, and so how it errs. ``world_up``
-    is a unit vector of the scan's frame where the capture knows which way is up. ``frame_sigmas``
-    is None where the room's frame is stated rather than estimated.
+    ``scan_to_room`` transforms the scan frame to the room frame. The inner box of the room spans
+    (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report, ``name`` is the name of
+    the scene, and ``depth_kind`` is the source of the depth, which determines its errors.
+    ``world_up`` is a unit vector in the scan frame if the capture records the up direction.
+    ``frame_sigmas`` is None if the capture states the room frame.
     """
 
     views: ViewStream
