@@ -149,3 +149,19 @@ def test_up_stays_near_what_is_known(surfaces):
         hint = Rotation.from_euler("x", tilt_deg, degrees=True).apply([0, 0, 1.0])
         ground = find_ground(surfaces[0][None], hint)
         assert np.degrees(np.arccos(min(1.0, ground.up @ hint))) <= 10
+
+
+@pytest.mark.parametrize("top_m", [1.2, 0.8])
+def test_a_room_without_its_upper_half_is_taken_with_a_lower_bound(surfaces, top_m):
+    """Without a ceiling the capture ends there; that does not make the unit wrong."""
+    surface = surfaces[0][1]
+    low = surface.subset(surface.points_m[:, 2] < top_m)
+    cameras = low.cameras.copy()
+    cameras[:, 2, 3] = np.minimum(cameras[:, 2, 3], top_m)
+    found = align_surface(replace(low, cameras=cameras))
+    assert (
+        f"no ceiling was seen; the room is at least {found.room_size_m[2]:.2f} m high"
+        in found.notes
+    )
+    assert found.room_size_m[2] == pytest.approx(top_m + 0.1, abs=0.15)
+    assert sorted(found.room_size_m[:2]) == pytest.approx(sorted(surfaces[1][:2]), abs=0.02)

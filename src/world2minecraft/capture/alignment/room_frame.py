@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from world2minecraft.capture.alignment.axis_profiles import face_position_m
-from world2minecraft.capture.alignment.gravity import Ground, find_ground, rotation_to_z
+from world2minecraft.capture.alignment.gravity import find_ground, rotation_to_z
 from world2minecraft.capture.alignment.plane_alignment import (
     MIN_FACING_COSINE,
     PlaneAlignment,
@@ -28,7 +28,8 @@ from world2minecraft.core.types import FrameSigmas, Scan, View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 
 SIDE_RANGE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
-HEIGHT_RANGE_M = (1.5, 12.0)
+# A ceiling is a room's own height; without one, the capture may show the lower part of a room only.
+HEIGHT_RANGE_M, SEEN_HEIGHT_RANGE_M = (1.5, 12.0), (0.6, 12.0)
 MIN_POINTS = 500
 FLOOR_BAND_M, MIN_FLOOR_SIGMA_M = 0.06, 0.003
 MAX_TILT_SIGMA_DEG, MAX_YAW_SIGMA_DEG = 90.0, 45.0  # Nothing is known.
@@ -52,6 +53,21 @@ class Alignment:
     room_size_m: np.ndarray
     notes: tuple[str, ...]
     sigmas: FrameSigmas | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class LevelFrame:
+    """The level frame of a scan, with the walls along x and y.
+
+    Attributes:
+        scan_to_level: Rigid transform, float64 [4, 4]; the floor is at z = 0.
+        floor_seen: Whether a floor was found; otherwise the lowest points are at z = 0.
+        planes: Last refinement of the rotation, with its uncertainty.
+    """
+
+    scan_to_level: np.ndarray
+    floor_seen: bool
+    planes: PlaneAlignment
 
 
 class ImplausibleRoomError(ValueError):
@@ -89,28 +105,38 @@ def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) ->
     Raises:
         ImplausibleRoomError: If the size is not plausible for a room.
     """
-    ground = find_ground(surface, up_hint)
-    scan_to_level = np.eye(4)
-    scan_to_level[:3, :3] = rotation_to_z(ground.up)
-    scan_to_level[2, 3] = -ground.height_m
-    level = surface.transformed(scan_to_level)
-    scan_to_level = _rotation_to_walls(level) @ scan_to_level
-    level = surface.transformed(scan_to_level)
-    level_hint = None if up_hint is None else scan_to_level[:3, :3] @ up_hint
-    planes = align_planes(level, level_hint)
-    scan_to_level = _axis_alignment(level, planes, ground.floor_area_m2 > 0) @ scan_to_level
-    level = surface.transformed(scan_to_level)
+    frame = find_level_frame(surface, up_hint)
+    scan_to_level, level = frame.scan_to_level, surface.transformed(frame.scan_to_level)
     box = find_room_box(level)
     low_m, high_m = _extend_to_cameras(box, level)
     level_to_room = np.eye(4)
     level_to_room[:3, 3] = -low_m
     size = high_m - low_m
-    _check_size(size)
+    _check_size(size, "z+" in box.seen)
     # Sums in another order, as with other threads, differ in the last bits; files must not.
     scan_to_room = np.round(level_to_room @ scan_to_level, DECIMALS)
-    sigmas = _frame_sigmas(level, planes, ground.floor_area_m2 > 0)
-    notes = _notes(ground, box, size)
-    return Alignment(scan_to_room, np.round(size, DECIMALS), notes, sigmas)
+    sigmas = _frame_sigmas(level, frame)
+    return Alignment(scan_to_room, np.round(size, DECIMALS), _notes(frame, box, size), sigmas)
+
+
+def find_level_frame(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> LevelFrame:
+    """Return the frame in which a surface is level, its walls along x and y and its floor at 0.
+
+    Args:
+        surface: Oriented points in metres, in any orientation.
+        up_hint: Up direction as for ``find_ground``, or None.
+    """
+    ground = find_ground(surface, up_hint)
+    floor_seen = ground.floor_area_m2 > 0
+    scan_to_level = np.eye(4)
+    scan_to_level[:3, :3] = rotation_to_z(ground.up)
+    scan_to_level[2, 3] = -ground.height_m
+    scan_to_level = _rotation_to_walls(surface.transformed(scan_to_level)) @ scan_to_level
+    level = surface.transformed(scan_to_level)
+    level_hint = None if up_hint is None else scan_to_level[:3, :3] @ up_hint
+    planes = align_planes(level, level_hint)
+    scan_to_level = _axis_alignment(level, planes, floor_seen) @ scan_to_level
+    return LevelFrame(scan_to_level, floor_seen, planes)
 
 
 def realign(scan: Scan, surface: OrientedPoints) -> Scan:
@@ -155,12 +181,13 @@ def _axis_alignment(level: OrientedPoints, planes: PlaneAlignment, has_floor: bo
     return move
 
 
-def _frame_sigmas(level: OrientedPoints, planes: PlaneAlignment, has_floor: bool) -> FrameSigmas:
+def _frame_sigmas(level: OrientedPoints, frame: LevelFrame) -> FrameSigmas:
     """Return the uncertainty of an aligned frame; the floor's is the bend of the depth at it."""
+    planes = frame.planes
     tilt_deg = min(float(np.sqrt(np.mean(planes.sigma_deg[:2] ** 2))), MAX_TILT_SIGMA_DEG)
     yaw_deg = min(float(planes.sigma_deg[2]), MAX_YAW_SIGMA_DEG)
     floor_m = None
-    if has_floor:
+    if frame.floor_seen:
         on_floor = (level.normals[:, 2] > MIN_FACING_COSINE) & (
             np.abs(level.points_m[:, 2]) < FLOOR_BAND_M
         )
@@ -186,11 +213,11 @@ def _extend_to_cameras(box: RoomBox, level: OrientedPoints) -> tuple[np.ndarray,
     return low, high
 
 
-def _check_size(size: np.ndarray) -> None:
+def _check_size(size: np.ndarray, ceiling_seen: bool) -> None:
     sides = (
         ("long", size[0], SIDE_RANGE_M),
         ("deep", size[1], SIDE_RANGE_M),
-        ("high", size[2], HEIGHT_RANGE_M),
+        ("high", size[2], HEIGHT_RANGE_M if ceiling_seen else SEEN_HEIGHT_RANGE_M),
     )
     for word, length, (least, maximum) in sides:
         if not least <= length <= maximum:
@@ -201,14 +228,14 @@ def _check_size(size: np.ndarray) -> None:
             )
 
 
-def _notes(ground: Ground, box: RoomBox, size: np.ndarray) -> tuple[str, ...]:
+def _notes(frame: LevelFrame, box: RoomBox, size: np.ndarray) -> tuple[str, ...]:
     notes = []
-    if ground.floor_area_m2 == 0:
+    if not frame.floor_seen:
         notes.append("no floor was seen; the lowest points are used as floor height")
     sides = [name for side, name in COMPASS_OF_SIDE.items() if side not in box.seen]
     if sides:
         names = f"the {' and '.join(sides)} side{'s' * (len(sides) > 1)}"
         notes.append(f"no wall was seen at {names}; the room extends to the outermost points there")
     if "z+" not in box.seen:
-        notes.append(f"no ceiling was seen; the room height is set to {size[2]:.2f} m")
+        notes.append(f"no ceiling was seen; the room is at least {size[2]:.2f} m high")
     return tuple(notes)

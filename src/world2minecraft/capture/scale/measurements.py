@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from world2minecraft.capture.alignment.axis_profiles import axis_profile
-from world2minecraft.capture.alignment.gravity import find_ground, rotation_to_z
-from world2minecraft.capture.alignment.walls import find_room_box, find_yaw
-from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.capture.alignment.room_frame import find_level_frame
+from world2minecraft.capture.alignment.walls import find_room_box
 from world2minecraft.core.types import View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 
@@ -168,11 +167,8 @@ def _rough_scale(surface: OrientedPoints) -> float:
 
 def _level_points(surface: OrientedPoints) -> tuple[OrientedPoints, bool]:
     """Return the surface with z up and the floor at z = 0, and whether a floor was found."""
-    ground = find_ground(surface)
-    to_level = np.eye(4)
-    to_level[:3, :3] = rotation_to_z(ground.up)
-    to_level[2, 3] = -ground.height_m
-    return surface.transformed(to_level), ground.floor_area_m2 > 0
+    frame = find_level_frame(surface)
+    return surface.transformed(frame.scan_to_level), frame.floor_seen
 
 
 def _lowest_camera(heights: np.ndarray) -> float:
@@ -218,7 +214,7 @@ def _ceiling_height(level: OrientedPoints, camera: float) -> float | None:
 
 def _side_lengths(level: OrientedPoints) -> tuple[float | None, float | None]:
     """Return the longer and the shorter side of the room, or None if a wall is missing."""
-    box = find_room_box(level.transformed(rotation_about_z(-find_yaw(level))))
+    box = find_room_box(level)
     sides = []
     for axis, name in enumerate("xy"):
         both = {f"{name}-", f"{name}+"} <= set(box.seen)
