@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
 from fnmatch import fnmatchcase
 from inspect import cleandoc
+from textwrap import dedent
 from typing import Any
 
 # The first line of an entry of a docstring: one or more names, a colon, the meaning.
@@ -87,12 +88,13 @@ def describe_parameters(parameters: type) -> tuple[ParameterInfo, ...]:
         ... class Sweep:
         ...     '''How planes are swept.
         ...
-        ...     planes: depths tried for each pixel.
+        ...     Attributes:
+        ...         planes: Number of depths tried for each pixel.
         ...     '''
         ...
         ...     planes: int = parameter(64, unit="planes")
         >>> describe_parameters(Sweep)[0].meaning
-        'depths tried for each pixel'
+        'Number of depths tried for each pixel'
     """
     return tuple(_describe(parameters(), ""))
 
@@ -112,7 +114,8 @@ def _describe(value: Any, prefix: str) -> Iterator[ParameterInfo]:
 def docstring_entries(docstring: str) -> dict[str, str]:
     """Return the entries ``name: meaning.`` of a docstring by the text before the colon.
 
-    An entry can describe several parameters (``width, height: ...``), or all that match a pattern
+    The entries stand in a section ``Attributes:``, or unindented where there is none. An entry can
+    describe several parameters (``width, height: ...``), or all that match a pattern
     (``bed_*: ...``). Continuation lines are indented.
 
     Example:
@@ -121,7 +124,11 @@ def docstring_entries(docstring: str) -> dict[str, str]:
     """
     entries: dict[str, str] = {}
     names = ""
-    for line in cleandoc(docstring).splitlines():
+    text = cleandoc(docstring)
+    _, heading, section = text.partition("\nAttributes:\n")
+    if heading:
+        text = dedent(re.split(r"\n(?=\S)", section)[0])
+    for line in text.splitlines():
         if found := ENTRY.fullmatch(line):
             names = found["names"]
             entries[names] = found["meaning"]
