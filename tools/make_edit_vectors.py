@@ -27,7 +27,7 @@ from world2minecraft.editing.scene import SceneDraft, Tools, parse_command, runs
 from world2minecraft.editing.scene.cell_patch import box_cells, cells_of_runs
 from world2minecraft.editing.scene.object_conversion import connected_component
 
-TARGET = Path(__file__).parents[1] / "tests" / "forge" / "vectors"
+TARGET = Path(__file__).parents[1] / "tests" / "sceneforge" / "vectors"
 SHAPES = ((1, 1, 1), (4, 3, 2), (2, 5, 3), (1, 7, 1))
 REFUSED = ([[0, 0]], [[-1, 2]], [[20, 5]], [[0, 3], [2, 2]], [[0, 1, 2]])
 COMMANDS: tuple[dict[str, Any], ...] = (

@@ -117,7 +117,7 @@ def test_the_text_of_a_good_scan(whole):
         "  route     depth and poses are used as stated: about 10 s\n"
         "  colour    160x120, focal length 130 px\n"
         "  depth     160x120, focal length 130 px, millimetres, median 2.1 m\n"
-        "  poses     24 valid, 0 lost, camera positions span 1.1 m\n"
+        "  poses     24 valid, 0 lost, camera positions span 1.0 m\n"
         f"  room      about {' x '.join(f'{side:.1f}' for side in whole.room_size_m)} m\n"
         "  ok        floor, ceiling and all four walls were detected\n"
         "  ok        all 24 sampled images are sharp\n"
@@ -331,7 +331,7 @@ def test_one_matrix_is_reported_and_no_room_stops(tmp_path, box_room):
         level_of(posed(tmp_path / "a", box_room, box_room.poses(24), one_matrix=True), "one matrix")
         == "ok"
     )
-    huge = posed(tmp_path / "b", box_room, box_room.poses(24), depth_unit="0.00028")
+    huge = posed(tmp_path / "b", box_room, box_room.poses(24), depth_unit="0.0002")
     assert level_of(huge, "room") == "stop"
     assert huge.room_size_m is None
 

@@ -70,7 +70,7 @@ def test_damaged_photos_are_left_out_and_listed(tmp_path):
     assert all(photo.camera_guessed and photo.camera_to_scan is None for photo in photos)
     assert list(photos.damaged) == ["1", "odd"]
     assert "copy the file again" in photos.damaged["1"]
-    assert "no uniform scale" in photos.damaged["odd"]
+    assert "another aspect ratio than 60x60" in photos.damaged["odd"]
 
 
 def test_photos_of_unknown_lenses_have_no_camera():

@@ -78,7 +78,7 @@ def test_screenshots_become_a_tour_file(world, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "text"),
     [
-        (["--at", "feet"], 2, "--at, --poses and --pattern need --screenshots DIR"),
+        (["--at", "feet"], 2, "--at, --poses and --pattern require --screenshots DIR"),
         (["--screenshots", "."], 2, "--at feet (as shown by F3 and most mods) or --at eye"),
         (["--screenshots", "none", "--at", "eye"], 3, "expected a folder of screenshots"),
         (["--count", "0"], 2, "the number of views must be 1 or more, got 0"),

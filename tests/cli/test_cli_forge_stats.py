@@ -89,7 +89,7 @@ def test_the_log_is_whole_after_its_lines_were_lost(scene, capsys):
     ("words", "code", "reason"),
     [
         (["nowhere"], 3, "nowhere: no edits found; open the scene with w2m forge first"),
-        (["nowhere", "--csv", "--json"], 2, "exclude each other; give one"),
+        (["nowhere", "--csv", "--json"], 2, "use only one of"),
     ],
 )
 def test_what_cannot_be_told_is_said(tmp_path, monkeypatch, capsys, words, code, reason):

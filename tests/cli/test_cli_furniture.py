@@ -71,7 +71,7 @@ def test_nothing_is_replaced_unless_it_is_said(own, volume, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
-        (("add", "none.schem", "--class", "chair", "--blocks-per-metre", 1), 3, "is not there"),
+        (("add", "none.schem", "--class", "chair", "--blocks-per-metre", 1), 3, ": not found"),
         (("add", "x.schem", "--class", "chair", "--blocks-per-metre", 1, "--name", "../x"), 2,
          "a furniture name must start with a letter"),
         (("show", "bathtup"), 2, "no template is named 'bathtup'; did you mean 'bathtub'?"),

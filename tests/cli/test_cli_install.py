@@ -89,7 +89,7 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
     ("words", "code", "reason"),
     [
         (["install"], 2, "no world given; add the run folder, as in w2m install OUT"),
-        (["install", "{out}"], 2, "no game found; give the saves folder of one with --saves"),
+        (["install", "{out}"], 2, "no game found; use --saves DIR to name a saves folder"),
         (
             ["install", "{home}", "--saves", "{home}"],
             3,

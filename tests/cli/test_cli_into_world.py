@@ -160,7 +160,7 @@ def test_force_brings_the_old_files_back(schem, world):
             2,
             "contains blocks, but --out requires a room; use w2m convert",
         ),
-        (["nothing.npz", "--into", "{world}", "--at", "1", "70", "3"], 3, "nothing.npz: is not"),
+        (["nothing.npz", "--into", "{world}", "--at", "1", "70", "3"], 3, "nothing.npz: not found"),
     ],
 )
 def test_what_cannot_be_is_one_line_and_changes_nothing(schem, world, capsys, words, code, reason):

@@ -175,9 +175,9 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["--pose", "1,2,3"], "--pose must be x,y,z,yaw,pitch or x,y,z,yaw,pitch,eye, not '1,2,3'"),
+        (["--pose", "1,2,3"], "--pose must be x,y,z,yaw,pitch or x,y,z,yaw,pitch,eye, got '1,2,3'"),
         (["--pose", "1,2,3,4,95"], "pitch must be -90 (up) to 90 (down) degrees, got 95"),
-        (["--orbit", "--tour"], "--orbit and --tour exclude each other; give one of them"),
+        (["--orbit", "--tour"], "--orbit and --tour exclude each other; use only one of them"),
         (["--orbit", "--pose", "1,2,3,4,5"],
          "--orbit and --pose exclude each other; use only one of them"),
         (["--pose", "1,2,3,4,5", "--frames", "3"],
@@ -187,7 +187,7 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
         (["--vfov", "0"], "the field of view must be above 0 and at most 170 degrees, got 0"),
         (["--frames", "0"], "--frames must be 1 to 1,000,000, got 0"),
         (["--fps", "0"], "--fps must be 1 to 240, got 0"),
-        (["--box", "1,2,3"], "--box must be six integers x0,y0,z0,x1,y1,z1, not '1,2,3'"),
+        (["--box", "1,2,3"], "--box must be six integers x0,y0,z0,x1,y1,z1, got '1,2,3'"),
         (["--box", "1,2,3,1,5,6"],
          "--box must have x0 < x1, y0 < y1 and z0 < z1, got '1,2,3,1,5,6'"),
         (["--box", "100,0,0,101,1,1"],
@@ -234,10 +234,10 @@ def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
 @pytest.mark.parametrize(
     ("size", "text"),
     [
-        ("big", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, not 'big'"),
-        ("-3x4", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, not '-3x4'"),
-        ("0x4", "invalid camera: width_px must be 1 to 20000, not 0"),
-        ("99999x4", "invalid camera: width_px must be 1 to 20000, not 99999"),
+        ("big", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got 'big'"),
+        ("-3x4", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got '-3x4'"),
+        ("0x4", "invalid camera: width_px must be 1 to 20000, got 0"),
+        ("99999x4", "invalid camera: width_px must be 1 to 20000, got 99999"),
         ("9000x9000", "9000x9000 with --samples 2 is too large; the limits are 64,000,000 "
                       "samples in total and 20,000 pixels per side"),
     ],

@@ -24,7 +24,10 @@ def test_a_room_is_written_and_can_be_read_back(tmp_path, capsys):
         (["--kind", "kitchn"], "no room kind is named 'kitchn'; did you mean 'kitchen'?"),
         (["--shape", "round"], "no room shape is named 'round'; known: box, columns, cut, ell"),
         (["--rooms", "5"], "--rooms and --storeys apply to a house; add --house"),
-        (["--house", "--kind", "bed"], "--kind and --shape are for a single room; leave them out"),
+        (
+            ["--house", "--kind", "bed"],
+            "--kind and --shape apply to a single room; omit them or --house",
+        ),
         (["--house", "--rooms", "2"], "rooms must be from 3 to 14 on 1 storey, got 2"),
         (["--house", "--storeys", "0"], "storeys must be 1 or 2, got 0"),
         (["--seed", "-1"], "seed must be 0 or more, got -1"),

@@ -27,7 +27,7 @@ def test_a_prefix_selects_a_group(capsys):
         "clean.floater_cells",
         "clean.hole_m",
     ]
-    assert lines[1].startswith("    A part joined to nothing")
+    assert lines[1].startswith("    Number of cells below which an isolated part")
 
 
 def test_a_prefix_may_be_a_single_key():

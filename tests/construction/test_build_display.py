@@ -253,7 +253,7 @@ def test_an_old_game_is_refused(tmp_path, monkeypatch):
     from world2minecraft.minecraft.versions import GameVersion
 
     monkeypatch.setattr(outputs, "game_version", lambda name: GameVersion(name, 2975, 9))
-    with pytest.raises(UsageError, match=r"choose build\.style=blocks"):
+    with pytest.raises(UsageError, match=r"use build\.style=blocks"):
         write_build(tmp_path, built(), mc_version="1.18.2")
     assert not list(tmp_path.iterdir())
 

@@ -391,7 +391,7 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
     assert cli.run(["dataset", "verify", data]) == 3
     out, err = capsys.readouterr()
     assert "fault: shards/stray.txt: unexpected file" in out
-    assert "has 1 fault; delete the shards that are listed" in err
+    assert "has 1 fault; delete the listed shards" in err
 
 
 @pytest.mark.parametrize(
@@ -410,7 +410,7 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
         (["--worlds", "gone"], "gone: not a folder; --worlds needs", 3),
         (["--houses", "2", "--camera", "nyuu"], "no camera is named 'nyuu'; did you mean 'nyu'", 2),
         (["--houses", "2", "--size", "big"], "--size must be WIDTHxHEIGHT in pixels", 2),
-        (["--houses", "2", "--voxel", "big"], "--voxel is metres, such as 0.08, or block", 2),
+        (["--houses", "2", "--voxel", "big"], "--voxel must be a size in metres or 'block'", 2),
         (["--houses", "2", "--region", "cube"], "no kind of region is named 'cube'", 2),
         (
             ["--houses", "2", "--image-format", "gif"],

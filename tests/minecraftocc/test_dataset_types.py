@@ -23,7 +23,7 @@ def test_centres_lie_in_the_middle_of_cells():
 def test_a_region_stays_upright():
     tilted = np.eye(4)
     tilted[1:3, 1:3] = [[0, -1], [1, 0]]
-    with pytest.raises(ValueError, match="keep z up"):
+    with pytest.raises(ValueError, match="keep the z axis pointing up"):
         LabelRegion((2, 2, 2), 0.08, tilted)
 
 

@@ -249,15 +249,15 @@ def test_plans_that_cannot_be(count, text):
     [
         (
             {"yaw_shares": (0, 0, 0)},
-            "numbers of 0 or more, not all 0, got (0, 0, 0)",
+            "yaw_shares must be three numbers of 0 or more, not all 0, got (0, 0, 0)",
         ),
         (
             {"eye_m": (1.5, 1.2)},
-            "0.3 to 1.75 in ascending order, got (1.5, 1.2)",
+            "eye_m must be two heights from 0.3 to 1.75 in ascending order, got (1.5, 1.2)",
         ),
         (
             {"pitch_deg": (-70, 0)},
-            "-60 to 60 in ascending order, got (-70, 0)",
+            "pitch_deg must be two angles from -60 to 60 in ascending order, got (-70, 0)",
         ),
         ({"spacing_m": 2.0}, "spacing_m must be from 0.05 to 0.6, got 2"),
     ],
@@ -299,7 +299,7 @@ def test_feet_are_lifted_to_the_eye_of_the_scale(tmp_path):
     (view,) = read_views(path, block_to_room(np.zeros(2), 4.0))
     assert view.camera_to_room[2, 3] == pytest.approx(1.62) and view.tour_id == "t000"
     path.write_text('{"x": 1, "y": 64, "z": 2, "yaw": 0, "pitch": 0, "frame": "first"}\n')
-    with pytest.raises(DamagedFileError, match="line 1 is no pose"):
+    with pytest.raises(DamagedFileError, match="line 1 is not a valid pose"):
         read_views(path, block_to_room(np.zeros(2), 4.0))
 
 

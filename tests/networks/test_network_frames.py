@@ -94,7 +94,7 @@ def test_what_cannot_be_a_frame_says_why():
     with pytest.raises(InputError, match="has no image"):
         make_frame(replace(SAMPLE, colour=None), rule)
     bent = replace(SAMPLE.camera, distortion=(0.1, 0.0, 0.0, 0.0, 0.0))
-    with pytest.raises(InputError, match="its lens distorts"):
+    with pytest.raises(InputError, match="has lens distortion"):
         make_frame(replace(SAMPLE, camera=bent), rule)
     odd = replace(SAMPLE.occ.region, voxel_m=0.1)
     with pytest.raises(InputError, match="0.1 m cannot be converted to 30x30x18 cells"):

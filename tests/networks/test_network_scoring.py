@@ -56,7 +56,7 @@ def test_what_a_set_cannot_answer_is_left_out_or_refused():
     scores = protocol_scores(dark, 0.08)
     assert set(scores["left_out"]) == {"ssc", "visible"}
     assert set(scores["protocols"]) == {"monoscene", "iso", "embodied"}
-    with pytest.raises(UsageError, match="protocol visible needs seen, free"):
+    with pytest.raises(UsageError, match="protocol visible requires seen, free"):
         protocol_scores(dark, 0.08, ["visible"])
     with pytest.raises(UsageError, match="no frames to evaluate"):
         protocol_scores([], 0.08)
@@ -214,7 +214,7 @@ def test_single_files_and_folders_of_bins_are_scored(tmp_path, capsys):
     one, found = SAMPLES[0].key, tmp_path / "s.json"
     words = ["evaluate", "occupancy", tmp_path / "said" / f"{one}.npz", folder / f"{one}.bin"]
     code, out = told([*words, "--json", found], capsys)
-    assert code == 0 and "ssc left out" in out.out  # There is no depth beside it.
+    assert code == 0 and "ssc skipped" in out.out  # There is no depth beside it.
     micro = json.loads(found.read_text())["protocols"]["monoscene"]["micro"]
     assert (micro["iou"], micro["miou_present_classes"]) == (1, 1)
     code, out = told(["evaluate", "occupancy", tmp_path / "said", folder, "--json", found], capsys)
@@ -228,7 +228,7 @@ def test_single_files_and_folders_of_bins_are_scored(tmp_path, capsys):
     [
         (["train"], 2, "no network; give its name, such as w2m train monoscene --data DIR"),
         (["train", "monoscene"], 2, "no training data; add --data DIR"),
-        (["train", "x", "--data", "d", "--image", "big"], 2, "--image is WIDTHxHEIGHT"),
+        (["train", "x", "--data", "d", "--image", "big"], 2, "--image must be WIDTHxHEIGHT"),
         (["train", "x", "--data", "d", "--preset", "8"], 2, "no preset is named '8'"),
         (["evaluate", "occupancy", "gone", "."], 3, "gone: not found"),
     ],

@@ -234,8 +234,8 @@ def test_what_is_no_csv_is_told(tmp_path):
     ("text", "reason"),
     [
         ("", "contains no poses; each line needs x, y, z, yaw and pitch"),
-        ("{", "line 1 is no JSON"),
-        ("\n[1]", "line 2 is no JSON object"),
+        ("{", "line 1 is not valid JSON"),
+        ("\n[1]", "line 2 is not a JSON object"),
         ('{"x": 1, "y": 2, "z": 3, "pitch": 4}', "line 1 does not contain yaw"),
         ('{"x": 1, "y": 2, "z": 3, "yaw": "north", "pitch": 4}',
          "line 1 is not a valid pose (could not convert string to float: 'north')"),
@@ -243,7 +243,7 @@ def test_what_is_no_csv_is_told(tmp_path):
          "line 1 is not a valid pose (pitch must be -90 (up) to 90 (down) degrees, got 100)"),
         (json.dumps({"x": 1, "y": 2, "z": 3, "yaw": 0, "pitch": 0, "width": 1e9, "height": 4,
                      "vertical_fov_deg": 70}),
-         "line 1 is not a valid pose (invalid camera: width_px must be 1 to 20000, not "
+         "line 1 is not a valid pose (invalid camera: width_px must be 1 to 20000, got "
          "1000000000)"),
     ],
 )  # fmt: skip

@@ -173,7 +173,7 @@ def test_nothing_is_said_of_what_is_not_known():
 def test_a_process_fails_with_its_one_line(jobs, tmp_path):
     work = run_in_subprocess("survey", capture=str(tmp_path / "none"), folder=str(tmp_path))
     state = jobs.wait(jobs.start("Look", work))
-    assert (state.state, state.note) == ("failed", f"{tmp_path / 'none'}: is not there")
+    assert (state.state, state.note) == ("failed", f"{tmp_path / 'none'}: not found")
 
 
 def test_a_process_is_cut_off(jobs, tmp_path):

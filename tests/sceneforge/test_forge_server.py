@@ -134,7 +134,7 @@ def test_what_cannot_be_done_is_refused_with_one_line(server, script):
         say(page, type="dance", seq=4)
         assert heard(page)["error"] == "unknown message type 'dance'"
         say(page, type="do", seq=5)
-        assert heard(page)["error"].startswith("a command is an object")
+        assert heard(page)["error"].startswith("a command must be an object")
 
 
 def test_without_a_room_the_page_starts_and_the_api_says_so():

@@ -453,7 +453,7 @@ def _stance(start: Sequence[float] | None) -> "Stance | None":
         return None
     if len(start) not in (3, 4) or not all(isfinite(one) for one in start):
         raise UsageError(
-            f"--start is X,Y,Z or X,Y,Z,YAW, not {','.join(f'{one:g}' for one in start)!r}"
+            f"--start must be X,Y,Z or X,Y,Z,YAW, got {','.join(f'{one:g}' for one in start)!r}"
         )
     return Stance(*start)
 

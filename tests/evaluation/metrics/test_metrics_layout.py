@@ -175,7 +175,7 @@ def test_nothing_floats_in_an_empty_grid():
 
 
 def test_an_outline_lies_in_a_plane():
-    with pytest.raises(ValueError, match="floor_polygon_m must be"):
+    with pytest.raises(ValueError, match="floor_polygon_m must have shape"):
         out_of_bounds([], np.zeros((4, 3)))
 
 

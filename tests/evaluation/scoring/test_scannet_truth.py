@@ -242,7 +242,7 @@ def tiny_scene(folder, labels=(2, 2, 2), **files):
 @pytest.mark.parametrize(
     ("files", "message"),
     [
-        ({"txt": None}, f"{NAME}.txt: states no axisAlignment; scenes of the train and val splits"),
+        ({"txt": None}, f"{NAME}.txt: axisAlignment not found; scenes of the train and val splits"),
         ({"txt": "axisAlignment = 1 2 3\n"}, "axisAlignment must contain 16 numbers"),
         ({"txt": "axisAlignment = -1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"}, "must contain 16 numbers"),
         ({"segments": None}, "--type _vh_clean_2.0.010000.segs.json"),

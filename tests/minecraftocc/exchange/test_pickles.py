@@ -163,7 +163,7 @@ def test_missing_and_large_files_are_named(tmp_path):
     with pytest.raises(InputError, match="cannot be read"):
         read_pickle(tmp_path / "none.pkl")
     (tmp_path / "x.pkl").write_bytes(dump_pickle(VALUES))
-    with pytest.raises(LimitError, match="at most 10"):
+    with pytest.raises(LimitError, match="the limit is 10"):
         read_pickle(tmp_path / "x.pkl", limit_bytes=10)
 
 

@@ -127,7 +127,7 @@ def test_a_model_says_it_again_and_is_checked(folder, capsys):
         assert cli.run([*words, "--jobs", "1"]) == 0
         told = capsys.readouterr().out
         assert "accepted 1 of 3; rejected: invalid characters 1, other turns 1" in told
-        assert "items by the source of their words: 13 llm, 26 template" in told
+        assert "items by source of the instruction: 13 llm, 26 template" in told
         assert len(server.requests) == 4
         assert cli.run([*words, "--jobs", "1"]) == 0  # The walk that has words is not asked for.
         assert len(server.requests) == 4

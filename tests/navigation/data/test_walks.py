@@ -203,5 +203,5 @@ def test_streams_are_read_with_feet_under_their_eyes(tmp_path):
     eye, feet = (frame_of_pose(one, eye_height_blocks(4.0)) for one in read_tour(path))
     assert (feet.stance.y, eye.stance.y) == (70.0, pytest.approx(70.0 - 4 * 1.62))
     path.write_text("{}\n")
-    with pytest.raises(DamagedFileError, match="line 1 has no x"):
+    with pytest.raises(DamagedFileError, match="line 1 does not contain x"):
         read_tour(path)

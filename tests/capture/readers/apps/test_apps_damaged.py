@@ -85,7 +85,7 @@ def test_a_name_that_leaves_the_zip(written, tmp_path, app):
     archive = zipped(written / app, tmp_path / "capture.zip")
     with zipfile.ZipFile(archive, "a") as opened:
         opened.writestr("../../etc/passwd", "x")
-    refused(archive, "leaves it")
+    refused(archive, "unsafe name")
 
 
 @pytest.mark.parametrize("app", WRITERS)
