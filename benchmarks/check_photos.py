@@ -29,12 +29,13 @@ from PIL import Image
 from scipy.spatial import cKDTree
 
 from world2minecraft.capture.readers.capture_json import write_plain
-from world2minecraft.capture.sfm.similarity_transform import align_similarity
+from world2minecraft.capture.sfm.similarity_transform import align_views
 from world2minecraft.core.types import OBSERVED, Camera, View
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.photo_rendering import prepare_photos, take_photo
 
 REACH_VOXELS = 3**0.5 + 0.01
+USUAL_DEPTH_M = 2.0
 
 
 class Cells(NamedTuple):
@@ -121,12 +122,12 @@ def poses_of(capture_file: Path) -> dict[str, np.ndarray]:
 def best_similarity(found: dict[str, np.ndarray], true: dict[str, np.ndarray]) -> np.ndarray:
     """Return the 4x4 similarity that carries found poses to the true ones best.
 
-    True poses may be those of a depth sensor beside the colour camera: where it sits and how it
-    is turned is found with the similarity.
+    Points about two metres in front of the cameras are to coincide: true poses that were computed
+    from bent depth turn too far, and then centres and rotations alone carry no surface well.
     """
     names = sorted(set(found) & set(true))
     poses = (np.array([given[name] for name in names]) for given in (found, true))
-    best = align_similarity(*poses, mounted=len(names) >= 8)
+    best = align_views(*poses, np.full(len(names), USUAL_DEPTH_M))
     similarity = np.eye(4)
     similarity[:3, :3] = best.scale * best.rotation
     similarity[:3, 3] = best.shift_m

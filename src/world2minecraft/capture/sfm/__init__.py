@@ -3,6 +3,17 @@
 from world2minecraft.capture.sfm.incremental_mapping import find_poses
 from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.pose_verification import check_poses
-from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
+from world2minecraft.capture.sfm.similarity_transform import (
+    Similarity,
+    align_similarity,
+    align_views,
+)
 
-__all__ = ["SfmParameters", "Similarity", "align_similarity", "check_poses", "find_poses"]
+__all__ = [
+    "SfmParameters",
+    "Similarity",
+    "align_similarity",
+    "align_views",
+    "check_poses",
+    "find_poses",
+]

@@ -25,11 +25,12 @@ from world2minecraft.capture.sfm.progress import ProgressSteps
 from world2minecraft.capture.sfm.pycolmap_access import PHOTOS, pycolmap_session
 from world2minecraft.capture.sfm.results import (
     check_enough,
+    depths_seen,
     explain_left_out,
     median_depth,
     to_sparse_scene,
 )
-from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
+from world2minecraft.capture.sfm.similarity_transform import Similarity, align_views
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera, SparseScene
@@ -37,9 +38,6 @@ from world2minecraft.core.types.photos import PhotoStream
 
 MIN_INLIERS = 30  # Points that a pose found again must agree with; COLMAP's own least.
 MIN_POINTS = 50  # Fewer say nothing of poses.
-MIN_MOUNTED_POSES = 12  # Poses for the place of another sensor on the device to be sought.
-MAX_MOUNT_RATIO = 0.75  # It must bring the centres so much nearer (0.55 on the real kitchen),
-MAX_MOUNT_SHARE = 0.2  # and be no farther than so many times the depth that is seen.
 MIN_POINTS_PER_PHOTO = 80  # Points that a photo sees on average, to be free of what is stated,
 NEARLY_RIGHT_PX = 4.0  # unless that is off by more. Bare generated rooms: 20 and 2 px.
 MAX_REFINED_ERROR_PX = 1.5  # Refined poses that are off by more have run away.
@@ -289,7 +287,6 @@ def _refine_stated(
         "moved_median_mm": round(1000 * float(np.median(moved)), 3),
         "turned_median_deg": round(float(np.median(change.off_deg)), 4),
         "scale_correction": _scale_correction(measured, found, change),
-        "mount_mm": [round(1000 * float(part), 1) for part in change.mount_m],
         **_focal_facts(stated, found),
     }
     notes.append(
@@ -348,13 +345,7 @@ def _align_to_stated(stated: StatedPoses, found: SparseModel) -> tuple[Similarit
     given = np.array([found.poses[i] for i in shared]).reshape(-1, 4, 4)
     wanted = np.array([stated.poses[i] for i in shared]).reshape(-1, 4, 4)
     try:
-        plain = align_similarity(given, wanted)
-        if len(shared) < MIN_MOUNTED_POSES:
-            return plain, set(shared)
-        mounted = align_similarity(given, wanted, mounted=True)
-        better = np.median(mounted.off_m) < MAX_MOUNT_RATIO * np.median(plain.off_m)
-        near = np.linalg.norm(mounted.mount_m) < MAX_MOUNT_SHARE * plain.scale * median_depth(found)
-        return mounted if better and near else plain, set(shared)
+        return align_views(given, wanted, depths_seen(found, shared)), set(shared)
     except ValueError as error:
         raise CaptureError(
             PHOTOS,

@@ -172,11 +172,23 @@ def to_sparse_scene(
 
 def median_depth(found: SparseModel) -> float:
     """Return the median depth of the points that the photos observe."""
-    depths = []
-    for i, pose in sorted(found.poses.items()):
-        seen = found.points[found.track_point[found.track_photo == i]]
-        depths.append((seen - pose[:3, 3]) @ pose[:3, 2])
-    return float(np.median(np.concatenate(depths)))
+    return float(np.median(np.concatenate([_depths(found, i) for i in sorted(found.poses)])))
+
+
+def depths_seen(found: SparseModel, photos: list[int]) -> np.ndarray:
+    """Return the median depth of the points that each photo observes, float64 [N].
+
+    Photos without points get the median of all.
+    """
+    usual = median_depth(found)
+    each = [_depths(found, i) for i in photos]
+    return np.array([float(np.median(depths)) if len(depths) else usual for depths in each])
+
+
+def _depths(found: SparseModel, photo: int) -> np.ndarray:
+    pose = found.poses[photo]
+    seen = found.points[found.track_point[found.track_photo == photo]]
+    return (seen - pose[:3, 3]) @ pose[:3, 2]
 
 
 def median_triangulation_angle_deg(found: SparseModel) -> float:
