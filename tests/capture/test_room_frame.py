@@ -152,7 +152,7 @@ def test_up_stays_near_what_is_known(surfaces):
 
 
 @pytest.mark.parametrize("top_m", [1.2, 0.8])
-def test_a_room_without_its_upper_half_is_taken_with_a_lower_bound(surfaces, top_m):
+def test_a_room_without_its_upper_half_gets_a_lower_bound(surfaces, top_m):
     """Without a ceiling the capture ends there; that does not make the unit wrong."""
     surface = surfaces[0][1]
     low = surface.subset(surface.points_m[:, 2] < top_m)

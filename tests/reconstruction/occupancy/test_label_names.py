@@ -133,7 +133,7 @@ def test_a_table_of_ones_own_is_read_again_when_it_was_edited(tmp_path):
         ("chairs: [stool]", "no class is named 'chairs'; did you mean 'chair'"),
         ("chair: stool", "the entry 'chair' must be a list of label names"),
         ("[", "is not valid YAML"),
-        ("chair: &a [stool]\nsofa: *a", "aliases .* are not read"),
+        ("chair: &a [stool]\nsofa: *a", "aliases .* are not supported"),
         ("", "must map classes to label names, such as chair:"),
         ("empty: [air]", "no class is named 'empty'"),
     ],
