@@ -113,7 +113,11 @@ def test_only_its_config_is_read_before_the_first_picture(folders, tmp_path):
             b'{"model_type": "bert"}',
             "supported segmentation model: bert; supported: beit",
         ),
-        ("preprocessor_config.json", b'{"resample": 99}', "preprocessor_config.json is not valid: 99"),
+        (
+            "preprocessor_config.json",
+            b'{"resample": 99}',
+            "preprocessor_config.json is not valid: 99",
+        ),
     ],
 )
 def test_what_is_no_segmenter_is_refused_in_one_line(folders, tmp_path, file, content, reason):
