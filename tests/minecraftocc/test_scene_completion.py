@@ -39,6 +39,15 @@ class Empty:
         return chance
 
 
+class Solid(Empty):
+    """Stands for a network that finds every unseen cell to be a table."""
+
+    def chances(self, sight: Sight):
+        chance = np.full((12, *sight.log_odds.shape), 0.01, np.float32)
+        chance[8] = 0.89
+        return chance
+
+
 @pytest.fixture(scope="module")
 def depth_m():
     """A floor and a wall ahead."""
@@ -84,7 +93,8 @@ def test_cells_lie_where_the_picture_shows_them(depth_m):
     frame = complete_frame(depth_m, PLACE, model=model)  # type: ignore[arg-type]
     assert frame.labels.shape == (60, 60, 36)
     solid = frame.labels > 0
-    assert (frame.labels[solid] == 8).all()
+    assert (frame.labels[solid & frame.observed] == 8).all()
+    assert (frame.labels[solid & ~frame.observed] == 2).all()
     wall = int(WALL_M / 0.08)
     assert solid[25:35, wall, 10:20].all()
     assert solid[25:35, 36:46, 0].all()
@@ -110,6 +120,21 @@ def test_the_floor_is_found_though_the_world_says_otherwise(depth_m):
         )
     )
     assert floor_of(wall_alone, world_to_grid) == pytest.approx(0.4)
+
+
+def test_nothing_is_filled_beyond_the_wall(depth_m):
+    frame = complete_frame(depth_m, PLACE, model=Solid())  # type: ignore[arg-type]
+    wall = int(WALL_M / 0.08)
+    assert (frame.labels[25:35, wall, 10:20] > 0).all()
+    assert not frame.labels[:, wall + 2 :].any()
+
+
+def test_without_a_floor_in_view_the_ground_is_not_filled(depth_m):
+    """The image ends above the foot of the wall, and the shipped network completes it."""
+    seen = np.where(np.arange(480)[:, None] < 360, depth_m, 0).astype(np.float32)
+    frame = complete_frame(seen, PLACE)
+    in_front = frame.labels[:, 5:46]
+    assert (in_front[:, :, 2:9] > 0).mean() < 0.02
 
 
 def test_depth_codes_tell_themselves(depth_m, tmp_path):

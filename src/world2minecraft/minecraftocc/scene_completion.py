@@ -3,7 +3,9 @@
 The grid is defined by a file. Of an SSCNet ``.bin``, only the first 76 bytes are read, which
 contain the origin of the grid and the camera pose; the labels are never read. The depth image is
 fused into the grid and the completion network classifies each cell. Observed surfaces stay
-occupied; all other cells get the most likely label.
+occupied, and the floor and the walls continue behind furniture. Other hidden cells get the most
+likely label if they are in the room, and are empty beyond it: the network was never trained on what
+lies behind walls.
 """
 
 from dataclasses import dataclass
@@ -11,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import npz_array_names, read_npz
 from world2minecraft.core.types import Camera, FusedEvidence, PointEvidence, View
@@ -23,9 +26,19 @@ from world2minecraft.reconstruction.fusion import (
     extract_grid,
     remove_floaters,
 )
+from world2minecraft.reconstruction.layout.parameters import GeometricParameters
+from world2minecraft.reconstruction.layout.room_space import RoomSpace, room_space
+from world2minecraft.reconstruction.layout.storeys import Storey
+from world2minecraft.reconstruction.layout.structure import structure_of
+from world2minecraft.reconstruction.layout.surface_cells import surface_of
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 from world2minecraft.reconstruction.semantics.completion_channels import sight_of
-from world2minecraft.reconstruction.semantics.completion_labeller import CompletionModel, likeliest
+from world2minecraft.reconstruction.semantics.completion_labeller import (
+    CompletionModel,
+    hint_of,
+    likeliest,
+)
+from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 
 SHAPE = (60, 60, 36)  # x, y, z; a file's own order is x, z up, y.
 FILE_AXES = (0, 2, 1)
@@ -35,6 +48,12 @@ PLAUSIBLE_M = (0.4, 10.0)  # Where the middle of a room's depths lies, and its f
 CODES = ("auto", "rotated", "mm", "8000")
 UP_COSINE = 0.9  # A floor's normal.
 FLOOR_SHARE = 0.2  # Of the largest level's points: as much as a floor half hidden shows.
+MIN_FLOOR_POINTS = 200
+# The plane z = 0 of the world is the floor if a camera stands on it and almost nothing is below.
+CAMERA_HEIGHT_M = (0.3, 2.6)
+BELOW_M, BELOW_SHARE = 0.25, 0.02
+ALONG_AXES_DEG = 5.0  # The geometric labeller finds walls up to this angle to the axes.
+LEVEL_COSINE = 0.2  # Between a wall's normal and up.
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,11 +205,39 @@ def complete_frame(
     points = DepthPredictor(FAR_M).lift(view)
     evidence = _in_grid(points, world_to_grid)
     grid = remove_floaters(extract_grid(evidence), CleaningParameters())
-    sight = sight_of(grid, evidence, floor_m=floor_of(points, world_to_grid))
+    storey = Storey(floor_of(points, world_to_grid), 0, SHAPE[2])
+    hint = None
+    if _along_axes(points, world_to_grid):
+        hint = hint_of(*GeometricLabeller().traced(grid, evidence, (storey,)))
+    sight = sight_of(grid, evidence, hint, storey.floor_z_m)
     chance = (model or CompletionModel()).chances(sight)
-    labels = likeliest(chance, sight.log_odds)
+    surface = storey.surface(surface_of(grid, evidence))
+    space = room_space(structure_of(surface, GeometricParameters().structure))
+    labels = _completed(likeliest(chance, sight.log_odds), sight.log_odds == 0, space)
     confidence = np.take_along_axis(chance, labels[None].astype(np.int64), axis=0)[0]
     return CompletedFrame(labels, confidence, grid.source > 0)
+
+
+def _completed(labels: np.ndarray, hidden: np.ndarray, space: RoomSpace) -> np.ndarray:
+    """Return labels whose hidden cells agree with the space of the room, uint8 [60, 60, 36]."""
+    beyond = ~space.cells | ((labels == SemanticClass.FLOOR) & ~space.floor)
+    result = np.where(hidden & beyond, np.uint8(SemanticClass.EMPTY), labels)
+    result[hidden & space.floor] = SemanticClass.FLOOR
+    result[hidden & space.wall] = SemanticClass.WALL
+    return result
+
+
+def _along_axes(points: PointEvidence, world_to_grid: np.ndarray) -> bool:
+    """Return whether most upright surface is square to the axes of the grid."""
+    if points.normals is None:
+        return False
+    normals = points.normals @ world_to_grid[:3, :3].astype(np.float32).T
+    upright = (np.abs(normals[:, 2]) < LEVEL_COSINE) & normals.any(axis=1)
+    if not upright.any():
+        return False
+    # Four times the angle is the same for all four directions.
+    turned = np.exp(4j * np.arctan2(normals[upright, 1], normals[upright, 0])).mean()
+    return bool(abs(np.degrees(np.angle(turned)) / 4) <= ALONG_AXES_DEG)
 
 
 def _in_grid(points: PointEvidence, world_to_grid: np.ndarray) -> FusedEvidence:
@@ -219,23 +266,27 @@ def _in_grid(points: PointEvidence, world_to_grid: np.ndarray) -> FusedEvidence:
 def floor_of(points: PointEvidence, world_to_grid: np.ndarray) -> float:
     """Estimate the height of the floor above the lowest face of the grid in metres.
 
-    The floor is the lowest horizontal surface with at least ``FLOOR_SHARE`` as many upward-facing
-    points as the largest one. If there are too few points, the plane z = 0 of the world is used,
-    which is the floor in NYUv2.
+    The plane z = 0 of the world is the floor in NYUv2, whether in view or not, and more precise
+    than the depth of one image. In a world with surfaces below this plane, or with a camera that
+    cannot stand on it, the floor is the lowest horizontal surface with at least ``FLOOR_SHARE`` as
+    many upward-facing points as the largest one.
     """
     turn, shift = world_to_grid[:3, :3], world_to_grid[:3, 3]
     world_floor_m = float(shift[2])
+    heights = points.points_m @ turn[2].astype(np.float32) + np.float32(shift[2])
+    eye_m = float(turn[2] @ points.camera_m + shift[2])
+    stands = CAMERA_HEIGHT_M[0] <= eye_m - world_floor_m <= CAMERA_HEIGHT_M[1]
+    if stands and np.mean(heights < world_floor_m - BELOW_M) < BELOW_SHARE:
+        return world_floor_m
     if points.normals is None:
         return world_floor_m
-    up = points.normals @ turn[2].astype(np.float32) >= UP_COSINE
-    heights = points.points_m[up] @ turn[2].astype(np.float32) + np.float32(shift[2])
-    eye_m = float(turn[2] @ points.camera_m + shift[2])
-    heights = heights[heights < eye_m - 0.5]
-    if len(heights) < 200:
+    level = heights[points.normals @ turn[2].astype(np.float32) >= UP_COSINE]
+    level = level[level < eye_m - 0.5]
+    if len(level) < MIN_FLOOR_POINTS:
         return world_floor_m
-    edges = np.arange(heights.min() - 0.02, heights.max() + 0.06, 0.04)
-    counts = np.histogram(heights, edges)[0]
+    edges = np.arange(level.min() - 0.02, level.max() + 0.06, 0.04)
+    counts = np.histogram(level, edges)[0]
     counts = counts + np.append(counts[1:], 0)
     lowest = int(np.flatnonzero(counts >= FLOOR_SHARE * counts.max())[0])
-    within = heights[(heights >= edges[lowest]) & (heights < edges[lowest] + 0.08)]
+    within = level[(level >= edges[lowest]) & (level < edges[lowest] + 0.08)]
     return float(np.median(within))

@@ -177,7 +177,7 @@ def _line(wall: Wall, structure: Structure) -> np.ndarray:
     """
     surface, run = structure.surface, wall.run
     columns = np.zeros(surface.occupied.shape[:2], bool)
-    layer = _plane_layer(wall, surface)
+    layer = plane_layer(wall, surface)
     high = slice(max(surface.floor_layer + 2, 0), surface.layers_below(run.top_m))
     free = turn_surface(surface.free, run.axis, run.sign)[
         layer, run.span[0] : run.span[1] + 1, high
@@ -187,7 +187,7 @@ def _line(wall: Wall, structure: Structure) -> np.ndarray:
     return columns
 
 
-def _plane_layer(wall: Wall, surface: Surface) -> int:
+def plane_layer(wall: Wall, surface: Surface) -> int:
     """Return the layer of the rotated grid directly behind a wall's face."""
     relief = wall.relief
     inside_m = float(np.median(relief.plane_m)) - relief.edge_m(surface)
@@ -223,7 +223,7 @@ def _position_m(wall: Wall) -> float:
 def _bounds(wall: Wall, region: np.ndarray, surface: Surface) -> bool:
     """Return whether a region is directly in front of a wall."""
     view = turn_surface(region, wall.run.axis, wall.run.sign)
-    layer = _plane_layer(wall, surface)
+    layer = plane_layer(wall, surface)
     before = view[max(layer - 4, 0) : max(layer, 0), wall.run.span[0] : wall.run.span[1] + 1]
     return before.any(axis=0).sum() * surface.voxel_m >= ALONG_M
 

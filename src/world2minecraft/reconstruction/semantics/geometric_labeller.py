@@ -4,6 +4,7 @@ Floor and ceiling are found first, then walls. The remaining cells are cut at ho
 the pieces are classified by rules. Every observed cell keeps a class, except the floor's spill.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 from world2minecraft.reconstruction.layout.parameters import GeometricParameters
-from world2minecraft.reconstruction.layout.storeys import find_storeys
+from world2minecraft.reconstruction.layout.storeys import Storey, find_storeys
 from world2minecraft.reconstruction.layout.structure import structure_of
 from world2minecraft.reconstruction.layout.surface_cells import surface_of
 from world2minecraft.reconstruction.semantics.backrests import classes_with_backs
@@ -39,12 +40,20 @@ class GeometricLabeller:
         return self.traced(grid, evidence)[0]
 
     def traced(
-        self, grid: OccupancyGrid, evidence: FusedEvidence
+        self,
+        grid: OccupancyGrid,
+        evidence: FusedEvidence,
+        storeys: Sequence[Storey] | None = None,
     ) -> tuple[OccupancyGrid, np.ndarray]:
         """Return the result of ``label`` and the cell in which each cell's surface was seen.
 
         The second array is int64 [X, Y, Z]: the flat index of the cell from which a cell of a
         straightened plane was moved, or the cell's own index.
+
+        Args:
+            grid: Cleaned grid.
+            evidence: Evidence of the grid on the same cells.
+            storeys: The storeys, where they are known. By default, they are found from the floors.
 
         Raises:
             ValueError: If grid and evidence do not have the same cells.
@@ -53,7 +62,9 @@ class GeometricLabeller:
         labels = np.array(grid.labels)
         labels[surface.occupied] = SemanticClass.OBJS
         straight = Straightening(surface)
-        for storey in find_storeys(surface, self.parameters.structure):
+        if storeys is None:
+            storeys = find_storeys(surface, self.parameters.structure)
+        for storey in storeys:
             part = straight.storey(storey)
             self._label_storey(part, storey.part(labels))
         return _trusted(straight.applied(grid, labels)), straight.origin
