@@ -317,6 +317,61 @@ def evaluate_network(
     return scores | {"said": str(predicted), "data": str(data), "split": part or "all"}
 
 
+def evaluate_frame(
+    predicted: str | Path,
+    truth: str | Path,
+    *,
+    colour: str | Path | None = None,
+    labels: str | Path | None = None,
+    depth_code: str = "auto",
+) -> dict[str, Any]:
+    """Score the completion of one frame by SSCNet's protocol.
+
+    Only cells in the image are scored: those hidden by the visible surface, and the surface. Cells
+    with the true label 255, which is outside the room in NYUv2, are left out.
+
+    Args:
+        predicted: A depth PNG, which the completion network completes; saved labels (.npz, .npy or
+            .pkl); or the folder of a run of this frame.
+        truth: An SSCNet ``.bin`` file with its depth ``NAME.png``, or an occupancy data set with
+            depth. With several frames, the one with the name of the prediction is used.
+        colour: Photo from the camera of a depth PNG.
+        labels: Folder with MonoScene's preprocessed ``base/``, if it is stored elsewhere. Only for
+            NYUv2.
+        depth_code: Encoding of a depth PNG: ``auto``, ``rotated``, ``mm`` or ``8000``.
+
+    Returns:
+        A dictionary with fractions from 0 to 1. ``["completion"]`` has the IoU, precision and
+        recall over hidden and surface cells, ``["completion_hidden"]`` those over hidden cells
+        alone. ``["miou"]`` is the mean over 11 classes, ``["miou_with_empty"]`` over 12, and
+        ``["miou_present_classes"]`` over those in the ground truth.
+
+    Raises:
+        InputError: If a file is missing or cannot be read.
+        UsageError: If the ground truth has no depth.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> from world2minecraft.api.datasets import build_photo_dataset
+        >>> from world2minecraft.api.networks import evaluate_frame
+        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=1, size=(64, 48))
+        >>> report = w2m.export_dataset(data, tmp / "NPZ", "npz")  # The truth, as predictions.
+        >>> frame = sorted((tmp / "NPZ").glob("*/*.npz"))[0]
+        >>> evaluate_frame(frame, tmp / "DATA")["completion"]["iou"]
+        1.0
+    """
+    from world2minecraft.minecraftocc.importers import open_occupancy
+    from world2minecraft.networks.frame_scoring import frame_scores
+
+    place = Path(predicted)
+    if not place.exists():
+        raise InputError(place, "not found; give a depth PNG, saved labels or a run")
+    known = open_occupancy(truth, labels=labels)
+    photo = None if colour is None else Path(colour)
+    scores = frame_scores(place, known, colour=photo, depth_code=depth_code)
+    return scores | {"predicted": str(predicted), "truth": str(truth)}
+
+
 def scores_latex(scores: dict[str, Any], name: str) -> str:
     """Return scores as rows of a LaTeX table with the paper's columns, one row per protocol.
 

@@ -118,7 +118,7 @@ def summary_lines(source: Path, out: Path, cells: "PredictedCells", grid: Path |
         f"{display_name(n)} {counts[n]:,}" for n in range(1, len(CLASS_NAMES)) if counts[n]
     )
     sides = " x ".join(map(str, cells.labels.shape))
-    next_step = f"w2m evaluate occupancy {out} {grid} --protocol monoscene"
+    next_step = f"w2m evaluate sscnet {out} {grid}"
     if grid is None:
         next_step = f"w2m reconstruct {source} --out OUT     builds a world from the same capture"
     return [

@@ -79,6 +79,7 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
     },
     "Evaluate": {
         "evaluate reconstruction": "Score a reconstruction against ground truth.",
+        "evaluate sscnet": "Score the completion of one frame by SSCNet's protocol.",
         "evaluate scannet": "Create ground truth from a ScanNet scene.",
         "compare layouts": "Score room layouts from this and other methods.",
         "compare build": "Build layouts of other methods as worlds.",
