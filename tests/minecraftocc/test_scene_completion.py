@@ -5,6 +5,7 @@ import pytest
 from PIL import Image
 
 from world2minecraft.cli import run as w2m
+from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.types import View
 from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA, encode_depth
@@ -15,6 +16,7 @@ from world2minecraft.minecraftocc.scene_completion import (
     depth_of_png,
     floor_of,
     read_grid_place,
+    yaw_of_walls,
 )
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
@@ -127,6 +129,28 @@ def test_nothing_is_filled_beyond_the_wall(depth_m):
     wall = int(WALL_M / 0.08)
     assert (frame.labels[25:35, wall, 10:20] > 0).all()
     assert not frame.labels[:, wall + 2 :].any()
+
+
+@pytest.mark.parametrize("turned_deg", [20.0, -40.0])
+def test_nothing_is_filled_beyond_a_wall_oblique_to_the_grid(depth_m, turned_deg):
+    turn = rotation_about_z(turned_deg)
+    place = GridPlace(PLACE.origin_m - [0, 0.8, 0], turn @ POSE)
+    frame = complete_frame(depth_m, place, model=Solid())  # type: ignore[arg-type]
+    centers_m = (np.moveaxis(np.indices((60, 60, 36)), 0, -1) + 0.5) * 0.08 + place.origin_m
+    ahead_m = apply(turn.T, centers_m)[..., 1]
+    assert not frame.labels[ahead_m > WALL_M + 0.16].any()
+    solid = frame.labels > 0
+    assert solid[frame.observed & (np.abs(ahead_m - WALL_M) < 0.04)].mean() > 0.4
+
+
+@pytest.mark.parametrize("turned_deg", [0.0, 20.0, -40.0])
+def test_the_yaw_of_walls_is_that_of_the_grid(depth_m, turned_deg):
+    turned = rotation_about_z(turned_deg)
+    view = View(
+        name="frame", camera_to_scan=turned @ POSE, depth_m=depth_m, depth_camera=NYU_CAMERA
+    )
+    found = yaw_of_walls(DepthPredictor().lift(view), np.eye(4))
+    assert found == pytest.approx(turned_deg, abs=0.5)
 
 
 def test_without_a_floor_in_view_the_ground_is_not_filled(depth_m):

@@ -14,9 +14,10 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import npz_array_names, read_npz
-from world2minecraft.core.types import Camera, FusedEvidence, PointEvidence, View
+from world2minecraft.core.types import Camera, FusedEvidence, OccupancyGrid, PointEvidence, View
 from world2minecraft.core.types.checks import transform
 from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA, decode_depth
 from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES
@@ -52,7 +53,7 @@ MIN_FLOOR_POINTS = 200
 # The plane z = 0 of the world is the floor if a camera stands on it and almost nothing is below.
 CAMERA_HEIGHT_M = (0.3, 2.6)
 BELOW_M, BELOW_SHARE = 0.25, 0.02
-ALONG_AXES_DEG = 5.0  # The geometric labeller finds walls up to this angle to the axes.
+UNDER_M = 0.02  # Below the floor's top, in the floor.
 LEVEL_COSINE = 0.2  # Between a wall's normal and up.
 
 
@@ -205,17 +206,49 @@ def complete_frame(
     points = DepthPredictor(FAR_M).lift(view)
     evidence = _in_grid(points, world_to_grid)
     grid = remove_floaters(extract_grid(evidence), CleaningParameters())
-    storey = Storey(floor_of(points, world_to_grid), 0, SHAPE[2])
-    hint = None
-    if _along_axes(points, world_to_grid):
-        hint = hint_of(*GeometricLabeller().traced(grid, evidence, (storey,)))
-    sight = sight_of(grid, evidence, hint, storey.floor_z_m)
+    floor_m = floor_of(points, world_to_grid)
+    hint, space = _read_structure(points, grid, evidence, floor_m)
+    sight = sight_of(grid, evidence, hint, floor_m)
     chance = (model or CompletionModel()).chances(sight)
-    surface = storey.surface(surface_of(grid, evidence))
-    space = room_space(structure_of(surface, GeometricParameters().structure))
     labels = _completed(likeliest(chance, sight.log_odds), sight.log_odds == 0, space)
     confidence = np.take_along_axis(chance, labels[None].astype(np.int64), axis=0)[0]
     return CompletedFrame(labels, confidence, grid.source > 0)
+
+
+def _read_structure(
+    points: PointEvidence, grid: OccupancyGrid, evidence: FusedEvidence, floor_m: float
+) -> tuple[np.ndarray, RoomSpace]:
+    """Return the geometric labels of the surface, uint8 [60, 60, 36], and the space of the room.
+
+    The axes of a frame's grid are often those of its camera. The structure is found in cells along
+    the walls, from which the cells of the grid take what lies at their surface point or centre.
+    """
+    grid_to_room = rotation_about_z(-yaw_of_walls(points, evidence.scan_to_room))
+    grid_to_room[2, 3] = -floor_m
+    turned = EvidenceMap(grid_to_room @ evidence.scan_to_room)
+    turned.add(points)
+    along = turned.fused()
+    room = remove_floaters(extract_grid(along), CleaningParameters())
+    storey = Storey(0.0, 0, room.shape[2])
+    labelled = hint_of(*GeometricLabeller().traced(room, along, (storey,)))
+    found = room_space(structure_of(surface_of(room, along), GeometricParameters().structure))
+    centers_m = apply(grid_to_room, (np.moveaxis(np.indices(SHAPE), 0, -1) + 0.5) * VOXEL_M)
+    cells, wall = (_values_at(room, mask, centers_m) for mask in (found.cells, found.wall))
+    floor = np.zeros(SHAPE, bool)
+    layer = int(np.floor((floor_m - UNDER_M) / VOXEL_M))
+    if 0 <= layer < SHAPE[2]:
+        floor[:, :, layer] = cells[:, :, layer] = cells.any(axis=2)
+    points_m = apply(grid_to_room, surface_of(grid, evidence).points_m.astype(np.float64))
+    hint = np.where(grid.occupied, _values_at(room, labelled, points_m), np.uint8(0))
+    return hint, RoomSpace(cells, floor, wall)
+
+
+def _values_at(room: OccupancyGrid, values: np.ndarray, points_m: np.ndarray) -> np.ndarray:
+    """Return the values of the cells that contain points [..., 3]; 0 outside the room's cells."""
+    cells = np.floor((points_m - room.origin_m) / room.voxel_m).astype(np.int64)
+    inside = ((cells >= 0) & (cells < room.shape)).all(axis=-1)
+    index = tuple(np.moveaxis(np.where(inside[..., None], cells, 0), -1, 0))
+    return np.where(inside, values[index], values.dtype.type(0))
 
 
 def _completed(labels: np.ndarray, hidden: np.ndarray, space: RoomSpace) -> np.ndarray:
@@ -227,17 +260,17 @@ def _completed(labels: np.ndarray, hidden: np.ndarray, space: RoomSpace) -> np.n
     return result
 
 
-def _along_axes(points: PointEvidence, world_to_grid: np.ndarray) -> bool:
-    """Return whether most upright surface is square to the axes of the grid."""
+def yaw_of_walls(points: PointEvidence, world_to_grid: np.ndarray) -> float:
+    """Return the angle from the axes of the grid to the walls, -45 to 45 degrees about z."""
     if points.normals is None:
-        return False
+        return 0.0
     normals = points.normals @ world_to_grid[:3, :3].astype(np.float32).T
     upright = (np.abs(normals[:, 2]) < LEVEL_COSINE) & normals.any(axis=1)
     if not upright.any():
-        return False
+        return 0.0
     # Four times the angle is the same for all four directions.
     turned = np.exp(4j * np.arctan2(normals[upright, 1], normals[upright, 0])).mean()
-    return bool(abs(np.degrees(np.angle(turned)) / 4) <= ALONG_AXES_DEG)
+    return float(np.degrees(np.angle(turned)) / 4)
 
 
 def _in_grid(points: PointEvidence, world_to_grid: np.ndarray) -> FusedEvidence:
