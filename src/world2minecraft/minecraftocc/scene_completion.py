@@ -54,6 +54,7 @@ MIN_FLOOR_POINTS = 200
 CAMERA_HEIGHT_M = (0.3, 2.6)
 BELOW_M, BELOW_SHARE = 0.25, 0.02
 UNDER_M = 0.02  # Below the floor's top, in the floor.
+ALONG_AXES_DEG = 5.0  # The geometric labeller finds walls up to this angle to the axes.
 LEVEL_COSINE = 0.2  # Between a wall's normal and up.
 
 
@@ -223,15 +224,16 @@ def _read_structure(
     The axes of a frame's grid are often those of its camera. The structure is found in cells along
     the walls, from which the cells of the grid take what lies at their surface point or centre.
     """
-    grid_to_room = rotation_about_z(-yaw_of_walls(points, evidence.scan_to_room))
-    grid_to_room[2, 3] = -floor_m
+    yaw_deg = yaw_of_walls(points, evidence.scan_to_room)
+    grid_to_room = rotation_about_z(-yaw_deg if abs(yaw_deg) > ALONG_AXES_DEG else 0.0)
     turned = EvidenceMap(grid_to_room @ evidence.scan_to_room)
     turned.add(points)
     along = turned.fused()
     room = remove_floaters(extract_grid(along), CleaningParameters())
-    storey = Storey(0.0, 0, room.shape[2])
+    storey = Storey(floor_m, 0, room.shape[2])
     labelled = hint_of(*GeometricLabeller().traced(room, along, (storey,)))
-    found = room_space(structure_of(surface_of(room, along), GeometricParameters().structure))
+    surface = storey.surface(surface_of(room, along))
+    found = room_space(structure_of(surface, GeometricParameters().structure))
     centers_m = apply(grid_to_room, (np.moveaxis(np.indices(SHAPE), 0, -1) + 0.5) * VOXEL_M)
     cells, wall = (_values_at(room, mask, centers_m) for mask in (found.cells, found.wall))
     floor = np.zeros(SHAPE, bool)
