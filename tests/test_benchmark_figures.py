@@ -1,14 +1,20 @@
 """What checks write as JSON for the report: the same figures as in the tables that they print."""
 
 import io
+from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks import check_completion, check_fitting, check_forge_view
+from benchmarks import check_completion, check_fitting, check_forge_view, check_single_frames
 from benchmarks.check_faithful import TARGETS, figures_of, name_of
 from benchmarks.check_fitting import Score
 from rich.console import Console
 
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.types import Camera, Layout
+from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
+from world2minecraft.evaluation.metrics.protocols import ProtocolCounts
+from world2minecraft.evaluation.scoring.truth_files import Truth
 from world2minecraft.networks.completion.samples import Sample
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
 
@@ -71,3 +77,53 @@ def test_completion_is_told_by_scans_cells_and_who_answers():
     assert found["all"] == {"iou": 50.0, "miou": pytest.approx(100 / 11)}
     assert found["observed"]["iou"] == 100.0
     assert told["observed classes"]["wall"] == 100.0
+
+
+def test_the_bend_of_a_depth_image_grows_with_the_depth_squared():
+    depth_m = np.full((48, 64), 2.5, np.float32)
+    depth_m[:, 0] = 0
+    bend_m = check_single_frames.bent(depth_m, np.random.default_rng(1)) - depth_m
+    assert (bend_m[:, 0] == 0).all(), "holes stay holes"
+    assert 0.01 < np.abs(bend_m).max() <= 0.02 + 1e-6
+    far_m = check_single_frames.bent(2 * depth_m, np.random.default_rng(1)) - 2 * depth_m
+    assert far_m == pytest.approx(4 * bend_m, abs=1e-5)
+
+
+def test_a_view_without_its_floor_ends_above_it():
+    camera = Camera(64, 48, 50.0, 50.0, 32.0, 24.0)
+    pose = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 1.0], [0, 0, 0, 1]], np.float64)
+    slope = (np.arange(48) + 0.5 - camera.cy_px) / camera.fy_px
+    depth_m = np.repeat(np.minimum(1.0 / np.maximum(slope, 1e-6), 3.0)[:, None], 64, axis=1)
+    view = check_single_frames.View(
+        depth_m.astype(np.float32), np.zeros((48, 64, 3), np.uint8), camera, pose, np.eye(3)
+    )
+    cut = check_single_frames.without_floor(view)
+    rows = len(cut.depth_m)
+    assert cut.camera.height_px == cut.colour.shape[0] == rows
+    assert (1.0 - slope[rows - 1] * 3.0 >= 0.15) and (1.0 - slope[rows] * 3.0 < 0.15)
+
+
+def test_behind_thin_walls_nothing_is_known():
+    square = np.array([[0.1, 0.1], [0.5, 0.1], [0.5, 0.5], [0.1, 0.5]])
+    labels = np.full((30, 30, 30), 3, np.uint8)
+    layout = Layout(square, 0.4)
+    truth = Truth(Path(), labels, 0.02, np.array([0.0, 0.0, -0.1]), np.eye(4), (), (layout,))
+    known = check_single_frames.open_truth(truth) != UNKNOWN
+    x, y, z = (np.flatnonzero(known.any(axis=axes)) for axes in ((1, 2), (0, 2), (0, 1)))
+    assert [x[0], x[-1]] == [y[0], y[-1]] == [3, 26], "two cells around those from 5 to 24"
+    assert [z[0], z[-1]] == [3, 26]
+
+
+def test_single_frames_are_pooled_but_for_present_classes():
+    truth = np.array([3, 3, 2, 0], np.uint8).reshape(1, 2, 2)
+    said = np.array([3, 0, 2, 2], np.uint8).reshape(1, 2, 2)
+    counts = check_single_frames.count_occupancy(said, truth)
+    one = check_single_frames.Scores(ProtocolCounts(counts, counts), OccupancyCounts(), 4)
+    found = check_single_frames.figures([one, one])
+    assert found["iou"] == pytest.approx(50.0)
+    assert found["miou_present"] == pytest.approx(50.0)
+    assert found["miou"] == pytest.approx(100 / 11, abs=0.01)
+    assert (found["beyond"], found["frames"]) == (4, 2)
+    console = Console(file=io.StringIO(), width=150)
+    console.print(check_single_frames.figures_table({"all": found}))
+    assert "50.0" in console.file.getvalue()
