@@ -68,7 +68,7 @@ def test_what_lies_beyond_the_room_or_the_image_is_not_scored(frame, truth, tmp_
     assert scores_of(labels, frame, tmp_path)["completion"]["iou"] == 1
 
 
-def test_a_filled_hidden_cell_costs_precision_and_a_free_one_none(frame, truth, tmp_path):
+def test_a_filled_hidden_cell_costs_and_a_free_one_does_not(frame, truth, tmp_path):
     labels = np.where(truth == 255, 0, truth).astype(np.uint8)
     labels[20:26, 44:48, 1:4] = 10  # In the shadow of the box.
     scores = scores_of(labels, frame, tmp_path)
