@@ -8,6 +8,8 @@ import pytest
 
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
+from world2minecraft.reconstruction.fusion import extract_grid
+from world2minecraft.reconstruction.layout.room_space import RoomSpace
 from world2minecraft.reconstruction.semantics import labeller
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
 from world2minecraft.reconstruction.semantics.completion_labeller import (
@@ -48,6 +50,11 @@ def always(kind, share=0.97):
     return chance
 
 
+def anywhere(shape):
+    """Return a space of rooms that is everywhere and explains no floor and no wall."""
+    return RoomSpace(np.ones(shape, bool), np.zeros(shape, bool), np.zeros(shape, bool))
+
+
 @pytest.fixture(scope="module")
 def scanned():
     room = rooms.SmallRoom()
@@ -59,8 +66,9 @@ def test_what_was_seen_stays_though_the_network_calls_all_empty(scanned):
     grid, evidence, _ = scanned
     base = GeometricLabeller().label(grid, evidence)
     result = labelled(scanned, always(0))
-    assert np.array_equal(result.occupied, base.occupied)
-    assert np.array_equal(result.source, base.source)
+    seen = base.source != UNSEEN
+    assert np.array_equal(result.occupied[seen], base.occupied[seen])
+    assert np.array_equal(result.source[seen], base.source[seen])
 
 
 def test_free_and_far_cells_stay_if_network_says_solid(scanned):
@@ -79,7 +87,7 @@ def test_free_and_far_cells_stay_if_network_says_solid(scanned):
 def test_a_class_that_was_not_seen_is_not_completed(scanned):
     grid = scanned[0]
     named = replace(grid, labels=np.where(grid.occupied, np.uint8(3), grid.labels))
-    result = CompletionLabeller()._completed(named, always(6)(grid.shape))
+    result = CompletionLabeller()._completed(named, always(6)(grid.shape), anywhere(grid.shape))
     assert not (result.source == COMPLETED).any()
 
 
@@ -91,19 +99,53 @@ def test_planes_grow_along_themselves_and_no_thicker():
         labels, np.zeros(labels.shape, np.float16), np.zeros((*labels.shape, 3), np.uint8),
         seen.astype(np.uint8), np.zeros(labels.shape, np.uint16), 0.08, np.zeros(3),
     )  # fmt: skip
-    result = CompletionLabeller()._completed(grid, always(3)(labels.shape))
+    chance, space = always(3)(labels.shape), anywhere(labels.shape)
+    result = CompletionLabeller()._completed(grid, chance, space)
     filled = result.source == COMPLETED
     assert filled[5].sum() == 11 * 11 - 36
     assert not filled[:5].any()
     assert not filled[6:].any()
 
 
-def test_an_unsure_network_completes_nothing(scanned):
+def test_an_unsure_network_completes_floor_and_walls_alone(scanned):
     grid, evidence, _ = scanned
     base = GeometricLabeller().label(grid, evidence)
     result = labelled(scanned, always(0, 0.5), sure=0.6)
-    assert np.array_equal(result.source == COMPLETED, base.source == COMPLETED)
+    added = (result.source == COMPLETED) & (base.source == UNSEEN)
+    assert np.isin(result.labels[added], (2, 3)).all()
     assert (result.source[result.occupied & (grid.source == OBSERVED)] == OBSERVED).mean() > 0.9
+
+
+@pytest.mark.parametrize("kind", [0, 3])
+def test_floor_and_wall_continue_behind_a_wardrobe(kind):
+    room = rooms.SmallRoom().add((0, 1.0, 0, 0.6, 2.4, 2.0), 10)
+    scan = room.scanned()
+    grid, result = scan[0], labelled(scan, always(kind, 0.5))
+    x, y, z = (
+        (np.arange(count) + 0.5) * 0.08 + low
+        for count, low in zip(grid.shape, grid.origin_m, strict=True)
+    )
+    behind = np.ix_((x > -0.08) & (x < 0), (y > 1.2) & (y < 2.2), (z > 0.16) & (z < 1.8))
+    assert (result.labels[behind] == 3).all()
+    under = np.ix_((x > 0.1) & (x < 0.5), (y > 1.2) & (y < 2.2), (z > -0.08) & (z < 0))
+    assert (result.labels[under] == 2).all()
+    completed = (result.source == COMPLETED).any(axis=2)
+    inside = ((x > -0.09) & (x < 3.29))[:, None] & ((y > -0.09) & (y < 4.09))
+    assert not completed[~inside].any()
+
+
+def test_a_floor_that_was_hardly_seen_is_not_continued(scanned):
+    grid, evidence, _ = scanned
+    shown = CompletionLabeller()._space(grid, evidence)
+    assert shown.floor.any()
+    log_odds, hits = evidence.log_odds.copy(), evidence.hits.copy()
+    low = round(-evidence.origin_m[2] / 0.08) + 1
+    for values in (log_odds, hits):
+        values[:, :, :low] = 0
+    hidden = replace(evidence, log_odds=log_odds, hits=hits)
+    space = CompletionLabeller()._space(extract_grid(hidden), hidden)
+    assert not space.floor.any()
+    assert space.cells.any()
 
 
 def test_a_piece_speaks_with_one_voice_where_it_mostly_agrees():

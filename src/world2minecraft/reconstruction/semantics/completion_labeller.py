@@ -2,8 +2,9 @@
 
 The network (``weights/completion.onnx``) was trained on virtual scans of generated rooms. Observed
 occupied cells stay occupied and get one of the eleven classes; observed free cells stay free.
-Unseen cells are filled only if the network is confident and surface of the same class was seen
-nearby; they are marked as completed. Planes of floors and walls are straightened as by the other
+Unseen cells are filled only in the rooms, and marked as completed: floor and walls continue behind
+furniture, and other cells of structure are filled if the network is confident and surface of the
+same class was seen nearby. Planes of floors and walls are straightened as by the other
 labellers, and the labels of the geometric labeller are an input of the network. Large grids are
 processed in tiles.
 """
@@ -24,7 +25,9 @@ from world2minecraft.core.parameters import parameter
 from world2minecraft.core.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.layout.parameters import GeometricParameters
+from world2minecraft.reconstruction.layout.room_space import RoomSpace, room_space
 from world2minecraft.reconstruction.layout.storeys import find_storeys
+from world2minecraft.reconstruction.layout.structure import structure_of
 from world2minecraft.reconstruction.layout.surface_cells import surface_of
 from world2minecraft.reconstruction.semantics.completion_channels import (
     CHANNELS,
@@ -45,6 +48,9 @@ THREADS = 2
 HALF = 0.5
 
 MIN_CHANCE = 1e-4
+# Of a room's columns: generated single frames with floor in view show 0.06 to 0.53 of it, and
+# those without 0.012 at most.
+FLOOR_SHARE = 0.03
 FIRST_THING = int(SemanticClass.CHAIR)
 
 
@@ -154,7 +160,8 @@ class CompletionParameters:
         that have votes; the geometric label then counts as in the votes labeller.
     sure: Minimum probability of being solid for an unseen cell to be completed.
     reach_cells: Maximum distance of a completed cell from observed surface; 3 cells are 24 cm.
-    clear_cells: Minimum distance of a completed cell from an observed object.
+    clear_cells: Minimum distance of a completed cell from an observed object, except for the floor
+        of the room.
     filled: Classes that are completed: ceiling, floor and wall.
     """
 
@@ -213,7 +220,21 @@ class CompletionLabeller:
         hint = hint_of(base, origin)
         chance = self._chances(grid, evidence, hint)
         named = self._named(base, origin, hint, chance, evidence.votes)
-        return self._completed(named, chance)
+        return self._completed(named, chance, self._space(grid, evidence))
+
+    def _space(self, grid: OccupancyGrid, evidence: FusedEvidence) -> RoomSpace:
+        """Return the space of the rooms of all storeys, without floors that were hardly seen."""
+        rules, surface = self.geometric.parameters.structure, surface_of(grid, evidence)
+        space = RoomSpace(*np.zeros((3, *grid.shape), bool))
+        for storey in find_storeys(surface, rules):
+            structure = structure_of(storey.surface(surface), rules)
+            found = room_space(structure)
+            seen = int((structure.floor.cells & found.floor).sum())
+            if seen < FLOOR_SHARE * found.floor.sum():  # Its height is a guess.
+                found.floor[:] = False
+            for name, mask in vars(space).items():
+                storey.part(mask)[:] = getattr(found, name)
+        return space
 
     def _chances(
         self, grid: OccupancyGrid, evidence: FusedEvidence, hint: np.ndarray
@@ -264,18 +285,31 @@ class CompletionLabeller:
         result[hint[named] - 1, named] = self.parameters.hint_share
         return result
 
-    def _completed(self, grid: OccupancyGrid, chance: np.ndarray) -> OccupancyGrid:
-        """Return the grid with confident unseen cells near surface of the same class filled."""
+    def _completed(
+        self, grid: OccupancyGrid, chance: np.ndarray, space: RoomSpace
+    ) -> OccupancyGrid:
+        """Return the grid with unseen cells of the rooms filled.
+
+        The floor and the walls' faces continue behind furniture. Other cells of floor, walls and
+        ceiling are filled close to surface of their class if the network is confident.
+        """
+        rules = self.parameters
+        best = chance[1:].argmax(axis=0).astype(np.uint8) + 1
+        unseen = grid.source == UNSEEN
+        clear = ~_near(grid.occupied & (grid.labels >= FIRST_THING), rules.clear_cells)
+        wanted = unseen & space.cells & clear & (1 - chance[0] >= rules.sure)
+        explained = {SemanticClass.FLOOR: space.floor, SemanticClass.WALL: space.wall & clear}
         labels, source = grid.labels.copy(), grid.source.copy()
         confidence, colour = grid.confidence.copy(), grid.colour.copy()
-        best = chance[1:].argmax(axis=0).astype(np.uint8) + 1
-        wanted = (grid.source == UNSEEN) & (1 - chance[0] >= self.parameters.sure)
-        wanted &= ~_near(grid.occupied & (grid.labels >= FIRST_THING), self.parameters.clear_cells)
-        for kind in self.parameters.filled:
+        for kind in rules.filled:
             seen, like = grid.labels == kind, wanted & (best == kind)
-            if not (seen.any() and like.any()):
+            if not seen.any():
                 continue
-            fill = like & _reached(like | seen, kind, seen, self.parameters.reach_cells)
+            fill = like & _reached(like | seen, kind, seen, rules.reach_cells)
+            if kind in explained:
+                fill |= unseen & explained[SemanticClass(kind)]
+            if not fill.any():
+                continue
             labels[fill], source[fill] = kind, COMPLETED
             confidence[fill] = np.round(chance[kind][fill], 3)
             nearest = ndimage.distance_transform_edt(
