@@ -40,7 +40,8 @@ def former_modules() -> dict[str, FormerModule]:
     """Return the former modules by their names, without the package."""
     table: dict[str, FormerModule] = {}
     names: dict[str, tuple[str, str]] = {}
-    for line in files(__package__).joinpath("former_names.txt").read_text("utf-8").splitlines():
+    listed = files(f"{PACKAGE}.core").joinpath("former_names.txt").read_text("utf-8")
+    for line in listed.splitlines():
         if line.startswith(" "):
             former, module, *renamed = line.split()
             names[former] = (module, renamed[0] if renamed else former)
@@ -108,7 +109,7 @@ class _FormerModuleFinder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
     def exec_module(self, module: ModuleType) -> None:
         """Give the module its ``__getattr__``."""
-        module.__getattr__ = getter(module.__name__)
+        setattr(module, "__getattr__", getter(module.__name__))  # noqa: B010
         former = former_modules().get(module.__name__.removeprefix(f"{PACKAGE}."))
         if former is not None and former.present:
             import_module(f"{PACKAGE}.{former.present}")

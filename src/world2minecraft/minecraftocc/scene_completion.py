@@ -248,7 +248,7 @@ def _read_structure(
 def _values_at(room: OccupancyGrid, values: np.ndarray, points_m: np.ndarray) -> np.ndarray:
     """Return the values of the cells that contain points [..., 3]; 0 outside the room's cells."""
     cells = np.floor((points_m - room.origin_m) / room.voxel_m).astype(np.int64)
-    inside = ((cells >= 0) & (cells < room.shape)).all(axis=-1)
+    inside = np.all((cells >= 0) & (cells < room.shape), axis=-1)
     index = tuple(np.moveaxis(np.where(inside[..., None], cells, 0), -1, 0))
     return np.where(inside, values[index], values.dtype.type(0))
 

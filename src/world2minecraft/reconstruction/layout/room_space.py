@@ -99,8 +99,8 @@ def convex_hull(columns: np.ndarray) -> np.ndarray:
         return columns.copy()
     sides = ConvexHull(at).equations
     every = np.argwhere(np.ones(columns.shape, bool))
-    inside = (every @ sides[:, :2].T + sides[:, 2] <= 1e-9).all(axis=1)
-    return inside.reshape(columns.shape)
+    inside = np.all(every @ sides[:, :2].T + sides[:, 2] <= 1e-9, axis=1)
+    return np.asarray(inside).reshape(columns.shape)
 
 
 def _span(wall: Wall) -> slice:
