@@ -14,8 +14,9 @@ MIN_COSINE = 0.9  # 26 degrees: normals of a wall at 4 m scatter by more than 10
 NEAR_M = 0.10  # Twice the rms of flat walls at 3 to 5 m.
 BEHIND_M = 0.30
 MAX_BEHIND = 2  # Cells behind a column of wall that noise explains.
-MIN_CELLS = 60  # About 1 m2 in a single frame, whose patches are 12 cm wide at 3 m.
-MIN_WIDTH_M, MIN_HEIGHT_M = 0.8, 1.0
+MIN_CELLS = 80  # About 1 m2 in a single frame, whose patches are 12 cm wide at 3 m.
+MIN_WIDTH_M, MIN_HEIGHT_M = 0.8, 0.4  # The kitchen's wall is seen for 0.45 m above the counter.
+MIN_TOP_M = 1.2  # Higher than counters, chests and the backs of sofas.
 MAX_PLANES = 24
 
 
@@ -90,5 +91,5 @@ def _is_large(points_m: np.ndarray, inward: np.ndarray) -> bool:
         return False
     along = points_m @ np.array([-inward[1], inward[0], 0.0])
     width_m = len(np.unique(np.floor(along / CELL_M))) * CELL_M
-    height_m = float(np.ptp(np.percentile(points_m[:, 2], (5, 95))))
-    return bool(width_m >= MIN_WIDTH_M and height_m >= MIN_HEIGHT_M)
+    bottom_m, top_m = np.percentile(points_m[:, 2], (5, 95))
+    return bool(width_m >= MIN_WIDTH_M and top_m - bottom_m >= MIN_HEIGHT_M and top_m >= MIN_TOP_M)
