@@ -97,7 +97,9 @@ def run_scene(scene: Scene, options: Options) -> Row:
         row |= {"ran": True, "cpu_s": round(cpu_seconds() - begun, 2)}
         row |= score_scene(scene, options, scan)
         if options.stability and scan is not None:
-            row["stability"] = measure_stability(capture, folder, chosen)
+            found = measure_stability(capture, folder, chosen)
+            row["stability"] = None if found is None else found.near
+            row["stability_exact"] = None if found is None else found.exact
         image = options.data / scene.label_image if scene.label_image else None
         write_sheet(folder / "sheet.png", folder / "run", scan, image)
     except World2MinecraftError as error:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.real_captures.scoring import thing_stability
+from benchmarks.real_captures.scoring import Stability, thing_stability
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.formats.scan_record import read_room_size
@@ -41,7 +41,7 @@ def perturbation(rng: np.random.Generator, middle_m: np.ndarray, voxel_m: float)
     return moved
 
 
-def measure_stability(capture: Path, folder: Path, chosen: Parameters) -> float | None:
+def measure_stability(capture: Path, folder: Path, chosen: Parameters) -> Stability | None:
     """Fuse and label a registered capture five times in slightly different frames.
 
     Args:
@@ -50,7 +50,7 @@ def measure_stability(capture: Path, folder: Path, chosen: Parameters) -> float 
         chosen: Parameters of the run.
 
     Returns:
-        The share of cells of things with one class in all runs, or None without things.
+        The shares of cells of things on whose class all runs agree, or None without things.
     """
     rng, grids = np.random.default_rng(0), []
     for number in range(RUNS):
@@ -65,6 +65,7 @@ def measure_stability(capture: Path, folder: Path, chosen: Parameters) -> float 
         )
         reconstruct(capture, turned, chosen, start="fuse", until="label")
         grids.append(read_room(turned / "room.npz"))
+        shutil.move(turned / "room.npz", folder / f"turned-{number}.npz")
         shutil.rmtree(turned)
     return thing_stability(grids)
 
