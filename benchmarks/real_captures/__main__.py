@@ -64,8 +64,15 @@ def main(words: Sequence[str]) -> int:
 
 
 def selected(scenes: Sequence[Scene], names: Sequence[str] | None) -> list[Scene]:
-    """Return the scenes with the given names or groups; all without names."""
-    return [one for one in scenes if not names or one.name in names or one.group in names]
+    """Return the scenes with the given names or groups, and those they are scored against.
+
+    All scenes are returned without names.
+    """
+    if not names:
+        return list(scenes)
+    wanted = {one.name for one in scenes if one.name in names or one.group in names}
+    wanted |= {one.reference.classes_of for one in scenes if one.name in wanted}
+    return [one for one in scenes if one.name in wanted]
 
 
 def run_scenes(scenes: Sequence[Scene], options: Options, *, again: bool = False) -> list[Row]:

@@ -2,6 +2,7 @@
 
 import resource
 import shutil
+import traceback
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -86,18 +87,20 @@ def stored_result(scene: Scene, options: Options) -> Row | None:
 def run_scene(scene: Scene, options: Options) -> Row:
     """Reconstruct and score a scene, and store the result.
 
-    Raises no error of the program: a capture that it refuses is a result too.
+    Nothing is raised: a capture that the program refuses is a result too, and a crash, which is not
+    stored, does not end the benchmark.
     """
     folder, chosen = options.folder(scene), options.parameters(scene)
     row: Row = {"scene": scene.name, "group": scene.group}
+    whole_cpu_s = _cpu_of_whole_run(folder) if options.start else None
     begun = cpu_seconds()
     try:
         capture = _prepared(scene, options)
         scan = _reconstructed(capture, folder / "run", chosen, options.start)
-        row |= {"ran": True, "cpu_s": round(cpu_seconds() - begun, 2)}
+        row |= {"ran": True, "cpu_s": whole_cpu_s or round(cpu_seconds() - begun, 2)}
         row |= score_scene(scene, options, scan)
-        if options.stability and scan is not None:
-            found = measure_stability(capture, folder, chosen)
+        if options.stability:
+            found = None if scan is None else measure_stability(capture, folder, chosen)
             row["stability"] = None if found is None else found.near
             row["stability_exact"] = None if found is None else found.exact
         image = options.data / scene.label_image if scene.label_image else None
@@ -105,8 +108,17 @@ def run_scene(scene: Scene, options: Options) -> Row:
     except World2MinecraftError as error:
         row |= {"ran": False, "reason": _reason(error), "cpu_s": round(cpu_seconds() - begun, 2)}
         row["stability"] = None
+    except Exception as error:
+        traceback.print_exc()
+        return row | {"ran": False, "reason": f"crashed: {type(error).__name__}: {error}"}
     write_json(folder / RESULT, {"settings": chosen.as_json(), "row": row})
     return row
+
+
+def _cpu_of_whole_run(folder: Path) -> float | None:
+    """Return the CPU time of the stored result, which repeating later stages does not change."""
+    path = folder / RESULT
+    return read_json(path)["row"].get("cpu_s") if path.is_file() else None
 
 
 def _reason(error: World2MinecraftError) -> str:
@@ -167,17 +179,16 @@ def _frame_scores(scene: Scene, options: Options, run: Path, scan_to_room: np.nd
     known = scene.reference
     if known.up is None:
         return {}
-    if known.poses_of:
+    row: Row = {}
+    size = read_room_size(run / "scan.json")
+    if known.finds_poses:
         found = poses_of(run / "capture" / "capture.json")
         similarity = best_similarity(found, kitchen_poses(options.data))
-        scale = np.linalg.det(similarity[:3, :3]) ** (1 / 3)
-        scan_to_room = scan_to_room @ np.linalg.inv(similarity)
-        row = {"scale": float(scale)}
-        # A rigid transform again: heights are compared in metres of the reference.
-        scan_to_room = np.diag([scale, scale, scale, 1]) @ scan_to_room
-        size = read_room_size(run / "scan.json") * scale
-    else:
-        row, size = {}, read_room_size(run / "scan.json")
+        scale = float(np.linalg.det(similarity[:3, :3]) ** (1 / 3))
+        # In metres of the reference, so that the transform is rigid again.
+        resized = np.diag([scale, scale, scale, 1])
+        scan_to_room = resized @ scan_to_room @ np.linalg.inv(similarity)
+        row, size = {"scale": scale}, size * scale
     up = np.array(known.up, np.float64)
     row["tilt_deg"] = tilt_deg(scan_to_room, up)
     if known.floor_m is not None:

@@ -39,14 +39,14 @@ class Reference:
     Attributes:
         up: Up direction in the capture's frame.
         floor_m: Height of the floor above the origin of that frame, along ``up``.
-        poses_of: Scene with the capture's frame, for photos whose poses are found: its poses
-            transform the result into that frame.
+        finds_poses: Whether the photos have no poses. The result then has a frame of its own, and
+            its poses are aligned with those of the kitchen.
         classes_of: Scene whose result is the truth of the classes, below ``CROP_M``.
     """
 
     up: tuple[float, float, float] | None = None
     floor_m: float | None = None
-    poses_of: str = ""
+    finds_poses: bool = False
     classes_of: str = ""
 
 
@@ -87,7 +87,7 @@ def list_scenes(data: Path, nyu: int) -> list[Scene]:
     """
     known = Reference(KITCHEN_UP, KITCHEN_FLOOR_M)
     low = Reference(KITCHEN_UP, KITCHEN_FLOOR_M, classes_of="kitchen")
-    apart = Reference(KITCHEN_UP, KITCHEN_FLOOR_M, poses_of="kitchen")
+    apart = Reference(KITCHEN_UP, KITCHEN_FLOOR_M, finds_poses=True)
     windows = [
         Scene(f"kitchen-{first}-{last - 1}", _kitchen_frames(first, last), known)
         for first, last in KITCHEN_WINDOWS
@@ -108,6 +108,10 @@ def list_scenes(data: Path, nyu: int) -> list[Scene]:
         Scene("flat", _in_place("real_captures/scene0000_cloud"), Reference((0, 0, 1))),
         Scene("library-plan", _in_place("real_captures/roomplan_library")),
         Scene("open3d-living", _in_place("open3d_rgbd_samples/RGBD"), Reference((0, 1, 0))),
+        Scene("wash-stand", _in_place("real_captures/scaniverse_bathroom")),
+        Scene("realsense-unposed", _in_place("aims_realsense_unposed")),
+        Scene("bedroom-photos", _in_place("real_captures/vggt_bedroom")),
+        Scene("short-clip", _in_place("real_captures/deepv2d_nyu_0")),
         *(_nyu_scene(number) for number in sample_nyu(data / NYU_FOLDER, nyu)),
     ]
 
