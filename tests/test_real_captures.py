@@ -32,7 +32,7 @@ from benchmarks.real_captures.scoring import (
     wall_share,
 )
 from benchmarks.real_captures.stability import MAX_TURN_DEG, perturbation
-from benchmarks.real_captures.tables import markdown_table, summarize, terminal_table
+from benchmarks.real_captures.tables import markdown_table, overview, summarize, terminal_table
 from benchmarks.real_captures.walls import border_wall_points
 from rich.console import Console
 
@@ -291,6 +291,16 @@ def test_the_tables_show_every_scene():
     for text in (console.file.getvalue(), "\n".join(lines)):
         for word in ("kitchen", "0.41", "-1.2", "0.750", "1 of 3 refused"):
             assert word in text
+
+
+def test_a_line_of_the_table_over_time():
+    windows = [
+        {"scene": name, "group": name, "ran": True, "tilt_deg": tilt, "stability": 0.5}
+        for name, tilt in (("kitchen-0-19", 0.2), ("kitchen-10-29", 0.4), ("kitchen-20-39", 0.9))
+    ]
+    flat = {"scene": "flat", "group": "flat", "ran": True, "objects": 41, "stability": 0.7}
+    cells = overview([*rows(), *windows, flat], "2026-11-24", "abc").split(" | ")
+    assert cells[2:] == ["7 of 8", "0.40, 0.90", "-, -", "-, 0.750", "1.000", "0.550", "41 |"]
 
 
 def test_results_of_the_same_settings_are_not_computed_again(tmp_path, monkeypatch, capsys):

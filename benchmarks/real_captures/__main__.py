@@ -7,7 +7,7 @@ A row per scene: whether it ran, or why not; the tilt and the height of its floo
 reference; the share of labelled surface with its true class; the number of objects; the share of
 wall surface labelled wall; stability; and CPU time. docs/real-captures.md explains the columns.
 ``DIR/NAME`` holds the run of a scene and its contact sheet, ``sheet.png``; ``DIR/results.json`` and
-``DIR/table.md`` hold all results.
+``DIR/table.md`` hold all results; the last line of the latter is one of the table over time.
 
 A scene that has a result of the same settings is not run again, so that an interrupted benchmark
 continues. The program's code is not compared: use a new folder after it has changed, ``--again``,
@@ -15,9 +15,11 @@ or ``--from label`` to repeat later stages of the existing runs only.
 """
 
 import argparse
+import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 
 from rich.console import Console
@@ -59,8 +61,16 @@ def main(words: Sequence[str]) -> int:
     for line in class_lines(rows):
         console.print(line)
     write_json(chosen.json or options.out / "results.json", rows)
-    write_text(options.out / "table.md", markdown_table(rows))
+    line = overview(rows, f"{datetime.now(UTC):%Y-%m-%d}", git_commit())
+    write_text(options.out / "table.md", f"{markdown_table(rows)}\n{line}\n")
     return 0
+
+
+def git_commit() -> str:
+    """Return the short name of the program's commit, or ``unknown`` outside a repository."""
+    words = ["git", "-C", str(Path(__file__).parent), "rev-parse", "--short=8", "HEAD"]
+    done = subprocess.run(words, check=False, capture_output=True, text=True)
+    return done.stdout.strip() or "unknown"
 
 
 def selected(scenes: Sequence[Scene], names: Sequence[str] | None) -> list[Scene]:

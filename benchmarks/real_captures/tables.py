@@ -1,6 +1,7 @@
 """Tables of the benchmark: one row per scene, and one for all frames of NYUv2."""
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,8 @@ from benchmarks.real_captures.scoring import (
 
 Row = dict[str, Any]
 MISSING = "-"
+WINDOW = re.compile(r"kitchen-\d+-\d+")
+PHOTOS = ("kitchen-photos-posed", "kitchen-photos")
 
 
 @dataclass(frozen=True)
@@ -139,3 +142,46 @@ def class_lines(rows: Sequence[Row]) -> list[str]:
         for row in summarize(rows)
         if row.get("by_class")
     ]
+
+
+def overview(rows: Sequence[Row], date: str, commit: str) -> str:
+    """Return one line for the table over time, in Markdown.
+
+    Args:
+        rows: Results of all scenes.
+        date: Date of the benchmark.
+        commit: Commit of the program.
+
+    Returns:
+        Date; commit; scenes that ran; median and worst tilt of the kitchen's windows; tilt of its
+        photos with and without poses; class accuracy of the cropped kitchen and of NYUv2; mean wall
+        share and mean stability of the scenes; objects in the flat.
+    """
+    combined = {row["group"]: row for row in summarize(rows)}
+    windows = [
+        row["tilt_deg"]
+        for name, row in combined.items()
+        if WINDOW.fullmatch(name) and row.get("tilt_deg") is not None
+    ]
+    ran = sum(row["ran"] for row in rows)
+    cells = [
+        date,
+        f"`{commit}`",
+        f"{ran} of {len(rows)}",
+        _joined([np.median(windows), np.max(windows)] if windows else [None], ".2f"),
+        _joined([combined.get(name, {}).get("tilt_deg") for name in PHOTOS], ".2f"),
+        _joined([combined.get(n, {}).get("class_accuracy") for n in ("kitchen-low", "nyuv2")]),
+        _joined([_mean(combined.values(), "wall_share")]),
+        _joined([_mean(combined.values(), "stability")]),
+        _joined([combined.get("flat", {}).get("objects")], "d"),
+    ]
+    return f"| {' | '.join(cells)} |"
+
+
+def _joined(values: Sequence[float | None], form: str = ".3f") -> str:
+    return ", ".join(MISSING if value is None else format(value, form) for value in values)
+
+
+def _mean(rows: Iterable[Row], key: str) -> float | None:
+    values = [row[key] for row in rows if row.get(key) is not None]
+    return float(np.mean(values)) if values else None

@@ -26,7 +26,7 @@ def on_files(files: Any, config: Any) -> Any:
 
 def text() -> str:
     """Return the page's text: speed first, then checks, then the rest that can be run."""
-    told = {path.stem: ast.get_docstring(_tree(path)) or "" for path in _files()}
+    told = {_name(path): ast.get_docstring(_tree(path)) or "" for path in _files()}
     speed = {name: words for name, words in told.items() if name.startswith("bench_")}
     checks = {name: words for name, words in told.items() if name.startswith("check_")}
     others = {name: words for name, words in told.items() if name not in speed | checks}
@@ -50,9 +50,13 @@ def _entry(name: str, words: str) -> str:
     return f"### {name}\n\n`python -m {command}`\n\n{words}\n"
 
 
+def _name(path: Path) -> str:
+    return path.parent.name if path.stem == "__main__" else path.stem
+
+
 def _files() -> list[Path]:
     """Return the files that can be run: benchmarks by their name, others by their last lines."""
-    return [
+    return [*FOLDER.glob("*/__main__.py")] + [
         path
         for path in sorted(FOLDER.glob("*.py"))
         if path.stem.startswith("bench_")
