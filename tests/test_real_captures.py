@@ -330,10 +330,9 @@ def test_scenes_are_selected_by_name_or_group(shared_data):
     assert len({scene.name for scene in scenes}) == len(scenes)
     assert len(command.selected(scenes, ["nyuv2"])) == 5
     assert [one.name for one in command.selected(scenes, ["lounge"])] == ["lounge"]
-    assert [one.name for one in command.selected(scenes, ["kitchen-low"])] == [
-        "kitchen",
-        "kitchen-low",
-    ]
+    low = command.selected(scenes, ["kitchen-low"])
+    assert [one.name for one in command.needed(low, scenes)] == ["kitchen"]
+    assert not command.needed(scenes, scenes)
     assert command.selected(scenes, None) == scenes
 
 

@@ -24,6 +24,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+import world2minecraft
 from benchmarks.real_captures.running import Options, Row, run_scene, stored_result
 from benchmarks.real_captures.scenes import Scene, list_scenes
 from benchmarks.real_captures.tables import class_lines, markdown_table, terminal_table
@@ -51,7 +52,9 @@ def main(words: Sequence[str]) -> int:
         names = ", ".join(dict.fromkeys(scene.group for scene in every))
         print(f"no scene matches {' '.join(chosen.only)}; scenes: {names}", file=sys.stderr)
         return 2
+    print(f"the program is {Path(world2minecraft.__file__).parent}", file=sys.stderr)
     try:
+        run_scenes(needed(scenes, every), options)
         rows = run_scenes(scenes, options, again=chosen.again or bool(chosen.start))
     except World2MinecraftError as error:
         print(error, file=sys.stderr)
@@ -74,15 +77,14 @@ def git_commit() -> str:
 
 
 def selected(scenes: Sequence[Scene], names: Sequence[str] | None) -> list[Scene]:
-    """Return the scenes with the given names or groups, and those they are scored against.
+    """Return the scenes with the given names or groups; all without names."""
+    return [one for one in scenes if not names or one.name in names or one.group in names]
 
-    All scenes are returned without names.
-    """
-    if not names:
-        return list(scenes)
-    wanted = {one.name for one in scenes if one.name in names or one.group in names}
-    wanted |= {one.reference.classes_of for one in scenes if one.name in wanted}
-    return [one for one in scenes if one.name in wanted]
+
+def needed(scenes: Sequence[Scene], every: Sequence[Scene]) -> list[Scene]:
+    """Return further scenes whose results are the truth of some of the scenes."""
+    names = {one.reference.classes_of for one in scenes} - {one.name for one in scenes}
+    return [one for one in every if one.name in names]
 
 
 def run_scenes(scenes: Sequence[Scene], options: Options, *, again: bool = False) -> list[Row]:
