@@ -73,12 +73,34 @@ def test_triangles_mark_the_cells_that_they_pass():
 @pytest.mark.parametrize("without", [(), (5,), (1,), (1, 5)], ids=str)
 def test_interior_is_found_without_ceiling_or_one_wall(without):
     grid, interior = interior_of(mesh_of(room_quads(without=without)))
-    assert interior is not None and interior.spaces == 1
+    assert interior is not None and interior.spaces == 1 and not interior.is_open
     cells = grid.centers_m(np.argwhere(interior.clear))
     assert ((cells > 0) & (cells < SIZE_M)).all()
     poses = choose_views(grid, interior)
     assert 40 <= len(poses) <= 120
     assert ((poses[:, :3, 3] > 0.15) & (poses[:, :3, 3] < np.array(SIZE_M) - 0.15)).all()
+
+
+@pytest.mark.parametrize("height_m", [0.8, 1.2, 1.45])
+def test_low_walls_without_ceiling_enclose_a_room(height_m):
+    low = room_quads((4.2, 3.1, height_m), boxes=(), without=(5,))
+    grid, interior = interior_of(mesh_of(low))
+    assert interior is not None and interior.spaces == 1
+    poses = choose_views(grid, interior)
+    places = poses[:, :3, 3]
+    assert ((places[:, :2] > 0.15) & (places[:, :2] < np.array([4.2, 3.1]) - 0.15)).all()
+    assert 0.5 < places[:, 2].max() < 1.7
+
+
+@pytest.mark.parametrize("height_m", [1.3, 2.5])
+def test_two_walls_at_a_corner_show_a_room_and_one_does_not(height_m):
+    two_walls = room_quads((4.2, 3.1, height_m), boxes=(), without=(1, 3, 5))
+    grid, interior = interior_of(mesh_of(two_walls))
+    assert interior is not None and interior.is_open
+    cells = grid.centers_m(np.argwhere(interior.clear))
+    assert ((cells[:, :2] > 0) & (cells[:, :2] < SIZE_M[:2])).all()
+    one_wall = room_quads((4.2, 3.1, height_m), boxes=(), without=(1, 2, 3, 5))
+    assert interior_of(mesh_of(one_wall))[1] is None
 
 
 def test_a_cloud_has_the_interior_of_its_mesh(quads):

@@ -2,8 +2,10 @@
 
 From each free cell, the 26 directions to its neighbours are followed to the end of the voxel grid.
 A cell is inside if there is a floor below it and surface in most other directions; the ceiling or
-one wall may be missing. Spaces too small for a person, such as the inside of a cupboard or of a
-wall, are discarded. ``backface_share`` measures how often the back of a face is seen from inside.
+one wall may be missing. Where no such space exists, because only the lower part of a room or two
+of its walls were captured, the space between walls that form a corner is used, up to the height of
+a person. Spaces too small for a person, such as the inside of a cupboard or of a wall, are
+discarded. ``backface_share`` measures how often the back of a face is seen from inside.
 """
 
 from dataclasses import dataclass
@@ -30,6 +32,9 @@ MIN_SPACE_M3 = 1.5  # Of cells so clear: a bathroom of 1.5 x 1.2 m; inside a war
 MIN_SINGLE_SPACE_M3 = 0.6  # Of the largest space, where there is no such: a shower room.
 MIN_HEIGHT_M = 0.8  # Of the clear part of a space in which one can stand.
 DOWN_VOTES, SIDE_VOTES, BOTH_VOTES = 5, 6, 12  # Of 9 down, 8 level, and 17 level or up.
+# Of 8 level directions, one long wall or one block meets at most 3; two walls at a corner meet 5.
+CORNER_SIDE_VOTES = 4
+STANDING_M = 1.6  # Height of a person's eyes: so high over the floor is looked from over low walls.
 HINTED_SIDE_VOTES, HINTED_BOTH_VOTES = 3, 6  # Where the user names a place inside.
 MAX_HINT_DISTANCE_M = 1.0  # So far may the named place be from the space that it names.
 
@@ -154,11 +159,13 @@ class Interior:
         clear: Cells suitable as camera positions, bool [X, Y, Z].
         drop: Number of cells down to the floor, int16 [X, Y, Z].
         spaces: Number of separate spaces.
+        is_open: Whether walls are low or missing on several sides.
     """
 
     clear: np.ndarray
     drop: np.ndarray
     spaces: int
+    is_open: bool = False
 
 
 def find_interior(grid: SurfaceGrid, inside_m: np.ndarray | None = None) -> Interior | None:
@@ -178,15 +185,33 @@ def find_interior(grid: SurfaceGrid, inside_m: np.ndarray | None = None) -> Inte
         grid.occupied, ndimage.generate_binary_structure(3, 2), iterations=CLEAR_CELLS
     )
     parts, count = label_components(inside & np.logical_not(near), corners=False)
-    chosen = _standing_spaces(parts, count, grid.cell_m)
     if inside_m is not None:
         chosen = _space_around(parts, grid, inside_m)
-    if not chosen:
+        return Interior(np.isin(parts, chosen), drop, len(chosen)) if chosen else None
+    if chosen := _standing_spaces(parts, count, grid.cell_m):
+        return Interior(np.isin(parts, chosen), drop, len(chosen))
+    free = ~grid.occupied & ~near & (drop > 0)
+    between = free & (down >= DOWN_VOTES) & (side >= CORNER_SIDE_VOTES)
+    if not between.any():
         return None
-    return Interior(np.isin(parts, chosen), drop, len(chosen))
+    lowest = int(np.flatnonzero(between.any(axis=(0, 1)))[0]) - CLEAR_CELLS  # Just over the floor.
+    eyes = lowest + round(STANDING_M / grid.cell_m)
+    parts, count = label_components(_extend_upwards(between, free, eyes), corners=False)
+    chosen = _standing_spaces(parts, count, grid.cell_m, min_single_m3=MIN_SPACE_M3)
+    return Interior(np.isin(parts, chosen), drop, len(chosen), is_open=True) if chosen else None
 
 
-def _standing_spaces(parts: np.ndarray, count: int, cell_m: float) -> list[int]:
+def _extend_upwards(cells: np.ndarray, allowed: np.ndarray, top: int) -> np.ndarray:
+    """Return cells, bool [X, Y, Z], and the runs of allowed cells over them up to layer ``top``."""
+    extended = cells.copy()
+    for z in range(1, min(top, cells.shape[2])):
+        extended[:, :, z] |= extended[:, :, z - 1] & allowed[:, :, z]
+    return extended
+
+
+def _standing_spaces(
+    parts: np.ndarray, count: int, cell_m: float, min_single_m3: float = MIN_SINGLE_SPACE_M3
+) -> list[int]:
     """Return the numbers of the spaces in which a person can stand."""
     volumes = np.bincount(parts.ravel(), minlength=count + 1) * cell_m**3
     boxes = ndimage.find_objects(parts)
@@ -199,7 +224,7 @@ def _standing_spaces(parts: np.ndarray, count: int, cell_m: float) -> list[int]:
     if large or not high:
         return large
     largest = max(high, key=lambda number: volumes[number])
-    return [largest] if volumes[largest] >= MIN_SINGLE_SPACE_M3 else []
+    return [largest] if volumes[largest] >= min_single_m3 else []
 
 
 def _space_around(parts: np.ndarray, grid: SurfaceGrid, inside_m: np.ndarray) -> list[int]:

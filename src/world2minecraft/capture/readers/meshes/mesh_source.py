@@ -74,7 +74,7 @@ MAX_CACHE_BYTES = 192 << 20  # All 120 views of 480 x 360: 1.4 MB each.
 MODES = {"colour": "RGB", "depth": "float32", "labels": "L"}
 RenderedView = tuple[np.ndarray, np.ndarray, np.ndarray]
 MARGIN_M = 0.3
-MIN_SIDES_M = (1.0, 1.0, 1.2)
+MIN_SIDES_M = (1.0, 1.0, 0.6)  # The upper part of a room may not have been captured.
 MAX_SIDE_M = 200.0
 MAX_BACKFACE_SHARE = 0.9  # Of what is seen from inside; a room of any export has far less.
 UNIT_ADVICE = "if the unit is wrong, set --set capture.unit=m|cm|mm|inch|foot"
@@ -269,7 +269,7 @@ def _read_once(path: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> C
     if options.inside is not None:
         inside_m = apply(file_to_world, np.array(options.inside) - loaded.offset)
     geometry = loaded.geometry.moved(file_to_world)
-    poses, spaces = _choose_poses(path, geometry, inside_m)
+    poses, seen_note = _choose_poses(path, geometry, inside_m)
     if isinstance(geometry, Mesh):
         sorted_geometry, blocks = sort_mesh_into_blocks(geometry)
     else:
@@ -278,7 +278,7 @@ def _read_once(path: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> C
     renderer = ViewRenderer(path.name, sorted_geometry, CAMERA, poses, blocks, by_class)
     notes = (
         f"{_size_note(loaded)}; {frame_note}",
-        f"rendered {len(poses)} views of {spaces} closed space{'s' * (spaces > 1)}",
+        seen_note,
         *loaded.notes,
     )
     return Capture(
@@ -327,8 +327,8 @@ def estimate_world_frame(
 
 def _choose_poses(
     path: AnyPath, geometry: Geometry, inside_m: np.ndarray | None
-) -> tuple[np.ndarray, int]:
-    """Return the camera poses of the views, and the number of spaces that they show."""
+) -> tuple[np.ndarray, str]:
+    """Return the camera poses of the views, and a note on what they show."""
     low, high = sample_surface(geometry).box()
     try:
         grid = voxelise_surface(geometry, low - MARGIN_M, high + MARGIN_M)
@@ -347,7 +347,10 @@ def _choose_poses(
                 "outside; if it is a room, give a point inside it with --set "
                 "capture.inside=x,y,z",
             )
-    return poses, interior.spaces
+    spaces = f"{interior.spaces} {'open' if interior.is_open else 'closed'} space"
+    spaces += "s" * (interior.spaces > 1)
+    where = ", with low walls or without walls on some sides" * interior.is_open
+    return poses, f"rendered {len(poses)} views of {spaces}{where}"
 
 
 def _no_interior_reason(inside_m: np.ndarray | None) -> str:
