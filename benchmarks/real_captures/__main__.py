@@ -27,7 +27,7 @@ from rich.console import Console
 import world2minecraft
 from benchmarks.real_captures.running import Options, Row, run_scene, stored_result
 from benchmarks.real_captures.scenes import Scene, list_scenes
-from benchmarks.real_captures.tables import class_lines, markdown_table, terminal_table
+from benchmarks.real_captures.tables import class_lines, markdown_table, overview, terminal_table
 from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.core.files import write_json, write_text
 from world2minecraft.reconstruction.pipeline import STAGES
