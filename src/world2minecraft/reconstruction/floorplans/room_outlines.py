@@ -9,6 +9,7 @@ from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.reconstruction.floorplans.furniture_categories import class_of
+from world2minecraft.reconstruction.floorplans.wall_directions import main_direction_rad, snap_room
 
 CORNER_M = 0.5  # Walls whose ends are nearer meet in a corner.
 USUAL_HEIGHT_M = 2.5  # Where a plan has a floor and no wall.
@@ -45,17 +46,17 @@ def move_plan(plan: CapturedPlan, move: np.ndarray) -> CapturedPlan:
 def straighten_plan(plan: CapturedPlan) -> CapturedPlan:
     """Rotate a plan so that its walls are along x and y, with its lowest floor at z = 0.
 
-    The rotation is averaged over all walls, weighted by length. The first wall is along x, and the
-    minimum corner of the plan is at x = y = 0.
+    The rotation is that of most of the length of the walls. The first wall is along x, or near it,
+    and the minimum corner of the plan is at x = y = 0. Walls within a few degrees of a multiple of
+    45 degrees are turned to it.
     """
     walls = [wall for room in plan.rooms for wall in room.walls]
     if walls:
-        along = np.array([wall.end_m - wall.start_m for wall in walls])
-        length = np.linalg.norm(along, axis=1)
-        angle = np.arctan2(along[:, 1], along[:, 0])
-        quarter = np.angle(np.sum(length * np.exp(4j * angle))) / 4
-        first = np.round((angle[0] - quarter) / (np.pi / 2)) * np.pi / 2
-        plan = move_plan(plan, rotation_about_z(-float(np.degrees(quarter + first))))
+        main = main_direction_rad(walls)
+        along = walls[0].end_m - walls[0].start_m
+        quarters = np.round((np.arctan2(along[1], along[0]) - main) / (np.pi / 2)) * np.pi / 2
+        plan = move_plan(plan, rotation_about_z(-float(np.degrees(main + quarters))))
+        plan = replace(plan, rooms=tuple(snap_room(room) for room in plan.rooms))
     placed = place_plan_rooms(plan)
     low = np.min([room.outline_m.min(axis=0) for room in placed], axis=0)
     shift = np.eye(4)
