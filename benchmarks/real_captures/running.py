@@ -150,7 +150,7 @@ def _reconstructed(capture: Path, run: Path, chosen: Parameters, start: str) -> 
         return None
     repeat = start if start and (run / "room.npz").is_file() else None
     if repeat is None:
-        shutil.rmtree(run / "build", ignore_errors=True)
+        shutil.rmtree(run, ignore_errors=True)  # With poses and depth of photos.
     reconstruct(capture, run, chosen, start=repeat)
     return read_registered(prepare_and_open(capture, run, chosen), run)
 
