@@ -40,11 +40,13 @@ SOURCES = Registry(
         "seven_scenes": "world2minecraft.capture.readers.datasets.seven_scenes:SevenScenesSource",
         "solid": "world2minecraft.capture.readers.meshes.mesh_source:MeshSource",
         "video": "world2minecraft.capture.readers.video:VideoSource",
+        "panoramas": "world2minecraft.capture.readers.panoramas:PanoramaSource",
         "photos": "world2minecraft.capture.readers.photo_folder:PhotoFolderSource",
         "photo": "world2minecraft.capture.readers.single_photo:SinglePhotoSource",
     },
 )
-FALLBACK_SOURCES = ("photos", "photo")  # Asked last, after those of other packages too.
+# Asked last, after those of other packages too.
+FALLBACK_SOURCES = ("panoramas", "photos", "photo")
 MAX_WRAPPINGS = 3  # Folders that hold nothing but a folder, as zips often do.
 MAX_HINT_FOLDERS = 50  # Folders of a wrong folder that are tried, for a hint.
 INDEX_FILES = ("capture.json", "transforms.json")

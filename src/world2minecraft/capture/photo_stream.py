@@ -81,6 +81,7 @@ def read_photo(frame: FrameFiles, lens: str = "stated", longest_px: int = MAX_SI
             camera,
             camera is not None and lens == "guess",
             frame.camera_to_world,
+            frame.rig,
         )
     except ValueError as error:
         raise DamagedFileError(place, str(error)) from error

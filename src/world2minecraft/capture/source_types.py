@@ -13,6 +13,7 @@ from world2minecraft.capture.images import ImagePlace
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.types import Camera
+from world2minecraft.core.types.photos import RigMember
 
 
 def as_floats(values: object) -> np.ndarray:
@@ -49,6 +50,7 @@ class FrameFiles:
         trust_path: Confidence image of the size of the depth image, in units of
             ``Capture.full_trust``.
         time_s: Time in seconds, which orders the frames of a video, or None.
+        rig: Part in a rig, for photos that share a place, or None.
     """
 
     name: str
@@ -62,6 +64,7 @@ class FrameFiles:
     problem: str = ""
     trust_path: ImagePlace | None = None
     time_s: float | None = None
+    rig: RigMember | None = None
 
 
 @dataclass(frozen=True, eq=False)

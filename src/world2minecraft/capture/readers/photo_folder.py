@@ -7,7 +7,7 @@ panoramas, duplicates, edits next to their originals, and files added by operati
 import hashlib
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,9 +54,7 @@ class PhotoFolderSource:
 
     def recognise(self, folder: AnyPath) -> bool:
         """Return whether the folder contains photos and no files of a scanner app."""
-        if not folder.is_dir() or any(_is_app_file(path.name) for path in folder.iterdir()):
-            return False
-        return bool(_photos(_colour_folder(folder)))
+        return bool(list_photos(folder))
 
     def read(self, folder: AnyPath) -> Capture:
         """Read all usable photos of a folder.
@@ -103,6 +101,31 @@ class PhotoFolderSource:
 def _is_app_file(name: str) -> bool:
     """Return whether a file name belongs to an incomplete capture of another format."""
     return bool(_OF_AN_APP.search(name))
+
+
+def plain_name(stem: str, used: Collection[str]) -> str:
+    """Return a valid name of a frame for the stem of a file that is not among those used.
+
+    Example:
+        >>> plain_name("my room", ["my_room"])
+        'my_room.2'
+    """
+    plain = re.sub(r"[^A-Za-z0-9_.-]+", "_", stem).lstrip(".-")[:80] or "photo"
+    name, count = plain, 1
+    while name in used:
+        count += 1
+        name = f"{plain}.{count}"
+    return name
+
+
+def list_photos(folder: AnyPath) -> list[AnyPath]:
+    """Return the photo files of a folder or of its subfolder of colour images, by number.
+
+    The result is empty if the path is no folder, or one with files of a scanner app.
+    """
+    if not folder.is_dir() or any(_is_app_file(path.name) for path in folder.iterdir()):
+        return []
+    return _photos(_colour_folder(folder))
 
 
 def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
@@ -214,13 +237,10 @@ def _depth_files(folder: AnyPath, colour_folder: AnyPath) -> dict[str, AnyPath]:
 
 
 def _frames(accepted: Sequence[_PhotoFile], depths: dict[str, AnyPath]) -> tuple[FrameFiles, ...]:
-    frames, used = [], set()
+    frames: list[FrameFiles] = []
+    used: set[str] = set()
     for item in accepted:
-        plain = re.sub(r"[^A-Za-z0-9_.-]+", "_", item.path.stem).lstrip(".-")[:80] or "photo"
-        name, count = plain, 1
-        while name in used:
-            count += 1
-            name = f"{plain}.{count}"
+        name = plain_name(item.path.stem, used)
         used.add(name)
         camera = item.facts.camera if item.facts else None
         frames.append(

@@ -26,6 +26,7 @@ from world2minecraft.capture.sfm.features import Features, pixel_unit
 from world2minecraft.capture.sfm.matching import MatchGraph
 from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.pycolmap_access import pycolmap_session
+from world2minecraft.capture.sfm.rigs import make_rigs, places_of, rig_pose, to_rigid
 from world2minecraft.core.types import Camera
 
 CORNERS = ((0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.8, 0.8))  # Of the picture,
@@ -165,21 +166,38 @@ def _build_model(
     pycolmap: Any, photos: list[Features], poses: dict, groups: list[CameraGroup], free: bool
 ):
     model = pycolmap.Reconstruction()
+    cameras, placed_photos = [], []
     for number, group in enumerate(groups):
         placed = [i for i in group.photos if i in poses]
         simple = (
             free and len(placed) < MIN_PHOTOS_FOR_RADIAL and not any(group.camera.distortion[1:])
         )
         camera = to_colmap(pycolmap, group.camera, number + 1, simple)
-        model.add_camera_with_trivial_rig(camera)
+        model.add_camera(camera)
+        cameras.append(camera)
         for i in placed:
             pixels = np.concatenate([photos[i].pixels, anchor_pixels(group.camera)])
             image = pycolmap.Image(
                 name=str(i), keypoints=pixels, camera_id=number + 1, image_id=i + 1
             )
-            inverse = np.linalg.inv(poses[i])
-            there = pycolmap.Rigid3d(pycolmap.Rotation3d(inverse[:3, :3]), inverse[:3, 3])
-            model.add_image_with_trivial_frame(image, there)
+            placed_photos.append((i, image))
+    rigs, rig_of_photo = make_rigs(pycolmap, photos, groups, cameras)
+    for rig in rigs:
+        model.add_rig(rig)
+    places, members = places_of(photos), {}
+    for i, image in placed_photos:
+        members.setdefault(places[i], []).append((i, image))
+    for place, images in members.items():
+        first = images[0][0]
+        frame = pycolmap.Frame(frame_id=place + 1, rig_id=rig_of_photo[first])
+        for _, image in images:
+            image.frame_id = frame.frame_id
+            frame.add_data_id(image.data_id)
+        frame.rig_from_world = to_rigid(pycolmap, rig_pose(photos[first], poses[first]))
+        model.add_frame(frame)
+        for _, image in images:
+            model.add_image(image)
+        model.register_frame(frame.frame_id)
     return model
 
 
@@ -215,6 +233,7 @@ def _adjustment_options(pycolmap: Any, free: bool, unit: float, tolerance: float
     options = pycolmap.BundleAdjustmentOptions()
     options.print_summary = False
     options.refine_rig_from_world = free
+    options.refine_sensor_from_rig = False
     options.ceres.loss_function_type = pycolmap.LossFunctionType.CAUCHY
     options.ceres.loss_function_scale = unit
     options.ceres.solver_options.num_threads = 1  # Sums in another order are other sums.

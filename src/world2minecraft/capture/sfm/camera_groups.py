@@ -23,8 +23,9 @@ class CameraGroup:
     Attributes:
         camera: The shared intrinsics.
         photos: Numbers of the photos.
-        known: ``stated``, ``guessed`` (from EXIF), ``unknown`` (starts from default intrinsics) or
-            ``assumed`` (fixed, because the photos cannot determine the intrinsics).
+        known: ``exact`` (fixed, since the photos were cut from panoramas), ``stated``, ``guessed``
+            (from EXIF), ``unknown`` (starts from default intrinsics) or ``assumed`` (fixed, because
+            the photos cannot determine the intrinsics).
     """
 
     camera: Camera
@@ -34,7 +35,7 @@ class CameraGroup:
     @property
     def is_fixed(self) -> bool:
         """Whether the intrinsics must not be refined."""
-        return self.known == "assumed"
+        return self.known in ("exact", "assumed")
 
 
 def camera_by_photo(lenses: list[CameraGroup]) -> dict[int, Camera]:
@@ -65,11 +66,16 @@ def group_cameras(photos: list[Features]) -> list[CameraGroup]:
 
 
 def _share_camera(one: Features, other: Features) -> bool:
-    if one.size != other.size:
+    if one.size != other.size or sensor_of(one) != sensor_of(other):
         return False
     if one.camera is None or other.camera is None:
         return one.camera is other.camera
     return abs(one.camera.fx_px / other.camera.fx_px - 1) < SAME_FOCAL_TOLERANCE
+
+
+def sensor_of(photo: Features) -> int | None:
+    """Return the number of the sensor of a photo's rig, or None without a rig."""
+    return None if photo.rig is None else photo.rig.sensor
 
 
 def _make_group(photos: list[Features], group: list[int]) -> CameraGroup:
@@ -77,6 +83,8 @@ def _make_group(photos: list[Features], group: list[int]) -> CameraGroup:
     if not cameras:
         return CameraGroup(default_camera(*photos[group[0]].size), tuple(group), "unknown")
     middle = sorted(cameras, key=lambda camera: camera.fx_px)[len(cameras) // 2]
+    if all(photos[i].rig is not None for i in group):
+        return CameraGroup(middle, tuple(group), "exact")
     guessed = any(photos[i].camera_guessed for i in group)
     return CameraGroup(middle, tuple(group), "guessed" if guessed else "stated")
 

@@ -11,7 +11,7 @@ from world2minecraft.capture.sfm.progress import ProgressSteps
 from world2minecraft.capture.sfm.pycolmap_access import PHOTOS, pycolmap_session
 from world2minecraft.core.errors import CaptureError, LimitError
 from world2minecraft.core.types import Camera
-from world2minecraft.core.types.photos import Photo, PhotoStream
+from world2minecraft.core.types.photos import Photo, PhotoStream, RigMember
 
 MAX_PHOTOS = 3000  # 1.5 GB of features at most would be too much; 3000 photos have 1.
 PEAK_THRESHOLD = 0.0067  # COLMAP's own threshold, for images of 0 to 1.
@@ -33,6 +33,7 @@ class Features:
         descriptors: SIFT descriptors of norm 512, uint8 [K, 128].
         colours: Colours at the features, uint8 [K, 3].
         sharpness: Edge sharpness; about 1 for sharp photos.
+        rig: Part in a rig, for photos that share a place, or None.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Features:
     descriptors: np.ndarray
     colours: np.ndarray
     sharpness: float
+    rig: RigMember | None = None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -121,6 +123,7 @@ def _extract_photo(
         np.asarray(descriptors.data, np.uint8).reshape(-1, 128)[order],
         photo.colour[at[:, 1], at[:, 0]],
         sharpness(np.asarray(grey)),
+        photo.rig,
     )
 
 

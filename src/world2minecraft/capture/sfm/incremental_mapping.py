@@ -4,6 +4,7 @@ COLMAP's mapper runs on one thread to be deterministic. Models that share photos
 poses agree.
 """
 
+from collections import Counter
 from dataclasses import replace
 from typing import Any
 
@@ -36,10 +37,13 @@ from world2minecraft.capture.sfm.results import (
     explain_left_out,
     median_depth,
     no_model_error,
+    panoramas_error,
     to_sparse_scene,
     too_few_error,
 )
+from world2minecraft.capture.sfm.rigs import count_places, make_rigs, places_of
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
@@ -92,21 +96,32 @@ def _database_cache(
 ) -> Any:
     """Return the input of the mapper, created in memory without a database file."""
     cache = pycolmap.DatabaseCache()
+    cameras = []
     for number, group in enumerate(groups):
-        camera = to_colmap(pycolmap, group.camera, number + 1, simple=group.known != "stated")
+        simple = group.known not in ("stated", "exact")
+        camera = to_colmap(pycolmap, group.camera, number + 1, simple=simple)
         camera.has_prior_focal_length = group.known != "unknown"
         cache.add_camera(camera)
-        rig = pycolmap.Rig(rig_id=number + 1)
-        rig.add_ref_sensor(camera.sensor_id)
+        cameras.append(camera)
+    rigs, rig_of_photo = make_rigs(pycolmap, photos, groups, cameras)
+    for rig in rigs:
         cache.add_rig(rig)
+    images: dict[int, list] = {}
+    places = places_of(photos)
+    for number, group in enumerate(groups):
         for i in group.photos:
             image = pycolmap.Image(
                 name=str(i), keypoints=photos[i].pixels, camera_id=number + 1, image_id=i + 1
             )
-            frame = pycolmap.Frame(frame_id=i + 1, rig_id=number + 1)
+            image.frame_id = places[i] + 1
+            images.setdefault(places[i], []).append(image)
+    for place, members in sorted(images.items()):
+        rig_id = rig_of_photo[members[0].image_id - 1]
+        frame = pycolmap.Frame(frame_id=place + 1, rig_id=rig_id)
+        for image in members:
             frame.add_data_id(image.data_id)
-            cache.add_frame(frame)
-            image.frame_id = i + 1
+        cache.add_frame(frame)
+        for image in members:
             cache.add_image(image)
     for (i, j), geometry in links.geometry.items():
         cache.correspondence_graph.add_two_view_geometry(i + 1, j + 1, geometry)
@@ -206,9 +221,14 @@ def find_poses(
     check_enough(features, MIN_PHOTOS)
     groups = group_cameras(features)
     links = match_photos(features, groups, chosen, steps)
-    found, notes, models = map_from_scratch(features, groups, links, chosen, steps)
-    if len(found.poses) < MIN_PLACED_SHARE * len(features):
-        raise too_few_error(len(found.poses), len(features))
+    try:
+        found, notes, models = map_from_scratch(features, groups, links, chosen, steps)
+        if len(found.poses) < MIN_PLACED_SHARE * len(features):
+            raise too_few_error(len(found.poses), len(features))
+    except CaptureError as error:
+        if panoramas := count_places(features):
+            raise panoramas_error(panoramas) from error
+        raise
     steps.end()
     change = Similarity(
         MEDIAN_DEPTH / median_depth(found), np.eye(3), np.zeros(3), np.zeros(0), np.zeros(0)
@@ -252,7 +272,7 @@ def map_from_scratch(
     found = refine_poses(photos, links, poses, replace_cameras(groups, cameras), gates, parameters)
     if len(found.poses) < MIN_PHOTOS or len(found.points) < MIN_POINTS:
         raise no_model_error(photos, links, camera_by_photo(groups))
-    if any(group.is_fixed for group in groups):
+    if any(group.known == "assumed" for group in groups):
         notes.append("the photos do not determine the focal length; using a typical value")
     return found, notes, len(models)
 
@@ -288,6 +308,8 @@ def _best_trial(
 
 def _initial_cameras(groups: list[CameraGroup]) -> list[list[CameraGroup]]:
     """Return the initial cameras of each trial."""
+    if all(group.known == "exact" for group in groups):
+        return [groups]
     fixed = [replace(group, known="assumed") for group in groups]
     others = [[_with_focal(group, focal) for group in groups] for focal in OTHER_FOCALS]
     return [groups, fixed, *(others if any(group.known == "unknown" for group in groups) else [])]
@@ -317,7 +339,7 @@ def refine_poses(
             photos, links, poses, groups, gate, parameters,
             tolerance=1e-5 if last else 1e-3, stated=stated,
         )  # fmt: skip
-        poses = {i: pose for i, pose in found.poses.items() if found.seen_by(i) >= MIN_POINTS}
+        poses = _well_placed(photos, found)
         groups = replace_cameras(groups, found.cameras)
         if last and len(poses) < len(found.poses):
             found = triangulate_and_adjust(
@@ -326,6 +348,14 @@ def refine_poses(
     if found is None:
         raise ValueError("gates_px must not be empty")
     return found
+
+
+def _well_placed(photos: list[Features], found: SparseModel) -> dict[int, np.ndarray]:
+    """Return the poses of the photos whose place observes enough points."""
+    places, seen = places_of(photos), Counter[int]()
+    for i in found.poses:
+        seen[places[i]] += found.seen_by(i)
+    return {i: pose for i, pose in found.poses.items() if seen[places[i]] >= MIN_POINTS}
 
 
 def replace_cameras(groups: list[CameraGroup], cameras: dict) -> list[CameraGroup]:

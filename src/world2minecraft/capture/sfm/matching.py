@@ -17,6 +17,7 @@ from world2minecraft.capture.sfm.features import Features
 from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import ProgressSteps
 from world2minecraft.capture.sfm.pycolmap_access import pycolmap_session
+from world2minecraft.capture.sfm.rigs import places_of
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import Camera
 
@@ -63,7 +64,8 @@ def count_common_features(
     The number is 0 for pairs that were not compared.
     """
     strong = [photo.descriptors[: parameters.strong] for photo in photos]
-    pairs = _candidate_pairs(strong, parameters)
+    places = places_of(photos)  # Photos of one place tell no depth, and their turn is known.
+    pairs = [(i, j) for i, j in _candidate_pairs(strong, parameters) if places[i] != places[j]]
     alike = np.zeros((len(photos), len(photos)), np.int64)
     rows: dict[int, list[int]] = {}
     for i, j in pairs:

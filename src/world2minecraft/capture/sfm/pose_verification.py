@@ -10,6 +10,7 @@ from world2minecraft.capture.sfm.camera_groups import (
     camera_by_photo,
     group_cameras,
     normalise_pixels,
+    sensor_of,
     to_colmap,
 )
 from world2minecraft.capture.sfm.features import Features, extract_features, pixel_unit
@@ -40,6 +41,7 @@ MIN_INLIERS = 30  # Points that a pose found again must agree with; COLMAP's own
 MIN_POINTS = 50  # Fewer say nothing of poses.
 MIN_POINTS_PER_PHOTO = 80  # Points that a photo sees on average, to be free of what is stated,
 NEARLY_RIGHT_PX = 4.0  # unless that is off by more. Bare generated rooms: 20 and 2 px.
+KNOWN = ("stated", "exact")  # Cameras that are good if the poses are.
 MAX_REFINED_ERROR_PX = 1.5  # Refined poses that are off by more have run away.
 
 
@@ -186,7 +188,7 @@ def check_poses(
             f"({len(measured.points)} points); take overlapping photos in good light",
         )
     before = _error_px(measured, off_px, wrong)
-    good = before <= unit * chosen.good_px and all(group.known == "stated" for group in groups)
+    good = before <= unit * chosen.good_px and all(group.known in KNOWN for group in groups)
     scene = (
         _keep_stated(stated, measured, before, cameras)
         if good
@@ -203,7 +205,7 @@ def _triangulate_stated(stated: StatedPoses, cameras: dict[int, Camera]) -> Spar
         stated.photos,
         stated.links,
         poses,
-        _exact_groups(cameras, poses),
+        _exact_groups(stated.photos, cameras, poses),
         stated.parameters.wide_px,
         stated.parameters,
         free=False,
@@ -220,12 +222,14 @@ def _error_px(measured: SparseModel, off_px: dict[int, float], wrong: set[int]) 
     return max(measured.median_px, float(np.median(usual)) if usual else 0.0)
 
 
-def _exact_groups(cameras: dict[int, Camera], poses: dict) -> list[CameraGroup]:
-    """Return a camera group for each distinct stated camera."""
-    groups: dict[Camera, list[int]] = {}
+def _exact_groups(
+    photos: list[Features], cameras: dict[int, Camera], poses: dict
+) -> list[CameraGroup]:
+    """Return a camera group for each distinct stated camera and sensor of a rig."""
+    groups: dict[tuple[Camera, int | None], list[int]] = {}
     for i in sorted(poses):
-        groups.setdefault(cameras[i], []).append(i)
-    return [CameraGroup(camera, tuple(group), "stated") for camera, group in groups.items()]
+        groups.setdefault((cameras[i], sensor_of(photos[i])), []).append(i)
+    return [CameraGroup(key[0], tuple(group), "stated") for key, group in groups.items()]
 
 
 def _register_missing(
@@ -252,7 +256,7 @@ def _keep_stated(
     poses = {**{i: pose for i, (_, pose) in retained.items()}, **fresh}
     gate = stated.parameters.gates_px[-1]
     found = triangulate_and_adjust(
-        stated.photos, stated.links, poses, _exact_groups(cameras, poses), gate,
+        stated.photos, stated.links, poses, _exact_groups(stated.photos, cameras, poses), gate,
         stated.parameters, free=False,
     )  # fmt: skip
     error = round(before, 4)

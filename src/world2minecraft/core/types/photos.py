@@ -11,12 +11,27 @@ from world2minecraft.core.types.capture import Camera
 
 
 @dataclass(frozen=True, eq=False)
+class RigMember:
+    """A photo's part in a rig: photos from one place, with known directions to each other.
+
+    Photos with the same ``place`` belong together, such as the views of one panorama.
+    ``camera_to_rig`` float64 [4, 4] is the same for all photos with the same number ``sensor``, and
+    the identity for sensor 0.
+    """
+
+    place: str
+    sensor: int
+    camera_to_rig: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
 class Photo:
     """A photo whose camera and pose may be unknown.
 
     ``colour`` is upright, uint8 [H, W, 3] in sRGB. ``camera`` has the size of the photo, or is None
     if the lens is unknown. ``camera_guessed`` means that the camera is an initial estimate (from
-    EXIF). ``camera_to_scan`` 4x4 is None if the pose is unknown.
+    EXIF). ``camera_to_scan`` 4x4 is None if the pose is unknown. ``rig`` is set if the photo
+    shares its place with others; its camera is then exact.
     """
 
     name: str
@@ -24,6 +39,7 @@ class Photo:
     camera: Camera | None = None
     camera_guessed: bool = False
     camera_to_scan: np.ndarray | None = None
+    rig: RigMember | None = None
 
     def __post_init__(self):
         put = object.__setattr__

@@ -14,6 +14,12 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.images import SUFFIXES, read_header
+from world2minecraft.capture.readers.panoramas import (
+    is_panorama_size,
+    panorama_frames,
+    panorama_note,
+    view_camera,
+)
 from world2minecraft.capture.source_types import Capture, FrameFiles, as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import opengl_to_opencv_pose
@@ -21,6 +27,7 @@ from world2minecraft.core.errors import CaptureError, InputError, LimitError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Camera
 
+PANORAMA = "EQUIRECTANGULAR"
 _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "PERSPECTIVE", "SIMPLE_RADIAL", "RADIAL")
 
 
@@ -54,8 +61,10 @@ class NerfstudioSource:
         scale = _number(path, stated, "applied_scale", 1.0)
         if scale <= 0:
             raise CaptureError(path, f'"applied_scale" must be above 0, got {scale}')
-        frames = [_frame(path, stated, entry, scale) for entry in entries]
+        frames = [one for entry in entries for one in _frames(path, stated, entry, scale)]
         notes = [] if scale == 1 else [f"camera positions are divided by applied_scale, {scale:g}"]
+        panoramas = len({frame.rig.place for frame in frames if frame.rig is not None})
+        notes += [panorama_note(panoramas)] if panoramas else []
         lost = sum(_depth_name(entry) is not None for entry in entries)
         lost -= sum(frame.depth_path is not None for frame in frames)
         if lost:
@@ -88,6 +97,28 @@ def _is_from_colmap(stated: dict[str, Any], entries: list[Any]) -> bool:
     if any(isinstance(entry, dict) and "colmap_im_id" in entry for entry in entries):
         return True
     return "applied_transform" in stated and not any(map(_depth_name, entries))
+
+
+def _frames(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> list[FrameFiles]:
+    """Return the frame of an entry, or the views of its panorama."""
+    if not isinstance(entry, dict) or {**stated, **entry}.get("camera_model") != PANORAMA:
+        return [_frame(path, stated, entry, scale)]
+    if not isinstance(entry.get("file_path"), str):
+        raise CaptureError(path, 'every frame must be an object with "file_path"')
+    picture, pose = _file_in_folder(path, entry["file_path"]), _pose(path, entry, scale)
+    try:
+        header = read_header(picture)
+    except LimitError:
+        raise
+    except InputError as error:
+        return [FrameFiles(picture.stem, pose, problem=f"{picture.name} {error.reason}")]
+    if not is_panorama_size(header.width_px, header.height_px):
+        raise CaptureError(
+            picture,
+            f"is {header.width_px}x{header.height_px} px, but an {PANORAMA} panorama must be twice "
+            "as wide as high and at least 1000 px wide",
+        )
+    return panorama_frames(picture, picture.stem, view_camera(header.width_px), pose)
 
 
 def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> FrameFiles:
