@@ -123,11 +123,12 @@ def terminal_table(rows: Sequence[Row]) -> Table:
 
 
 def markdown_table(rows: Sequence[Row]) -> str:
-    """Return the table in Markdown."""
+    """Return the table in Markdown, with reasons shortened."""
     names = ("scene", *(column.name for column in COLUMNS), "ran, or why not")
     lines = [f"| {' | '.join(names)} |", f"|---|{'--:|' * len(COLUMNS)}---|"]
     for row in summarize(rows):
-        texts = (row["scene"], *(column.text(row) for column in COLUMNS), status(row))
+        why = status(row).partition(";")[0]  # Without the advice.
+        texts = (row["scene"], *(column.text(row) for column in COLUMNS), why)
         lines.append(f"| {' | '.join(text.replace('|', '/') for text in texts)} |")
     return "\n".join(lines) + "\n"
 
