@@ -101,7 +101,7 @@ def test_swapped_classes_lose_exactly_their_cells():
     assert wall_share(counts) == 1
 
 
-def test_a_shift_of_one_voxel_is_forgiven_and_one_of_three_is_not():
+def test_a_shift_of_one_voxel_is_forgiven_but_not_of_three():
     labels = furnished()
     truth = truth_of(labels)
     by_one, by_three = (counts_of(truth, np.roll(labels, by, axis=2)) for by in (1, 3))
@@ -127,7 +127,7 @@ def test_cells_outside_the_grid_are_not_found():
     assert found_classes(labels, cells).tolist() == [NOT_FOUND, NOT_FOUND, C.FLOOR]
 
 
-def test_unknown_cells_take_the_class_that_touches_them_by_a_face_first():
+def test_unknown_cells_take_the_class_across_a_face_first():
     labels = np.full((5, 5, 5), 255, np.uint8)
     labels[2, 2, 1] = C.TABLE
     labels[1, 1, 2] = labels[3, 3, 2] = C.CHAIR
@@ -148,7 +148,7 @@ def test_nyu_labels_fold_to_the_twelve_classes():
     assert fold_nyu(stored).tolist() == [list(names)]
 
 
-def test_validation_frames_keep_away_from_the_borders_of_their_blocks():
+def test_validation_frames_avoid_the_borders_of_blocks():
     numbers = validation_numbers(range(1450))
     assert len(numbers) % 44 == 0
     assert {n // 50 % 5 for n in numbers} == {4}
@@ -171,7 +171,7 @@ def test_tilt_and_floor_against_a_reference():
     assert tilt_deg(leaning @ exact, up) == pytest.approx(np.degrees(0.02))
 
 
-def test_the_plane_of_labelled_floor_is_found_despite_coarse_depth():
+def test_the_plane_of_labelled_floor_survives_coarse_depth():
     rng = np.random.default_rng(0)
     floor = np.zeros((12_000, 3))
     floor[:, :2] = rng.uniform((-1, 1), (1, 4), (12_000, 2))
