@@ -1,5 +1,7 @@
 """Views of a whole room: what is left out, what is shown, which way is up."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scenes import volume_of
@@ -105,6 +107,21 @@ def test_a_preview_shows_floor_furniture_and_a_margin():
     assert border.min() > 200
     assert (image.astype(int).max(axis=2) - image.astype(int).min(axis=2) > 30).sum() > 300
     assert np.array_equal(image, preview(furnished(), 240, 180))
+
+
+@pytest.mark.parametrize("turns", range(4))
+def test_the_only_wall_is_not_cut_to_show_more_furniture(turns):
+    states = np.zeros((20, 12, 20), np.int64)
+    semantic, instance = np.zeros(states.shape, np.uint8), np.zeros(states.shape, np.uint16)
+    states[:, 0], semantic[:, 0] = 1, 2
+    states[-1, 1:11], semantic[-1, 1:11] = 6, 3  # A red wall, and a row of chests
+    for number, z in enumerate(range(1, 18, 3), start=2):
+        box = np.s_[6:8, 1:3, z : z + 2]
+        states[box], semantic[box], instance[box] = 2, 10, number
+    states[4:6, 1:9], semantic[4:6, 1:9], instance[4:6, 1:9] = 2, 10, 1  # that only it sees.
+    turned = [np.rot90(one, turns, axes=(0, 2)) for one in (states, semantic, instance)]
+    volume = replace(volume_of(turned[0], turned[1], 4.0), instance=turned[2])
+    assert redness(preview(volume, 240, 180)).sum() > 2000
 
 
 @pytest.mark.parametrize("size", [(0, 100), (30_000, 30_000)])
