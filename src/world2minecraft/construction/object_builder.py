@@ -43,7 +43,12 @@ from world2minecraft.construction.objects_from_cells import (
     resample_cells,
 )
 from world2minecraft.construction.overlap_avoidance import best_place, best_step
-from world2minecraft.construction.surface_painting import block_colours, chair_paints
+from world2minecraft.construction.simple_volumes import fill_boxes, simple_boxes
+from world2minecraft.construction.surface_painting import (
+    block_colours,
+    chair_paints,
+    lit_colour,
+)
 from world2minecraft.construction.template_blocks import (
     LATE_RANKS,
     ShapePainter,
@@ -54,7 +59,7 @@ from world2minecraft.construction.template_blocks import (
 from world2minecraft.construction.template_substitution import substitute_templates
 from world2minecraft.construction.worktops import PlateBuilder
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
-from world2minecraft.core.types import UNSEEN, Placement
+from world2minecraft.core.types import UNSEEN, ObjectInstance, Placement
 from world2minecraft.furniture import BlockDesign, block_design, template
 from world2minecraft.furniture.solid_parts import own_cells
 
@@ -75,6 +80,7 @@ class ObjectBuilder:
         canvas: Canvas,
         source: BuildSource,
         footprints: Sequence[np.ndarray],
+        instances: Sequence[ObjectInstance] = (),
     ):
         grid, colours, coloured, palette, parameters = source
         free = (grid.labels == 0) & (grid.source != UNSEEN)
@@ -92,6 +98,9 @@ class ObjectBuilder:
         self.paints = chair_paints(
             grid, colours, coloured & self.colour_source.exposed, parameters.lightness_weight
         )
+        self.uncertain = frozenset(
+            one.id for one in instances if one.confidence < parameters.simple_below
+        )
 
     def put_all(self, placements: Sequence[Placement]) -> None:
         """Place all templates, then the object cells that no nearby block represents."""
@@ -102,6 +111,8 @@ class ObjectBuilder:
             placements = substitute_templates(placements, self._cells_of, self.colour_source)
         held = {id(one): self._cells_of(one) for one in placements}
         own = [one for one in placements if one.template == CELLS or voxels]
+        simple = set() if voxels else {id(one) for one in own if one.object_id in self.uncertain}
+        own = [one for one in own if id(one) not in simple]
         solids = make_solids(own, held, self.colour_source)
         well = {}
         if voxels:
@@ -110,7 +121,9 @@ class ObjectBuilder:
         for placement in sorted(placements, key=placement_order):
             cells = held[id(placement)]
             known = placement.template != CELLS
-            if id(placement) in well:
+            if id(placement) in simple:
+                self.put_simple(placement.class_id, placement.object_id)
+            elif id(placement) in well:
                 self._put_fit(placement, cells, well[id(placement)])
             elif not known or not self.put_template(placement, cells, forced=not len(cells)):
                 solid = solids.get(id(placement))
@@ -219,6 +232,40 @@ class ObjectBuilder:
             design, blocks = design_of_halves(shape.low, shape.halves), shape.blocks
         self.fitted[tuple(cells.T)] = True
         self._put_design(design, ColourSamples(samples, blocks), thing)
+
+    def put_simple(self, class_id: int, number: int) -> None:
+        """Place an object as a few boxes of one material in its colour."""
+        cells = np.argwhere(self.grid.instance == number)
+        if not len(cells) or self.fitted[tuple(cells.T)].all():
+            return
+        thing = ObjectLabel(class_id, number)
+        colours, usable = self.colour_source.colours_of(ColourSamples(cells, cells))
+        if usable.any():
+            self.paints[number] = lit_colour(colours[usable])
+        boxes = simple_boxes(cells, self.grid, self._floor_layer(cells))
+        filled = fill_boxes(boxes, self.grid.shape)
+        kinds = self._kinds(cells, thing) & PLAIN
+        made = fit_cells(
+            filled,
+            make_solid(filled, filled[:0], 0),
+            self.grid,
+            self.lattice,
+            kinds,
+            shift=True,
+            flush=True,
+            hangs=self._hangs(filled, class_id),
+        )
+        self.fitted[tuple(cells.T)] = True
+        self._put_design(made.design, ColourSamples(filled, made.blocks), thing)
+
+    def _floor_layer(self, cells: np.ndarray) -> int:
+        """Return the first layer of the grid above the floor below an object."""
+        bottom = self.lattice.coordinates_of(
+            self.grid.origin_m + cells.min(axis=0) * self.grid.voxel_m
+        )[2]
+        ground = self.lattice.ground_under(float(bottom)) - self.lattice.offset[2]
+        floor_m = ground / self.lattice.blocks_per_metre
+        return round((floor_m - self.grid.origin_m[2]) / self.grid.voxel_m)
 
     def _hangs(self, cells: np.ndarray, class_id: int) -> bool:
         """Return whether an object that may hang on a wall has no block below it."""

@@ -50,6 +50,8 @@ class BuildParameters:
     most_contradicted: Maximum share of a template's blocks in space seen as free. Above this share,
         the object is built from its own cells.
     chair_contradicted: Maximum share of a chair template's blocks in space seen as free.
+    simple_below: Confidence below which an object built from its own cells becomes a simple volume
+        of a few boxes and one material.
     close_tops: Whether to close unseen holes in the tops of objects, such as glossy counters
         without measured depth.
     plane_reach_blocks: Maximum distance of a surface from a wall plane to be snapped to it, in
@@ -143,6 +145,9 @@ class BuildParameters:
         origin="a chair rotated by 45 degrees is built at a quarter turn and is recognizable, "
         "unlike a chair built from its cells",
         bounds=SHARE,
+    )
+    simple_below: float = parameter(
+        0.5, unit="probability", origin="equal to furnish.min_confidence", bounds=SHARE
     )
     close_tops: bool = parameter(True)
     plane_reach_blocks: float = parameter(

@@ -98,7 +98,7 @@ def _put_room(
     if parameters.style == "display":
         DisplayBuilder(canvas, object_source, instances).put_all(placements)
         return shell.footprints
-    builder = ObjectBuilder(canvas, object_source, shell.footprints)
+    builder = ObjectBuilder(canvas, object_source, shell.footprints, instances)
     remaining = place_mod_furniture(
         canvas, palette.furniture, placements, painted, grid, builder.within
     )

@@ -1,4 +1,6 @@
-"""Specks within a surface belong to it; what stands on it or before it does not."""
+"""Specks within a surface belong to it; uncertain lumps on walls belong to the wall."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -75,3 +77,56 @@ def test_object_owns_its_specks_and_grid_keeps_labels():
     assert found.leftover == 0
     plain = find_objects(grid_of(labels), InstanceParameters(paper_compat=True))
     assert plain.grid.instance[8, 7, 9] != plain.grid.instance[4, 4, 9]
+
+
+WALL = SemanticClass.WALL
+WALL_RGB, PICTURE_RGB = (200, 198, 190), (120, 40, 40)
+
+
+def _wall_with(box, rgb, confidence, label=OBJS):
+    """Return a grid with a wall at low x and a box in front of it."""
+    labels = np.zeros((30, 28, 30), np.uint8)
+    labels[:, :, 0] = SemanticClass.FLOOR
+    labels[2, :, 1:] = WALL
+    labels[box] = label
+    grid = grid_of(labels)
+    sure = np.full(labels.shape, 0.9, np.float16)
+    sure[box] = confidence
+    colour = np.full((*labels.shape, 3), WALL_RGB, np.uint8)
+    colour[box] = rgb
+    return replace(grid, confidence=sure, colour=colour)
+
+
+@pytest.mark.parametrize("label", [OBJS, FURN])
+@pytest.mark.parametrize(
+    ("box", "rgb", "confidence"),
+    [
+        (np.s_[3:5, 8:14, 10:16], PICTURE_RGB, 0.1),  # Uncertain.
+        (np.s_[3:6, 8:14, 10:16], WALL_RGB, 0.8),  # Of the wall's colour.
+    ],
+)
+def test_a_lump_on_a_wall_becomes_wall(box, rgb, confidence, label):
+    found = find_objects(_wall_with(box, rgb, confidence, label))
+    assert found.instances == () and found.leftover == 0
+    assert (found.grid.labels[box] == WALL).all() and not found.grid.instance.any()
+
+
+@pytest.mark.parametrize(
+    ("box", "rgb", "confidence"),
+    [
+        (np.s_[3:4, 8:14, 10:16], PICTURE_RGB, 0.4),  # A picture on the wall.
+        (np.s_[3:9, 8:14, 1:16], WALL_RGB, 0.1),  # A white cupboard at the wall.
+        (np.s_[20:22, 8:14, 10:16], WALL_RGB, 0.1),  # Something away from the wall.
+    ],
+)
+def test_pictures_and_what_stands_before_walls_are_kept(box, rgb, confidence):
+    grid = _wall_with(box, rgb, confidence)
+    found = find_objects(grid)
+    assert len(found.instances) == 1
+    np.testing.assert_array_equal(found.grid.labels, grid.labels)
+
+
+def test_the_method_of_the_paper_keeps_lumps():
+    box = np.s_[3:5, 8:14, 10:16]
+    found = find_objects(_wall_with(box, WALL_RGB, 0.1), InstanceParameters(paper_compat=True))
+    assert (found.grid.labels[box] == OBJS).all()

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
@@ -20,7 +20,7 @@ from world2minecraft.furniture.front_estimation import (
     read_surroundings,
 )
 from world2minecraft.reconstruction.instances.cabinet_runs import split_cabinet_runs
-from world2minecraft.reconstruction.instances.denoise import relabel_specks
+from world2minecraft.reconstruction.instances.denoise import find_wall_lumps, relabel_specks
 from world2minecraft.reconstruction.instances.density_clustering import (
     assign_voxels,
     candidate_cells,
@@ -75,7 +75,7 @@ class FoundObjects:
     """The objects found in a room.
 
     Attributes:
-        grid: Grid with the instance id of each cell.
+        grid: Grid with the instance id of each cell, in which lumps on walls are wall.
         instances: The objects.
         centers: Density, candidates and clusters.
         leftover: Number of object cells that belong to no object; their instance is 0.
@@ -91,7 +91,8 @@ def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = No
     """Find the objects of a room.
 
     Objects are sorted by class, then by the centre of their cells (x, y, z), and numbered from 1.
-    Labels are not changed, even those of specks that are assigned to another object.
+    Lumps on walls become part of the wall. Other labels are not changed, even those of specks that
+    are assigned to another object.
 
     Raises:
         UsageError: If there are more objects than ids, so that ``min_cells`` must be increased.
@@ -108,6 +109,14 @@ def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = No
     owners = assign_voxels(grid.labels, binary, candidates, cluster)
     for refine in () if chosen.paper_compat else PASSES:
         owners = refine(owners, grid, chosen)
+    if not chosen.paper_compat:
+        lumps = find_wall_lumps(owners, grid)
+        owners = np.where(lumps, 0, owners)
+        binary &= ~lumps
+        given, grid = (
+            replace(one, labels=np.where(lumps, np.uint8(SemanticClass.WALL), one.labels))
+            for one in (given, grid)
+        )
     instances = _instances(grid, owners, reach=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:

@@ -128,7 +128,8 @@ def place_templates(
     """Return the placements of the furniture for each object, in the order of the objects.
 
     An object that was cut has several placements with its id. If no template reaches ``min_iou``,
-    the template is ``cells`` and ``iou`` is that of the best rejected template. Placements are
+    or if the confidence of the object is below ``min_confidence``, the template is ``cells`` and
+    ``iou`` is that of the best rejected template. Placements are
     within ``rooms``, if given, stand on their floors, and their solid parts do not overlap.
     """
     chosen = parameters or RetrievalParameters()
@@ -152,6 +153,8 @@ def _furnish_one(
 ) -> list[Choice]:
     turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
     whole = _match(grid, instance, instance.cells, turns, chosen, floor_m)
+    if _is_uncertain(instance, chosen):
+        return [Choice(_placement(grid, instance, whole, chosen), (), None)]
     if whole.iou < chosen.seat_below and instance.class_id == SemanticClass.CHAIR:
         seated = None if chosen.paper_compat else _seated(grid, whole, chosen)
         if seated is not None:
@@ -169,6 +172,10 @@ def _furnish_one(
         parts = _with_tidy_crumbs(grid, instance, parts, chosen)
         return [_choice(grid, instance, part, chosen) for part in parts]
     return [_choice(grid, instance, whole, chosen)]
+
+
+def _is_uncertain(instance: ObjectInstance, chosen: RetrievalParameters) -> bool:
+    return not chosen.paper_compat and instance.confidence < chosen.min_confidence
 
 
 def _with_tidy_crumbs(
@@ -277,6 +284,7 @@ def _placement(
 ) -> Placement:
     least = 0.0 if chosen.paper_compat else chosen.min_iou
     explained = bool(found.matches) and (found.whole or found.iou >= least)
+    explained &= not _is_uncertain(instance, chosen)
     low, counts, turns = _own_box(found)
     if explained:
         trial = found.matches[0].trial

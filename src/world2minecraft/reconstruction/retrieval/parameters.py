@@ -12,6 +12,8 @@ ABOVE_0, SHARE, UP_TO_8 = "above 0", "0 to 1", "0 to 8"
 class RetrievalParameters:
     """Parameters of matching templates.
 
+    min_confidence: Minimum confidence of an object's class for a template; below it, the object is
+        built as a simple volume of its own cells.
     min_iou: Minimum IoU of a template; below it, the object is built from its own cells.
     shift_cells: Maximum shift of a template from the object's box along each axis.
     size_slack: Maximum difference between the sides of a template and the object's box.
@@ -40,6 +42,13 @@ class RetrievalParameters:
         count, seen or not, ties are decided by library order, and objects are never cut.
     """
 
+    min_confidence: float = parameter(
+        0.5,
+        unit="probability",
+        origin="of the objects of 81 NYUv2 frames, 20 % have the right class below 0.5 and 42 % "
+        "above it; of those of 13 generated rooms without label images, 16 % and 84 %",
+        bounds=SHARE,
+    )
     min_iou: float = parameter(
         0.5,
         unit="IoU",
