@@ -67,6 +67,7 @@ CELLS = "cells"
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
 PLAIN = {"full", "slab"}  # Of so few blocks a bed or cupboard with stairs and panels is rubble.
 SURE_IOU = 0.5  # What matched as well as this is no guess; a block of a thin part is mostly free.
+MAX_FREE = 0.5  # Share of a simple volume seen as free; above it, the volume is not the object.
 FINE_SCALE = 3.0  # Blocks per metre from which a design is held against what was seen free.
 MIN_ALONE = 0.25  # Blocks: a chair at one block a metre is less, and at two it is more.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
@@ -244,6 +245,11 @@ class ObjectBuilder:
             self.paints[number] = lit_colour(colours[usable])
         boxes = simple_boxes(cells, self.grid, self._floor_layer(cells))
         filled = fill_boxes(boxes, self.grid.shape)
+        at = tuple(filled.T)
+        free = (self.grid.labels[at] == 0) & (self.grid.source[at] != UNSEEN)
+        if free.mean() > MAX_FREE:
+            self.put_cells(cells, class_id, number)
+            return
         kinds = self._kinds(cells, thing) & PLAIN
         made = fit_cells(
             filled,
@@ -313,7 +319,7 @@ class ObjectBuilder:
         if guessed and self._free_share(design, window) > self._limit(placement):
             return False
         design = design.moved(self._step(design.filled, design.low))
-        self.plates.plate_over(design, thing.instance)
+        self.plates.plate_over(design.filled, design.low, thing.instance)
         window = self._window(design)
         samples = self.colour_source.stretched(cells, placement, design.low, design.numbers.shape)
         numbers = design.numbers[window.box] * window.free
@@ -336,6 +342,7 @@ class ObjectBuilder:
             if guessed and self._open_in(filled, low) > self._limit(placement):
                 return False
             low = low + self._step(filled, low, held=placement.iou >= SURE_IOU)
+        self.plates.plate_over(filled_blocks(found), low, thing.instance)
         start, solid = body_box(found, placement, self.lattice, low, size)
         samples = self.colour_source.stretched(cells, placement, start, solid.tolist())
         seen = block_colours(

@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.construction.block_lattice import Lattice, overlap_weights
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.fitted_objects import FULL, LOWER, Design
+from world2minecraft.construction.fitted_objects import FULL, LOWER
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
@@ -269,14 +269,20 @@ class PlateBuilder:
                 state = carpets[int(distances.argmin())]
                 self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
 
-    def plate_over(self, design: Design, number: int) -> None:
-        """Let an object's worktop replace the top of one of its designs that reaches up to it."""
+    def plate_over(self, filled: np.ndarray, low: np.ndarray, number: int) -> None:
+        """Let an object's worktop replace the top of a design that reaches up to it.
+
+        Args:
+            filled: Blocks of the design, bool [X, Y, Z].
+            low: First block of the design, int [3].
+            number: Number of the object.
+        """
         top = self.worktops.get(number)
         if top is None or self.lattice.blocks_per_metre < PLATES_FROM:
             return
-        level = top.layer - int(design.low[2])
-        if level == design.numbers.shape[2] - 1:
+        level = top.layer - int(low[2])
+        if level == filled.shape[2] - 1:
             columns = np.zeros(self.lattice.shape[:2], bool)
-            for x, y in np.argwhere(design.filled[:, :, level]) + design.low[:2]:
+            for x, y in np.argwhere(filled[:, :, level]) + low[:2]:
                 columns[x, y] = True
             self._put_plate(top, columns, number)

@@ -61,6 +61,21 @@ def test_longer_arm_of_an_l_of_counters_keeps_the_corner():
     assert parted[3, 3, 11] == parted[30, 3, 11] != parted[3, 20, 11]
 
 
+def _glossy_l():
+    """Return an L of counters whose top was seen at its rim only."""
+    labels = _room((2, 2, 1, 10, 24, 12), (10, 2, 1, 38, 10, 12))
+    labels[3:9, 3:23] = labels[3:37, 3:9] = 255
+    return labels
+
+
+def test_an_l_of_counters_with_an_unseen_top_is_one_where_its_fronts_are_alike():
+    labels = _glossy_l()
+    assert len(_numbers(_parted(labels))) == 1
+    colour = np.full((*labels.shape, 3), 120, np.uint8)
+    colour[:, 10:] = (150, 40, 40)
+    assert len(_numbers(_parted(labels, colour))) == 2
+
+
 def test_a_cooker_between_two_counters_parts_them():
     labels = _room((2, 2, 1, 10, 34, 12))
     colour = np.full((*labels.shape, 3), 200, np.uint8)

@@ -47,6 +47,7 @@ Box = tuple[np.ndarray, np.ndarray]
 
 OWN_CELLS = "cells"
 HALF = 0.5
+LEVEL_M = 0.25  # Tops of runs of one worktop; a kettle or a rim at the wall is on some of them.
 SURELY_MET = 0.9  # A chair of usual size that meets these is taken before a stranger one.
 
 
@@ -168,6 +169,7 @@ def _furnish_one(
         parts.append(_match(grid, instance, cells, front, chosen, floor_m))
     least = max(chosen.min_run_cells, chosen.min_run_share * whole.evidence.own)
     parts = [part if part.evidence.own >= least else part.unmatched() for part in parts]
+    parts = _with_one_design(parts, grid.voxel_m, chosen)
     if _is_better_cut(parts, whole.iou, chosen):
         parts = _with_tidy_crumbs(grid, instance, parts, chosen)
         return [_choice(grid, instance, part, chosen) for part in parts]
@@ -176,6 +178,44 @@ def _furnish_one(
 
 def _is_uncertain(instance: ObjectInstance, chosen: RetrievalParameters) -> bool:
     return not chosen.paper_compat and instance.confidence < chosen.min_confidence
+
+
+def _with_one_design(
+    parts: list[Matched], voxel_m: float, chosen: RetrievalParameters
+) -> list[Matched]:
+    """Return the runs with the same template for all standing runs of about one height.
+
+    The arms of an L of counters are one piece of furniture: the template that explains most of
+    their cells is used for all of them, where it reaches ``min_iou``.
+    """
+    result = list(parts)
+    standing = [n for n, part in enumerate(parts) if part.matches and part.iou >= chosen.min_iou]
+    standing = [n for n in standing if parts[n].evidence.low[2] <= parts[n].evidence.floor + 1]
+    tops = {n: _top_layer(parts[n]) for n in standing}
+    for lead in sorted(standing, key=lambda n: -parts[n].evidence.own)[:1]:
+        level = [n for n in standing if abs(tops[n] - tops[lead]) * voxel_m <= LEVEL_M]
+        if len(level) < 2:
+            continue
+        shares: dict[str, float] = {}
+        for n in level:
+            best: dict[str, float] = {}
+            for one in parts[n].matches:
+                name = one.trial.template.name
+                best[name] = max(best.get(name, 0.0), one.iou)
+            for name, iou in best.items():
+                if iou >= chosen.min_iou:
+                    shares[name] = shares.get(name, 0.0) + iou * parts[n].evidence.own
+        common = max(shares, key=lambda name: (shares[name], name))
+        for n in level:
+            first = [one for one in parts[n].matches if one.trial.template.name == common]
+            if first and first[0].iou >= chosen.min_iou:
+                rest = [one for one in parts[n].matches if one.trial.template.name != common]
+                result[n] = parts[n]._replace(matches=(*first, *rest))
+    return result
+
+
+def _top_layer(part: Matched) -> int:
+    return int(part.evidence.corner[2]) + part.evidence.high[2]
 
 
 def _with_tidy_crumbs(
