@@ -1,7 +1,10 @@
 """Chairs: one paint each, one paint a set, and seats that rest on their legs."""
 
 import numpy as np
+import pytest
+from tests.construction.build_samples import FURN, Sketch, placement
 
+from world2minecraft.construction import build_volume
 from world2minecraft.construction.block_lattice import lattice_over
 from world2minecraft.construction.fitted_objects import LOWER
 from world2minecraft.construction.surface_painting import chair_paints, lit_colour
@@ -10,6 +13,7 @@ from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import template
 from world2minecraft.geometry.colour import srgb_to_oklab
 
+SOFA = 7
 BROWN, SHADE, RED = (120, 80, 45), (35, 24, 14), (190, 30, 30)
 
 
@@ -80,3 +84,20 @@ def test_a_seat_rests_on_its_posts_at_every_turn():
         for x, y in column:
             filled = design.halves[x, y] > 0
             assert filled[: int(np.flatnonzero(filled)[-1]) + 1].all(), "no gap under the back"
+
+
+@pytest.mark.parametrize(
+    ("class_id", "name", "plain"), [(SOFA, "sofa", True), (FURN, "counter", False)]
+)
+def test_the_runs_of_a_sofa_share_a_paint(class_id, name, plain):
+    sketch = Sketch((50, 25, 30))
+    for x, colour in (((5, 16), RED), ((16, 27), SHADE)):
+        sketch.put(x, (2, 12), (0, 9), class_id, colour, 1)
+    runs = [
+        placement(name, class_id, (0.08 * x, 0.56, 0.36), (0.88, 0.8, 0.72)) for x in (10.5, 21.5)
+    ]
+    volume = build_volume(sketch.grid(), runs, (), corner_m=sketch.corner_m)
+    used = np.unique(volume.states[volume.instance == 1])
+    names = {volume.palette[int(one)].partition("[")[0] for one in used}
+    assert any("red" in one for one in names)
+    assert plain == all("black" not in one and "brown" not in one for one in names), names

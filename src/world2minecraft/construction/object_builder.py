@@ -64,6 +64,7 @@ from world2minecraft.furniture import BlockDesign, block_design, template
 from world2minecraft.furniture.solid_parts import own_cells
 
 CELLS = "cells"
+UPHOLSTERED = (SemanticClass.SOFA, SemanticClass.BED)
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
 PLAIN = {"full", "slab"}  # Of so few blocks a bed or cupboard with stairs and panels is rubble.
 SURE_IOU = 0.5  # What matched as well as this is no guess; a block of a thin part is mostly free.
@@ -110,6 +111,7 @@ class ObjectBuilder:
         voxels = self.parameters.style == "voxels"
         if not voxels and self.lattice.blocks_per_metre < FINE_SCALE:
             placements = substitute_templates(placements, self._cells_of, self.colour_source)
+        self.paints |= self._upholstery(placements)
         held = {id(one): self._cells_of(one) for one in placements}
         own = [one for one in placements if one.template == CELLS or voxels]
         simple = set() if voxels else {id(one) for one in own if one.object_id in self.uncertain}
@@ -142,6 +144,21 @@ class ObjectBuilder:
         for number in sorted(set(classes) - set(np.unique(self.canvas.instance).tolist())):
             if self._is_large(np.argwhere(self.grid.instance == number)):
                 self._put_one(classes[number], number)
+
+    def _upholstery(self, placements: Sequence[Placement]) -> dict[int, np.ndarray]:
+        """Return the Oklab colour of each sofa and bed that has several placements, by number."""
+        covered = [
+            one.object_id
+            for one in placements
+            if one.template != CELLS and one.class_id in UPHOLSTERED
+        ]
+        result = {}
+        for number in sorted({one for one in covered if covered.count(one) > 1}):
+            cells = np.argwhere(self.grid.instance == number)
+            colours, usable = self.colour_source.colours_of(ColourSamples(cells, cells))
+            if usable.any():
+                result[number] = lit_colour(colours[usable])
+        return result
 
     def _is_large(self, cells: np.ndarray) -> bool:
         """Return whether cells, int [N, 3], are enough for a block.

@@ -1,6 +1,7 @@
 """Which design of a family stands for a match: by size and colour, the same for a whole set."""
 
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
@@ -16,13 +17,15 @@ from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import RetrievalParameters, place_templates
 from world2minecraft.reconstruction.retrieval.variants import Choice, Offer, choose
 
+NUMBERS = count(1)
 BROWN, WHITE, RED = (90, 58, 34), (242, 241, 236), (160, 36, 33)
 
 
 def _choice(name, rgb=None, size_m=None, offered=()):
     one = template(name)
     size = np.array(size_m or one.typical_m)
-    placement = Placement(1, one.class_id, name, np.zeros(3), size, 0, 0.9, one.complete())
+    number = next(NUMBERS)
+    placement = Placement(number, one.class_id, name, np.zeros(3), size, 0, 0.9, one.complete())
     offers = tuple(Offer(other, 0.9, {}) for other in (name, *offered))
     colour = None if rgb is None else srgb_to_oklab(np.array(rgb, np.uint8))
     return Choice(placement, offers, colour)
@@ -61,6 +64,14 @@ def test_a_set_stays_a_set():
     assert {one.template for one in choose(choices)} in ({"chair"}, {"chair_carver"})
     refused = [*choices[:2], choices[2]._replace(offers=choices[2].offers[:1])]
     assert {one.template for one in choose(refused)} == {"chair"}
+
+
+def test_the_runs_of_one_object_share_a_design():
+    rows = [("sofa", BROWN, (0.92, 2.0, 0.85), SOFAS), ("sofa", WHITE, (0.92, 1.2, 0.85), SOFAS)]
+    one, other = (_choice(*row) for row in rows)
+    assert len({run.template for run in choose([one, other])}) == 2
+    other = other._replace(placement=replace(other.placement, object_id=one.placement.object_id))
+    assert len({run.template for run in choose([one, other])}) == 1
 
 
 def test_what_has_no_offers_stays():

@@ -111,7 +111,7 @@ def _standing(placement: Placement, offer: Offer) -> Placement:
 
 
 def _sets(choices: Sequence[Choice]) -> list[list[int]]:
-    """Group the choices of the same template and of similar size and colour, as indices."""
+    """Group the choices of one template by object, and by similar size and colour, as indices."""
     found: list[list[int]] = []
     for index, choice in enumerate(choices):
         home = next((one for one in found if _same(choice, choices[one[0]])), None)
@@ -125,6 +125,8 @@ def _sets(choices: Sequence[Choice]) -> list[list[int]]:
 def _same(one: Choice, other: Choice) -> bool:
     if one.placement.template != other.placement.template or not one.offers or not other.offers:
         return False
+    if one.placement.object_id == other.placement.object_id:  # The runs of one object.
+        return True
     distance = np.abs(one.placement.size_m - other.placement.size_m).max()
     return distance <= SAME_SIZE_M and _colours_apart(one.colour, other.colour) <= SAME_SET
 
