@@ -29,6 +29,7 @@ from world2minecraft.reconstruction.instances.density_clustering import (
     object_cells,
 )
 from world2minecraft.reconstruction.instances.merge_pieces import (
+    merge_flush_pieces,
     merge_lamp_parts,
     merge_small_pieces,
     merge_stacked,
@@ -75,7 +76,7 @@ class FoundObjects:
     """The objects found in a room.
 
     Attributes:
-        grid: Grid with the instance id of each cell, in which lumps on walls are wall.
+        grid: Grid with the instance id of each cell, with the classes of merged pieces.
         instances: The objects.
         centers: Density, candidates and clusters.
         leftover: Number of object cells that belong to no object; their instance is 0.
@@ -91,8 +92,9 @@ def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = No
     """Find the objects of a room.
 
     Objects are sorted by class, then by the centre of their cells (x, y, z), and numbered from 1.
-    Lumps on walls become part of the wall. Other labels are not changed, even those of specks that
-    are assigned to another object.
+    Lumps on walls become part of the wall, and pieces that lie against an object of their colour
+    part of that object. Other labels are not changed, even those of specks that are assigned to
+    another object.
 
     Raises:
         UsageError: If there are more objects than ids, so that ``min_cells`` must be increased.
@@ -113,10 +115,12 @@ def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = No
         lumps = find_wall_lumps(owners, grid)
         owners = np.where(lumps, 0, owners)
         binary &= ~lumps
-        given, grid = (
-            replace(one, labels=np.where(lumps, np.uint8(SemanticClass.WALL), one.labels))
-            for one in (given, grid)
-        )
+        merged, labels = merge_flush_pieces(owners, grid)
+        changed = merged != owners
+        owners = merged
+        labels[lumps] = SemanticClass.WALL
+        given = replace(given, labels=np.where(changed | lumps, labels, given.labels))
+        grid = replace(grid, labels=labels)
     instances = _instances(grid, owners, reach=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:
