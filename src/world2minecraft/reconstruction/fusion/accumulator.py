@@ -88,7 +88,10 @@ class EvidenceMap:
             )
         first, last = seen.min(axis=0), seen.max(axis=0) + 1
         box = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
-        return self._as_evidence(log_odds[box], record[box], low + first, *sums)
+        # A floor that was seen a few centimetres too high is moved into the layer below z = 0.
+        below = [(0, 0), (0, 0), (int((low + first)[2] == 0), 0)]
+        log_odds, record = (np.pad(array[box], below) for array in (log_odds, record))
+        return self._as_evidence(log_odds, record, low + first - np.array(below)[:, 0], *sums)
 
     @property
     def memory_mb(self) -> float:
