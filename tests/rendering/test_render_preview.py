@@ -88,6 +88,16 @@ def test_a_far_wall_stays_behind_what_hid_the_floor():
         assert not near.states[0, 5:].any() and near.states[1:7, 1:8, 1:15].all()
 
 
+@pytest.mark.parametrize(("width", "cut"), [(2, False), (5, True)])
+def test_floor_seen_behind_an_outer_wall_does_not_cut_it(width, cut):
+    states, semantic = np.zeros((2, 20, 11, 16), np.uint8)
+    semantic[: 13 + width, 0] = 2
+    semantic[12, 1:, :] = 3
+    states[semantic > 0] = 1
+    opened = without_partitions(volume_of(states, semantic, 4.0))
+    assert opened.states[12, 8:, 4:12].any() != cut
+
+
 def test_the_plan_has_room_x_to_the_right_and_room_y_up():
     image = plan_view(furnished(), 6)
     assert image.shape == (16 * 6, 20 * 6, 3)

@@ -24,6 +24,7 @@ WALL_MOUNT_DEPTH_M = 0.12  # What hangs on a near wall reaches this far into the
 WALL_MOUNT_HEIGHT_M = 1.0  # and hangs above this height; lower things stand on the floor.
 PARTITION_HEIGHT_M = 1.1  # So much of a wall between two rooms stays.
 MIN_ROOM_M2 = 1.0
+MIN_PASSAGE_M = 0.75  # Between two walls; a bent outer wall had 0.5 m of floor behind it.
 MIN_ROOM_WIDTH_M = 0.4  # A strip of floor so narrow is no room.
 MIN_STOREY_M = 1.9  # Floors lie at least this far over one another,
 MIN_STOREY_SHARE = 0.15  # and have at least this share of the largest one's area.
@@ -154,11 +155,13 @@ def arrange_side_by_side(volumes: Sequence[BlockVolume]) -> BlockVolume:
 def without_partitions(volume: BlockVolume) -> BlockVolume:
     """Return the volume with the walls between rooms, and their attachments, cut down.
 
-    Such walls have floor on both sides within half a metre.
+    Such walls have floor of a room on both sides within half a metre. A strip of floor that was
+    seen behind an outer wall is no room.
     """
     semantic = volume.semantic
     bpm = volume.blocks_per_metre
-    floor = room_columns(semantic, bpm)
+    side = max(round(MIN_PASSAGE_M * bpm), 1)
+    floor = ndimage.binary_opening(room_columns(semantic, bpm), np.ones((side, side)))
     reach = max(2, round(0.5 * bpm))
     walls = np.isin(semantic, _WALLS).any(axis=1)  # A lintel too, over the floor of its doorway.
     between = walls & (
