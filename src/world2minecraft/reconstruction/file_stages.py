@@ -51,6 +51,7 @@ from world2minecraft.reconstruction.semantics import (
     labeller,
     remove_wall_guesses,
 )
+from world2minecraft.reconstruction.semantics.known_surfaces import label_known_surface
 from world2minecraft.reconstruction.semantics.labeller_choice import choose_labeller
 
 
@@ -64,6 +65,8 @@ def label_stage(folder: Path, chosen: Parameters) -> None:
     if from_photos:
         grid = remove_wall_guesses(grid, rooms)
     grid = label_grid(grid, evidence, chosen, from_photos=from_photos)
+    if chosen.known is not None:
+        grid = label_known_surface(grid, evidence, *chosen.known)
     if from_photos:
         grid = complete_walls(grid, rooms)
     write_room(folder / "room.npz", grid, evidence.scan_to_room)
