@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.capture.depth_steps import depth_step_m, smooth_depth_steps
 from world2minecraft.capture.images import ImageHeader, ImagePlace, read_header, read_raw
 from world2minecraft.core.errors import CaptureError, UnknownNameError
 
@@ -132,9 +133,14 @@ def find_encoding(paths: Sequence[ImagePlace], stated: str | None) -> DepthEncod
 
 
 def read_depth(path: ImagePlace, encoding: DepthEncoding) -> np.ndarray:
-    """Read a depth image in metres as float32 [H, W], with 0 for missing depth."""
+    """Read a depth image in metres as float32 [H, W], with 0 for missing depth.
+
+    Depth that was stored in steps of centimetres is smoothed within its steps.
+    """
     check_depth_kind(path, read_header(path))
-    return encoding.to_metres(read_raw(path))
+    depth_m = encoding.to_metres(read_raw(path))
+    step_m = depth_step_m(depth_m)
+    return smooth_depth_steps(depth_m, step_m) if step_m else depth_m
 
 
 def _sample_values(path: ImagePlace) -> np.ndarray:
