@@ -23,6 +23,8 @@ Kind = Literal["window", "door", "doorway"]
 BEND_M = 0.32  # Bends are wider than this to both sides.
 MAX_BEND_M = 0.1
 STRAIGHT_M = 0.03  # A wall that bends by less is straight.
+SIGMAS, SIGMA_OF_MEDIAN = 2.5, 1.48
+MAX_NOISE_M = 0.12  # A cell and a half.
 BAR_M = 0.02  # The bars of a window lie before its glass.
 STEP_M = 0.012  # What hangs on a wall and what is let into it has an edge; a bend has none.
 CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
@@ -58,9 +60,19 @@ def read_wall(
     face.hang(relief.seen & _between(relief.gap_m, *parameters.hung_m))
     face.pass_through(_passed(surface, relief))
     outward_m = relief.sign * relief.of(surface.points_m[..., relief.axis])
-    near = np.abs(outward_m - face.depth_m) <= parameters.noise_m
-    near |= np.abs(outward_m - relief.plane_m - face.bend_m) <= parameters.noise_m
+    off_m = np.abs(outward_m - relief.plane_m - face.bend_m)
+    noise_m = _noise_m(off_m[relief.cells], parameters)
+    near = (np.abs(outward_m - face.depth_m) <= noise_m) | (off_m <= noise_m)
     return WallFace(face.classes, face.depth_m, relief.cells & near, tuple(face.gaps))
+
+
+def _noise_m(off_m: np.ndarray, parameters: StructureParameters) -> float:
+    """Return how far the cells of a wall may be from it, given their distances, float [N].
+
+    A wall seen from afar is a thick band of cells, of which all are the wall.
+    """
+    spread_m = SIGMAS * SIGMA_OF_MEDIAN * float(np.median(off_m)) if len(off_m) else 0.0
+    return float(np.clip(spread_m, parameters.noise_m, MAX_NOISE_M))
 
 
 def _bend(surface: Surface, relief: PlaneResiduals) -> np.ndarray:

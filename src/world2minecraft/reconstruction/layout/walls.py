@@ -24,6 +24,24 @@ DIRECTIONS = ((0, 1), (0, -1), (1, 1), (1, -1))  # The axis a wall is square to,
 HIGH_M = 100.0  # Over everything.
 OPEN_SHARE = 0.5  # No wall is passed over by rays along half of its length.
 MAX_PLANES = 24  # For each direction: a bound on the search, well above any room's walls.
+MAX_ASKEW = 0.07  # 4 degrees: a wall off the frame, or a frame off its walls.
+FIT_ROUNDS = 4
+PASSED_FROM = 2
+MIN_GAIN = 1.1  # A plane that is askew must explain this many times the cells of a straight one.
+
+
+@dataclass(frozen=True)
+class Askew:
+    """How a wall's position changes, in metres per metre, along it and upwards from a point."""
+
+    along: float = 0.0
+    upward: float = 0.0
+    at_cell: float = 0.0  # Along the wall.
+    at_m: float = 0.0  # Height.
+
+    def of(self, along_m: np.ndarray | float, height_m: np.ndarray | float) -> np.ndarray:
+        """Return the change at places along the wall, in metres from ``at_cell``, and heights."""
+        return np.asarray(self.along * along_m + self.upward * (height_m - self.at_m))
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +54,7 @@ class WallRun:
     span: tuple[int, int]  # First and last cell along the wall.
     top_m: float
     area_m2: float
+    askew: Askew = Askew()
 
 
 def find_walls(
@@ -138,7 +157,8 @@ def _passed_behind(view: _Turned, parameters: StructureParameters) -> np.ndarray
     """Return the columns behind which rays passed at some height, bool [A, B, 1]."""
     free = view.free[:, :, view.above_floor :].sum(axis=2) >= parameters.passed_cells
     behind = np.zeros_like(free)
-    for step in range(1, 1 + round(parameters.hidden_m / view.voxel_m)):
+    # A wall that leans, or is bent by the sensor, has free space of its own just behind it.
+    for step in range(PASSED_FROM, 1 + round(parameters.hidden_m / view.voxel_m)):
         behind[:-step] |= free[step:]
     return behind[:, :, None]
 
@@ -156,15 +176,47 @@ def _peeled(
         peak, count = highest_peak(outward, parameters.plane_gate_m)
         if count < needed:
             return
-        near = np.abs(outward - peak) <= parameters.plane_gate_m
+        near, askew = _inliers(along, height, outward, peak, view.voxel_m, parameters.plane_gate_m)
         for first, last in _spans(along[near], round(parameters.wall_gap_m / view.voxel_m)):
             inside = near & (along >= first) & (along <= last)
             top = float(np.quantile(height[inside], 0.98))
             if inside.sum() >= needed and top >= top_m:
                 area = float(inside.sum()) * view.voxel_m**2
-                middle = float(np.median(outward[inside]))
-                yield WallRun(view.axis, view.sign, middle, (first, last), top, area)
+                flat = outward[inside] - askew.of(
+                    (along[inside] - askew.at_cell) * view.voxel_m, height[inside]
+                )
+                middle = float(np.median(flat))
+                yield WallRun(view.axis, view.sign, middle, (first, last), top, area, askew)
         outward, height, along = outward[~near], height[~near], along[~near]
+
+
+def _inliers(
+    along: np.ndarray,
+    height: np.ndarray,
+    outward: np.ndarray,
+    peak_m: float,
+    voxel_m: float,
+    gate_m: float,
+) -> tuple[np.ndarray, Askew]:
+    """Return the cells of the plane at a peak, bool [N], and how askew the plane is.
+
+    A plane is only askew if that explains clearly more cells than a straight one.
+    """
+    straight = np.abs(outward - peak_m) <= gate_m
+    near, askew = straight, Askew()
+    for _ in range(FIT_ROUNDS):
+        at_cell, at_m = float(along[near].mean()), float(height[near].mean())
+        rows = np.stack(
+            [np.ones(len(along)), (along - at_cell) * voxel_m, height - at_m], axis=1
+        ).astype(np.float64)
+        fit = np.linalg.lstsq(rows[near], outward[near], rcond=None)[0].round(9)
+        if np.abs(fit[1:]).max() > MAX_ASKEW:
+            break
+        near = np.abs(outward - rows @ fit) <= gate_m
+        askew = Askew(float(fit[1]), float(fit[2]), at_cell, at_m)
+    if near.sum() < MIN_GAIN * straight.sum():
+        return straight, Askew()
+    return near, askew
 
 
 def _spans(along: np.ndarray, gap_cells: int) -> list[tuple[int, int]]:
@@ -235,7 +287,7 @@ def _marked(
     """
     box = _box(view, run, parameters)
     occupied, free = view.occupied[box], view.free[box]
-    gap = view.outward_m[box] - run.outward_m
+    gap = view.outward_m[box] - run.outward_m - _askew_in(view, run, box)
     gap = gap - _bend(view, occupied, gap, parameters)[None]
     on = occupied & (gap >= -parameters.before_m) & (gap <= parameters.behind_m)
     on &= ~(_free_beyond(free) & (gap > parameters.before_m))  # The other face of a thin wall.
@@ -245,14 +297,22 @@ def _marked(
     return box, on
 
 
+def _askew_in(view: _Turned, run: WallRun, box: tuple[slice, slice, slice]) -> np.ndarray:
+    """Return how far a run is askew at the cells of a box, float [N, A, B] or a scalar."""
+    along = np.arange(box[1].start, box[1].stop)[None, :, None] - run.askew.at_cell
+    return run.askew.of(along * view.voxel_m, view.height_m[box])
+
+
 def _box(
     view: _Turned, run: WallRun, parameters: StructureParameters
 ) -> tuple[slice, slice, slice]:
     """Return the part of the rotated room that contains a run's cells."""
     x, y, z = view.occupied.shape
     layer = (run.outward_m - view.edge_m) / view.voxel_m
-    first = int(np.floor(layer)) - 3
-    last = int(np.ceil(layer + parameters.behind_m / view.voxel_m)) + 2
+    ends_m = (np.array(run.span) - run.askew.at_cell) * view.voxel_m
+    off_m = run.askew.of(ends_m[:, None], np.array([[0.0, run.top_m]]))
+    first = int(np.floor(layer + off_m.min() / view.voxel_m)) - 3
+    last = int(np.ceil(layer + (off_m.max() + parameters.behind_m) / view.voxel_m)) + 2
     return (
         slice(max(first, 0), min(last + 1, x)),
         slice(max(run.span[0] - 1, 0), min(run.span[1] + 2, y)),
