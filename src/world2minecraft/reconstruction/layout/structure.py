@@ -14,6 +14,7 @@ from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.reconstruction.layout.openings import WallFace, read_wall
 from world2minecraft.reconstruction.layout.parameters import StructureParameters
 from world2minecraft.reconstruction.layout.plane_residuals import PlaneResiduals
+from world2minecraft.reconstruction.layout.slanted_walls import SlantedWall, find_slanted_walls
 from world2minecraft.reconstruction.layout.sloped_ceilings import find_slopes
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 from world2minecraft.reconstruction.layout.walls import WallRun, find_walls
@@ -96,6 +97,7 @@ class Structure:
     slopes: np.ndarray  # bool [X, Y, Z], sloped ceilings
     wall: np.ndarray  # bool [X, Y, Z]
     walls: tuple[Wall, ...]
+    slanted: tuple[SlantedWall, ...] = ()
 
     @property
     def rest(self) -> np.ndarray:
@@ -113,8 +115,11 @@ def structure_of(surface: Surface, parameters: StructureParameters) -> Structure
     level |= slopes
     mask = np.zeros(surface.occupied.shape, bool)
     walls = []
-    for run, relief in find_walls(surface, level, slopes, ceiling_m, parameters):
+    slanted = find_slanted_walls(surface, surface.occupied & ~level, parameters)
+    for piece in slanted:  # First, or a slanted wall would be cut into steps along the axes.
+        mask |= piece.cells
+    for run, relief in find_walls(surface, level | mask, slopes, ceiling_m, parameters):
         face = read_wall(surface, relief, parameters)
         relief.of(mask)[face.cells] = True
         walls.append(Wall(run, relief, face))
-    return Structure(surface, floor, ceiling, ceiling_m, slopes, mask, tuple(walls))
+    return Structure(surface, floor, ceiling, ceiling_m, slopes, mask, tuple(walls), slanted)
