@@ -54,14 +54,16 @@ def read_wall(
 ) -> WallFace:
     """Classify the positions of a wall face and find the openings in it."""
     face = _Face(surface, relief, parameters)
-    low, high = parameters.opening_depth_m
-    face.cut(relief.seen & _between(relief.gap_m, low, high))
-    face.cut_leaves()
-    face.hang(relief.seen & _between(relief.gap_m, *parameters.hung_m))
-    face.pass_through(_passed(surface, relief))
     outward_m = relief.sign * relief.of(surface.points_m[..., relief.axis])
     off_m = np.abs(outward_m - relief.plane_m - face.bend_m)
     noise_m = _noise_m(off_m[relief.cells], parameters)
+    low, high = parameters.opening_depth_m
+    if noise_m <= high / 2:  # Else the wall's own noise looks like openings and pictures.
+        face.cut(relief.seen & _between(relief.gap_m, max(low, noise_m), high))
+        if noise_m <= parameters.noise_m:
+            face.cut_leaves()
+            face.hang(relief.seen & _between(relief.gap_m, *parameters.hung_m))
+    face.pass_through(_passed(surface, relief))
     near = (np.abs(outward_m - face.depth_m) <= noise_m) | (off_m <= noise_m)
     return WallFace(face.classes, face.depth_m, relief.cells & near, tuple(face.gaps))
 

@@ -75,7 +75,7 @@ class StructureParameters:
         0.6, unit="m2", origin="0.5 m of a wall up to eye height, half hidden"
     )
     wall_top_m: float = parameter(
-        1.3, unit="m", origin="higher than tables, counters and chair backs"
+        0.9, unit="m", origin="higher than tables, counters and chair backs"
     )
     wall_gap_m: float = parameter(1.3, unit="m", origin="a door, a window")
     behind_m: float = parameter(

@@ -19,6 +19,13 @@ from world2minecraft.reconstruction.layout.sloped_ceilings import find_slopes
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 from world2minecraft.reconstruction.layout.walls import WallRun, find_walls
 
+MIN_FLOOR_M2 = 0.5
+FLOOR_GATES_M = (0.08, 0.06, 0.05)
+MAX_FLOOR_SLOPE = 0.035  # 2 degrees.
+MAX_FLOOR_NOISE_M = 0.08
+MIN_GAIN = 1.1  # A floor that is askew must explain this many times the cells of a level one.
+SIGMAS, SIGMA_OF_MEDIAN = 2.5, 1.48
+
 
 @dataclass(frozen=True, eq=False)
 class Floor:
@@ -31,20 +38,53 @@ class Floor:
 def find_floor(surface: Surface, parameters: StructureParameters) -> Floor:
     """Return the cells of the floor, including those that spill is moved to.
 
-    Spill is a cell of the first layer above the floor whose surface point is within ``spill_m`` of
-    z = 0, with no occupied cell above it, as there would be at the foot of a wall or leg.
+    Spill is a cell above the floor's layer whose surface point is on the floor within its noise,
+    at least ``spill_m``, with no occupied cell above it, as there would be at the foot of a wall or
+    leg.
     """
     cells, spill = np.zeros((2, *surface.occupied.shape), bool)
     layer = surface.floor_layer
     if not 0 <= layer < surface.occupied.shape[2]:
         return Floor(cells, spill)
     cells[:, :, : layer + 1] = surface.occupied[:, :, : layer + 1]
-    if layer + 1 < surface.occupied.shape[2]:
-        low = surface.points_m[:, :, layer + 1, 2] < parameters.spill_m
-        spill[:, :, layer + 1] = surface.occupied[:, :, layer + 1] & low
-    if layer + 2 < surface.occupied.shape[2]:
-        spill[:, :, layer + 1] &= ~surface.occupied[:, :, layer + 2]
+    rise_m, noise_m = _floor_relief(surface, parameters)
+    for above in range(layer + 1, min(layer + 3, surface.occupied.shape[2])):
+        low = surface.points_m[:, :, above, 2] - rise_m < noise_m
+        spill[:, :, above] = surface.occupied[:, :, above] & low
+    raised = surface.occupied & ~spill
+    spill[:, :, :-1] &= ~raised[:, :, 1:]
     return Floor(cells, spill)
+
+
+def _floor_relief(surface: Surface, parameters: StructureParameters) -> tuple[np.ndarray, float]:
+    """Return how far the floor rises over z = 0 in each column, float [X, Y], and its noise.
+
+    The frame may lean by a degree, and depth that is bent lifts the far end of a floor.
+    """
+    low = max(surface.floor_layer - 1, 0)
+    near = surface.occupied[:, :, low : surface.floor_layer + 3]
+    points = surface.points_m[:, :, low : surface.floor_layer + 3][near].astype(np.float64)
+    rise_m = np.zeros(surface.occupied.shape[:2])
+    straight = np.abs(points[:, 2]) <= parameters.spill_m
+    if straight.sum() * surface.voxel_m**2 < MIN_FLOOR_M2:
+        return rise_m, parameters.spill_m
+    middle = points[straight, :2].mean(axis=0)
+    rows = np.column_stack([np.ones(len(points)), points[:, :2] - middle])
+    on, fit = straight, np.zeros(3)
+    for gate_m in FLOOR_GATES_M:
+        found = np.linalg.lstsq(rows[on], points[on, 2], rcond=None)[0].round(9)
+        if np.abs(found[1:]).max() > MAX_FLOOR_SLOPE or abs(found[0]) > parameters.plane_gate_m:
+            break
+        fit = found
+        on = np.abs(points[:, 2] - rows @ fit) <= gate_m
+    off_m = np.abs(points[:, 2] - rows @ fit)
+    if (off_m <= parameters.spill_m).sum() < MIN_GAIN * straight.sum():
+        return rise_m, parameters.spill_m
+    noise_m = SIGMAS * SIGMA_OF_MEDIAN * float(np.median(off_m[off_m <= FLOOR_GATES_M[0]]))
+    shape = surface.occupied.shape
+    plan_m = [surface.origin_m[a] + (np.arange(shape[a]) + 0.5) * surface.voxel_m for a in (0, 1)]
+    slope_m = np.add.outer(fit[1] * (plan_m[0] - middle[0]), fit[2] * (plan_m[1] - middle[1]))
+    return fit[0] + slope_m, float(np.clip(noise_m, parameters.spill_m, MAX_FLOOR_NOISE_M))
 
 
 def find_ceiling(
