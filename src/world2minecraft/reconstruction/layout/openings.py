@@ -58,9 +58,12 @@ def read_wall(
     off_m = np.abs(outward_m - relief.plane_m - face.bend_m)
     noise_m = _noise_m(off_m[relief.cells], parameters)
     low, high = parameters.opening_depth_m
-    if noise_m <= high / 2:  # Else the wall's own noise looks like openings and pictures.
-        face.cut(relief.seen & _between(relief.gap_m, max(low, noise_m), high))
-        if noise_m <= parameters.noise_m:
+    # Noise is as deep before the wall as behind it, where openings are.
+    raised_m = -relief.gap_m[relief.seen & (relief.gap_m < 0)]
+    rough_m = _noise_m(raised_m, parameters)
+    if rough_m <= high / 2:
+        face.cut(relief.seen & _between(relief.gap_m, max(low, rough_m), high))
+        if rough_m <= parameters.noise_m:
             face.cut_leaves()
             face.hang(relief.seen & _between(relief.gap_m, *parameters.hung_m))
     face.pass_through(_passed(surface, relief))

@@ -21,7 +21,7 @@ TURNS_DEG = np.arange(0.0, 360.0, 4.0)
 MIN_FACING = 0.9  # Cosine of a cell's normal and the direction of its wall: 26 degrees.
 MAX_UPRIGHT = 0.4  # Vertical part of the normal of an upright cell.
 MIN_NEIGHBOURS = 6  # Fewer give no normal.
-MIN_SLANT_DEG = 6.0
+MIN_GAIN = 1.5  # A slanted plane must explain this many times the cells of one along an axis.
 MAX_PLANES = 16
 REACH_M = (0.16, 0.4)  # Behind a wall, where no ray passes.
 MIN_HIDDEN_SHARE = 0.6
@@ -75,7 +75,8 @@ def find_slanted_walls(
             break
         outward, offset_m, on = plane
         left &= ~on
-        if abs(outward).max() > np.cos(np.radians(MIN_SLANT_DEG)):
+        straight = _count_along_axis(points, normals, upright, outward, parameters)
+        if on.sum() < MIN_GAIN * straight:
             continue  # Along an axis, where walls are found more exactly.
         for span_m, top_m in _pieces(surface, points, outward, offset_m, on, parameters):
             cells = _cells_near(surface, rest, at, points, (outward, offset_m, span_m, top_m))
@@ -148,6 +149,21 @@ def _best_plane(
     near = np.abs(points[:, :2] @ outward - offset_m) <= parameters.plane_gate_m
     on[near & left & (-(normals[:, :2] @ outward) >= MIN_FACING - 0.1)] = True
     return (outward, offset_m, on) if on.sum() >= needed else None
+
+
+def _count_along_axis(
+    points: np.ndarray,
+    normals: np.ndarray,
+    upright: np.ndarray,
+    outward: np.ndarray,
+    parameters: StructureParameters,
+) -> int:
+    """Return the cells of the best plane along the axis nearest to a direction."""
+    facing = upright & (-(normals[:, :2] @ outward) >= MIN_FACING)
+    axis = int(np.abs(outward).argmax())
+    if not facing.any():
+        return 0
+    return highest_peak(points[facing, axis], parameters.plane_gate_m)[1]
 
 
 def _pieces(
