@@ -66,6 +66,20 @@ def test_far_points_holes_and_views_without_depth_are_skipped():
     assert list(DepthPredictor().predict(scan)) == []
 
 
+def test_a_single_view_is_used_up_to_ten_metres():
+    depth_m = np.full((24, 32), 2, np.float32)
+    depth_m[:5], depth_m[5:9] = 11, 9
+    one = View("v", np.eye(4), ramp(DEPTH), DEPTH, depth_m, DEPTH, np.eye(4))
+
+    def found(kind, *views):
+        scan = Scan(views, np.eye(4), np.ones(3), ("v",), depth_kind=kind)
+        return [len(evidence.points_m) for evidence in DepthPredictor().predict(scan)]
+
+    assert found("sensor", one) == [19 * 32]
+    assert found("sensor", one, one) == [15 * 32, 15 * 32]
+    assert found("network", one) == [15 * 32]
+
+
 def test_predictors_are_found_by_name():
     assert isinstance(predictor("depth"), DepthPredictor)
     with pytest.raises(UnknownNameError, match="did you mean 'depth'"):
