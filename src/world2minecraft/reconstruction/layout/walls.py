@@ -27,6 +27,7 @@ MAX_PLANES = 24  # For each direction: a bound on the search, well above any roo
 MAX_ASKEW = 0.07  # 4 degrees: a wall off the frame, or a frame off its walls.
 FIT_ROUNDS = 4
 PASSED_FROM = 2
+SIGMAS, SIGMA_OF_MEDIAN = 2.5, 1.48
 MIN_GAIN = 1.1  # A plane that is askew must explain this many times the cells of a straight one.
 
 
@@ -289,12 +290,25 @@ def _marked(
     occupied, free = view.occupied[box], view.free[box]
     gap = view.outward_m[box] - run.outward_m - _askew_in(view, run, box)
     gap = gap - _bend(view, occupied, gap, parameters)[None]
-    on = occupied & (gap >= -parameters.before_m) & (gap <= parameters.behind_m)
-    on &= ~(_free_beyond(free) & (gap > parameters.before_m))  # The other face of a thin wall.
+    beyond = _free_beyond(free) & (gap > parameters.before_m)  # The other face of a thin wall.
+    before_m = _before_m(gap[occupied & ~beyond], parameters)
+    on = occupied & ~beyond & (gap >= -before_m) & (gap <= parameters.behind_m)
     before = occupied & ~on & (gap >= -view.voxel_m) & (gap < 0)
     before[1:] &= ~occupied[:-1]  # Noise stands alone; a shelf goes on into the room.
     on[:-1] |= before[:-1] & on[1:]
     return box, on
+
+
+def _before_m(gap_m: np.ndarray, parameters: StructureParameters) -> float:
+    """Return how far in front of a wall its cells may be, given the gaps of those near it [N].
+
+    A wall seen from afar is a thick band of cells, beyond what the gate of a plane allows for. Its
+    noise is measured behind it, since pictures, doors and curtains are in front.
+    """
+    near = gap_m[(gap_m > 0) & (gap_m <= parameters.shadow_m)]
+    spread_m = SIGMAS * SIGMA_OF_MEDIAN * float(np.median(near)) if len(near) else 0.0
+    noise_m = parameters.before_m + max(spread_m - parameters.plane_gate_m, 0.0)
+    return min(noise_m, parameters.shadow_m)
 
 
 def _askew_in(view: _Turned, run: WallRun, box: tuple[slice, slice, slice]) -> np.ndarray:
