@@ -67,6 +67,7 @@ def smooth_depth_steps(depth_m: np.ndarray, step_m: float) -> np.ndarray:
         else:
             inverse = _refined(inverse, stored, low, high, edge_m)
         _relax(inverse, stored, low, high, edge_m, SWEEPS << level)
+    assert inverse is not None  # The loop runs at least once, at level 0.
     with np.errstate(divide="ignore"):
         return np.where(seen, 1 / inverse, 0.0).astype(np.float32)
 

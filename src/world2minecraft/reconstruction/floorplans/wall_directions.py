@@ -112,7 +112,7 @@ class _Run:
         """Return whether the next run lies on the same line."""
         a, b = self.along, other.along
         apart = abs(float(_cross(a, other.middle_m - self.middle_m)))
-        parallel = abs(float(_cross(a, b))) < 1e-9 and a @ b > 0
+        parallel = abs(float(_cross(a, b))) < 1e-9 and float(a @ b) > 0
         return self.is_snapped and other.is_snapped and parallel and apart < RUN_M
 
     def join(self, other: "_Run") -> None:

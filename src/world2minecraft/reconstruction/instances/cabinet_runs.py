@@ -320,8 +320,8 @@ def _seen_top_share(piece: np.ndarray) -> float:
     """Return the share of a piece's plan that has cells next to its fullest layer."""
     areas = piece.sum(axis=(0, 1))
     level = int(areas.argmax())
-    top = piece[:, :, max(level - 1, 0) : level + 2].any(axis=2)
-    box = _plan_box(piece.any(axis=2))
+    top = np.asarray(piece[:, :, max(level - 1, 0) : level + 2].any(axis=2))
+    box = _plan_box(np.asarray(piece.any(axis=2)))
     return float(top[box].mean()) if box else 0.0
 
 

@@ -94,7 +94,7 @@ def find_wall_lumps(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     walls = _large_walls(grid)
     if not walls.any() or not owners.any():
         return result
-    distances = ndimage.distance_transform_edt(~walls)
+    distances = np.asarray(ndimage.distance_transform_edt(~walls))
     reach = MAX_WALL_DISTANCE_M / grid.voxel_m + 1e-6
     for number, box in enumerate(ndimage.find_objects(owners), start=1):
         if box is None:

@@ -190,7 +190,7 @@ def find_interior(grid: SurfaceGrid, inside_m: np.ndarray | None = None) -> Inte
         return Interior(np.isin(parts, chosen), drop, len(chosen)) if chosen else None
     if chosen := _standing_spaces(parts, count, grid.cell_m):
         return Interior(np.isin(parts, chosen), drop, len(chosen))
-    free = ~grid.occupied & ~near & (drop > 0)
+    free = ~grid.occupied & np.logical_not(near) & (drop > 0)
     between = free & (down >= DOWN_VOTES) & (side >= CORNER_SIDE_VOTES)
     if not between.any():
         return None
