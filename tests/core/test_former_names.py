@@ -48,6 +48,14 @@ def test_an_unknown_name_of_a_former_module_is_an_error(module):
         _ = importlib.import_module(module).nothing
 
 
+@pytest.mark.parametrize("name", ["build", "render"])
+def test_public_functions_work_after_imports_of_former_modules(name):
+    package = importlib.import_module(PACKAGE)
+    assert importlib.import_module(f"{PACKAGE}.{name}") is getattr(package, name)
+    with pytest.raises(TypeError, match=rf"^{name}\(\) missing"):
+        getattr(package, name)()
+
+
 def test_a_former_module_still_runs(tmp_path):
     done = subprocess.run(
         [sys.executable, "-m", "world2minecraft.render.textures", tmp_path / "out.png", "16", "1"],

@@ -93,7 +93,7 @@ def test_a_display_starts_with_the_first_walk(flat_path, tmp_path):
 
 @pytest.mark.parametrize("start", [(1, 2), (1, 2, float("nan")), (1, 2, 3, 4, 5)])
 def test_a_start_has_three_or_four_finite_numbers(flat_path, tmp_path, start):
-    with pytest.raises(UsageError, match="--start is X,Y,Z or X,Y,Z,YAW"):
+    with pytest.raises(UsageError, match="--start must be X,Y,Z or X,Y,Z,YAW"):
         run_agent(flat_path, "Go to the piano", start=start, out=tmp_path)
 
 

@@ -354,7 +354,7 @@ def evaluate_frame(
         >>> import world2minecraft as w2m
         >>> from world2minecraft.api.datasets import build_photo_dataset
         >>> from world2minecraft.api.networks import evaluate_frame
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=1, size=(64, 48))
+        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
         >>> report = w2m.export_dataset(data, tmp / "NPZ", "npz")  # The truth, as predictions.
         >>> frame = sorted((tmp / "NPZ").glob("*/*.npz"))[0]
         >>> evaluate_frame(frame, tmp / "DATA")["completion"]["iou"]

@@ -89,6 +89,15 @@ def install() -> None:
         sys.meta_path.append(_FormerModuleFinder())
 
 
+class _CallableModule(ModuleType):
+    """A former module with the name of a public function, which its import replaces."""
+
+    def __call__(self, *args: Any, **options: Any) -> Any:
+        """Call the public function."""
+        api = import_module(f"{PACKAGE}.api")
+        return getattr(api, self.__name__.removeprefix(f"{PACKAGE}."))(*args, **options)
+
+
 class _FormerModuleFinder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
     """Finds the former modules, which contain nothing but a ``__getattr__``."""
 
@@ -104,8 +113,11 @@ class _FormerModuleFinder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
             return None
         return importlib.machinery.ModuleSpec(fullname, self, is_package=inside)
 
-    def create_module(self, spec: importlib.machinery.ModuleSpec) -> None:
-        """Let the import system create an empty module."""
+    def create_module(self, spec: importlib.machinery.ModuleSpec) -> ModuleType | None:
+        """Return an empty module, or None to let the import system create one."""
+        short = spec.name.removeprefix(f"{PACKAGE}.")
+        is_public = short in import_module(PACKAGE).__all__
+        return _CallableModule(spec.name) if is_public else None
 
     def exec_module(self, module: ModuleType) -> None:
         """Give the module its ``__getattr__``."""
