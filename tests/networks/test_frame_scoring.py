@@ -10,8 +10,8 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.formats.run_arrays import write_room
+from world2minecraft.formats.sscnet import encode_bin
 from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA, encode_depth
-from world2minecraft.minecraftocc.formats.sscnet import encode_bin
 from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.networks.frame_scoring import frame_scores
 

@@ -9,7 +9,7 @@ import torch
 from tests.networks.toy_sets import toy_config, toy_set, write_toy_store
 
 from world2minecraft.core.coordinates import apply, invert_rigid
-from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
+from world2minecraft.formats.sscnet import downsample_labels
 from world2minecraft.networks import memory_scoring as memory
 from world2minecraft.networks.config import GRIDS
 from world2minecraft.networks.data.cache import StreamedFrames

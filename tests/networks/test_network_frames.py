@@ -11,7 +11,7 @@ from tests.networks.toy_sets import CAMERA, WIDE
 
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
+from world2minecraft.formats.sscnet import downsample_labels
 from world2minecraft.networks.config import GRIDS
 from world2minecraft.networks.data.batches import augment_frame, flip_frame, jitter_colour
 from world2minecraft.networks.data.frames import FrameRule, make_frame

@@ -12,7 +12,7 @@ from tests.reconstruction.occupancy.tiny_network import write_network
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import write_npz
-from world2minecraft.minecraftocc.formats.sscnet import encode_bin
+from world2minecraft.formats.sscnet import encode_bin
 from world2minecraft.networks import training
 from world2minecraft.networks.config import GRIDS
 from world2minecraft.networks.data.frames import cells_with_masks
@@ -226,7 +226,7 @@ def test_single_files_and_folders_of_bins_are_scored(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "text"),
     [
-        (["train"], 2, "no network; give its name, such as w2m train monoscene --data DIR"),
+        (["train"], 2, "no network given; name one, as in w2m train monoscene --data DIR"),
         (["train", "monoscene"], 2, "no training data; add --data DIR"),
         (["train", "x", "--data", "d", "--image", "big"], 2, "--image must be WIDTHxHEIGHT"),
         (["train", "x", "--data", "d", "--preset", "8"], 2, "no preset is named '8'"),

@@ -7,7 +7,7 @@ import pytest
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import DamagedFileError, InputError
-from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle
+from world2minecraft.formats.safe_pickle import dump_pickle
 from world2minecraft.minecraftocc.importers.embodied import open_scenes
 from world2minecraft.networks.saved_predictions import SavedPredictions
 from world2minecraft.networks.scoring import SCENES, saved_scene_scores, scenes_to_score

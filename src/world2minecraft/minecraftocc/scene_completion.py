@@ -19,8 +19,8 @@ from world2minecraft.core.errors import CaptureError, DamagedFileError, InputErr
 from world2minecraft.core.files import npz_array_names, read_npz
 from world2minecraft.core.types import Camera, FusedEvidence, OccupancyGrid, PointEvidence, View
 from world2minecraft.core.types.checks import transform
+from world2minecraft.formats.sscnet import HEADER_BYTES
 from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA, decode_depth
-from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES
 from world2minecraft.reconstruction.fusion import (
     CleaningParameters,
     EvidenceMap,

@@ -15,8 +15,8 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.core.types import Camera
+from world2minecraft.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA
-from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.labels.camera_region import region_in
 from world2minecraft.minecraftocc.labels.image_labels import label_image
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, FineClass, OccSample, SceneVoxels

@@ -16,7 +16,7 @@ from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.metrics.protocols import count_scene
 from world2minecraft.evaluation.metrics.score_aggregation import FrameScore
-from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
+from world2minecraft.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.networks.config import GRIDS, RunConfig
 from world2minecraft.networks.data.cache import Frames

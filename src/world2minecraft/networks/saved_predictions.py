@@ -16,7 +16,7 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import npz_array_names, read_npy, read_npz
-from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
+from world2minecraft.formats.safe_pickle import read_pickle
 from world2minecraft.networks.config import GRIDS, Grid
 
 # How an array's axes lie: which of them are our x, y, z.

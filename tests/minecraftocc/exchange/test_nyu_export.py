@@ -10,8 +10,8 @@ from tests.minecraftocc.exchange import page_loader, synthetic
 
 from world2minecraft.core.errors import ConflictError, InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
+from world2minecraft.formats.sscnet import downsample_labels, read_bin
 from world2minecraft.minecraftocc.exporters import ExportRule, export_samples
-from world2minecraft.minecraftocc.formats.sscnet import downsample_labels, read_bin
 from world2minecraft.minecraftocc.importers import ImportedSet
 
 KEY = "house_0001-t0-00000"
@@ -226,7 +226,7 @@ def test_invalid_requests_are_refused(made, tmp_path):
         export_samples([made], "nyuu", tmp_path)
     with pytest.raises(UsageError, match="no samples to export in split test"):
         export_samples([made], "nyu", tmp_path, split="test")
-    with pytest.raises(UnknownNameError, match="choice of unknown cells"):
+    with pytest.raises(UnknownNameError, match="treatment of unknown cells"):
         ExportRule(unknown="none")
 
 

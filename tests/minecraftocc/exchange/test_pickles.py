@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle, parse_pickle, read_pickle
+from world2minecraft.formats.safe_pickle import dump_pickle, parse_pickle, read_pickle
 
 VALUES = {
     "name": "scene0000_00/00012 é",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.errors import DamagedFileError, InputError
-from world2minecraft.minecraftocc.formats.sscnet import (
+from world2minecraft.formats.sscnet import (
     CLASS_OF_CODE,
     CODE_OF_CLASS,
     downsample_labels,

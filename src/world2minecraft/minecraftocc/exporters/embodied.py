@@ -14,6 +14,7 @@ import numpy as np
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes, write_text
+from world2minecraft.formats.safe_pickle import dump_pickle
 from world2minecraft.minecraftocc.exporters.occscannet import OccScanNetExporter
 from world2minecraft.minecraftocc.exporters.options import ExportRule
 from world2minecraft.minecraftocc.exporters.scene_names import NamedSample
@@ -22,7 +23,6 @@ from world2minecraft.minecraftocc.formats.label_grids import (
     StoredFrame,
     read_stored_frame,
 )
-from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, OccSample
 
 OFFICIAL_CELLS = (200, 220, 90)  # EmbodiedOcc's compiled operation holds no larger scene.

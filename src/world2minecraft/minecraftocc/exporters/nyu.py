@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.files import write_bytes
+from world2minecraft.formats.safe_pickle import dump_pickle
+from world2minecraft.formats.sscnet import HEADER_BYTES, downsample_labels, encode_bin
 from world2minecraft.minecraftocc.exporters.options import (
     ExportRule,
     encode_jpeg,
@@ -30,8 +32,6 @@ from world2minecraft.minecraftocc.formats.label_grids import (
     export_labels,
     region_box,
 )
-from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle
-from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES, downsample_labels, encode_bin
 from world2minecraft.minecraftocc.types import OccSample
 
 FOLDERS = {"train": "NYUtrain", "test": "NYUtest"}

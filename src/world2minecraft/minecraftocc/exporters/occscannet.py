@@ -14,6 +14,8 @@ import numpy as np
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.core.types import Camera
+from world2minecraft.formats.safe_pickle import dump_pickle
+from world2minecraft.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.exporters.options import (
     ExportRule,
     encode_jpeg,
@@ -35,8 +37,6 @@ from world2minecraft.minecraftocc.formats.label_grids import (
     region_box,
     room_box,
 )
-from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle
-from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.types import OccSample
 
 AXES = (1, 0, 2)  # Ours x, y, z; theirs y, x, z. The same swap leads back.

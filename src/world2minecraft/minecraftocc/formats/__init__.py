@@ -1,1 +1,1 @@
-"""Shared code for exporters and importers: pickles, SSCNet voxels, depth encodings and cameras."""
+"""Shared code for exporters and importers: label boxes, depth encodings and cameras."""

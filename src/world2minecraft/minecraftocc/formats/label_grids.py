@@ -11,8 +11,8 @@ from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert_rigid, turn_grid
 from world2minecraft.core.errors import InputError, LimitError
 from world2minecraft.core.types import Camera
+from world2minecraft.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.formats.image_conventions import HALF_PX, HEIGHT_PX, WIDTH_PX
-from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.types import DEFAULT_SHAPE, DEFAULT_VOXEL_M, OccSample
 
 TURN_TOLERANCE_DEG = 0.01

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError
-from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
+from world2minecraft.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.importers.imported_samples import (
     ImportedSet,
     checked_labels,

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.formats.safe_pickle import read_pickle
+from world2minecraft.formats.sscnet import downsample_labels, read_bin
 from world2minecraft.minecraftocc.formats.image_conventions import HEIGHT_PX, NYU_CAMERA, WIDTH_PX
-from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
-from world2minecraft.minecraftocc.formats.sscnet import downsample_labels, read_bin
 from world2minecraft.minecraftocc.importers.imported_samples import (
     ImportedFrame,
     ImportedSet,

@@ -13,8 +13,8 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Camera
+from world2minecraft.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.formats.image_conventions import HALF_PX, HEIGHT_PX, WIDTH_PX
-from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.importers.imported_samples import (
     ImportedFrame,
     ImportedSet,

@@ -15,8 +15,8 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
 from world2minecraft.evaluation.metrics.protocols import KnownCells
+from world2minecraft.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.formats.label_grids import cells_in_image
-from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.networks.config import Grid
 
