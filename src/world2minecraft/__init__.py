@@ -11,20 +11,24 @@ The package follows the data: ``capture`` -> ``reconstruction`` -> ``constructio
 pass between the stages are in ``core.types``, axis conventions in ``core.coordinates``.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from __future__ import annotations
 
-from world2minecraft.core import former_names
+from importlib import import_module
+
+from world2minecraft.core import former_imports
 from world2minecraft.navigation.gymnasium_plugin import register_with_gymnasium
 
+TYPE_CHECKING = False  # The module typing takes longer to import than all of this package.
 if TYPE_CHECKING:
+    from typing import Any
+
     from world2minecraft.api import *  # noqa: F403
     from world2minecraft.core import errors as errors
 
 __version__ = "0.1.0"
 
 register_with_gymnasium()  # As soon as Gymnasium is imported, which this does not do.
-former_names.install()
+former_imports.install()
 
 
 def __getattr__(name: str) -> Any:

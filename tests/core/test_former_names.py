@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+import world2minecraft as w2m
 from world2minecraft.core.former_names import PACKAGE, former_modules
 
 NAMES = sorted(
@@ -48,12 +49,57 @@ def test_an_unknown_name_of_a_former_module_is_an_error(module):
         _ = importlib.import_module(module).nothing
 
 
-@pytest.mark.parametrize("name", ["build", "render"])
-def test_public_functions_work_after_imports_of_former_modules(name):
-    package = importlib.import_module(PACKAGE)
-    assert importlib.import_module(f"{PACKAGE}.{name}") is getattr(package, name)
-    with pytest.raises(TypeError, match=rf"^{name}\(\) missing"):
-        getattr(package, name)()
+SAME_NAME = sorted({former.partition(".")[0] for former in former_modules()} & set(w2m.__all__))
+USES_OF_PUBLIC_FUNCTIONS = """
+import importlib, inspect, pickle, pydoc, sys
+{imports}
+import world2minecraft as w2m
+from world2minecraft import api
+for name in {names}:
+    former = importlib.import_module("world2minecraft." + name)
+    importlib.reload(former)
+    function = getattr(w2m, name)
+    assert function is getattr(api, name) is not former, name
+    assert inspect.isfunction(function), name
+    assert "Example:" in inspect.getdoc(function), name
+    assert pydoc.plain(pydoc.render_doc(function)).startswith("Python Library Documentation: func")
+    assert pickle.loads(pickle.dumps(function)) is function, name
+importlib.reload(w2m)
+for name in {names}:
+    assert getattr(w2m, name) is getattr(api, name), name
+"""
+
+
+def test_some_former_modules_have_names_of_public_functions():
+    assert SAME_NAME == ["build", "render"]
+
+
+@pytest.mark.parametrize(
+    "imports",
+    [
+        "",
+        "import world2minecraft.build, world2minecraft.render.views",
+        "from world2minecraft.build import BuildParameters",
+        "from world2minecraft import render; import world2minecraft.render",
+        "import world2minecraft; world2minecraft.build; import world2minecraft.build",
+        "from world2minecraft import *; from world2minecraft.render.views import *",
+    ],
+)
+def test_former_modules_do_not_replace_public_functions(imports):
+    code = USES_OF_PUBLIC_FUNCTIONS.format(imports=imports, names=SAME_NAME)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_errors_of_the_package_are_those_of_the_program(recwarn):
+    from world2minecraft.errors import InputError
+
+    from world2minecraft.core import errors as internal
+
+    assert InputError is internal.InputError
+    assert w2m.errors is internal is importlib.import_module(f"{PACKAGE}.errors")
+    assert internal.__spec__.name == f"{PACKAGE}.core.errors"
+    assert not recwarn.list
 
 
 def test_a_former_module_still_runs(tmp_path):

@@ -2,24 +2,20 @@
 
 ``former_names.txt`` lists each former module of the package, with its present name if it can be run
 or imported as a whole, followed by one indented line per name with its present module and, if it
-was renamed, its present name. The table is read only when an import of a module of this package
-fails, so it costs nothing otherwise.
+was renamed, its present name. ``former_imports`` reads the table only when an import of a module of
+this package fails, so it costs nothing otherwise.
 """
 
-import importlib.abc
-import importlib.machinery
 import runpy
-import sys
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from importlib.resources import files
-from types import CodeType, ModuleType
 from typing import Any
 
-PACKAGE = "world2minecraft"
+from world2minecraft.core.former_imports import PACKAGE
 
 
 @dataclass(frozen=True)
@@ -81,56 +77,6 @@ def getter(module: str) -> Callable[[str], Any]:
         return getattr(import_module(path), present)
 
     return __getattr__
-
-
-def install() -> None:
-    """Let the imports of former modules succeed, after all other finders have failed."""
-    if not any(isinstance(finder, _FormerModuleFinder) for finder in sys.meta_path):
-        sys.meta_path.append(_FormerModuleFinder())
-
-
-class _CallableModule(ModuleType):
-    """A former module with the name of a public function, which its import replaces."""
-
-    def __call__(self, *args: Any, **options: Any) -> Any:
-        """Call the public function."""
-        api = import_module(f"{PACKAGE}.api")
-        return getattr(api, self.__name__.removeprefix(f"{PACKAGE}."))(*args, **options)
-
-
-class _FormerModuleFinder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Finds the former modules, which contain nothing but a ``__getattr__``."""
-
-    def find_spec(
-        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
-    ) -> importlib.machinery.ModuleSpec | None:
-        """Return the spec of a former module or of a package of such; None for all others."""
-        package, _, short = fullname.partition(".")
-        if package != PACKAGE or not short:
-            return None
-        inside = any(name.startswith(f"{short}.") for name in former_modules())
-        if short not in former_modules() and not inside:
-            return None
-        return importlib.machinery.ModuleSpec(fullname, self, is_package=inside)
-
-    def create_module(self, spec: importlib.machinery.ModuleSpec) -> ModuleType | None:
-        """Return an empty module, or None to let the import system create one."""
-        short = spec.name.removeprefix(f"{PACKAGE}.")
-        is_public = short in import_module(PACKAGE).__all__
-        return _CallableModule(spec.name) if is_public else None
-
-    def exec_module(self, module: ModuleType) -> None:
-        """Give the module its ``__getattr__``."""
-        setattr(module, "__getattr__", getter(module.__name__))  # noqa: B010
-        former = former_modules().get(module.__name__.removeprefix(f"{PACKAGE}."))
-        if former is not None and former.present:
-            import_module(f"{PACKAGE}.{former.present}")
-
-    def get_code(self, fullname: str) -> CodeType:
-        """Return the code that ``python -m`` runs."""
-        return compile(
-            f"from {__name__} import run_former; run_former({fullname!r})", fullname, "exec"
-        )
 
 
 def _warn(text: str) -> None:

@@ -5,11 +5,18 @@ Later releases load no plug-ins, so ``import world2minecraft`` registers the env
 Gymnasium is imported. This module never imports Gymnasium on its own.
 """
 
-import importlib.abc
-import importlib.machinery
+from __future__ import annotations
+
 import sys
-from collections.abc import Sequence
-from types import ModuleType
+
+TYPE_CHECKING = False  # The module typing takes longer to import than all of this package.
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from importlib.abc import Loader
+    from importlib.machinery import ModuleSpec
+    from types import ModuleType
+else:
+    Loader = object
 
 ENV_ID = "world2minecraft/MinecraftVLN-v0"
 SERVER_ENV_ID = "world2minecraft/MinecraftVLN-Server-v0"
@@ -46,12 +53,12 @@ def register_with_gymnasium() -> None:
         sys.meta_path.insert(0, _GymnasiumFinder())
 
 
-class _GymnasiumFinder(importlib.abc.MetaPathFinder):
+class _GymnasiumFinder:
     """A finder that wraps Gymnasium's loader in order to register the environments."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
-    ) -> importlib.machinery.ModuleSpec | None:
+    ) -> ModuleSpec | None:
         """Return the spec of Gymnasium, or None for every other module."""
         if fullname != "gymnasium":
             return None
@@ -66,13 +73,13 @@ class _GymnasiumFinder(importlib.abc.MetaPathFinder):
         return None
 
 
-class _RegisteringLoader(importlib.abc.Loader):
+class _RegisteringLoader(Loader):
     """A loader that executes Gymnasium with its own loader and registers the environments."""
 
-    def __init__(self, loader: importlib.abc.Loader):
+    def __init__(self, loader: Loader):
         self._loader = loader
 
-    def create_module(self, spec: importlib.machinery.ModuleSpec) -> ModuleType | None:
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         """Create the module with Gymnasium's own loader."""
         return self._loader.create_module(spec)
 
