@@ -26,7 +26,7 @@ def run_capture(
     labels: Path | None = None,
     progress: Progress = no_progress,
 ) -> dict[str, Any]:
-    """Run the pipeline and write its report; return what ``report.json`` holds.
+    """Run the pipeline, write its report and return the contents of ``report.json``.
 
     Raises:
         CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.

@@ -381,7 +381,7 @@ BAD = [
     (
         types.BlockEdit,
         dict(cells=np.array([[0, 64, 0]], np.int32)),
-        "before must have the blocks of 1 cells, got 2",
+        "before must contain the blocks of 1 cells, got 2",
     ),
     (
         types.BlockEdit,

@@ -411,7 +411,7 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
         (["--houses", "2", "--camera", "nyuu"], "no camera is named 'nyuu'; did you mean 'nyu'", 2),
         (["--houses", "2", "--size", "big"], "--size must be WIDTHxHEIGHT in pixels", 2),
         (["--houses", "2", "--voxel", "big"], "--voxel must be a size in metres or 'block'", 2),
-        (["--houses", "2", "--region", "cube"], "no kind of region is named 'cube'", 2),
+        (["--houses", "2", "--region", "cube"], "no region kind is named 'cube'", 2),
         (
             ["--houses", "2", "--image-format", "gif"],
             "one of jpg, png, webp, got 'gif'",

@@ -142,7 +142,7 @@ def test_a_camera_may_look_straight_down():
 
 
 def test_errors_say_what_to_do():
-    with pytest.raises(UnknownNameError, match=r"no kind of region is named 'papers'; did you"):
+    with pytest.raises(UnknownNameError, match=r"no region kind is named 'papers'; did you"):
         RegionRule("papers")
     with pytest.raises(UsageError, match=r"must be three positive integers, got \(0, 1, 1\)"):
         RegionRule(shape=(0, 1, 1))

@@ -101,7 +101,7 @@ def test_larger_sizes_can_be_made(name, size):
     ("words", "error", "text"),
     [
         ({"name": "monoscen"}, UnknownNameError, "no network is named 'monoscen'; did you mean"),
-        ({"size": "large"}, UnknownNameError, "no size of a network is named 'large'"),
+        ({"size": "large"}, UnknownNameError, "no network size is named 'large'"),
         ({"grid_shape": (30, 30, 4)}, UsageError, "three sides of at least 8 cells"),
         ({"voxel_m": 0.0}, UsageError, "voxel_m must be above 0, got 0.0"),
         ({"backbone": "resnet"}, UsageError, "backbone must be hf:ORG/NAME or hf:FOLDER, got"),

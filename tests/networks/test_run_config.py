@@ -67,7 +67,7 @@ GOLDEN = {
     ),
     "network: iso\ndata:\n- path: a\n  wait: 2": (
         UnknownNameError,
-        "no setting of data is named 'wait'; did you mean 'weight'?",
+        "no data setting is named 'wait'; did you mean 'weight'?",
     ),
     "network: iso\ndata: a:0": (UsageError, "the weight of a must be above 0 and finite, got 0"),
     "network: iso\ndata: a:inf": (

@@ -42,7 +42,7 @@ class LayoutScores:
     uses_true_rooms: bool
 
     def tables(self) -> tuple[list[list[str]], list[list[str]]]:
-        """Return the paper's table and one with other published metrics, both with a title row."""
+        """Return the paper's table and one with other published metrics, both with a header row."""
         from world2minecraft.paper.layouts.score_table import layout_table, other_table
 
         return layout_table(self.scores), other_table(self.scores)
@@ -237,7 +237,7 @@ class JudgedRooms:
         return sum(one.unread for one in self.grades)
 
     def table(self) -> list[list[str]]:
-        """Return a table of text with the mean grades by method and a title row."""
+        """Return the mean grades of each method as a table of strings with a header row."""
         from world2minecraft.paper.layouts.judge import means_of
         from world2minecraft.paper.layouts.score_table import grade_table
 
@@ -362,7 +362,7 @@ def describe_room(
     if method not in METHODS:
         raise UnknownNameError("form", method, METHODS)
     if agent and method != "text":
-        raise UsageError("photos have no sizes: combine --agent with --for text")
+        raise UsageError("--agent describes photos, which contain no sizes; it requires --for text")
     place = path_of(scene)
     if agent:
         chat = (model or ModelOptions()).open(agent, Path(replies))
@@ -430,7 +430,7 @@ def _how(
     from world2minecraft.paper.layouts.importers import How
 
     if not 0 < px_m < 1:
-        raise UsageError(f"--px-m must be metres per pixel, above 0 and below 1, not {px_m:g}")
+        raise UsageError(f"--px-m must be metres per pixel, above 0 and below 1, got {px_m:g}")
     task_file = None if task is None else Path(task)
     return How(px_m, task_file, None if assets is None else Path(assets), truth)
 

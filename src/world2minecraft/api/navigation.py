@@ -148,7 +148,7 @@ def build_navigation_set(
         tuple(map(str, streams)), parse_at(at), work,
     )  # fmt: skip
     if not (scenes or rooms or houses):
-        raise UsageError("no scene is given; give scenes, or generate some with --rooms 3")
+        raise UsageError("no scenes given; add scenes, or generate some with --rooms 3")
     folder, processes = Path(out), workers or usable_cores()
     check_writable(folder)
     generated = make_scenes(folder / SCENES_FOLDER, rooms, houses, seed, processes, progress)
@@ -437,14 +437,14 @@ def _checked_moves(name: str) -> str:
     from world2minecraft.navigation.types import MOVE_SETS
 
     if name not in MOVE_SETS:
-        raise UnknownNameError("set of moves", name, MOVE_SETS)
+        raise UnknownNameError("move set", name, MOVE_SETS)
     return name
 
 
 def _check_size(size: tuple[int, int]) -> None:
     if len(size) != 2 or not all(16 <= side <= 4096 for side in size):
         named = "x".join(str(side) for side in size)
-        raise UsageError(f"--size is WIDTHxHEIGHT of 16 to 4096 pixels, not {named}")
+        raise UsageError(f"--size must be WIDTHxHEIGHT, 16 to 4096 pixels each, got {named}")
 
 
 def _reworded(

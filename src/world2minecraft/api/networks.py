@@ -454,7 +454,7 @@ def predict_occupancy(
     else:
         _check_no_depth(path)
         if colour is not None:
-            raise UsageError("--colour needs one depth picture and its --grid")
+            raise UsageError("--colour requires a single depth image and --grid")
         cells, scan_to_room = _capture_cells(
             path, place, predictor, labels, fov_deg, run_folder, progress
         )
@@ -499,7 +499,9 @@ def _check_no_depth(source: Path) -> None:
     from world2minecraft.capture.images import read_header
 
     if source.suffix.lower() == ".png" and read_header(source).mode.startswith("I"):
-        raise UsageError(f"{source} is a depth picture; add --grid, which places its cells")
+        raise UsageError(
+            f"{source} is a depth image; add --grid FILE, which defines the position of the cells"
+        )
 
 
 def _mono_network(predictor: str) -> str | None:
@@ -531,11 +533,13 @@ def _run_config(
 
     if config is not None:
         if network or preset:
-            raise UsageError("--config states network and sizes; leave out NET and --preset")
+            raise UsageError(
+                "--config already defines the network and its size; omit NET and --preset"
+            )
         held = read_config(config)
         return replace(held, **(changes | ({"data": sources} if sources else {})))
     if not network:
-        raise UsageError("no network; give its name, such as w2m train monoscene --data DIR")
+        raise UsageError("no network given; name one, as in w2m train monoscene --data DIR")
     made = RunConfig(network, sources)
     return replace(made.with_preset(preset) if preset else made, **changes)
 

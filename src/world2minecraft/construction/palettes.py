@@ -350,7 +350,7 @@ def _glass(what: str, stated: Any, only: frozenset[str] | None) -> str:
             if name.endswith(kind):
                 return str(complete(parse_state(name)))
     raise ValueError(
-        "blocks must contain a glass for windows, such as glass or white_stained_glass"
+        "blocks must contain a glass block for windows, such as glass or white_stained_glass"
     )
 
 

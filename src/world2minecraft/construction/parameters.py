@@ -20,7 +20,7 @@ class BuildParameters:
     """Parameters of the build stage.
 
     palette: Name of a palette, or path of a palette file; see docs/building.md.
-    style: What furniture is made of. ``blocks`` uses designs of vanilla blocks, ``display`` uses
+    style: How furniture is built. ``blocks`` uses designs of vanilla blocks, ``display`` uses
         detailed block_display entities over invisible colliders, and ``voxels`` fits block states
         to the cells of each object.
     shapes: Block shapes that objects are fitted with. ``calm`` uses full blocks, slabs, stairs,

@@ -18,7 +18,7 @@ MIN_WIDTH_M = 0.24  # Narrower than this, structure is noise or the end of a wal
 
 
 class Faces(NamedTuple):
-    """Faces perpendicular to an axis with the same direction, or of sheets with two free sides."""
+    """Faces perpendicular to an axis that point in one direction, or those of thin sheets."""
 
     axis: int
     cells: np.ndarray  # intp [N, 3]

@@ -28,7 +28,7 @@ def substitute_templates(
     cells_of: Callable[[Placement], np.ndarray],
     colour_source: ColourSource,
 ) -> list[Placement]:
-    """Replace the placements that their cells would not show by library designs.
+    """Replace placements whose own cells are not recognizable with library designs.
 
     Args:
         placements: Placements of a whole room.

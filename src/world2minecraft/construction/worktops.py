@@ -215,7 +215,7 @@ def _plan(grid: OccupancyGrid, cells: np.ndarray, steps: np.ndarray, level: int)
 
 
 class PlateBuilder:
-    """Places the worktops of a room, by the number of their object."""
+    """Places the worktops of a room, one per object."""
 
     def __init__(self, canvas: Canvas, palette: Palette):
         self.canvas, self.palette, self.lattice = canvas, palette, canvas.lattice

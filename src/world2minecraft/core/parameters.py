@@ -114,8 +114,8 @@ def _describe(value: Any, prefix: str) -> Iterator[ParameterInfo]:
 def docstring_entries(docstring: str) -> dict[str, str]:
     """Return the entries ``name: meaning.`` of a docstring by the text before the colon.
 
-    The entries stand in a section ``Attributes:``, or unindented where there is none. An entry can
-    describe several parameters (``width, height: ...``), or all that match a pattern
+    The entries are in the section ``Attributes:``, or unindented if there is no such section. An
+    entry can describe several parameters (``width, height: ...``), or all that match a pattern
     (``bed_*: ...``). Continuation lines are indented.
 
     Example:

@@ -115,13 +115,13 @@ class GltfFormat(FileFormat):
     keeps_labels = True
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Read the blocks stored in the file in addition to the meshes."""
+        """Read the blocks that are stored in the file beside the meshes."""
         from world2minecraft.formats.gltf import read_gltf  # noqa: PLC0415  # It needs numba.
 
         return read_gltf(path)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write meshes, and the blocks in addition."""
+        """Write meshes, and store the blocks in the same file."""
         from world2minecraft.formats.gltf import write_gltf  # noqa: PLC0415  # It needs numba.
 
         write_gltf(volume, path, templates=options.other.get("templates"))

@@ -74,7 +74,7 @@ class RegionRule:
 
     def __post_init__(self):
         if self.kind not in REGION_KINDS:
-            raise UnknownNameError("kind of region", self.kind, REGION_KINDS)
+            raise UnknownNameError("region kind", self.kind, REGION_KINDS)
         if len(self.shape) != 3 or min(self.shape) < 1:
             raise UsageError(f"the region shape must be three positive integers, got {self.shape}")
         if not self.voxel_m > 0:

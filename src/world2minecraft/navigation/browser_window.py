@@ -133,7 +133,7 @@ class Window:
             return (self._frame if self._is_open else b""), self._number
 
     def words(self, after: str) -> bytes:
-        """Wait for a text change after a number, and return number, text and state as JSON."""
+        """Wait for a text newer than number ``after``; return number, text and state as JSON."""
         number = int(after[:12]) if after.isascii() and after.isdigit() else -1
         with self._changed:
             self._changed.wait_for(lambda: self._number > number or not self._is_open, IDLE_S)
@@ -168,7 +168,7 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
             self._send("text/plain", b"")
 
         def log_message(self, format: str, *args: Any) -> None:
-            """Say nothing: it would print the token."""
+            """Log nothing, because a log line would contain the token."""
 
         def _authorized_request(self) -> tuple[str, dict[str, list[str]]] | None:
             parts = urlsplit(self.path)

@@ -314,7 +314,7 @@ def _source(source: str, value: Any) -> DataSource:
         )
     for name in value:
         if name not in ("path", "weight"):
-            raise UnknownNameError("setting of data", str(name), ("path", "weight"))
+            raise UnknownNameError("data setting", str(name), ("path", "weight"))
     weight = value.get("weight", 1.0)
     if type(weight) not in (int, float):
         raise DamagedFileError(source, f"weight must be a number, got {weight!r}")

@@ -55,7 +55,7 @@ class Lack:
     columns: tuple[str, ...] = ()
 
     def covers(self, row: str, column: str | None = None) -> bool:
-        """Return whether a row, or a cell of it, is affected.
+        """Return whether the measurement is missing for a row, or for one of its cells.
 
         Example:
             >>> lack = Lack("a judge", "w2m compare judge ROOM", columns=("visual",))

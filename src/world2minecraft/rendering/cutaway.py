@@ -156,7 +156,7 @@ def without_partitions(volume: BlockVolume) -> BlockVolume:
     """Return the volume with the walls between rooms, and their attachments, cut down.
 
     Such walls have floor of a room on both sides within half a metre. A strip of floor that was
-    seen behind an outer wall is no room.
+    seen behind an outer wall does not count as a room.
     """
     semantic = volume.semantic
     bpm = volume.blocks_per_metre

@@ -35,9 +35,9 @@ CORNERS = ((-1, 1), (1, 1), (1, -1), (-1, -1))
 def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> np.ndarray:
     """Return an oblique cutaway image of a room from above, uint8 [height, width, 3].
 
-    The ceiling and the two near walls are removed. The camera is at an open side: among the corners
-    that leave most of the scanned walls, at the one from which most of the furniture is visible.
-    The storeys of a house are shown side by side.
+    The ceiling and the two near walls are removed. The camera looks from the corner from which most
+    furniture is visible, among those at which few scanned walls must be removed. The storeys of a
+    house are shown side by side.
 
     Args:
         volume: A built room.

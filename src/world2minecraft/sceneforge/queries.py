@@ -232,7 +232,7 @@ class Alternatives(Query):
     id: Id
 
     def answer(self, scene: QueriedScene) -> Any:
-        """Return ``[{"template", "quarter_turns", "iou"}]``, best first, or ``[]`` if no cells."""
+        """Return ``[{"template", "quarter_turns", "iou"}]``, best first; empty without cells."""
         one = object_by_id(scene.draft, self.id)
         found = instance_of(one, scene.draft.cells_of(one.id))
         rows = ranked_matches(scene.draft.grid(), found, OFFERED, scene.opened.rooms)

@@ -222,4 +222,4 @@ def test_a_room_without_a_way_is_made_again(tmp_path, monkeypatch):
 def test_a_build_without_a_scene_says_what_to_do(tmp_path, capsys):
     assert cli.run(["vln", "build", "--out", str(tmp_path / "set")]) == 2
     told = capsys.readouterr().err
-    assert told == "error: no scene is given; give scenes, or generate some with --rooms 3\n"
+    assert told == "error: no scenes given; add scenes, or generate some with --rooms 3\n"

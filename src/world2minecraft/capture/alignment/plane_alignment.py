@@ -100,11 +100,11 @@ class PlaneAlignment:
 
 
 def align_planes(level: OrientedPoints, up_hint: np.ndarray | None = None) -> PlaneAlignment:
-    """Return the small rotation that lays the large faces of a scan along the axes.
+    """Return the small rotation that aligns the large faces of a scan with the axes.
 
     Args:
-        level: Surface in a frame that is right within about three degrees, z up; the rotation is
-            about its origin.
+        level: Surface in a frame with z up, whose axes are correct to about three degrees. The
+            rotation is about its origin.
         up_hint: Unit vector float64 [3] in the same frame that the device reported as up.
     """
     turn = np.eye(3)
@@ -128,7 +128,7 @@ def _rotated(surface: OrientedPoints, rotation: np.ndarray) -> OrientedPoints:
 
 
 def find_faces(level: OrientedPoints) -> list[PlanarFace]:
-    """Return the large faces across each axis; faces closer than 12 cm count as one."""
+    """Return the large faces perpendicular to each axis; faces within 12 cm count as one."""
     faces = []
     for axis in range(3):
         for sign in (-1.0, 1.0):

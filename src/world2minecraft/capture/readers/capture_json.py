@@ -295,7 +295,7 @@ def _unit_m(depth_unit: str) -> float | None:
     except ValueError:
         unit_m = 0.0
     if not 0 < unit_m < 1:
-        raise UnknownNameError("depth unit to write", depth_unit, ("mm", "m", "METRES_PER_UNIT"))
+        raise UnknownNameError("depth unit", depth_unit, ("mm", "m", "METRES_PER_UNIT"))
     return unit_m
 
 

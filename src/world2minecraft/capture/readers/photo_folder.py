@@ -104,7 +104,7 @@ def _is_app_file(name: str) -> bool:
 
 
 def plain_name(stem: str, used: Collection[str]) -> str:
-    """Return a valid name of a frame for the stem of a file that is not among those used.
+    """Return a valid frame name for a file stem that differs from all names in use.
 
     Example:
         >>> plain_name("my room", ["my_room"])
@@ -121,7 +121,7 @@ def plain_name(stem: str, used: Collection[str]) -> str:
 def list_photos(folder: AnyPath) -> list[AnyPath]:
     """Return the photo files of a folder or of its subfolder of colour images, by number.
 
-    The result is empty if the path is no folder, or one with files of a scanner app.
+    The result is empty if the path is not a folder, or contains files of a scanner app.
     """
     if not folder.is_dir() or any(_is_app_file(path.name) for path in folder.iterdir()):
         return []

@@ -159,7 +159,7 @@ def _read_model(found: Any) -> Model:
 
 
 def merge_models(models: list[Model]) -> tuple[Model, int]:
-    """Merge fitting models into the largest one, and return it and their number.
+    """Merge models into the largest one, and return it with the number of merged models.
 
     Args:
         models: Models of ``run_mapper``, the largest first.

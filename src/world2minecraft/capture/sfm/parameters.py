@@ -27,8 +27,9 @@ class SfmParameters:
         gates_px: Maximum reprojection errors of the refinement rounds.
         wide_px: Maximum reprojection error when stated poses are measured.
         outlier_px: Error above which a stated pose is wrong, if it also exceeds ``outlier_times``
-            the median.
-        outlier_times: See ``outlier_px``.
+            times the median.
+        outlier_times: Multiple of the median error above which a stated pose is wrong, together
+            with ``outlier_px``.
         seed: Random seed.
     """
 

@@ -14,7 +14,7 @@ from world2minecraft.core.coordinates import invert_rigid
 
 
 def places_of(photos: list[Features]) -> list[int]:
-    """Return the number of the place of each photo; photos without a rig have one each."""
+    """Return the place number of each photo; each photo without a rig has its own place."""
     numbers: dict[str | int, int] = {}
     keys = (i if photo.rig is None else photo.rig.place for i, photo in enumerate(photos))
     return [numbers.setdefault(key, len(numbers)) for key in keys]

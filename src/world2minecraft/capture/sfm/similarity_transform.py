@@ -97,7 +97,7 @@ def _similarity(
 
 
 def align_views(given: np.ndarray, wanted: np.ndarray, depths: np.ndarray) -> Similarity:
-    """Estimate the similarity that best carries what the cameras see.
+    """Estimate the similarity between two sets of poses from points that the cameras see.
 
     Nine points in front of each camera, at the depth that it sees, are to coincide in both frames.
     The depth in the frame ``wanted`` is that in ``given`` times the unknown scale. If these points

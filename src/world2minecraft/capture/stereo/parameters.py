@@ -7,7 +7,7 @@ from world2minecraft.core.parameters import fact_by_name, parameter
 
 @dataclass(frozen=True)
 class StereoParameters:
-    """Parameters of stereo. docs/stereo.md contains measurements of their effect.
+    """Parameters of multi-view stereo. docs/stereo.md contains measurements of their effect.
 
     Attributes:
         width_px: Width in pixels that photos are downscaled to.

@@ -31,7 +31,7 @@ def run(
 ) -> None:
     """Build a data set of photo-like images of generated rooms, with exact labels.
 
-    The ground truth comes from the generated rooms, in cells of 8 cm labelled by the rule of NYUv2.
+    The ground truth comes from the generated rooms, in 8 cm cells that are labelled as in NYUv2.
     The images take the place of real photos, of which there are few, next to the block worlds of
     w2m dataset build. See docs/training.md.
     """

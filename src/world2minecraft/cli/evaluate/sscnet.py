@@ -49,9 +49,9 @@ def run(
 ) -> None:  # fmt: skip
     """Score the completion of one frame by SSCNet's protocol.
 
-    Only cells in the image and inside the room are scored, and no cells that the depth image shows
-    to be empty. IoU is computed on hidden and surface cells, and on hidden cells alone as in
-    SSCNet's paper; classes are scored on hidden and surface cells.
+    Cells outside the image or the room, and cells that the depth image shows to be empty, are not
+    scored. IoU is computed on hidden and surface cells, and on hidden cells alone as in SSCNet's
+    paper; classes are scored on hidden and surface cells.
     """
     from rich.console import Console
 

@@ -121,7 +121,7 @@ AsJson = Annotated[bool, _option("--json", text="Print the poses and their files
 
 
 def view_of(flags: dict[str, bool], pose: list[str] | None, poses: Path | None) -> str:
-    """Return the view that the options choose; ``start`` where they choose none.
+    """Return the view selected by the options, or ``start`` if none is selected.
 
     Raises:
         UsageError: they choose several.

@@ -140,9 +140,9 @@ class FrameSigmas:
     """Uncertainty (one sigma) of the room's frame in the scan.
 
     Attributes:
-        tilt_deg: Of the up direction.
-        yaw_deg: Of the rotation about it that lays the walls along x and y.
-        floor_m: Of the floor's height; None if no floor was seen.
+        tilt_deg: Uncertainty of the up direction in degrees.
+        yaw_deg: Uncertainty of the rotation about it that aligns the walls with x and y.
+        floor_m: Uncertainty of the floor's height in metres; None if no floor was seen.
     """
 
     tilt_deg: float
@@ -200,7 +200,7 @@ class Scan:
 
 @dataclass(frozen=True, eq=False)
 class Corrections:
-    """The corrections by registration: the pose and the depth scale of each frame.
+    """The results of the registration: a pose correction and a depth scale for each frame.
 
     ``pose_change`` float64 [F, 4, 4] is a rigid transform, scan to scan, applied on the left of a
     frame's pose. ``depth_scale`` float64 [F] is a factor for the depth. ``facts`` are the results

@@ -197,7 +197,7 @@ class BlockEdit:
     def _check(self, name: str, blocks: Blocks) -> None:
         if len(blocks.states) != len(self.cells):
             counts = f"{len(self.cells)} cells, got {len(blocks.states)}"
-            raise ValueError(f"{name} must have the blocks of {counts}")
+            raise ValueError(f"{name} must contain the blocks of {counts}")
         if blocks.states.size and int(blocks.states.max()) >= len(self.palette):
             highest = int(blocks.states.max())
             raise ValueError(

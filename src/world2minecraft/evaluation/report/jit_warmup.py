@@ -28,9 +28,9 @@ PATIENCE_S = 120.0  # For the process to end by itself, once the run needs what 
 
 @contextmanager
 def compile_pictures_meanwhile() -> Iterator[None]:
-    """Compile the kernels of the report while the body runs, once after an installation.
+    """Compile the kernels of the report while the ``with`` block runs, once per installation.
 
-    Nothing happens on a machine with a single core. If the body fails, the process is terminated.
+    Nothing happens on a machine with a single core. If the block fails, the process is terminated.
     """
     if is_compiled(LAST) or usable_cores() < 2:
         yield

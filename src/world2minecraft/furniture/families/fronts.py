@@ -31,7 +31,7 @@ def body_of(size: BlockSize) -> Body:
     """Return the depth of the solid body for a size, and the position of its front.
 
     If the depth is a whole number of blocks, or rounds up to one, the front protrudes by its own
-    thickness. The body is nevertheless placed correctly.
+    thickness, but the body stays in place.
     """
     whole = int(size.exact[0])
     rest = size.exact[0] - whole

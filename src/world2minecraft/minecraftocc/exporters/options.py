@@ -42,7 +42,7 @@ class ExportRule:
 
     def __post_init__(self):
         if self.unknown not in UNKNOWN_CHOICES:
-            raise UnknownNameError("choice of unknown cells", self.unknown, UNKNOWN_CHOICES)
+            raise UnknownNameError("treatment of unknown cells", self.unknown, UNKNOWN_CHOICES)
         if self.frames_per_scene < 0:
             raise UsageError(f"frames_per_scene must be 0 or more, got {self.frames_per_scene}")
 

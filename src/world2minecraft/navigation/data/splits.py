@@ -131,7 +131,7 @@ class Leaks:
 
 
 def find_leaks(items: Sequence[Item]) -> Leaks:
-    """Return what the training items share with the held-out items."""
+    """Return the overlap between the training items and the held-out items."""
     train = [item for item in items if item.split == "train"]
     held = [item for item in items if item.split != "train"]
     unseen = [item for item in held if item.split == "val_unseen"]

@@ -55,7 +55,7 @@ class Simulator(Protocol):
 
     @property
     def offline(self) -> "Simulator":
-        """A simulator for planning, whose moves do not affect a game server."""
+        """Return a simulator for planning, whose moves do not affect a game server."""
         ...
 
     def plan(self, stances: Sequence[Stance]) -> np.ndarray:
@@ -129,7 +129,7 @@ class SceneSimulator:
 
     @property
     def offline(self) -> Simulator:
-        """This simulator itself, because its moves affect no server."""
+        """Return this simulator, because its moves do not affect a server."""
         return self
 
     @cached_property

@@ -53,7 +53,7 @@ def make_network(
         True
     """
     if size not in SIZES:
-        raise UnknownNameError("size of a network", size, SIZES)
+        raise UnknownNameError("network size", size, SIZES)
     if len(grid_shape) != 3 or min(grid_shape) < MIN_SIDE:
         raise UsageError(
             f"grid_shape must be three sides of at least {MIN_SIDE} cells, got {grid_shape}"

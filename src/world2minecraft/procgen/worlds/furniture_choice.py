@@ -145,7 +145,7 @@ def recolour_design(
 def find_swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
     """Return the materials of a kind that have all the given shapes.
 
-    The result includes materials that are not available for a choice by colour.
+    The result includes materials that are never chosen by colour.
     """
     offered = {s.value: s for s in list_swatches(kind, shapes)}
     for value, blocks in kinds()[kind].blocks.items():

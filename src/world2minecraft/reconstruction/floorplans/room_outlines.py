@@ -46,9 +46,9 @@ def move_plan(plan: CapturedPlan, move: np.ndarray) -> CapturedPlan:
 def straighten_plan(plan: CapturedPlan) -> CapturedPlan:
     """Rotate a plan so that its walls are along x and y, with its lowest floor at z = 0.
 
-    The rotation is that of most of the length of the walls. The first wall is along x, or near it,
-    and the minimum corner of the plan is at x = y = 0. Walls within a few degrees of a multiple of
-    45 degrees are turned to it.
+    The plan is aligned with the direction that most of its wall length follows. The first wall is
+    along x, or near it, and the minimum corner of the plan is at x = y = 0. Walls within a few
+    degrees of a multiple of 45 degrees are turned to it.
     """
     walls = [wall for room in plan.rooms for wall in room.walls]
     if walls:

@@ -22,8 +22,8 @@ PARALLEL = 0.2  # Sine under which two lines have no corner.
 def main_direction_rad(walls: Sequence[PlanSurface]) -> float:
     """Return the direction, from 0 to pi / 2, that most of the length of the walls follows.
 
-    Directions that differ by quarter turns are one. Walls near that direction are averaged; the
-    others, such as those of a wing at 45 degrees, have no influence.
+    Directions that differ by quarter turns count as one. Walls near that direction are averaged;
+    the others, such as those of a wing at 45 degrees, have no influence.
     """
     along = np.array([wall.end_m - wall.start_m for wall in walls])
     length = np.linalg.norm(along, axis=1)
@@ -67,7 +67,7 @@ def snap_outline(outline_m: np.ndarray) -> np.ndarray:
     """Turn the sides of an outline to the nearest multiples of 45 degrees.
 
     Each side keeps its middle. Successive sides that become parallel and are less than ``RUN_M``
-    apart are one side, at the mean of their positions.
+    apart are merged into one side at the mean of their positions.
 
     Args:
         outline_m: Corners in order, float64 [N, 2].

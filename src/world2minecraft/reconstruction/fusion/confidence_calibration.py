@@ -83,8 +83,8 @@ def calibrate(
 ) -> OccupancyGrid:
     """Return the grid with calibrated confidence, or the same grid if there is no table.
 
-    Unseen cells have confidence 0. Completed cells have the accuracy of completed cells of their
-    class, observed cells the probability computed from their features.
+    Unseen cells have confidence 0. The confidence of a completed cell is the accuracy of completed
+    cells of its class. That of an observed cell is computed from its features.
 
     Raises:
         ValueError: If grid and evidence do not have the same shape.

@@ -76,7 +76,7 @@ class FoundObjects:
     """The objects found in a room.
 
     Attributes:
-        grid: Grid with the instance id of each cell, with the classes of merged pieces.
+        grid: Grid with the instance id of each cell and the new classes of merged pieces.
         instances: The objects.
         centers: Density, candidates and clusters.
         leftover: Number of object cells that belong to no object; their instance is 0.
@@ -92,7 +92,7 @@ def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = No
     """Find the objects of a room.
 
     Objects are sorted by class, then by the centre of their cells (x, y, z), and numbered from 1.
-    Lumps on walls become part of the wall, and pieces that lie against an object of their colour
+    Lumps on walls become part of the wall. Pieces that touch an object of the same colour become
     part of that object. Other labels are not changed, even those of specks that are assigned to
     another object.
 

@@ -16,9 +16,9 @@ ROOMS = "chosen on generated rooms; docs/labels.md"
 
 @dataclass(frozen=True)
 class StructureParameters:
-    """Parameters of finding floor, ceiling, walls and openings.
+    """Parameters of the detection of floors, ceilings, walls and openings.
 
-    spill_m: Maximum height of the mean point of a cell that is noise of the floor.
+    spill_m: Maximum height of the mean point of a cell that counts as noise of the floor.
     ceiling_min_m, ceiling_area_m2: Minimum height and area of a ceiling.
     roof_bottom_m, roof_area_m2, roof_length_m, roof_rise_m: Minimum height of the lower edge, area,
         length along the ridge and rise of a sloped ceiling.
@@ -31,10 +31,11 @@ class StructureParameters:
     wall_gap_m: Maximum width of an object behind which a wall is assumed to continue.
     behind_m, before_m: Maximum distance behind and in front of a wall plane at which a cell belongs
         to the wall.
-    bend_m: Length over which the sensor may bend a wall, whose plane is followed accordingly.
+    bend_m: Length over which the bend of a wall, which sensors cause, is smoothed.
     hidden_m: Distance behind a wall without free cells, unless the wall reaches the ceiling.
     passed_cells: Number of free cells in a column that show that rays passed there.
-    shadow_m: Distance from a larger plane within which a plane is its noise, window or curtain.
+    shadow_m: Distance from a larger plane within which a plane counts as its noise, window or
+        curtain.
     recess_m: Distance in front of a wider plane beyond which a plane below the ceiling is
         furniture.
     recess_width_m: Maximum width of such furniture if no ceiling was seen.
@@ -123,16 +124,16 @@ class StructureParameters:
 
 @dataclass(frozen=True)
 class PlateParameters:
-    """Parameters of finding horizontal plates and of deciding which furniture they belong to.
+    """Parameters of the detection of horizontal plates and of the furniture they belong to.
 
     height_m, area_m2: Height range and minimum area of plates.
     gate_m: Maximum difference in height within a plate.
-    box_share: Minimum share of surface among the seen cells under the rim of a closed box; under
-        the rim of a table are only legs.
+    box_share: Minimum share of surface among the seen cells under the rim of a closed box; a table
+        has only legs there.
     desk_height_m, desk_share: Height range of desks, and the higher share required of a box there.
     seat_height_m, chair_length_m, chair_width_m, sofa_length_m, sofa_width_m: Height and size of
         the visible seat of a chair or sofa.
-    back_rise_m: Height range above a seat in which its back is searched.
+    back_rise_m: Height range above a seat in which a back is searched for.
     back_share: Minimum share of one side of the seat that a back covers.
     closed_seat_m: Maximum height of an upholstered seat.
     same_cloth: Maximum Oklab difference of the seat and back of one upholstered object.
@@ -197,9 +198,9 @@ class PlateParameters:
 
 @dataclass(frozen=True)
 class PieceParameters:
-    """Parameters of classifying pieces that belong to no plate.
+    """Parameters of the classification of pieces that belong to no plate.
 
-    near_wall_m: Maximum distance of a piece that stands or hangs at a wall.
+    near_wall_m: Maximum distance from a wall of a piece that stands or hangs there.
     flat_share: Minimum share of a closed piece's cells on one upright plane.
     box_length_m, box_height_m, box_cells: Minimum length, height and number of cells of a cupboard.
     chair_bottom_m, chair_top_m, chair_length_m: Height and size of a chair with a hidden seat.

@@ -20,7 +20,7 @@ FIT_PLACES = 60  # Fewer places, half a square metre, tell no slope.
 
 @dataclass(frozen=True, eq=False)
 class PlaneResiduals:
-    """A part of a plane, rotated so that axis 0 points into its matter, [N, A, B]."""
+    """A part of a plane, rotated so that axis 0 points to its solid side, [N, A, B]."""
 
     axis: int
     sign: int
@@ -60,7 +60,7 @@ def measure_plane_residuals(
         surface: Surface of the room.
         cells: Mask of the cells of the plane within ``box``, bool [N, A, B].
         axis: Axis perpendicular to the plane.
-        sign: 1 if the matter is towards larger coordinates, otherwise -1.
+        sign: 1 if the solid side is towards larger coordinates, otherwise -1.
         box: Part of the rotated grid.
     """
     weight = np.where(cells, turn_surface(surface.hits, axis, sign)[box], 0).astype(np.float64)

@@ -41,7 +41,7 @@ class Askew:
     at_m: float = 0.0  # Height.
 
     def of(self, along_m: np.ndarray | float, height_m: np.ndarray | float) -> np.ndarray:
-        """Return the change at places along the wall, in metres from ``at_cell``, and heights."""
+        """Return the change of position at places along the wall and at heights, in metres."""
         return np.asarray(self.along * along_m + self.upward * (height_m - self.at_m))
 
 

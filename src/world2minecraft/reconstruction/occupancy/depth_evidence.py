@@ -149,9 +149,9 @@ class DepthPredictor:
     """Yields a PointEvidence for each view with depth; ``voters`` vote on its points.
 
     Args:
-        max_depth_m: Depth in metres beyond which points are ignored; None for 6 m, or 10 m where a
-            sensor's only view is all there is.
-        voters: Predictors of classes.
+        max_depth_m: Depth in metres beyond which points are ignored; None for 6 m, or 10 m if a
+            sensor's scan has only one view.
+        voters: Objects that vote for the classes of points.
     """
 
     def __init__(self, max_depth_m: float | None = None, *, voters: Sequence[Voter] = ()):
@@ -178,7 +178,7 @@ class DepthPredictor:
         Args:
             view: View with depth.
             scan_to_room: 4x4 transform from the scan to the room, for the voters.
-            alone: Whether it is a sensor's only view.
+            alone: Whether the scan of a sensor has no other view.
         """
         camera, depth_m = view.depth_camera, view.depth_m
         if camera is None or depth_m is None:

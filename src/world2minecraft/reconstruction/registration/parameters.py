@@ -10,7 +10,7 @@ ABOVE_0, BELOW_HALF = "above 0", "0 to 0.5"
 
 @dataclass(frozen=True)
 class RegistrationParameters:
-    """Parameters of refining poses and depth scales against the map.
+    """Parameters of the refinement of poses and depth scales.
 
     passes: Number of rounds of matching surfaces and moving all frames; 0 disables the
         registration.

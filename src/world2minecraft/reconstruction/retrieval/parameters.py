@@ -10,7 +10,7 @@ ABOVE_0, SHARE, UP_TO_8 = "above 0", "0 to 1", "0 to 8"
 
 @dataclass(frozen=True)
 class RetrievalParameters:
-    """Parameters of matching templates.
+    """Parameters of template matching.
 
     min_confidence: Minimum confidence of an object's class for a template; below it, the object is
         built as a simple volume of its own cells.

@@ -131,7 +131,7 @@ def likeliest(chance: np.ndarray, log_odds: np.ndarray) -> np.ndarray:
 
 
 def spans(length: int) -> list[tuple[int, int, int, int]]:
-    """Return the tiles of a side: first and last cell of the input, and of the part kept, of each.
+    """Return the tiles along a side: each with the cells to read and the cells to keep.
 
     Example:
         >>> spans(100)
@@ -152,11 +152,11 @@ def softmax(logits: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class CompletionParameters:
-    """Parameters of applying the network's prediction.
+    """Parameters of the use of the network's prediction.
 
     small_cells: Number of cells below which a part takes the class around it.
-    agreed_share: Minimum share of a geometric piece, weighted by probability, that agrees on a
-        class for the whole piece to take it.
+    agreed_share: Minimum share of a geometric piece, weighted by probability, that must agree on a
+        class before the whole piece takes this class.
     hint_share: Amount added to the probability of the geometric class of floor, walls and ceiling,
         and of a chair where the network prefers a table or an object.
     beside_votes: Weight of the network's probabilities compared to the shares of 2D votes in cells

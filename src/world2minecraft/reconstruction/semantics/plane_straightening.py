@@ -79,8 +79,8 @@ class Straightening:
     ) -> None:
         """Straighten a horizontal plane of cells bool [X, Y, Z].
 
-        The plane's matter is above (``sign`` 1) or below (-1). The plane is at ``height_m`` if
-        given, otherwise at its observed height.
+        The solid side of the plane is above it (``sign`` 1) or below it (-1). The plane is at
+        ``height_m`` if given, otherwise at its observed height.
         """
         view = turn_surface(cells, 2, sign)
         box = (slice(0, view.shape[0]), slice(0, view.shape[1]), slice(0, view.shape[2]))

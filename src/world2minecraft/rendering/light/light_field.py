@@ -31,7 +31,7 @@ MAX_STATES = 65_535
 
 
 def quarter_level_table(reach: float) -> np.ndarray:
-    """Return uint16 [5, 1024]: quarters of a level by the number of cells and their light sum."""
+    """Return light in quarters of a level by cell count and light sum, uint16 [5, 1024]."""
     sums = np.arange(1024)
     table = np.zeros((5, 1024), np.uint16)
     for count in range(1, 5):

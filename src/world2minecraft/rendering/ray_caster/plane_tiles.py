@@ -25,7 +25,7 @@ FACE_NUMBERS = 22
 
 
 class Tile(NamedTuple):
-    """The pixels of a tile, and the plane that they show: ``side`` of the cells of ``layer``."""
+    """The pixels of a tile and the plane that they show: face ``side`` of cells in ``layer``."""
 
     u: int
     u_end: int
