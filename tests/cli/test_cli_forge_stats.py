@@ -32,7 +32,7 @@ def scene(tmp_path):
 
 
 TABLE = """\
-mean of 1 scene, 1 from nothing
+mean of 1 scene, 1 from scratch
                                      from                        paper: from    paper:
                                   nothing      ours      less        nothing   refined
 Total time (seconds)                 8.00      8.00      1.0x         482.00     70.38

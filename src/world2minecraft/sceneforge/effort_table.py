@@ -95,7 +95,7 @@ def stats_text(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str
     ours, nothing = mean_row(efforts), mean_row(scratch)
     scenes = "1 scene" if len(efforts) == 1 else f"{len(efforts)} scenes"
     lines = [
-        f"mean of {scenes}" + (f", {len(scratch)} from nothing" if scratch else ""),
+        f"mean of {scenes}" + (f", {len(scratch)} from scratch" if scratch else ""),
         f"{'':<31}{'from':>10}{'':>10}{'':>10}   {'paper: from':>12}{'paper:':>10}",
         f"{'':<31}{'nothing':>10}{'ours':>10}{'less':>10}   {'nothing':>12}{'refined':>10}",
     ]

@@ -237,7 +237,7 @@ class PanoramaSource:
                 widths.append(header.width_px)
             else:
                 size = f"{header.width_px}x{header.height_px} px"
-                skipped.append((path.name, f"is no panorama (2:1), but {size}"))
+                skipped.append((path.name, f"is not a panorama (2:1): {size}"))
         if len(accepted) < MIN_PANORAMAS:
             count = f"{len(accepted)} panorama" + "s" * (len(accepted) != 1)
             raise CaptureError(
@@ -259,7 +259,7 @@ class PanoramaSource:
 
 def panorama_note(count: int) -> str:
     """Return the note on the panoramas of a capture."""
-    return f"{count} panoramas are cut into {VIEWS} views each, which share a place"
+    return f"{count} panoramas are split into {VIEWS} views each, which share a position"
 
 
 def _frames(paths: Sequence[AnyPath], camera: Camera) -> list[FrameFiles]:

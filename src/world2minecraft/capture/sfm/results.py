@@ -122,7 +122,7 @@ def panoramas_error(count: int) -> CaptureError:
     """Return the error for panoramas from which no model could be computed."""
     return CaptureError(
         PHOTOS,
-        f"the places of {count} panoramas cannot be found from what they show; take panoramas 0.5 "
+        f"the positions of {count} panoramas cannot be estimated; take panoramas 0.5 "
         "to 1.5 m apart, 4 or more in a room, with lights on and nothing moving, or state their "
         "poses in a transforms.json with the camera_model EQUIRECTANGULAR",
     )

@@ -8,9 +8,9 @@ import typer
 from world2minecraft.cli import model_options as option
 
 EXAMPLES = """\
-w2m compare describe OUT                                        from what a run found
-w2m compare describe MY_SCAN --from-truth                       from a scan's truth
-w2m compare describe MY_SCAN --agent gemini --keep ASKED        a model writes, from photos
+w2m compare describe OUT                                        from the objects of a run
+w2m compare describe MY_SCAN --from-truth                       from the ground truth of a scan
+w2m compare describe MY_SCAN --agent gemini --keep ASKED        written by a model from photos
 w2m compare describe OUT --for layoutvlm -o room.json           in the format of LayoutVLM
 """
 

@@ -12,10 +12,10 @@ if TYPE_CHECKING:
     from world2minecraft.api.comparison import LayoutScores
 
 EXAMPLES = """\
-w2m compare layouts gpt4.bedroom.k-similar.k_8.px_regular.json      what LayoutGPT publishes
+w2m compare layouts gpt4.bedroom.k-similar.k_8.px_regular.json      results published by LayoutGPT
 w2m compare layouts scene_graph.json                                I-Design
 w2m compare layouts RESULT/layout.json --task room.json --assets ASSETS    LayoutVLM
-w2m compare layouts OUT --truth MY_SCAN                             a reconstruction of ours
+w2m compare layouts OUT --truth MY_SCAN                             a reconstruction
 w2m compare layouts gpt.json scene_graph.json OUT --truth MY_SCAN --json
 """
 

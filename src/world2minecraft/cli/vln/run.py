@@ -30,7 +30,7 @@ Scene = Annotated[
     ),
 ]  # fmt: skip
 Sentence = Annotated[
-    str, typer.Argument(metavar="[INSTRUCTION]", help='What to do: "Go to the piano".')
+    str, typer.Argument(metavar="[INSTRUCTION]", help='Instruction, such as "Go to the piano".')
 ]
 AgentName = Annotated[
     str,

@@ -13,7 +13,7 @@ from typing import Any
 from world2minecraft.core.types.edit import COUNTED
 
 IDLE_AFTER_S = 10.0  # Who does nothing for so long has stopped to work.
-# The paper's table, means of 15 scenes: from nothing, and from its reconstruction.
+# The paper's table, means of 15 scenes: from scratch, and from its reconstruction.
 PAPER_SCRATCH = {
     "total_s": 482.0, "automatic_s": None, "manual_s": 482.0,
     "operations": 340.0, "add": 319.3, "delete": None, "orient": 20.7,

@@ -10,7 +10,7 @@ from world2minecraft.core.parameters import parameter
 Range = tuple[float, float]
 
 CATALOGUE = "catalogue: common European and American furniture, with room for cells of 0.08 m"
-TRIAL = "a trial: it served best on generated rooms and on a real kitchen"
+TRIAL = "tuned on generated rooms and a real kitchen"
 ROOMS = "chosen on generated rooms; docs/labels.md"
 
 
@@ -54,7 +54,7 @@ class StructureParameters:
     frame_share: Minimum share of wall in the ring around an opening.
     """
 
-    spill_m: float = parameter(0.03, unit="m", origin=f"{TRIAL}; what lies on a floor is thicker")
+    spill_m: float = parameter(0.03, unit="m", origin=f"{TRIAL}; objects on a floor are thicker")
     ceiling_min_m: float = parameter(1.9, unit="m", origin="doors are 2 m high")
     ceiling_area_m2: float = parameter(
         1.0, unit="m2", origin="less may be the underside of a cupboard or a lamp"
@@ -64,7 +64,7 @@ class StructureParameters:
     roof_length_m: float = parameter(1.2, unit="m", origin="a guess")
     roof_rise_m: float = parameter(0.4, unit="m", origin="a guess")
     storey_m: float = parameter(2.0, unit="m", origin="a cellar is lower than a room")
-    standing_m: float = parameter(1.5, unit="m", origin="over a wardrobe there is less")
+    standing_m: float = parameter(1.5, unit="m", origin="there is less space above a wardrobe")
     floor_area_m2: float = parameter(2.5, unit="m2", origin="no bed or table is as large")
     plane_gate_m: float = parameter(
         0.05,
@@ -231,9 +231,9 @@ class PieceParameters:
     flat_share: float = parameter(
         0.22, unit="share", origin="a closed piece shows a third, a plant a tenth"
     )
-    box_length_m: float = parameter(0.4, unit="m", origin="smaller boxes are things")
-    box_height_m: float = parameter(0.45, unit="m", origin="smaller boxes are things")
-    box_cells: int = parameter(20, unit="cells", origin="smaller boxes are things")
+    box_length_m: float = parameter(0.4, unit="m", origin="smaller boxes are objects")
+    box_height_m: float = parameter(0.45, unit="m", origin="smaller boxes are objects")
+    box_cells: int = parameter(20, unit="cells", origin="smaller boxes are objects")
     chair_bottom_m: float = parameter(0.6, unit="m", origin=CATALOGUE)
     chair_top_m: Range = parameter((0.65, 1.15), unit="m", origin=CATALOGUE)
     chair_length_m: Range = parameter((0.25, 0.85), unit="m", origin=CATALOGUE)
@@ -267,7 +267,7 @@ class PieceParameters:
     monitor_m: float = parameter(0.8, unit="m", origin=TRIAL)
     monitor_flat: float = parameter(0.7, unit="share", origin=TRIAL)
     screen_filled: float = parameter(
-        0.35, unit="share", origin="a lit screen shows the sensor its frame alone"
+        0.35, unit="share", origin="a depth sensor sees only the frame of a lit screen"
     )
     screen_thick_m: float = parameter(0.22, unit="m", origin="with its foot")
 
