@@ -11,6 +11,7 @@ from world2minecraft.construction.cell_colours import cell_colours, coloured_cel
 from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.display.builder import DisplayBuilder
 from world2minecraft.construction.floating_blocks import close_gaps, support_floaters
+from world2minecraft.construction.islands import remove_islands
 from world2minecraft.construction.lighting import hang_lamps, put_lights
 from world2minecraft.construction.mod_furniture import place_mod_furniture
 from world2minecraft.construction.object_builder import ObjectBuilder
@@ -39,6 +40,8 @@ def build_volume(
 ) -> BlockVolume:
     """Build a room of blocks.
 
+    Small parts far from everything else are left out, unless a block equals a voxel.
+
     Args:
         grid: Labelled grid with colours.
         placements: Placements of furniture; object cells without a placement are built as they are.
@@ -60,6 +63,8 @@ def build_volume(
     corner = grid_corner_m(grid) if corner_m is None else snap_corner_m(grid, corner_m)
     canvas = Canvas(add_storeys(lattice_over(grid, corner, blocks_per_metre), grid))
     palette = load_palette(chosen.palette)
+    if not is_exact(grid, blocks_per_metre):
+        grid, placements = remove_islands(grid, placements)
     colours = cell_colours(grid, chosen.expose, chosen.saturation)
     source = BuildSource(grid, colours, coloured_cells(grid), palette, chosen)
     if is_exact(grid, blocks_per_metre):
