@@ -381,6 +381,7 @@ def export_dataset(
     short_bin: bool = False,
     data_root: str | None = None,
     frames_per_scene: int | None = None,
+    axes: str = "published",
     progress: Progress = no_progress,
 ) -> "ExportReport":
     """Export a data set in the format of NYUv2, OccScanNet or EmbodiedOcc-ScanNet, or as npz files.
@@ -401,6 +402,8 @@ def export_dataset(
             ``embodied``. Defaults to ``./data/occscannet``.
         frames_per_scene: Number of frames per scene, or 0 for all. Only for ``embodied``. Defaults
             to 30.
+        axes: Order of the label axes: ``published``, or ``iso`` for ISO's loader. Only for
+            ``occscannet``.
         progress: Callback that is called after each sample.
 
     Returns:
@@ -430,6 +433,7 @@ def export_dataset(
         short_bin=short_bin,
         data_root=DATA_ROOT if data_root is None else data_root.rstrip("/"),
         frames_per_scene=FRAMES_PER_SCENE if frames_per_scene is None else frames_per_scene,
+        axes=axes,
     )
     samples = source.store if isinstance(source, Dataset) else open_occupancy(source)
     return export_samples(samples, format, out, rule, split=split, limit=limit, progress=progress)

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from tests.minecraftocc.exchange import page_loader, synthetic
 
-from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.exporters import ExportRule, export_samples
+from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.minecraftocc.importers.embodied import open_scenes
 
 VIEWS = [
@@ -260,3 +261,35 @@ def test_a_scene_of_two_splits_is_refused(tmp_path):
     both = [*frames(views=VIEWS[:1]), *frames(split="test", views=VIEWS[:2])[1:]]
     with pytest.raises(UsageError, match="house_0001 has frames in train and in test"):
         export_samples(both, "embodied", tmp_path)
+
+
+def test_with_axes_iso_a_loader_that_swaps_nothing_meets_the_picture(made, tmp_path):
+    """ISO reads target_1_4 as x, y, z; the export for it is the swap of the published order."""
+    export_samples(made, "occscannet", tmp_path / "plain")
+    export_samples(made, "occscannet", tmp_path / "iso", ExportRule(axes="iso"))
+    name = "gathered_data/scene0000_00/00001.pkl"
+    plain, iso = opened(tmp_path / "plain" / name), opened(tmp_path / "iso" / name)
+    for target in ("target_1_4", "target_1_16"):
+        assert np.array_equal(iso[target], plain[target].transpose(1, 0, 2))
+    assert not np.array_equal(iso["target_1_4"], plain["target_1_4"])
+    swapped = page_loader.load_occscannet(tmp_path / "plain", name).target
+    assert np.array_equal(iso["target_1_4"], swapped)
+
+
+def test_an_export_with_axes_iso_reads_back_the_same(made, tmp_path):
+    export_samples(made, "occscannet", tmp_path / "plain")
+    export_samples(made, "occscannet", tmp_path / "iso", ExportRule(axes="iso"))
+    plain, iso = (open_occupancy(tmp_path / one) for one in ("plain", "iso"))
+    for key in plain.splits:
+        assert np.array_equal(plain[key].occ.labels, iso[key].occ.labels)
+    with pytest.raises(ConflictError, match="contains an export with axes 'iso'"):
+        export_samples(made, "occscannet", tmp_path / "iso")
+
+
+@pytest.mark.parametrize("format", ["nyu", "embodied", "npz"])
+def test_axes_are_an_option_of_occscannet_alone(made, tmp_path, format):
+    with pytest.raises(UsageError) as caught:
+        export_samples(made, format, tmp_path, ExportRule(axes="iso"))
+    assert str(caught.value) == f"--axes iso requires --format occscannet, got {format}"
+    with pytest.raises(UsageError, match="no order of axes is named 'zyx'"):
+        ExportRule(axes="zyx")

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 w2m dataset export DATA --format nyu --out NYU             for MonoScene, NDC-Scene, ISO, Symphonies
 w2m dataset export DATA --format occscannet --out OCC      for ISO, EmbodiedOcc, GPOcc
+w2m dataset export DATA --format occscannet --out OCC --axes iso    to train ISO
 w2m dataset export DATA --format embodied --out data       whole scenes, for EmbodiedOcc
 w2m dataset export DATA --format npz --out NPZ             plain arrays
 w2m dataset export DATA --format nyu --out NYU --limit 20  a few samples to try
@@ -46,6 +47,15 @@ FramesPerScene = Annotated[
     ),
 ]
 
+Axes = Annotated[
+    str,
+    typer.Option(
+        "--axes",
+        help="Axis order of the labels: published, or iso for ISO's loader (occscannet only).",
+        rich_help_panel=MORE,
+    ),
+]
+
 
 def run(
     source: Annotated[
@@ -68,6 +78,7 @@ def run(
     short_bin: ShortBin = False,
     data_root: DataRoot = None,
     frames_per_scene: FramesPerScene = None,
+    axes: Axes = "published",
 ) -> None:
     """Export a data set in the format of NYUv2, OccScanNet, EmbodiedOcc-ScanNet, or as npz files.
 
@@ -89,6 +100,7 @@ def run(
             short_bin=short_bin,
             data_root=data_root,
             frames_per_scene=frames_per_scene,
+            axes=axes,
             progress=progress,
         )
     _print_summary(report, format)

@@ -73,7 +73,7 @@ def export_samples(
 
     Raises:
         UnknownNameError: If the format is unknown.
-        UsageError: If there are no samples to export.
+        UsageError: If there are no samples to export, or if the format has no option ``axes``.
         ConflictError: If the folder contains an export with other options or of another data set.
         InputError: If the format cannot represent a sample.
     """
@@ -121,6 +121,8 @@ def _entries(
 
 def _exporter(format: str, root: Path, rule: ExportRule) -> Exporter:
     """Create the exporter for a format, importing only its module."""
+    if rule.axes != "published" and format in FORMATS and format != "occscannet":
+        raise UsageError(f"--axes {rule.axes} requires --format occscannet, got {format}")
     if format == "nyu":
         from world2minecraft.minecraftocc.exporters.nyu import NyuExporter  # noqa: PLC0415
 
@@ -161,6 +163,7 @@ def _claim(root: Path, choices: dict[str, Any], sha256: str) -> None:
     before = read_json(record)
     known = before if isinstance(before, dict) else {}
     names = [name for name in choices if name not in known or known[name] != choices[name]]
+    names += [name for name in ("axes",) if name in known and name not in choices]
     if names:
         differences = ", ".join(f"{name} {known.get(name)!r}" for name in names)
         raise ConflictError(

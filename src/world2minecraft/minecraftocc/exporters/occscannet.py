@@ -3,7 +3,7 @@
 The folder contains ``gathered_data/SCENE/NNNNN.pkl``, ``posed_images/SCENE/NNNNN.jpg`` and
 ``.png``, and the lists of samples. Labels are stored as [y, x, z]: EmbodiedOcc and GPOcc swap the
 first two axes when they load them, and the projected cells then match the image. ISO does not swap
-them; see docs/occupancy-formats.md.
+them; ``ExportRule(axes="iso")`` stores them as [x, y, z] for its loader.
 """
 
 from collections.abc import Sequence
@@ -17,6 +17,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.formats.safe_pickle import dump_pickle
 from world2minecraft.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.exporters.options import (
+    AXES_CHOICES,
     ExportRule,
     encode_jpeg,
     export_split,
@@ -39,7 +40,6 @@ from world2minecraft.minecraftocc.formats.label_grids import (
 )
 from world2minecraft.minecraftocc.types import OccSample
 
-AXES = (1, 0, 2)  # Ours x, y, z; theirs y, x, z. The same swap leads back.
 ORIGIN_DECIMALS = 4  # EmbodiedOcc's loader rounds to them, so that all loaders see one box.
 LISTS = {
     "train": ("train_subscenes.txt", "train_final.txt"),
@@ -131,7 +131,7 @@ class OccScanNetExporter:
     def _pickle(
         self, row: NamedSample, labels: np.ndarray, box: LabelledBox, camera: Camera
     ) -> bytes:
-        stored = np.ascontiguousarray(labels.transpose(AXES))
+        stored = np.ascontiguousarray(labels.transpose(AXES_CHOICES[self.rule.axes]))
         intrinsic = np.eye(4)
         intrinsic[:3, :3] = camera.matrix
         intrinsic[:2, 2] -= HALF_PX

@@ -12,6 +12,9 @@ from world2minecraft.rendering.output.images import colour_bytes
 
 FORMATS = ("nyu", "occscannet", "embodied", "npz")
 UNKNOWN_CHOICES = ("keep", "empty")
+# How labels of OccScanNet lie: y, x, z in the published files, which EmbodiedOcc and GPOcc swap
+# when they load them, and x, y, z for ISO, which does not.
+AXES_CHOICES = {"published": (1, 0, 2), "iso": (0, 1, 2)}
 # Where ISO, EmbodiedOcc and GPOcc look for OccScanNet, from the folder that they run in.
 DATA_ROOT = "./data/occscannet"
 FRAMES_PER_SCENE = 30  # As EmbodiedOcc-ScanNet; its loader holds all frames of a scene at once.
@@ -30,6 +33,8 @@ class ExportRule:
         short_bin: ``nyu`` only: write only the header of each ``.bin`` file, since loaders use just
             its name.
         data_root: ``occscannet`` and ``embodied`` only: prefix of the paths inside the files.
+        axes: ``occscannet`` only: ``published`` for the axis order of the published files, or
+            ``iso`` for the order that ISO's loader expects.
         frames_per_scene: ``embodied`` only: maximum number of frames per scene, evenly spaced; 0
             uses all.
     """
@@ -40,15 +45,20 @@ class ExportRule:
     data_root: str = DATA_ROOT  # occscannet, embodied: what paths inside the files begin with.
     frames_per_scene: int = FRAMES_PER_SCENE  # embodied: evenly taken; 0 for all.
 
+    axes: str = "published"  # occscannet: one of AXES_CHOICES.
+
     def __post_init__(self):
+        if self.axes not in AXES_CHOICES:
+            raise UnknownNameError("order of axes", self.axes, AXES_CHOICES)
         if self.unknown not in UNKNOWN_CHOICES:
             raise UnknownNameError("treatment of unknown cells", self.unknown, UNKNOWN_CHOICES)
         if self.frames_per_scene < 0:
             raise UsageError(f"frames_per_scene must be 0 or more, got {self.frames_per_scene}")
 
     def as_data(self) -> dict[str, Any]:
-        """Return the options as a dict for JSON."""
-        return asdict(self)
+        """Return the options as a dict for JSON, without the axes of the published files."""
+        data = asdict(self)
+        return data if self.axes != "published" else {k: v for k, v in data.items() if k != "axes"}
 
 
 class Exporter(Protocol):

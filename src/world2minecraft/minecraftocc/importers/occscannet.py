@@ -1,6 +1,7 @@
 """Importer for OccScanNet: ``gathered_data/SCENE/NNNNN.pkl`` with images in ``posed_images``.
 
-Labels are stored as [y, x, z], as EmbodiedOcc and GPOcc read them. The paths inside the pickles
+Labels are stored as [y, x, z], as EmbodiedOcc and GPOcc read them, or as [x, y, z] in an export of
+this program for ISO, which ``export.json`` states. The paths inside the pickles
 refer to the machine that wrote them and are ignored: images are found by scene name and frame
 number.
 """
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Camera
 from world2minecraft.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.formats.image_conventions import HALF_PX, HEIGHT_PX, WIDTH_PX
@@ -34,6 +36,13 @@ LISTS = {
     "test": ("val_subscenes.txt", "test_final.txt"),
 }
 _LINE = re.compile(r"(?:.*/)?([\w-]{1,100}/\d{1,9})\.pkl", re.ASCII)
+
+
+def stored_axes(root: Path) -> tuple[int, int, int]:
+    """Return the axis order of the labels in a folder, as a transposition to x, y, z."""
+    record = root / "export.json"
+    stated = read_json(record) if record.is_file() else None
+    return (0, 1, 2) if isinstance(stated, dict) and stated.get("axes") == "iso" else AXES
 
 
 def is_occscannet(path: Path) -> bool:
@@ -103,7 +112,8 @@ def read_frame(root: Path, name: str, labels: Any = None) -> ImportedFrame:
     wanted = ("target_1_4", "voxel_origin", "cam_pose", "intrinsic")
     if missing := [word for word in wanted if word not in stored]:
         raise DamagedFileError(path, f"does not contain {', '.join(missing)}")
-    shape = (DEFAULT_SHAPE[1], DEFAULT_SHAPE[0], DEFAULT_SHAPE[2])
+    axes = stored_axes(root) if labels is None else AXES
+    shape = (DEFAULT_SHAPE[axes[0]], DEFAULT_SHAPE[axes[1]], DEFAULT_SHAPE[axes[2]])
     checked = checked_labels(stored["target_1_4"] if labels is None else labels, shape, path)
     picture = root / "posed_images" / name
     colour = read_colour_if_present(picture.with_suffix(".jpg"))
@@ -111,7 +121,7 @@ def read_frame(root: Path, name: str, labels: Any = None) -> ImportedFrame:
     depth_m = read_depth_if_present(picture.with_suffix(".png"), "mm")
     return ImportedFrame(
         name=path,
-        labels=np.ascontiguousarray(checked.transpose(AXES)),
+        labels=np.ascontiguousarray(checked.transpose(axes)),
         origin_m=stored["voxel_origin"],
         camera_to_world=stored["cam_pose"],
         camera=camera,
