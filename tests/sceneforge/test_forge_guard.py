@@ -182,6 +182,50 @@ def test_a_refused_websocket_never_reaches_the_scene(server):
     assert server.session.broadcaster.count == tabs
 
 
+VISIT = {"Sec-Fetch-Site": "same-site", "Sec-Fetch-Mode": "navigate", "Cookie": "COOKIE_PAIR"}
+
+
+@pytest.fixture(scope="module")
+def shown():
+    """A server that notebooks may show in a frame, and its cookie."""
+    with served(small_editor(), in_notebook=True) as server, httpx.Client() as browser:
+        yield server, browser.get(server.link).headers["set-cookie"].partition(";")[0]
+
+
+def test_a_notebook_of_this_machine_shows_the_page(shown, server, cookie):
+    assert status(raw(shown[0], request(shown[0], VISIT, shown[1], path="/"))) == 200
+    assert status(raw(server, request(server, VISIT, cookie, path="/"))) == 403
+    headers = httpx.get(shown[0].url).headers
+    allowed = "frame-ancestors http://localhost:* http://127.0.0.1:*"
+    assert headers["content-security-policy"].endswith(allowed)
+    assert "x-frame-options" not in headers
+    headers = httpx.get(server.url).headers
+    assert headers["content-security-policy"].endswith("frame-ancestors 'none'")
+    assert headers["x-frame-options"] == "DENY"
+
+
+@pytest.mark.parametrize(
+    ("changed", "path"),
+    [
+        ({}, "/api/scene"),
+        ({"Sec-Fetch-Mode": "cors"}, "/"),
+        ({"Sec-Fetch-Mode": "no-cors"}, "/"),
+        ({"Sec-Fetch-Site": "cross-site"}, "/"),
+        ({"Cookie": "w2m_forge_8484=wrong"}, "/"),
+        ({"Origin": "http://127.0.0.1:1"}, "/"),
+    ],
+)
+def test_a_notebook_shows_the_page_and_nothing_else(shown, changed, path):
+    asked = request(shown[0], VISIT | changed, shown[1], path)
+    assert status(raw(shown[0], asked)) == 403
+
+
+@pytest.mark.parametrize(("headers", "why"), FOREIGN)
+def test_a_server_for_notebooks_refuses_other_sites(shown, headers, why):
+    asked = request(shown[0], {"Cookie": "COOKIE_PAIR"} | headers, shown[1])
+    assert status(raw(shown[0], asked)) == 403
+
+
 def open_guard(**options):
     return Guard(SimpleNamespace(), token="t", port=1, **options)  # type: ignore[arg-type]
 

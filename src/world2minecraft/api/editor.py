@@ -1,6 +1,7 @@
 """Open SceneForge (the web editor), walk through worlds in the browser, and measure edits."""
 
 import html
+import secrets
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,9 +19,26 @@ if TYPE_CHECKING:
     from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 
+# The frame and the notebook must have the same host name: browsers send the cookie of the editor
+# only then. Where scripts do not run, the link alone is shown.
+FRAME = """\
+<p><a class="{name}" href="{link}" target="_blank">Open SceneForge</a></p>
+<iframe class="{name}" width="100%" height="640" style="display: none; border: 0"></iframe>
+<script>
+(() => {{
+  if (!["localhost", "127.0.0.1"].includes(location.hostname)) return;
+  const [link, frame] = document.querySelectorAll(".{name}");
+  link.hostname = location.hostname;
+  frame.src = link.href;
+  frame.style.display = "block";
+}})();
+</script>
+"""
+
+
 @dataclass(frozen=True, eq=False)
 class EditorSession:
-    """A running SceneForge editor. A notebook shows it in a frame.
+    """A running SceneForge editor. A notebook on this machine shows it in a frame.
 
     Attributes:
         server: Web server of the editor.
@@ -71,9 +89,7 @@ class EditorSession:
         return f"EditorSession({self.server.url!r})"
 
     def _repr_html_(self) -> str:
-        link = html.escape(self.link)
-        frame = f'<iframe src="{link}" width="100%" height="640"></iframe>'
-        return f'<p><a href="{link}" target="_blank">Open SceneForge</a></p>{frame}'
+        return FRAME.format(link=html.escape(self.link), name=f"w2m-{secrets.token_hex(4)}")
 
 
 def open_editor(
@@ -105,7 +121,7 @@ def open_editor(
     from world2minecraft.sceneforge.server.server_process import ForgeServer
 
     editor = None if source is None else Editor.open(path_of(source))
-    server = ForgeServer(editor, port=port).start()
+    server = ForgeServer(editor, port=port, in_notebook=True).start()
     if browser:
         webbrowser.open(server.link)
     return EditorSession(server, *_state_of(editor))

@@ -35,9 +35,17 @@ def build_app(
     port: int,
     hosts: Iterable[str] = (),
     any_address: bool = False,
+    in_notebook: bool = False,
 ) -> Starlette:
     """Return the application that serves a session. See ``Guard`` for the arguments."""
-    guard = Middleware(Guard, token=token, port=port, hosts=hosts, any_address=any_address)
+    guard = Middleware(
+        Guard,
+        token=token,
+        port=port,
+        hosts=hosts,
+        any_address=any_address,
+        in_notebook=in_notebook,
+    )
     app = Starlette(
         routes=[
             *routes(),

@@ -7,6 +7,9 @@ allowed host (``Host``), come from the server's own page or from no page (``Orig
 first visit it is exchanged for a cookie that scripts cannot read and other sites do not send, and
 is then removed from the address bar. Programs send the token as ``Authorization: Bearer TOKEN``
 instead.
+
+A server for a notebook may also be shown in a frame by pages of this machine. The page of the
+notebook has another port, so browsers report such visits as ``same-site``.
 """
 
 import json
@@ -26,16 +29,20 @@ HOST = re.compile(r"(?P<name>\[[0-9a-f:.]{2,45}\]|[a-z0-9_.-]{1,253})(?P<port>:[
 POLICY = (
     "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
     "style-src 'self' 'unsafe-inline'; connect-src 'self'; object-src 'none'; base-uri 'none'; "
-    "form-action 'none'; frame-ancestors 'none'"
+    "form-action 'none'; frame-ancestors "
 )
+NOTEBOOKS = "http://localhost:* http://127.0.0.1:*"
 HEADERS = (
-    (b"content-security-policy", POLICY.encode()),
     (b"x-content-type-options", b"nosniff"),
-    (b"x-frame-options", b"DENY"),
     (b"referrer-policy", b"no-referrer"),
     (b"cross-origin-opener-policy", b"same-origin"),
     (b"cross-origin-resource-policy", b"same-origin"),
 )
+ALONE = (
+    (b"content-security-policy", f"{POLICY}'none'".encode()),
+    (b"x-frame-options", b"DENY"),
+)
+FRAMED = ((b"content-security-policy", f"{POLICY}{NOTEBOOKS}".encode()),)
 NO_STORE = (b"cache-control", b"no-store")
 OPEN_THE_LINK = "open the link that w2m forge printed; it contains the access token"
 
@@ -51,6 +58,7 @@ class Guard:
         hosts: Host names, besides those of loopback, under which the server may be addressed.
         any_address: Whether the ``Host`` header may also be any IP address. This is required if the
             server is not bound to loopback, and safe because DNS rebinding always uses a name.
+        in_notebook: Whether pages of this machine may show the page in a frame and link to it.
     """
 
     def __init__(
@@ -61,8 +69,11 @@ class Guard:
         port: int,
         hosts: Iterable[str] = (),
         any_address: bool = False,
+        in_notebook: bool = False,
     ):
         self.app, self.token, self.any_address = app, token, any_address
+        self.in_notebook = in_notebook
+        self.headers = (*HEADERS, *(FRAMED if in_notebook else ALONE))
         self.hosts = {*LOOPBACK, *(name.lower() for name in hosts)}
         self.cookie = f"w2m_forge_{port}"
         self.session = new_token()  # What the cookie holds: a token in the link is not it.
@@ -73,17 +84,18 @@ class Guard:
             await self.app(scope, receive, send)
             return
         headers = _headers(scope)
-        refusal = self._foreign(headers)
+        send = _with_headers(scope, send, self.headers)
+        refusal = self._foreign(headers, is_visit=_is_visit(scope))
         if not refusal and self._brings_token(scope):
-            await _welcome(scope, send, f"{self.cookie}={self.session}")
+            await _welcome(send, f"{self.cookie}={self.session}")
             return
         refusal = refusal or self._unknown(headers)
         if refusal:
             await _refuse(scope, receive, send, refusal)
             return
-        await self.app(scope, receive, _with_headers(scope, send))
+        await self.app(scope, receive, send)
 
-    def _foreign(self, headers: dict[str, list[str]]) -> str:
+    def _foreign(self, headers: dict[str, list[str]], *, is_visit: bool = False) -> str:
         """Return why a request is neither from the server's page nor from a program, or ""."""
         hosts = headers.get("host", [])
         if len(hosts) != 1 or not self._is_ours(hosts[0].lower()):
@@ -91,7 +103,10 @@ class Guard:
         own = {f"{scheme}://{hosts[0].lower()}" for scheme in ("http", "https")}
         if any(origin.lower() not in own for origin in headers.get("origin", [])):
             return "requests from other sites are not allowed"
-        if any(site not in ("same-origin", "none") for site in headers.get("sec-fetch-site", [])):
+        allowed = {"same-origin", "none"}
+        if self.in_notebook and is_visit and headers.get("sec-fetch-mode") == ["navigate"]:
+            allowed.add("same-site")
+        if not allowed.issuperset(headers.get("sec-fetch-site", [])):
             return "links from other sites are not allowed; paste the link into the address bar"
         return ""
 
@@ -103,7 +118,7 @@ class Guard:
 
     def _brings_token(self, scope: Scope) -> bool:
         """Return whether a request is a visit to the printed link."""
-        if scope["type"] != "http" or scope["method"] != "GET" or scope["path"] != "/":
+        if not _is_visit(scope):
             return False
         brought = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
         return len(brought) == 1 and _same(brought[0], self.token)
@@ -123,6 +138,11 @@ class Guard:
 def new_token() -> str:
     """Return a random 256-bit token as 43 characters that are safe in a URL."""
     return secrets.token_urlsafe(TOKEN_BYTES)
+
+
+def _is_visit(scope: Scope) -> bool:
+    """Return whether a request asks for the page itself."""
+    return scope["type"] == "http" and scope["method"] == "GET" and scope["path"] == "/"
 
 
 def _headers(scope: Scope) -> dict[str, list[str]]:
@@ -152,7 +172,7 @@ def _is_address(name: str) -> bool:
     return True
 
 
-async def _welcome(scope: Scope, send: Send, cookie: str) -> None:
+async def _welcome(send: Send, cookie: str) -> None:
     """Set the cookie and redirect to the page without the token in the address bar."""
     cookie_header = f"{cookie}; HttpOnly; SameSite=Strict; Path=/"
     headers = [
@@ -160,7 +180,6 @@ async def _welcome(scope: Scope, send: Send, cookie: str) -> None:
         (b"set-cookie", cookie_header.encode()),
         (b"content-length", b"0"),
     ]
-    send = _with_headers(scope, send)
     await send({"type": "http.response.start", "status": 303, "headers": headers})
     await send({"type": "http.response.body", "body": b""})
 
@@ -176,16 +195,15 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, why: str) -> None:
     kind = b"application/json" if is_api else b"text/plain; charset=utf-8"
     headers = [(b"content-type", kind), (b"content-length", str(len(body)).encode())]
     headers.append((b"connection", b"close"))  # What follows in the stream is not read.
-    send = _with_headers(scope, send)
     await send({"type": "http.response.start", "status": 403, "headers": headers})
     await send({"type": "http.response.body", "body": body})
 
 
-def _with_headers(scope: Scope, send: Send) -> Send:
+def _with_headers(scope: Scope, send: Send, headers: Iterable[tuple[bytes, bytes]]) -> Send:
     """Return a ``send`` function that adds the security headers to every answer."""
     if scope["type"] != "http":
         return send
-    always = [*HEADERS, NO_STORE] if _never_kept(scope["path"]) else [*HEADERS]
+    always = [*headers, NO_STORE] if _never_kept(scope["path"]) else [*headers]
 
     async def adding(message: Message) -> None:
         if message["type"] == "http.response.start":

@@ -134,6 +134,7 @@ class ForgeServer(PageServer):
         max_upload_bytes: Maximum size in bytes of an uploaded capture.
         capture: Path of the capture with the room's photos. None uses the path recorded in the
             room's folder.
+        in_notebook: Whether notebooks of this machine may show the page in a frame.
 
     Raises:
         UsageError: If the port is taken, or if this machine does not have the address.
@@ -150,6 +151,7 @@ class ForgeServer(PageServer):
         home: Path | None = None,
         max_upload_bytes: int = MAX_UPLOAD_BYTES,
         capture: Path | None = None,
+        in_notebook: bool = False,
     ):
         self.session = Session(editor)
         self.workspace = Workspace(
@@ -166,6 +168,7 @@ class ForgeServer(PageServer):
                 port=port,
                 hosts=named,
                 any_address=is_open,
+                in_notebook=in_notebook,
             )
 
         super().__init__(build, host=host, port=port, token=token)
