@@ -34,7 +34,7 @@ def scene(tmp_path):
 TABLE = """\
 mean of 1 scene, 1 from scratch
                                      from                        paper: from    paper:
-                                  nothing      ours      less        nothing   refined
+                                  scratch      ours      less        scratch   refined
 Total time (seconds)                 8.00      8.00      1.0x         482.00     70.38
   Automated process                    --        --        --             --      5.88
   Manual refinement                  8.00      8.00      1.0x         482.00     64.50

@@ -97,7 +97,7 @@ def stats_text(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str
     lines = [
         f"mean of {scenes}" + (f", {len(scratch)} from scratch" if scratch else ""),
         f"{'':<31}{'from':>10}{'':>10}{'':>10}   {'paper: from':>12}{'paper:':>10}",
-        f"{'':<31}{'nothing':>10}{'ours':>10}{'less':>10}   {'nothing':>12}{'refined':>10}",
+        f"{'':<31}{'scratch':>10}{'ours':>10}{'less':>10}   {'scratch':>12}{'refined':>10}",
     ]
     for name, title, depth in _rows(ours, nothing):
         cells = (nothing[name], ours[name])
