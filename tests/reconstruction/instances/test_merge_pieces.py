@@ -13,6 +13,8 @@ SOFA, OBJS, FURN = SemanticClass.SOFA, SemanticClass.OBJS, SemanticClass.FURN
 GREY, GREEN = (120, 118, 116), (40, 140, 60)
 SEAT, CUSHION = np.s_[6:16, 6:26, 1:6], np.s_[7:9, 8:14, 6:8]
 
+IN_THE_SEAT = np.s_[6:9, 12:15, 3:6]
+
 
 def _sofa_with(piece, rgb, label=OBJS):
     labels = np.zeros((30, 34, 16), np.uint8)
@@ -52,6 +54,15 @@ def test_pieces_on_pieces_go_to_the_same_host():
     labels[7:9, 9:12, 8:10] = FURN
     found = find_objects(replace(grid, labels=labels))
     assert [one.class_id for one in found.instances] == [SOFA]
+
+
+def test_an_object_surrounded_by_another_is_part_of_it():
+    """Three of its sides and its bottom: a gap between cushions, not a thing on a seat."""
+    found = find_objects(_sofa_with(IN_THE_SEAT, GREEN))
+    assert [one.class_id for one in found.instances] == [SOFA]
+    assert (found.grid.labels[IN_THE_SEAT] == SOFA).all()
+    oven = find_objects(_sofa_with(IN_THE_SEAT, GREEN, FURN))
+    assert len(oven.instances) == 2
 
 
 def test_the_method_of_the_paper_keeps_pieces():

@@ -2,7 +2,7 @@
 
 These are stacked parts of one class, small loose pieces next to an object of their class, the post,
 cord and foot of a lamp with its shade, and pieces of any class that lie flat against an object of
-their colour.
+their colour or are surrounded by others.
 """
 
 import numpy as np
@@ -31,6 +31,11 @@ MIN_OVERLAP = 0.5  # The share of the smaller part's plan that must lie over or 
 MAX_PIECE_CELLS = 120  # A cushion.
 MIN_HOST_FACTOR = 2  # The host has so many times the cells of the piece.
 MIN_CONTACT = 0.4  # Share of the piece's cells next to the host.
+# Share of the cells around a piece of class objs that belong to other objects: a gap between
+# things, whatever its colour. At 0.4 it merges 24 of 110 objects of a flat's sparse cloud, one of
+# the 109 of six other real captures and none of the 277 of 16 runs of generated rooms; at 0.3, 7 of
+# the latter.
+MIN_COVERED = 0.4
 SAME_COLOUR = 0.03  # Oklab distance of medians, with reduced weight of lightness.
 COLOUR_WEIGHTS = np.sqrt([0.4, 1.0, 1.0])
 NEIGHBOURHOOD = np.ones((3, 3, 3), np.bool_)
@@ -143,7 +148,7 @@ def _root(parent: list[int], number: int) -> int:
 
 
 def merge_flush_pieces(owners: np.ndarray, grid: OccupancyGrid) -> tuple[np.ndarray, np.ndarray]:
-    """Merge small pieces into the objects of their colour that they lie against.
+    """Merge small pieces into objects of their colour that they lie against, or that surround them.
 
     Args:
         owners: Number of the object of each cell, int32 [X, Y, Z], 0 for none.
@@ -165,7 +170,11 @@ def merge_flush_pieces(owners: np.ndarray, grid: OccupancyGrid) -> tuple[np.ndar
             continue
         beside = boxes[host - 1]
         whole = owners[beside] == host
-        if _colour_distance(grid.colour[box][own], grid.colour[beside][whole]) < SAME_COLOUR:
+        is_thing = grid.labels[box][own].max() == SemanticClass.OBJS
+        embedded = is_thing and _covered_share(own, result[box], number) >= MIN_COVERED
+        if embedded or (
+            _colour_distance(grid.colour[box][own], grid.colour[beside][whole]) < SAME_COLOUR
+        ):
             moved = result == number  # With what was merged into it before.
             result[moved] = host
             labels[moved] = np.bincount(grid.labels[beside][whole]).argmax()
@@ -182,6 +191,12 @@ def _host_of(own: np.ndarray, owners: np.ndarray, sizes: np.ndarray) -> int:
         return 0
     contact = ndimage.binary_dilation(owners == host, NEIGHBOURHOOD)[own].mean()
     return host if contact >= MIN_CONTACT else 0
+
+
+def _covered_share(own: np.ndarray, owners: np.ndarray, number: int) -> float:
+    """Return the share of the cells around a piece, across faces, that are other objects."""
+    around = owners[ndimage.binary_dilation(own) & ~own]
+    return float(((around > 0) & (around != number)).mean()) if len(around) else 0.0
 
 
 def _colour_distance(one: np.ndarray, other: np.ndarray) -> float:
