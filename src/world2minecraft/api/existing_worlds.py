@@ -78,6 +78,7 @@ def build_into_world(
     blocks_per_metre: float = 4.0,
     style: str | None = None,
     palette: str | Path | None = None,
+    classes: str | Path = "",
     settings: Settings | None = None,
     progress: Progress = no_progress,
 ) -> WorldChange:
@@ -95,6 +96,7 @@ def build_into_world(
         blocks_per_metre: Scale of the room.
         style: ``blocks``, ``display`` or ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
+        classes: Class ids of an occupancy grid, such as ``embodied`` (12 is empty).
         settings: Further parameters, such as ``{"build.ceiling": "glass"}``.
         progress: Callback that reports the progress of each stage.
 
@@ -121,7 +123,7 @@ def build_into_world(
     check_air(air)
     with session_lock(folder):  # What is wrong with the world is found before any work.
         pass
-    options = BuildOptions(blocks_per_metre, style, palette, settings=settings)
+    options = BuildOptions(blocks_per_metre, style, palette, settings=settings, classes=classes)
     volume, is_room = _room_blocks(source, options, progress)
     put = place_volume(volume, at, turns, ROOM_CORNER_BLOCK[1] if is_room else None)
     has_scale = is_room and volume.blocks_per_metre != 1
@@ -150,6 +152,7 @@ def build_on_server(
     style: str | None = None,
     palette: str | Path | None = None,
     mc_version: str = "1.20.1",
+    classes: str | Path = "",
     settings: Settings | None = None,
     password: str | None = None,
     progress: Progress = no_progress,
@@ -168,6 +171,7 @@ def build_on_server(
         style: ``blocks``, ``display`` or ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
         mc_version: Minecraft version of the server.
+        classes: Class ids of an occupancy grid, such as ``embodied`` (12 is empty).
         settings: Further parameters, such as ``{"build.ceiling": "glass"}``.
         password: Password of the remote console. Defaults to the environment variable
             W2M_RCON_PASSWORD.
@@ -189,7 +193,12 @@ def build_on_server(
     secret = password or _password_of_environment()
     check_air(air)
     options = BuildOptions(
-        blocks_per_metre, style, palette, mc_version=mc_version, settings=settings
+        blocks_per_metre,
+        style,
+        palette,
+        mc_version=mc_version,
+        settings=settings,
+        classes=classes,
     )
     volume, is_room = _room_blocks(source, options, progress)
     corner = at or ROOM_CORNER_BLOCK

@@ -32,6 +32,8 @@ class BuildOptions:
         mc_version: Minecraft version to write the files for.
         settings: Further parameters by key, such as ``{"build.ceiling": "glass"}``.
             ``w2m.settings()`` lists all keys.
+        classes: Class ids of an occupancy grid: ``nyu12`` (the default), ``embodied`` (12 is
+            empty), ``occscannet`` or a YAML file of ids and names.
     """
 
     blocks_per_metre: float = 4.0
@@ -40,6 +42,7 @@ class BuildOptions:
     formats: Sequence[str] = ()
     mc_version: str = "1.20.1"
     settings: Settings | None = None
+    classes: str | Path = ""
 
     def parameters(self, base: "Parameters | None" = None) -> "Parameters":
         """Return reconstruction parameters with these options applied.
@@ -90,6 +93,9 @@ def reconstruct(
     depth_model: str = "",
     semantics: str = "",
     predictor: str = "depth",
+    predictions: str | Path | None = None,
+    convention: str = "",
+    classes: str | Path = "",
     labeller: str = "auto",
     start: str | None = None,
     follow: bool = False,
@@ -122,6 +128,12 @@ def reconstruct(
         depth_model: Depth estimation network, such as ``hf:ORG/NAME``.
         semantics: Segmentation network, such as ``hf:ORG/NAME``.
         predictor: ``depth``, or ``mono:FILE.onnx`` for a monocular occupancy network.
+        predictions: Grids that another network predicted: a folder with one file per view, or one
+            file for the whole scene. ``docs/predictions.md`` describes the files.
+        convention: Axes of the predictions: ``w2m``, ``monoscene``, ``iso``, ``embodiedocc`` or
+            ``sscnet``. Detected where the files leave no doubt.
+        classes: Class ids of the predictions: ``nyu12``, ``embodied``, ``occscannet`` or a YAML
+            file. Detected by default.
         labeller: ``auto``, ``completion``, ``votes`` or ``geometric``.
         start: Stage to restart from. Requires an output folder with an earlier run.
         follow: Watch a capture that is still being recorded until a file named ``done`` appears.
@@ -158,26 +170,35 @@ def reconstruct(
     )
     named = {"occupy.semantics": semantics or None, "capture.fov_deg": fov_deg}
     given = {key: value for key, value in named.items() if value is not None}
+    given |= _prediction_settings(predictions, convention, classes)
     options = BuildOptions(
         blocks_per_metre, style, palette, formats, mc_version, given | dict(settings or {})
     )
     chosen = options.parameters(with_method(base, method))
-    _check_stage(start, follow)
-    place, folder = Path(capture), Path(out)
-    label_folder = None if labels is None else Path(labels)
+    _check_stage(start, follow, chosen)
     needs_frames = {"start": start, "labels": labels, "follow": follow}
-    if _build_lone_plan(
-        place, folder, chosen, [name for name in needs_frames if needs_frames[name]], progress
-    ):
+    place, folder = Path(capture), Path(out)
+    if _build_lone_plan(place, folder, chosen, needs_frames, progress):
         return Run(folder)
+    label_folder = None if labels is None else Path(labels)
     if follow:
-        from world2minecraft.reconstruction import online
-
-        online.follow(
-            place, folder, chosen, labels=label_folder, idle_s=follow_idle_s, progress=progress
-        )
+        _follow(place, folder, chosen, label_folder, follow_idle_s, progress)
     run_capture(place, folder, chosen, start, label_folder, progress)
     return Run(folder)
+
+
+def _follow(
+    capture: Path,
+    out: Path,
+    chosen: "Parameters",
+    labels: Path | None,
+    idle_s: float,
+    progress: Progress,
+) -> None:
+    """Reconstruct a capture that is still being recorded until it is complete."""
+    from world2minecraft.reconstruction import online
+
+    online.follow(capture, out, chosen, labels=labels, idle_s=idle_s, progress=progress)
 
 
 def build(
@@ -189,6 +210,7 @@ def build(
     palette: str | Path | None = None,
     formats: Sequence[str] = (),
     mc_version: str = "1.20.1",
+    classes: str | Path = "",
     settings: Settings | None = None,
     progress: Progress = no_progress,
 ) -> Run:
@@ -206,6 +228,8 @@ def build(
         palette: ``vanilla``, the palette of a mod, or a YAML file.
         formats: Additional file formats to write, such as ``("litematic", "glb")``.
         mc_version: Minecraft version of the world.
+        classes: Class ids of an occupancy grid: ``nyu12`` (the default), ``embodied`` (12 is
+            empty), ``occscannet`` or a YAML file of ids and names.
         settings: Further parameters, such as ``{"build.ceiling": "glass"}``.
         progress: Callback that reports the progress of each stage.
 
@@ -223,7 +247,7 @@ def build(
     from world2minecraft.reconstruction.build_without_capture import rebuild
 
     options = BuildOptions(blocks_per_metre, style, palette, formats, mc_version, settings)
-    rebuild(path_of(source), Path(out), options.parameters(), progress)
+    rebuild(path_of(source), Path(out), options.parameters(), progress, str(classes))
     return Run(Path(out))
 
 
@@ -242,10 +266,27 @@ def _checked_palette(palette: str | Path | None) -> str | None:
     return str(Path(palette).resolve()) if Path(palette).is_file() else str(palette)
 
 
-def _check_stage(start: str | None, follow: bool) -> None:
-    """Raise UsageError if a stage is unknown or cannot be combined with ``follow``."""
+def _prediction_settings(
+    predictions: str | Path | None, convention: str, classes: str | Path
+) -> dict[str, str]:
+    """Return the settings of saved predictions, without those that are not given."""
+    settings = {
+        "predictions.path": "" if predictions is None else str(predictions),
+        "predictions.convention": convention,
+        "predictions.classes": str(classes),
+    }
+    return {key: value for key, value in settings.items() if value}
+
+
+def _check_stage(start: str | None, follow: bool, chosen: "Parameters") -> None:
+    """Raise UsageError if a stage is unknown, or if options cannot be combined."""
     from world2minecraft.reconstruction.pipeline import STAGES
 
+    path = chosen.predictions.path
+    if follow and path:
+        raise UsageError("--follow cannot be combined with --predictions; omit one of them")
+    if not path and start is None and chosen.predictions != type(chosen.predictions)():
+        raise UsageError("--classes and --convention describe predictions; add --predictions DIR")
     if follow and start is not None:
         raise UsageError("--follow cannot be combined with --from; omit one of them")
     stages = (*STAGES, "report")
@@ -257,7 +298,7 @@ def _build_lone_plan(
     capture: Path,
     out: Path,
     chosen: "Parameters",
-    needs_frames: list[str],
+    needs_frames: dict[str, Any],
     progress: Progress,
 ) -> bool:
     """Build a RoomPlan without frames, and return whether the capture is a RoomPlan.
@@ -272,8 +313,10 @@ def _build_lone_plan(
     plan = find_lone_roomplan(capture)
     if plan is None:
         return False
-    if needs_frames:
-        options = " and ".join(f"--{'from' if one == 'start' else one}" for one in needs_frames)
+    given = needs_frames | {"predictions": chosen.predictions.path}
+    if any(given.values()):
+        names = [name for name, value in given.items() if value]
+        options = " and ".join(f"--{'from' if name == 'start' else name}" for name in names)
         raise UsageError(f"{capture} is a RoomPlan without frames; omit {options}")
     run_plan(plan, out, chosen, progress, scene_name(capture))
     return True
@@ -290,4 +333,5 @@ def blocks_of(
     """
     from world2minecraft.reconstruction.build_without_capture import blocks_of as read_or_build
 
-    return read_or_build(path_of(source), options.parameters(), progress)
+    chosen = options.parameters()
+    return read_or_build(path_of(source), chosen, progress, str(options.classes))

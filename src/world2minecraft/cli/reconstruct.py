@@ -28,6 +28,7 @@ w2m reconstruct my_photos -o OUT --known "table height" 0.72
 w2m reconstruct room.glb -o OUT                        a mesh or a point cloud
 w2m reconstruct photo.jpg -o OUT --depth hf:ORG/NAME   one photo, with estimated depth
 w2m reconstruct my_scan -o OUT --semantics hf:shi-labs/oneformer_ade20k_swin_tiny
+w2m reconstruct my_scan -o OUT --predictions PRED --convention monoscene
 w2m reconstruct my_scan -o OUT --from build --style display    repeat only the build
 w2m reconstruct my_scan -o OUT --method paper          only the steps in the paper
 w2m reconstruct my_scan -o OUT --follow                during the scan
@@ -94,6 +95,21 @@ PredictorName = Annotated[
     typer.Option("--predictor", help="depth; mono or mono:FILE.onnx for a monocular network.",
                  rich_help_panel=MORE),
 ]  # fmt: skip
+Predictions = Annotated[
+    Path | None,
+    typer.Option("--predictions", metavar="DIR", help="Occupancy grids of another network: one "
+                 "file per view, or one of the scene.", rich_help_panel=MORE),
+]  # fmt: skip
+Convention = Annotated[
+    str,
+    typer.Option("--convention", help="Axes of the predictions: monoscene, iso, embodiedocc, "
+                 "sscnet or w2m.", show_default="detected", rich_help_panel=MORE),
+]  # fmt: skip
+Classes = Annotated[
+    str,
+    typer.Option("--classes", help="Class ids of the predictions: nyu12, embodied (12 is empty), "
+                 "occscannet or a YAML file.", show_default="detected", rich_help_panel=MORE),
+]  # fmt: skip
 Plan = Annotated[
     Path | None,
     typer.Option("--plan", help="RoomPlan of the same room, used as additional evidence.",
@@ -118,6 +134,9 @@ def run(
     depth_model: DepthModel = "",
     semantics: Semantics = "",
     predictor: PredictorName = "depth",
+    predictions: Predictions = None,
+    convention: Convention = "",
+    classes: Classes = "",
     fov: FieldOfView = None,
     plan: Plan = None,
     mc_version: Version = "1.20.1",
@@ -140,30 +159,14 @@ def run(
     with show_progress() as shown:
         progress = with_compile_note(shown)
         made = reconstruct(
-            capture,
-            out,
-            labels=labels,
-            method=method,
-            voxel_m=voxel,
-            blocks_per_metre=blocks_per_metre,
-            style=style,
-            palette=palette,
-            formats=split_names(formats),
-            mc_version=mc_version,
-            known=known,
-            known_points=known_points,
-            fov_deg=fov,
-            plan=plan,
-            depth_model=depth_model,
-            semantics=semantics,
-            predictor=predictor,
-            labeller=labeller,
-            start=start,
-            follow=follow,
-            follow_idle_s=follow_idle_s,
-            settings=changes,
-            progress=progress,
-        )
+            capture, out, labels=labels, method=method, voxel_m=voxel,
+            blocks_per_metre=blocks_per_metre, style=style, palette=palette,
+            formats=split_names(formats), mc_version=mc_version, known=known,
+            known_points=known_points, fov_deg=fov, plan=plan, depth_model=depth_model,
+            semantics=semantics, predictor=predictor, predictions=predictions,
+            convention=convention, classes=classes, labeller=labeller, start=start,
+            follow=follow, follow_idle_s=follow_idle_s, settings=changes, progress=progress,
+        )  # fmt: skip
     print_run(made)
 
 

@@ -30,9 +30,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, SemanticClass
-from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import npz_array_names, read_json, read_npy, read_npz
 from world2minecraft.core.types import OBSERVED, UNSEEN, OccupancyGrid
+from world2minecraft.formats.class_ids import read_class_set
 from world2minecraft.formats.paper_json import MAX_CELLS, read_occ_json
 from world2minecraft.formats.run_arrays import GRID_ARRAYS, read_room
 
@@ -56,12 +57,18 @@ _SHAPES = ("shape", "dims", "dimensions", "grid_size", "gridSize", "size")
 _OTHER_NAMES = {"furniture": 10, "objects": 11, "object": 11, "tv": 9, "none": 0, "free": 0}
 
 
-def read_occupancy(path: str | Path) -> OccupancyGrid:
+def read_occupancy(path: str | Path, classes: str = "") -> OccupancyGrid:
     """Read an occupancy grid from a file in any supported format.
 
     The format is detected from the suffix and the contents of the file.
 
+    Args:
+        path: Path of the file.
+        classes: Class set of the labels of a ``.npy`` or ``.npz`` file, such as ``embodied``. The
+            default is ``nyu12``, whose ids are those of this program.
+
     Raises:
+        UnknownNameError: If the class set is unknown.
         InputError: If the file does not exist or is not an occupancy file.
         DamagedFileError: If the file is not valid in its format.
         LimitError: If the grid is too large.
@@ -72,20 +79,23 @@ def read_occupancy(path: str | Path) -> OccupancyGrid:
             source, "not found; give a room.npz, an occ.json, or labels as .npz or .npy"
         )
     if source.suffix == ".json":
+        if classes not in ("", "nyu12", "occscannet"):
+            raise UsageError(f"--classes is for .npy and .npz files; {source} names its classes")
         return read_occ_json(source)
+    ids = read_class_set(classes or "nyu12")
     if source.suffix == ".npy":
-        return labels_grid(read_npy(source), source)
+        return labels_grid(ids.convert(read_npy(source), source), source)
     if source.suffix != ".npz":
         raise InputError(
             source, "is not an occupancy file; expected the suffix .npz, .npy or .json"
         )
     held = npz_array_names(source)
-    if set(GRID_ARRAYS) <= set(held):
+    if set(GRID_ARRAYS) <= set(held) and not classes:
         return read_room(source)[0]
     wanted = ("labels", *(name for name in ("voxel_m", "origin_m") if name in held))
     arrays = read_npz(source, wanted)
     return labels_grid(
-        arrays["labels"],
+        ids.convert(arrays["labels"], source),
         source,
         float(arrays.get("voxel_m", DEFAULT_VOXEL_M)),
         np.asarray(arrays.get("origin_m", np.zeros(3)), np.float64),

@@ -17,6 +17,7 @@ from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.jit import njit
 
+NYU_SIZE_PX, NYU_FOCAL_PX = (640, 480), 518.8579  # The camera that loaders of NYUv2 assume.
 FINE_SHAPE = (240, 144, 240)  # x, z up, y
 FINE_PER_CELL = 4
 HEADER_BYTES = 4 * (3 + 16)

@@ -24,12 +24,17 @@ MORE_FILES = ("scan.json", "layout.json")
 
 
 def rebuild(
-    source: Path, out: Path, parameters: Parameters, progress: Progress = no_progress
+    source: Path,
+    out: Path,
+    parameters: Parameters,
+    progress: Progress = no_progress,
+    classes: str = "",
 ) -> None:
     """Build ``out / "build"`` from the folder of a run or from an occupancy file.
 
     A run is built from its existing objects and placements. For a grid, objects are first found and
-    matched, and their files are also written to ``out``.
+    matched, and their files are also written to ``out``. ``classes`` is the class set of a grid
+    with other ids than ours, such as ``embodied``.
 
     Raises:
         InputError: If ``source`` cannot be read.
@@ -42,11 +47,13 @@ def rebuild(
     if is_block_file(source):
         ways = f"use w2m convert {source} {out} to make a world, or --into WORLD --at X Y Z"
         raise UsageError(f"{source} contains blocks, but --out requires a room; {ways}")
+    if classes and source.is_dir():
+        raise UsageError(f"--classes requires an occupancy grid, but {source} is a run folder")
     if source.is_dir():
         _copy_run(source, out)
         stages: tuple[str, ...] = ("build",)
     else:
-        grid = read_occupancy(source)
+        grid = read_occupancy(source, classes)
         check_writable(out)
         write_room(out / "room.npz", grid, np.eye(4))
         stages = ("find", "furnish", "build")
@@ -55,7 +62,7 @@ def rebuild(
 
 
 def blocks_of(
-    source: Path, parameters: Parameters, progress: Progress = no_progress
+    source: Path, parameters: Parameters, progress: Progress = no_progress, classes: str = ""
 ) -> BlockVolume:
     """Return the blocks that ``rebuild`` would write, or the blocks that ``source`` contains.
 
@@ -64,16 +71,20 @@ def blocks_of(
             returned unchanged, whatever the parameters.
         parameters: Parameters of the build.
         progress: Callback for progress.
+        classes: Class set of an occupancy grid with other ids than ours.
 
     Raises:
         InputError: If ``source`` cannot be read.
+        UsageError: If classes are given for another source than an occupancy grid.
     """
+    if classes and (source.is_dir() or is_block_file(source)):
+        raise UsageError(f"--classes requires an occupancy grid, which {source} is not")
     if is_block_file(source):
         return read_blocks(source)
     if source.is_dir():
         check_finished(source)
         return built_volume(source, parameters)
-    grid = read_occupancy(source)
+    grid = read_occupancy(source, classes)
     with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
         folder = Path(scratch)
         write_room(folder / "room.npz", grid, np.eye(4))

@@ -85,7 +85,9 @@ def label_grid(
     """
     name = chosen.labeller
     if name == "auto":
-        name = choose_labeller(evidence, from_photos)
+        # Grids of other networks without any measured surface already complete the room.
+        predicted = bool(chosen.predictions.path) and not evidence.offset_sum.any()
+        name = "votes" if predicted else choose_labeller(evidence, from_photos)
     grid = close_structure(labeller(name).label(grid, evidence), chosen.clean)
     return calibrate(grid, evidence, confidence_table(name))
 

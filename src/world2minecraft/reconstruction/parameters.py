@@ -17,7 +17,11 @@ from world2minecraft.formats.volume_formats import format_by_name
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.reconstruction.fusion import CleaningParameters, FusionParameters
 from world2minecraft.reconstruction.instances import InstanceParameters
-from world2minecraft.reconstruction.occupancy import PREDICTORS, OccupancyParameters
+from world2minecraft.reconstruction.occupancy import (
+    PREDICTORS,
+    OccupancyParameters,
+    PredictionParameters,
+)
 from world2minecraft.reconstruction.registration import RegistrationParameters
 from world2minecraft.reconstruction.retrieval import RetrievalParameters
 from world2minecraft.reconstruction.semantics import LABELLERS
@@ -71,6 +75,7 @@ class Parameters:
     stereo: StereoParameters = parameter(StereoParameters, stage="scan")
     register: RegistrationParameters = parameter(RegistrationParameters, stage="register")
     occupy: OccupancyParameters = parameter(OccupancyParameters, stage="fuse")
+    predictions: PredictionParameters = parameter(PredictionParameters, stage="fuse")
     fuse: FusionParameters = parameter(FusionParameters, stage="fuse")
     clean: CleaningParameters = parameter(CleaningParameters, stage="label")
     find: InstanceParameters = parameter(InstanceParameters, stage="find")

@@ -21,6 +21,7 @@ from world2minecraft import __version__
 from world2minecraft.capture import realign, skip_damaged_frames
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
+from world2minecraft.formats.class_ids import CLASS_SETS
 from world2minecraft.formats.run_arrays import write_evidence
 from world2minecraft.formats.scan_record import (
     read_poses,
@@ -34,6 +35,7 @@ from world2minecraft.reconstruction.file_stages import FILE_STAGES, run_stage
 from world2minecraft.reconstruction.floorplans import add_plan_openings, add_plan_votes
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import Predictor, notes_of, predictor
+from world2minecraft.reconstruction.occupancy.saved_grid_evidence import SavedGridPredictor
 from world2minecraft.reconstruction.opening import prepare_and_open
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.registration import (
@@ -77,7 +79,7 @@ def reconstruct(
     resumed = resume_parameters(out, start, STAGES, parameters or Parameters())
     chosen = resumed.parameters
     early = start is None or STAGES.index(start) <= STAGES.index("fuse")
-    network = predictor(chosen.predictor, chosen.occupy) if early else None
+    network = _predictor(chosen) if early else None
     with run.timed("scan"):
         scan = prepare_and_open(capture, out, chosen, labels, progress)
     stated = manifest(capture, labels, chosen, out)
@@ -102,6 +104,14 @@ def reconstruct(
         if stage == until:
             break
     return replace(scan, notes=(*scan.notes, *resumed.notes))
+
+
+def _predictor(chosen: Parameters) -> Predictor:
+    """Return the predictor of the evidence, with saved predictions beside it if there are any."""
+    network = predictor(chosen.predictor, chosen.occupy)
+    if not chosen.predictions.path:
+        return network
+    return SavedGridPredictor(network, chosen.predictions)
 
 
 def _register(run: RunFolder, scan: Scan, chosen: Parameters, progress: Progress) -> Scan:
@@ -144,7 +154,13 @@ def read_registered(scan: Scan, out: Path) -> Scan:
 
 def network_files(chosen: Parameters) -> list[Path]:
     """Return the files of networks and label tables that the parameters refer to."""
-    named = (chosen.predictor.partition(":")[2], chosen.occupy.network, chosen.occupy.label_names)
+    classes = chosen.predictions.classes
+    named = (
+        chosen.predictor.partition(":")[2],
+        chosen.occupy.network,
+        chosen.occupy.label_names,
+        "" if classes in CLASS_SETS else classes,
+    )
     return [Path(name) for name in named if name]
 
 
@@ -161,6 +177,9 @@ def manifest(
         "capture": hash_capture(capture, without=out),
         "labels": None if labels is None else hash_capture(labels),
         "plan": hash_capture(Path(chosen.plan)) if chosen.plan else None,
+        "predictions": (
+            hash_capture(Path(chosen.predictions.path)) if chosen.predictions.path else None
+        ),
         "networks": [hash_capture(path) for path in network_files(chosen)],
         "palette": hash_capture(palette) if palette.is_file() else None,
         "furniture": hash_capture(user_design_folder()) if user_design_files() else None,

@@ -14,7 +14,13 @@ from world2minecraft.core.files import read_json
 from world2minecraft.reconstruction.parameters import Parameters, first_reader
 
 # The first stage that reads a file of which the manifest holds the hash.
-FILES_READ_FIRST_BY = {"capture": "scan", "labels": "fuse", "plan": "fuse", "networks": "fuse"}
+FILES_READ_FIRST_BY = {
+    "capture": "scan",
+    "labels": "fuse",
+    "plan": "fuse",
+    "predictions": "fuse",
+    "networks": "fuse",
+}
 
 
 @dataclass(frozen=True)

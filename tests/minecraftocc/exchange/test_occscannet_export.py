@@ -263,7 +263,7 @@ def test_a_scene_of_two_splits_is_refused(tmp_path):
         export_samples(both, "embodied", tmp_path)
 
 
-def test_with_axes_iso_a_loader_that_swaps_nothing_meets_the_picture(made, tmp_path):
+def test_axes_iso_is_for_a_loader_that_swaps_nothing(made, tmp_path):
     """ISO reads target_1_4 as x, y, z; the export for it is the swap of the published order."""
     export_samples(made, "occscannet", tmp_path / "plain")
     export_samples(made, "occscannet", tmp_path / "iso", ExportRule(axes="iso"))

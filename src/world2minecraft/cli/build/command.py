@@ -27,6 +27,7 @@ w2m build OUT -o second --blocks-per-metre 2     a finished run at another scale
 w2m build OUT -o fine --style display            furniture as fine as a mod's, without a mod
 w2m build room.npz -o world_of_room              an occupancy grid alone
 w2m build labels.npy -o world_of_labels          an array of class ids [x, y, z]
+w2m build scene.npy -o world_of_scene --classes embodied    ids of EmbodiedOcc: 12 is empty
 w2m build OUT --into saves/Home --at 100 64 -20  into an existing world; w2m undo reverts it
 w2m build house.schem --into saves/Home --at 0 70 0
 w2m build OUT --rcon localhost:25575 --at 0 70 0     on a running server
@@ -69,6 +70,17 @@ NewChunks = Annotated[
     ),
 ]
 
+Classes = Annotated[
+    str,
+    typer.Option(
+        "--classes",
+        help="Class ids of an occupancy grid: nyu12, embodied (12 is empty), occscannet or a YAML "
+        "file.",
+        show_default="nyu12",
+        rich_help_panel=MORE,
+    ),
+]
+
 
 def run(
     source: Source,
@@ -84,6 +96,7 @@ def run(
     palette: PaletteName = None,
     formats: Formats = None,
     mc_version: Version = "1.20.1",
+    classes: Classes = "",
     settings: SettingList = None,
 ) -> None:
     """Build a room as a new world, into an existing world, or on a running server.
@@ -101,6 +114,7 @@ def run(
         "blocks_per_metre": blocks_per_metre,
         "style": style,
         "palette": palette,
+        "classes": classes,
         "settings": changes,
     }
     place: dict[str, Any] = {"turns": turns, "air": air}

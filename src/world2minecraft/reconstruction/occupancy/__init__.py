@@ -11,9 +11,19 @@ from typing import Protocol
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import GridEvidence, PointEvidence, Scan
-from world2minecraft.reconstruction.occupancy.parameters import OccupancyParameters
+from world2minecraft.reconstruction.occupancy.parameters import (
+    OccupancyParameters,
+    PredictionParameters,
+)
 
-__all__ = ["PREDICTORS", "OccupancyParameters", "Predictor", "notes_of", "predictor"]
+__all__ = [
+    "PREDICTORS",
+    "OccupancyParameters",
+    "PredictionParameters",
+    "Predictor",
+    "notes_of",
+    "predictor",
+]
 
 PREDICTORS = Registry(
     "predictor",

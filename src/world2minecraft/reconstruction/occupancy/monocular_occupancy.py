@@ -173,14 +173,51 @@ def cell_colours(
     colour = np.zeros((*region.shape, 3), np.uint8)
     if not requested.any():
         return colour
-    u, v = pixels[requested].T
-    first = _first_depth(u, v, depth_m[requested], region.voxel_m, camera)
-    shown = np.zeros_like(requested)
-    shown[requested] = depth_m[requested] <= first[v, u] + HIDDEN_CELLS * region.voxel_m
+    shown = _first_cells(pixels, requested, depth_m, region.voxel_m, camera)
     at_px = pixels[shown]
     colour[shown] = picture[at_px[:, 1], at_px[:, 0]]
     nearest = ndimage.distance_transform_edt(~shown, return_distances=False, return_indices=True)
     return np.where(occupied[..., None], colour[tuple(np.asarray(nearest))], np.uint8(0))
+
+
+def visible_cells(
+    occupied: np.ndarray, region: LabelRegion, camera_to_grid: np.ndarray, camera: Camera
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the occupied cells that no other occupied cell hides, and their pixels.
+
+    Returns:
+        The mask of the cells, bool [X, Y, Z], and the column and row of the pixel of each of the N
+        cells in it, int64 [N, 2].
+    """
+    pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
+    requested = occupied & inside
+    if not requested.any():
+        return requested, np.zeros((0, 2), np.int64)
+    shown = _first_cells(pixels, requested, depth_m, region.voxel_m, camera)
+    return shown, pixels[shown]
+
+
+def cell_depths(
+    region: LabelRegion, camera_to_grid: np.ndarray, camera: Camera
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Project the centres of all cells into an image.
+
+    Returns:
+        The pixel of each cell (column, row), int64 [X, Y, Z, 2], the mask of the cells in the
+        image, bool [X, Y, Z], and the depth of each centre in metres, float64 [X, Y, Z].
+    """
+    return _pixels(region, camera_to_grid, camera)
+
+
+def _first_cells(
+    pixels: np.ndarray, requested: np.ndarray, depth_m: np.ndarray, voxel_m: float, camera: Camera
+) -> np.ndarray:
+    """Return the mask of the requested cells that are first along their pixels."""
+    u, v = pixels[requested].T
+    first = _first_depth(u, v, depth_m[requested], voxel_m, camera)
+    shown = np.zeros_like(requested)
+    shown[requested] = depth_m[requested] <= first[v, u] + HIDDEN_CELLS * voxel_m
+    return shown
 
 
 def _first_depth(u, v, depth_m, voxel_m: float, camera: Camera) -> np.ndarray:

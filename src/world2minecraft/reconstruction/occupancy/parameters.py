@@ -1,8 +1,10 @@
-"""The parameters of networks that vote on the surface points of depth."""
+"""The parameters of networks: those that vote on depth, and those whose grids were saved."""
 
 from dataclasses import dataclass
 
 from world2minecraft.core.parameters import parameter
+from world2minecraft.formats.class_ids import read_class_set
+from world2minecraft.formats.predicted_grids import GridRules
 
 
 @dataclass(frozen=True)
@@ -19,3 +21,33 @@ class OccupancyParameters:
     label_names: str = parameter("")
     mono_votes: bool = parameter(False)
     network: str = parameter("")
+
+
+@dataclass(frozen=True)
+class PredictionParameters:
+    """Grids that another network predicted, used alone or beside depth.
+
+    path: Folder with one file per view, or the file of one grid of the whole scene.
+    convention: Program whose axes the files have: ``w2m``, ``monoscene``, ``iso``, ``embodiedocc``
+        or ``sscnet``; empty to detect it where a file leaves no doubt.
+    classes: Class ids of the files: ``nyu12``, ``embodied``, ``occscannet`` or a YAML file; empty
+        to detect them.
+    scores: Whether scores are ``probabilities`` or ``logits``.
+    check: Whether grids are rejected whose axes, classes or poses contradict the capture.
+    """
+
+    path: str = parameter("")
+    convention: str = parameter("")
+    classes: str = parameter("")
+    scores: str = parameter("probabilities")
+    check: bool = parameter(True)
+
+    def __post_init__(self):
+        self.rules  # noqa: B018  # Raises UnknownNameError for an unknown name.
+        if self.classes:
+            read_class_set(self.classes)
+
+    @property
+    def rules(self) -> GridRules:
+        """The rules by which the files are read."""
+        return GridRules(self.convention, self.classes, self.scores)

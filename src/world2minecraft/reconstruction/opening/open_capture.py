@@ -36,6 +36,7 @@ from world2minecraft.reconstruction.opening.metric_scale import (
 )
 from world2minecraft.reconstruction.opening.one_photo import is_one_photo, prepare_photo
 from world2minecraft.reconstruction.opening.photo_views import depth_views, stereo_views
+from world2minecraft.reconstruction.opening.predicted_room import prepare_predicted
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import check_writable, hash_capture
 
@@ -87,6 +88,9 @@ def prepare_capture(
     folder, stamp = out / FOLDER, stamp_of(capture, chosen, out)
     if is_one_photo(found.source):
         stamp["predictor"] = chosen.predictor.partition(":")[0]
+    if chosen.predictions.path:
+        stamp["predictions"] = hash_capture(Path(chosen.predictions.path))
+        stamp["parameters"]["predictions"] = chosen.as_json()["predictions"]
     if not _made_before(folder, stamp):
         (folder / STAMP).unlink(missing_ok=True)
         try:
@@ -142,6 +146,9 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
         None,
         lambda done, total: progress("photos", done, total),
     )
+    alone = not judged.has_depth and not chosen.depth_model
+    if chosen.predictions.path and alone and (judged.posed or is_one_photo(found.source)):
+        return prepare_predicted(judged, folder, chosen, UNIT)
     if is_one_photo(found.source):
         return prepare_photo(judged, folder, chosen, UNIT)
     photos = photos_of_capture(judged)
