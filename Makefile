@@ -1,32 +1,32 @@
-# Each target sets up .venv at the root by itself, and does nothing twice.
-# PYTHON chooses the interpreter, TESTS what `make test` runs, ONLY what `make bench` measures.
+# Each target sets up .venv in the root folder if necessary.
+# PYTHON selects the interpreter, TESTS the tests of `make test`, ONLY the measurement of `make bench`.
 PYTHON ?= python3
 TESTS ?=
 ONLY ?=
 
 VENV := .venv
 BIN := $(VENV)/bin
-# All that developers need is in; or as much as `make demo` needs.
+# Marks an environment with all development packages, or with those for `make demo` only.
 STAMP := $(VENV)/.installed
 TRIAL := $(VENV)/.trial-installed
-# There while packages are put in: what an interrupted try left is made anew.
+# Exists during an installation: the environment of an interrupted installation is recreated.
 HALF := $(VENV)/.half-installed
-# Build tools are pinned too; a path without spaces, because pip splits this variable.
+# Build tools are pinned too. The path must not contain spaces, because pip splits this variable.
 export PIP_CONSTRAINT := constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-# An environment knows its own place by heart: one that was copied or moved is made anew.
+# An environment contains its own absolute path: one that was copied or moved is recreated.
 $(foreach stamp,$(STAMP) $(TRIAL),$(if $(filter-out $(shell pwd),$(shell cat $(stamp) 2>/dev/null)),$(shell rm -f $(stamp))))
-# So is one whose interpreter is gone.
+# An environment whose interpreter no longer exists is recreated too.
 ifneq ($(shell $(BIN)/python -c 'print("runs")' 2>/dev/null),runs)
 $(shell rm -f $(STAMP) $(TRIAL))
 endif
 
 comma := ,
-# Put an extra of ours, with the pinned versions, into .venv.
+# Install an extra of this package into .venv, with the pinned versions.
 define install
 $(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 14))' \
-  || { echo "Python 3.11 to 3.14 is needed: make PYTHON=python3.12 ..." >&2; exit 1; }; \
+  || { echo "Python 3.11 to 3.14 is required: make PYTHON=python3.12 ..." >&2; exit 1; }; \
 set -e; \
 if test -e $(HALF); then rm -rf $(VENV); fi; \
 if command -v uv >/dev/null 2>&1; then \
@@ -50,46 +50,46 @@ endef
 help:  ## Show the targets.
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile
 
-setup: $(STAMP)  ## Make .venv with all that tests, docs and training need (3.6 GB).
+setup: $(STAMP)  ## Create .venv with everything for tests, docs and training (3.6 GB).
 
-# A room in the game, its editor and an agent in it need no torch and no checkers.
+# The demo, the editor and the agents need neither torch nor the linters.
 $(TRIAL): pyproject.toml constraints.txt
-	@echo "setting up .venv, once: a minute or more, 1.4 GB"
+	@echo "setting up .venv (once): a minute or more, 1.4 GB"
 	@$(call install,capture$(comma)vln)
 
 $(STAMP): pyproject.toml constraints.txt
-	@echo "setting up .venv with all that developers need, once: some minutes, 3.6 GB"
+	@echo "setting up .venv with all development packages (once): some minutes, 3.6 GB"
 	@$(call install,dev)
 
 demo: $(if $(wildcard $(STAMP)),$(STAMP),$(TRIAL))  ## Scan a generated room and build it as a Minecraft world in OUT/.
 	@$(BIN)/python -m world2minecraft.cli demo
 
-docs: $(STAMP)  ## Build the site of the docs into site/, strictly.
+docs: $(STAMP)  ## Build the documentation site in site/; warnings are errors.
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet --strict
 	@echo "site/index.html"
 
 forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
 	@cd src/world2minecraft/sceneforge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
 
-test: $(STAMP)  ## Run the tests, a file a core (TESTS=tests/reconstruction/fusion for a part).
+test: $(STAMP)  ## Run the tests, one file per core (TESTS=tests/reconstruction/fusion for a part).
 	@$(BIN)/python -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
 
-coverage: $(STAMP)  ## Run the tests and tell which lines none of them reaches (90 % are asked).
+coverage: $(STAMP)  ## Run the tests and report the lines that no test reaches (90 % coverage is required).
 	@rm -f .coverage .coverage.*
 	@$(BIN)/python -m coverage run -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
 	@$(BIN)/python -m coverage combine --quiet
 	@$(BIN)/python -m coverage report
 
-test-live: $(STAMP)  ## Load a built world into a real server and walk in it (needs Node and npm).
+test-live: $(STAMP)  ## Load a built world on a real server and walk in it (needs Node and npm).
 	@$(BIN)/python -m pytest -m live tests/live
 
-test-server: $(STAMP)  ## Walk by a player on a real server and hold it against ours (needs Node and npm).
+test-server: $(STAMP)  ## Compare the player physics with those of a real server (needs Node and npm).
 	@$(BIN)/python -m pytest -m live tests/live/test_live_body.py
 
 test-trainers: $(STAMP)  ## Train on exports with LLaMA-Factory and TRL, on the CPU (fetches 3 GB to .trainers/).
 	@$(BIN)/python -m pytest -m trainers -rP tests/trainers
 
-mutants: $(STAMP)  ## Put small faults into the code: which does no test notice? (ONLY=coordinates for a group)
+mutants: $(STAMP)  ## Find small code changes that no test detects (ONLY=coordinates for a group).
 	@test -d .mutants/cosmic_ray || if command -v uv >/dev/null 2>&1; then \
 	  uv pip install --quiet --no-deps --target .mutants cosmic-ray==8.7.0 parso==0.8.7; \
 	else \
@@ -97,7 +97,7 @@ mutants: $(STAMP)  ## Put small faults into the code: which does no test notice?
 	fi
 	@$(BIN)/python -m tools.mutants $(if $(ONLY),--only $(ONLY))
 
-release-check: $(STAMP)  ## Build wheel and sdist, install each Python's from the wheel alone, run the demo.
+release-check: $(STAMP)  ## Build wheel and sdist, install the wheel for each Python version and run the demo.
 	@$(BIN)/python tools/release/check.py
 
 lint: $(STAMP)  ## Check style, spelling and types.
@@ -106,8 +106,8 @@ lint: $(STAMP)  ## Check style, spelling and types.
 	$(BIN)/python -m codespell_lib src tests docs benchmarks README.md CONTRIBUTING.md CHANGELOG.md
 	$(BIN)/python -m pyright
 
-bench: $(STAMP)  ## Measure speed and memory against the budgets (ONLY=cli for one).
+bench: $(STAMP)  ## Compare speed and memory with the budgets (ONLY=cli for one).
 	@$(BIN)/python -m benchmarks $(if $(ONLY),--only $(ONLY))
 
-clean:  ## Remove the environment, and what demo, docs and release-check wrote.
+clean:  ## Remove the environment and the outputs of demo, docs and release-check.
 	rm -rf $(VENV) OUT dist site

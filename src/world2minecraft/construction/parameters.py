@@ -54,10 +54,9 @@ class BuildParameters:
         of a few boxes and one material.
     close_tops: Whether to close unseen holes in the tops of objects, such as glossy counters
         without measured depth.
-    plane_reach_blocks: Maximum distance of a surface from a wall plane to be snapped to it, in
-        blocks.
+    plane_reach_blocks: Maximum distance, in blocks, at which a surface is snapped to a wall plane.
     plane_area_m2: Minimum area of a plane that other surfaces are snapped to.
-    gap_m: Maximum width of unseen holes in walls that are closed.
+    gap_m: Maximum width of the unseen holes in walls that the builder closes.
     """
 
     palette: str = parameter("vanilla")

@@ -67,7 +67,7 @@ def lay_template(
 
 
 def block_size(size_m: np.ndarray, blocks_per_metre: float) -> BlockSize:
-    """Return a template's size in metres, float64 [3], as blocks, at least one per axis."""
+    """Convert a template's size, float64 [3] in metres, to whole blocks, at least one per axis."""
     depth, width, height = (float(side) * blocks_per_metre for side in size_m)
     whole = (max(1, int(side + 0.5)) for side in (depth, width, height))
     return BlockSize(*whole, exact=(depth, width, height), per_metre=float(blocks_per_metre))

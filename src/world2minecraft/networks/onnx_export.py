@@ -135,11 +135,12 @@ class ExportReport(NamedTuple):
     """The result of an export, measured on one image.
 
     Attributes:
-        difference: Largest difference of a logit from the network, with uncompressed weights.
-        moved: Largest change of a logit by the compression.
-        moved_mean: Mean change of the logits by the compression.
+        difference: Largest difference between the logits of the network and of the ONNX model with
+            uncompressed weights.
+        moved: Largest change of a logit when the weights are compressed.
+        moved_mean: Mean change of a logit when the weights are compressed.
         spread: Standard deviation of all logits, for comparison with ``moved_mean``.
-        renamed: Fraction of cells whose class is changed by the compression.
+        renamed: Fraction of cells whose class changes when the weights are compressed.
         size: Size of the file in bytes.
     """
 

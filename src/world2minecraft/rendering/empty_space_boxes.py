@@ -18,7 +18,7 @@ _MAX_GROWTH = 4  # A table that grew by this factor is rebuilt.
 
 
 def find_empty_boxes(kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cover the air of a grid by boxes.
+    """Cover the air of a grid with boxes.
 
     Args:
         kinds: Kind of each cell, int8 [X, Y, Z]: ``FULL``, ``BOXES``, or 0 for air.

@@ -210,7 +210,7 @@ class Session:
         return await self._read(question)
 
     async def read(self, question: Callable[[Editor], Value]) -> Value:
-        """Call a function with the document in a thread, in its turn, and return its result."""
+        """Call a function with the document in a thread, one call at a time; return its result."""
         return await self._read(question)
 
     async def save(self) -> int:

@@ -48,7 +48,7 @@ PRIOR_RAD = 10.0  # Keeps directions that nothing observes where they are.
 
 @dataclass(frozen=True, eq=False)
 class PlanarFace:
-    """Patches on one face: ``members`` index the surface, ``sign`` is that of the normal."""
+    """The patches of one face: their indices in the surface, and the sign of their normals."""
 
     axis: int
     sign: float
@@ -58,10 +58,10 @@ class PlanarFace:
 
 @dataclass(frozen=True, eq=False)
 class PlaneFit:
-    """A face's plane ``p[axis] = position + slope . (uv - centre)``, uv the next two axes.
+    """The plane fitted to a face: ``p[axis] = position + slope . (uv - centre)``.
 
     Attributes:
-        slope: float64 [2].
+        slope: Slopes along the other two axes u and v, float64 [2].
         covariance_m2: float64 [2, 2], spread of the patches over the face.
         distance4_m4: Mean fourth power of the patches' distances from their cameras.
         bend: Sums (squared residuals of cell means, fourth powers of distance, cells) that
@@ -77,7 +77,7 @@ class PlaneFit:
 
 @dataclass(frozen=True, eq=False)
 class Observations:
-    """Linear observations ``rows @ turn = values`` of a rotation vector, in radians."""
+    """The linear system ``rows @ turn = values`` for a rotation vector ``turn`` in radians."""
 
     rows: np.ndarray
     values: np.ndarray

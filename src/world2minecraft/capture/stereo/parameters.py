@@ -23,7 +23,7 @@ class StereoParameters:
         large_step: Cost of a larger change between neighbouring pixels.
         guide_cost: Cost of a distance of two or more planes from a sparse point.
         agreeing: Minimum number of photos that confirm a depth; confidence grows up to four.
-        agreement: Maximum relative difference of depths that agree.
+        agreement: Maximum relative difference of depths that count as equal.
         island_share: Minimum size of a connected region of depth, as a share of the image.
         island_step: Maximum relative difference of neighbouring depths in a connected region.
         network_alone: Whether to skip stereo and use the depth predicted by the ``--depth``

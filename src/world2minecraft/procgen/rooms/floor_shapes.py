@@ -74,7 +74,7 @@ class Cut:
 class Roof:
     """A sloped ceiling that rises from ``knee_m`` at a wall to full height at ``reach_m``.
 
-    ``side`` is the turn of the wall at the low side.
+    ``side`` is the direction of the wall at the low side, in quarter turns.
     """
 
     side: int

@@ -32,8 +32,9 @@ class StructureParameters:
     behind_m, before_m: Maximum distance behind and in front of a wall plane at which a cell belongs
         to the wall.
     bend_m: Length over which the bend of a wall, which sensors cause, is smoothed.
-    hidden_m: Distance behind a wall without free cells, unless the wall reaches the ceiling.
-    passed_cells: Number of free cells in a column that show that rays passed there.
+    hidden_m: Distance behind a wall plane within which no ray may have passed, unless the wall
+        reaches the ceiling.
+    passed_cells: Minimum number of free cells in a column through which rays passed.
     shadow_m: Distance from a larger plane within which a plane counts as its noise, window or
         curtain.
     recess_m: Distance in front of a wider plane beyond which a plane below the ceiling is
@@ -47,8 +48,8 @@ class StructureParameters:
     leaf_depth_m, leaf_width_m, leaf_height_m: Minimum depth, width and height of a closed door
         whose leaf is almost flush with the wall.
     noise_m: Maximum distance of a cell's mean point from a plane it belongs to.
-    hung_m, hung_area_m2: Distance of flat hung objects from the wall, as negative depth, and their
-        minimum area.
+    hung_m, hung_area_m2: Range of distances behind the wall's face, negative in front of it, and
+        minimum area of flat objects on the wall.
     window_sill_m, window_size_m, door_width_m, door_height_m: Minimum height of the sill and size
         of a window, and minimum width and height of a door.
     frame_share: Minimum share of wall in the ring around an opening.
