@@ -205,7 +205,7 @@ def hash_capture(path: Path, without: Path | None = None) -> str:
     names = [path] if path.is_file() else sorted(path.rglob("*"))
     results = None if without is None else without.resolve()
     if results is not None and path.resolve().is_relative_to(results):
-        results = None  # A capture within the results is none of them.
+        results = None  # The capture may be inside the folder of results.
     for name in names:
         if results is not None and name.resolve().is_relative_to(results):
             continue

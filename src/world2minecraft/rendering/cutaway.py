@@ -18,16 +18,16 @@ from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.entities import display_cubes, owner_of
 
-MAX_CUT_SHARE = 0.5  # An object goes when more than this share of its blocks does.
-WALL_RIM_M = 0.25  # So much of a near wall stays, to show where it is.
-WALL_MOUNT_DEPTH_M = 0.12  # What hangs on a near wall reaches this far into the room,
-WALL_MOUNT_HEIGHT_M = 1.0  # and hangs above this height; lower things stand on the floor.
-PARTITION_HEIGHT_M = 1.1  # So much of a wall between two rooms stays.
+MAX_CUT_SHARE = 0.5  # Objects that would lose more than this share of their blocks are removed.
+WALL_RIM_M = 0.25  # Remaining height of a near wall.
+WALL_MOUNT_DEPTH_M = 0.12  # Maximum depth of objects that hang on a near wall,
+WALL_MOUNT_HEIGHT_M = 1.0  # and minimum height of their bottom; lower objects stand on the floor.
+PARTITION_HEIGHT_M = 1.1  # Remaining height of a wall between two rooms.
 MIN_ROOM_M2 = 1.0
 MIN_PASSAGE_M = 0.75  # Between two walls; a bent outer wall had 0.5 m of floor behind it.
-MIN_ROOM_WIDTH_M = 0.4  # A strip of floor so narrow is no room.
-MIN_STOREY_M = 1.9  # Floors lie at least this far over one another,
-MIN_STOREY_SHARE = 0.15  # and have at least this share of the largest one's area.
+MIN_ROOM_WIDTH_M = 0.4  # Narrower strips of floor are not rooms.
+MIN_STOREY_M = 1.9  # Minimum vertical distance of two floors,
+MIN_STOREY_SHARE = 0.15  # and minimum share of the area of the largest floor.
 STOREY_GAP_M = 1.5  # Between storeys that stand side by side.
 _WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
 

@@ -20,7 +20,7 @@ from world2minecraft.rendering.scene import prepare_scene
 from world2minecraft.rendering.shading_parameters import BACKDROP, NEUTRAL
 
 ELEVATION_DEG = 48.0  # Steep enough to see over the furniture, flat enough to see its fronts.
-TURN_DEG = 34.0  # Off the diagonal, so that the two far walls do not mirror each other.
+TURN_DEG = 34.0  # Not the diagonal, so that the two far walls look different.
 FOV_DEG = 26.0  # Narrow: nearly parallel edges read as a model of the room.
 MARGIN = 1.06
 SCOUT_PX = 96

@@ -31,7 +31,7 @@ CLASSES = {
     "stairs": OBJS,
 }
 OWN_CELLS = "cells"  # Built from its own cells, as a solid box.
-HUNG_FROM_M = 0.6  # What begins higher over the floor hangs on a wall.
+HUNG_FROM_M = 0.6  # Objects whose bottom is higher hang on a wall.
 TALL_M, DEEP_M = 1.4, 0.42  # Wardrobes are deeper than bookcases.
 
 

@@ -20,14 +20,14 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
     straighten_plan,
 )
 
-BAND_M = (0.4, 2.0)  # Of the heights at which walls are looked for.
-UPRIGHT_SHARE = 0.35  # Of a column's layers in that band: a wall half hidden, or seen through.
-THINGS_M = (0.15, 1.6)  # Of the heights at which furniture is looked for.
+BAND_M = (0.4, 2.0)  # Range of heights in which walls are compared.
+UPRIGHT_SHARE = 0.35  # Minimum share of a column's layers: walls may be half hidden.
+THINGS_M = (0.15, 1.6)  # Range of heights in which furniture is compared.
 STEP_M = 0.04
-SAME_FIT = 0.6  # Of the walls that were seen, so much meets surface: they are the same room.
+SAME_FIT = 0.6  # Minimum share of the observed walls on a surface, for the same room.
 LAID_FIT = 0.6
-MIN_LEAD = 0.05  # Over the next best place; a square room fits in four ways.
-APART_M = 0.4  # Nearer places are one.
+MIN_LEAD = 0.05  # Minimum lead over the second best position; a square room has four.
+APART_M = 0.4  # Closer positions count as one.
 MAX_TILT_DEG = 3.0
 
 

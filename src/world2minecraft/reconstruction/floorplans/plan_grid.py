@@ -69,9 +69,9 @@ THINGS: dict[str, Colour] = {
 MAX_CELLS = 400_000_000
 PAD = 3  # Cells around all rooms: a wall, and nothing known behind it.
 
-PUSH = 2  # Cells by which a box that reaches into a wall is moved off it.
+PUSH = 2  # Maximum number of cells by which a box inside a wall is moved out of it.
 
-REACH_M = 0.20  # How far a wall's cells may lie from the line of an opening in it.
+REACH_M = 0.20  # Maximum distance of a wall's cells from the line of an opening in it.
 BEYOND_M = 0.35  # Past the wall that an opening is in: there the next room has begun.
 ASIDE_M = 0.25  # On both sides of a wall within a room, its floor goes on this far off.
 WALL, OBJS, EMPTY = int(SemanticClass.WALL), int(SemanticClass.OBJS), int(SemanticClass.EMPTY)

@@ -32,8 +32,8 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
 EDGE_M = 0.02
 IN_WALL_M = (-0.02, 0.15)  # Behind a wall's face: glass and leaves stand back.
 LEVEL_M = 0.05
-ON_WALL_M = 0.30  # An opening of the plan lies so near to a wall of the scan.
-PLAN_SHARE = 0.5  # Beside votes that are there: labels of images see edges, a plan does not.
+ON_WALL_M = 0.30  # Maximum distance of an opening of the plan from a wall of the scan.
+PLAN_SHARE = 0.5  # Weight of the plan in cells with votes: label images see edges, plans do not.
 CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
 
 

@@ -11,8 +11,8 @@ from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom,
 from world2minecraft.reconstruction.floorplans.furniture_categories import class_of
 from world2minecraft.reconstruction.floorplans.wall_directions import main_direction_rad, snap_room
 
-CORNER_M = 0.5  # Walls whose ends are nearer meet in a corner.
-USUAL_HEIGHT_M = 2.5  # Where a plan has a floor and no wall.
+CORNER_M = 0.5  # Walls whose ends are closer meet in a corner.
+USUAL_HEIGHT_M = 2.5  # Height of a room whose plan has a floor but no walls.
 PARALLEL = 0.2  # Sine under which two walls are one line.
 
 

@@ -14,7 +14,7 @@ from world2minecraft.formats.roomplan import PlanRoom, PlanSurface
 EIGHTH = np.pi / 4
 # Walls of the two directions of a RoomPlan of a library deviate by up to 7 degrees from their mean.
 SNAP_RAD = np.radians(7.5)
-RUN_M = 0.25  # Parallel stretches of an outline that are nearer than that are one wall.
+RUN_M = 0.25  # Parallel sides of an outline that are closer are one wall.
 MOVED_M = 0.5  # How far a corner may move; 7 degrees over a wall of 4 m are 0.25 m at its ends.
 PARALLEL = 0.2  # Sine under which two lines have no corner.
 

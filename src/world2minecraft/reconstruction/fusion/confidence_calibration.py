@@ -23,8 +23,8 @@ OCCUPIED_FEATURES = (
     "log_odds", "hits", "voted", "share", "share_squared", "same_class", "occupied_around", "said",
 )  # fmt: skip
 FREE_FEATURES = ("one", "log_odds", "hits", "beside_occupied", "two_off", "beside_unknown")
-LEAST, MOST = 0.01, 0.995  # Nothing is certain after a few rooms.
-DECIMALS = 3  # Confidence is told to a thousandth.
+LEAST, MOST = 0.01, 0.995  # Limits of the confidence, since few rooms were used for calibration.
+DECIMALS = 3  # The confidence is rounded to a thousandth.
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from world2minecraft.core.parameters import parameter
 from world2minecraft.core.types import COMPLETED, OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
 
-MAX_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the square of it.
+MAX_HOLE_M = 10.0  # Above any hole in a floor; the time of the closing grows with its square.
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def structure_layers(mask: np.ndarray, axis: int) -> list[int]:
 
 def _holes(layer: np.ndarray, class_id: int, hole_cells: float) -> np.ndarray:
     """Return the unknown cells of a layer [A, B] that closing by ``hole_cells`` covers."""
-    side = int(hole_cells + 1e-6) + 1  # A square closes what is narrower than itself.
+    side = int(hole_cells + 1e-6) + 1  # A closing fills gaps that are narrower than its square.
     present = np.pad(layer == class_id, side)
     closed = ndimage.binary_closing(present, np.ones((side, side), bool))[side:-side, side:-side]
     return closed & (layer == UNKNOWN)

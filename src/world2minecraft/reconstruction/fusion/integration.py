@@ -29,15 +29,15 @@ class ViewRules(NamedTuple):
     hit_log_odds: float
     free_log_odds: float
     limit_log_odds: float
-    min_area_m2: float  # What a view must see of a cell,
-    min_points: int  # and by how many points.
+    min_area_m2: float  # Minimum area of a cell that a view must see,
+    min_points: int  # and minimum number of points in it.
     face_m2: float
     sigma_m: float
     sigma_growth: float
     pose_m: float
     pose_growth: float
-    clear_cells: float  # Rays stop so far before their point, in cells,
-    clear_growth: float  # and so much farther a cell of distance.
+    clear_cells: float  # Rays stop at this distance before their point, in cells,
+    clear_growth: float  # plus this distance per cell of length.
 
 
 class CellSums(NamedTuple):

@@ -13,8 +13,8 @@ from world2minecraft.core.coordinates import apply, cell_centers_m
 from world2minecraft.core.types import GridEvidence
 from world2minecraft.reconstruction.fusion.parameters import FusionParameters
 
-EDGE = 0.02  # Probabilities are kept off 0 and 1, so that one sure view cannot veto all others.
-MIN_VOTE = 0.05  # Below, a cell is as good as free, and what it would be says nothing.
+EDGE = 0.02  # Probabilities are clipped to this distance from 0 and 1, so that no view is decisive.
+MIN_VOTE = 0.05  # Cells with a lower probability of being occupied do not vote for a class.
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,9 +26,9 @@ class SurfaceRules(NamedTuple):
     """The rules that decide whether a cell is solid; see ``FusionParameters``."""
 
     min_sub_cells: int  # Sub-cells behind its surface that make a cell solid.
-    merge_m: float  # Planes are one nearer than this distance
-    merge_sigmas: float  # and so many sigmas.
-    sure_m: float  # The metres of margin that give one log-odd.
+    merge_m: float  # Planes within this distance
+    merge_sigmas: float  # plus this number of sigmas are one surface.
+    sure_m: float  # Distance in metres that corresponds to a log-odds of 1.
 
 
 @njit

@@ -14,12 +14,12 @@ from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.reconstruction.homes.moved_run import Run
 
 MIN_WIDTH_M, MAX_WIDTH_M = 0.45, 2.5
-ASIDE_M = 0.3  # So far before and behind an opening one asks whether the room goes on.
-SAME_PLACE_M = 0.5  # Two findings of one door.
-HEADS_M = (1.9, 2.3)  # Of a passage, where no lintel was seen.
+ASIDE_M = 0.3  # Distance before and behind an opening at which free space is required.
+SAME_PLACE_M = 0.5  # Maximum distance of two detections of the same door.
+HEADS_M = (1.9, 2.3)  # Range of heights of a passage whose lintel was not seen.
 BODY_M = (0.3, 1.7)
 USUAL_HEAD_M = 2.0
-OPEN_SHARE = 0.8  # Of the cells across a wall's line at a body's height that were seen free.
+OPEN_SHARE = 0.8  # Minimum share of free cells across the wall, at the height of a body.
 ACROSS_CELLS = 2
 STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))
 

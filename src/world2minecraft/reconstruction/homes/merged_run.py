@@ -19,9 +19,9 @@ from world2minecraft.reconstruction.homes.room_placement import Placed
 
 MAX_CELLS = 600_000_000
 MAX_OBJECTS = 65535
-KEPT_SHARE = 0.5  # Of an object's cells: else it is what was seen through a door.
+KEPT_SHARE = 0.5  # Minimum share of an object's cells in its room; others were seen through a door.
 FREE_SHARE = 0.5
-BACK_CELLS = 2  # The leaf of a door stands up to so far behind its wall's face.
+BACK_CELLS = 2  # Maximum distance of a door leaf behind the face of its wall.
 WALL = int(SemanticClass.WALL)
 ROOM_CLASSES = (WALL, int(SemanticClass.WINDOW), int(SemanticClass.OBJS))
 

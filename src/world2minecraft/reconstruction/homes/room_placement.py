@@ -20,24 +20,24 @@ from world2minecraft.reconstruction.homes.doors import Doorway, doorways_of, shi
 from world2minecraft.reconstruction.homes.moved_run import Move, Run, move_layout, move_run
 
 SAME_WIDTH_M, SAME_HEAD_M = 0.3, 0.3
-WALL_CELLS = 2  # Between two rooms: the wall's face in each.
-ALONG_CELLS, THINNER, THICKER = 4, 1, 3  # How far a door's place may be off.
-OVERLAP_M2 = 0.25  # Of floor that both would have: outlines are off by a cell.
+WALL_CELLS = 2  # Thickness of the wall between two rooms: one face in each room.
+ALONG_CELLS, THINNER, THICKER = 4, 1, 3  # Maximum position errors of a door, in cells.
+OVERLAP_M2 = 0.25  # Tolerated overlap of two floors: outlines have errors of a cell.
 MIN_COMMON = 150  # Solid cells of one that the other knows, before their agreement counts.
 # Right places of three generated houses, scanned room by room, agree by 0.99, wrong ones by 0.45 to
 # 0.87: what is below counts against a place.
 AGREE_WEIGHT, AGREE_NEUTRAL = 4.0, 0.75
-AGREEING = 0.9  # Where rooms overlap, both scans saw the same things there.
+AGREEING = 0.9  # Minimum agreement of two overlapping rooms.
 BESIDE_CELLS = 4  # Around the wall between two rooms.
-NEAR_CELLS = 7  # Places nearer than that are one.
-MORE_DOORS = 0.3  # What each further door that meets adds.
+NEAR_CELLS = 7  # Closer positions count as one.
+MORE_DOORS = 0.3  # Score of each further pair of doors that meet.
 UNSURE_COST = 0.1
 
-SURE_BY = 0.15  # A place is taken where it fits better than any other by so much.
+SURE_BY = 0.15  # Minimum lead of the best position over all others.
 MAX_SHOWN = 4
-MET_M = 0.5  # Doors nearer than that meet.
-ALIKE = 0.85  # Two scans of one room agree by so much.
-HAND_OVERLAP = 0.5  # Of the smaller room: given by hand, yet one room in the other.
+MET_M = 0.5  # Doors within this distance meet.
+ALIKE = 0.85  # Minimum agreement of two scans of the same room.
+HAND_OVERLAP = 0.5  # Maximum overlap, as a share of the smaller room, at positions given by hand.
 
 
 @dataclass(frozen=True)

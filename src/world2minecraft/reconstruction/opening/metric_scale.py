@@ -25,9 +25,9 @@ from world2minecraft.reconstruction.opening.photo_views import posed_frame
 from world2minecraft.reconstruction.parameters import Parameters
 
 MIN_RATIOS = 50
-LOOKED_AT = 24  # Frames whose depth is held against the points.
+LOOKED_AT = 24  # Number of frames whose depth is compared with the points.
 HANDY_DEPTH = 2.5
-FRAME_SIGMA = 0.02  # What a sensor's depth is off as a whole.
+FRAME_SIGMA = 0.02  # Scale error of the depth of a sensor.
 
 
 def scale_by_depth(judged: ValidatedCapture, scene: SparseScene) -> tuple[SparseScene, float]:

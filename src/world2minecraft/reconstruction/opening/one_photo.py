@@ -25,8 +25,8 @@ from world2minecraft.geometry.view_region import DEFAULT_SHAPE, DEFAULT_VOXEL_M
 from world2minecraft.reconstruction.parameters import Parameters
 
 DEPTH_WIDE_PX = 640
-TRUST = 255  # There is nothing else to trust.
-SIGMA_DEPTH, SIGMA_NONE = 0.10, 0.20  # Guesses: of a network's metres, and of a person's eye.
+TRUST = 255  # Full confidence, because there is no other source of depth.
+SIGMA_DEPTH, SIGMA_NONE = 0.10, 0.20  # Estimates: network scale, assumed camera height.
 MONO = "mono"
 
 

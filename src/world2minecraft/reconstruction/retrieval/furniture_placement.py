@@ -42,13 +42,13 @@ from world2minecraft.reconstruction.retrieval.variants import (
     offers_of,
 )
 
-FEWEST = 4  # Cells; a smaller crumb is noise of the run beside it.
+FEWEST = 4  # Minimum number of cells of a remaining part; smaller parts are noise.
 Box = tuple[np.ndarray, np.ndarray]
 
 OWN_CELLS = "cells"
 HALF = 0.5
 LEVEL_M = 0.25  # Tops of runs of one worktop; a kettle or a rim at the wall is on some of them.
-SURELY_MET = 0.9  # A chair of usual size that meets these is taken before a stranger one.
+SURELY_MET = 0.9  # A chair of typical size that covers this share of the cells is preferred.
 
 
 def merge_crumbs(
@@ -108,7 +108,7 @@ class Matched(NamedTuple):
     evidence: Evidence
     quarter_turns: int
     matches: tuple[Scored, ...]
-    whole: bool = False  # Its first match stands whatever its IoU.
+    whole: bool = False  # Whether the first match is used regardless of its IoU.
 
     @property
     def iou(self) -> float:

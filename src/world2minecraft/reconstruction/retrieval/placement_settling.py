@@ -22,20 +22,20 @@ from world2minecraft.furniture.solid_parts import OWN_CELLS, box_m, depth_m, own
 from world2minecraft.reconstruction.retrieval.rectangle_decomposition import largest_rectangle
 
 # Within rooms.
-STEP_M = 0.04  # How finely a slanted wall is followed.
-LOST_M = 0.6  # What lies farther outside was seen through an opening or in a mirror.
-MIN_REMAINING_SHARE = 0.7  # Of each side of what is cut; else it is moved as a whole.
+STEP_M = 0.04  # Step with which placements are fitted to slanted walls.
+LOST_M = 0.6  # Objects farther outside were seen through an opening or in a mirror.
+MIN_REMAINING_SHARE = 0.7  # Of a side that is cut; otherwise the object is moved instead.
 HAIR_M = 1e-6
 
 # Overlaps.
-DEEPEST_CELLS = 2  # A scan's noise and the cells that two things share; more is a real overlap.
-TUCKED = {SemanticClass.CHAIR, SemanticClass.TABLE}  # A chair under its table is no overlap.
+DEEPEST_CELLS = 2  # Overlap due to noise and shared cells; larger overlaps are real.
+TUCKED = {SemanticClass.CHAIR, SemanticClass.TABLE}  # A chair may be under its table.
 
-FORGIVEN_M = 0.03  # Under the 4 cm that the metric forgives.
-FARTHEST_M = 0.24  # Farther off its cells no longer lie in what stands for them.
-CELLS_COST_M = 0.3  # A template is worth as much as being moved this far.
-CHAIR_COST_M = 0.6  # A heap of cells is no chair.
-MOVED_ONES = (SemanticClass.CHAIR,)  # What people move; the rest stands where it stands.
+FORGIVEN_M = 0.03  # Tolerated overlap, below the 4 cm of the metric.
+FARTHEST_M = 0.24  # Maximum shift: beyond it, the object no longer covers its cells.
+CELLS_COST_M = 0.3  # Cost of building an object from cells instead of its template.
+CHAIR_COST_M = 0.6  # The same for chairs, which are not recognizable from their cells.
+MOVED_ONES = (SemanticClass.CHAIR,)  # Classes that are moved first, since people move them too.
 
 
 def within_rooms(placement: Placement, rooms: Sequence[Layout], voxel_m: float) -> Placement | None:

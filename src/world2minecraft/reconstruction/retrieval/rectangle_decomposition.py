@@ -6,7 +6,7 @@ from world2minecraft.core.jit import njit
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.retrieval.object_evidence import AGAINST, OWN, Evidence
 
-THIN_LAYER = 0.35  # A layer with less of the plan than this parts what is under it from above.
+THIN_LAYER = 0.35  # A layer with a smaller share of the plan separates the parts below and above.
 SAME_TOP = 1  # Columns whose tops differ by at most this many cells belong to one run.
 COMMON_TOPS = 3  # How many of the commonest tops are tried for the next run.
 

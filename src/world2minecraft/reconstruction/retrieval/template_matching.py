@@ -18,12 +18,12 @@ from world2minecraft.furniture.rasterization import count_overlaps
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence
 from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 
-PARAMETER_SHARE = 0.3  # An unusual parameter is less strange than an unusual size.
+PARAMETER_SHARE = 0.3  # Weight of an unusual parameter relative to an unusual size.
 Cells = tuple[int, int, int]
 Values = tuple[tuple[str, float], ...]
 
-HIDDEN_CELLS = 1  # How far a scan's noise may eat into both sides of an object at once.
-CLEAR_M = 0.3  # What hangs on a wall leaves at least this much free under it.
+HIDDEN_CELLS = 1  # Cells that noise may remove on both sides of an object at once.
+CLEAR_M = 0.3  # Minimum free height below an object on a wall.
 
 NO_SHIFT = np.zeros((1, 3), np.int64)
 ROUNDS = 2  # A third round changed no match in trials on generated furniture.

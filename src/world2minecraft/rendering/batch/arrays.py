@@ -17,7 +17,7 @@ from world2minecraft.rendering.picture_arrays import OUTPUT_BITS, PixelArrays
 from world2minecraft.rendering.ray_caster.picture_kernel import draw_rows
 from world2minecraft.rendering.ray_caster.ray import GridCamera
 
-MAX_BYTES = 1 << 36  # 64 GiB of outputs: a mistake, not a batch.
+MAX_BYTES = 1 << 36  # 64 GiB of outputs; larger batches are mistakes.
 MAX_PICTURES = 1_000_000
 EMPTY = np.empty(0)
 Size = tuple[int, int]  # height, width
@@ -36,7 +36,7 @@ _PLAN = {
     "opaque_cube_index": ("opaque", "opaque_thing", np.int32, ()),
     "normal": ("normal", "normal", np.float32, (3,)),
 }
-_ALWAYS = ("depth", "distance", "block", "face", "thing")  # The kernel writes these for everyone.
+_ALWAYS = ("depth", "distance", "block", "face", "thing")  # The kernel always writes these.
 BATCH_OUTPUTS = (*dict.fromkeys(output for output, *_ in _PLAN.values()), "free")
 # What ``render_volume`` always makes.
 PICTURE_OUTPUTS = ("depth", "range", "block", "face", "cube")

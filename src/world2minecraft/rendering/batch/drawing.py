@@ -31,7 +31,7 @@ from world2minecraft.rendering.scene_tables import SceneTables
 from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.thread_pool import bands, run_parallel
 
-LARGE_PX = 200_000  # From here on threads share each picture and not the poses: less scratch.
+LARGE_PX = 200_000  # For larger images, threads share each image instead of the poses.
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,10 +55,10 @@ from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.scene_tables import SceneTables
 from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
 
-TASK_PX = 1 << 16  # A task has so many pixels at least: a message takes 0.1 ms.
+TASK_PX = 1 << 16  # Minimum number of pixels of a task: a message takes 0.1 ms.
 MAX_TASK_PICTURES = 64  # Pictures.
 MAX_WORKERS = 256
-QUEUED_TASKS = 2  # Tasks that each worker has, so that it never waits for the next.
+QUEUED_TASKS = 2  # Tasks per worker, so that workers never wait.
 UNIT_EXPOSURE = LightSettings(exposure=1.0)
 
 

@@ -28,8 +28,8 @@ from world2minecraft.rendering.views.cameras import Shot
 Thing = TypeVar("Thing")
 Made = TypeVar("Made")
 
-SPARE = 2  # Things that may wait beside those that are made or written.
-POLL_S = 0.05  # How often a thread that waits looks whether it shall stop.
+SPARE = 2  # Items that may wait, besides those in progress.
+POLL_S = 0.05  # Interval at which a waiting thread checks whether to stop.
 Pictures = Generator[tuple[int, Picture], None, None]
 Write = Callable[[int, Shot, Picture], Any]
 MAX_WRITERS = 256

@@ -26,7 +26,7 @@ from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene_tables import SceneTables
 
 Make = Callable[[int, Picture], Any]  # Number of the picture, picture; may be sent as a pickle.
-EXIT_TIMEOUT_S = 5.0  # For a worker to end by itself.
+EXIT_TIMEOUT_S = 5.0  # Time for a worker to exit by itself.
 
 
 @dataclass(frozen=True, eq=False)

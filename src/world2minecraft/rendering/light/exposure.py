@@ -15,7 +15,7 @@ from world2minecraft.rendering.light.propagation import BRIGHTEST, light_units
 # The light that surfaces shall have by day, at night under lamps, at night without: a night stays
 # a night.
 DAY_KEY, LAMP_KEY, NIGHT_KEY = 1.20, 0.70, 0.32
-ADAPTATION = 0.80  # How much of the way there: dim rooms stay a little dimmer than bright ones.
+ADAPTATION = 0.80  # Degree of adaptation: dim rooms remain slightly dimmer than bright ones.
 MIN_EXPOSURE, MAX_EXPOSURE = 0.6, 4.0
 REACH_BLOCKS = 24  # Steps from an eye: at 4 blocks per metre, a room.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])

@@ -20,10 +20,10 @@ DEFAULT_HOUR = 11.0  # Late morning: a high sun with shadows that still have a d
 WARM = (1.0, 0.86, 0.62)  # The game's torchlight.
 # Full block light as eyes see it, linear: paler beside the sun, golden in the dark.
 LAMP_BY_DAY, LAMP_BY_NIGHT = (0.58, 0.52, 0.42), (0.98, 0.72, 0.42)
-GLOW = 1.9  # A lamp's own face: past the shoulder, so that it looks lit.
+GLOW = 1.9  # Brightness of a lamp's face: above the shoulder, so that it looks lit.
 AMBIENT = 0.05
 DIM_BY_NIGHT = (0.45, 0.48, 0.60)  # Of the ambient light.
-CORNER = 0.28  # In linear light, what looks like the game's 0.2 on the screen.
+CORNER = 0.28  # Linear equivalent of the game's value of 0.2 on the screen.
 # Shades of faces: x (east, west), up, down, z (north, south).
 GAME_CORNER = 0.2
 GAME_SHADE = (0.6, 1.0, 0.5, 0.8)

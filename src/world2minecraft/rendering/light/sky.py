@@ -14,7 +14,7 @@ from world2minecraft.core.jit import inlined
 HALO = 0.35  # The sun's share in the sky around it.
 DISC_COSINE = 0.9990  # 2.6 degrees: larger than the true sun, as in the game.
 DISC = 4.0
-SUN_TILT_DEG = 30.0  # How far south of straight overhead the sun passes: shadows want a direction.
+SUN_TILT_DEG = 30.0  # Angle of the sun south of the zenith at noon, so that shadows are visible.
 MIN_SUN_HEIGHT = 0.10  # The sine of the lowest sun, so that shadows end somewhere.
 # hour: light, shade, sun, zenith, horizon
 _NIGHT = ((0.050, 0.066, 0.115), (0.040, 0.053, 0.095), (0.030, 0.040, 0.065),

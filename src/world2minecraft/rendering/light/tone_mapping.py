@@ -14,8 +14,8 @@ from world2minecraft.core.jit import inlined
 SCREEN_POWER = 2.2  # Products of colours then equal products of screen values.
 ENCODE_STEPS = 4096  # The darkest step of sRGB is 0.8 of a screen value.
 SHOULDER = 0.60  # Linear; 0.79 on the screen.
-PALING = 0.18  # How fast light over white loses colour.
-CONTRAST = 1.12  # A power of linear light: what fog the even light of rooms leaves is lifted.
+PALING = 0.18  # Rate at which light brighter than white loses its colour.
+CONTRAST = 1.12  # Exponent for linear light; increases the low contrast of even room light.
 NEVER = 1e30
 
 
