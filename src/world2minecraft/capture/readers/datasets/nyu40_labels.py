@@ -37,6 +37,13 @@ def nyu40_classes() -> np.ndarray:
     return classes
 
 
+@lru_cache(maxsize=1)
+def nyu40_names() -> dict[str, int]:
+    """Return the NYU40 id, 1 to 40, for each class name such as ``"night stand"``."""
+    listed = read_json(CLASS_MAP)["classes"].items()
+    return {name: int(number) for number, (name, _) in listed}
+
+
 def raw_id_classes(table: AnyPath) -> np.ndarray:
     """Return the class id for each raw ScanNet label as uint8 [65536], 255 if unknown.
 
