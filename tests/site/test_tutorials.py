@@ -4,6 +4,7 @@ import contextlib
 import os
 import re
 import shlex
+import shutil
 from pathlib import Path
 
 import pytest
@@ -24,26 +25,41 @@ NEEDS = {
     "tutorial-ray": ("ray", "pyarrow"),
 }
 PAGES = sorted(path.stem for path in DOCS.glob("tutorial-*.md"))
+OF_0_1 = Path(__file__).parent / "docs_of_0_1"
+CHANGED = sorted(path.stem for path in OF_0_1.glob("tutorial-*.md"))  # Since version 0.1.
 SERVER = "localhost:25575"
 
 
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory, box_room):
     """Return a function that does what a page says, once, in a folder with a small scan."""
-    folder = tmp_path_factory.mktemp("tutorials")
+    folder = tmp_path_factory.mktemp("tutorials") / "now"
     write_plain(folder / "my_scan", box_room.views(12))
     done = set()
+
+    def follow(path, place):
+        with contextlib.chdir(place):
+            for step in steps_of(path.read_text()):
+                do(step)
+
+    def walk_of_0_1(page):
+        walk(FIRST)
+        place = folder.parent / page
+        shutil.copytree(folder.parent / FIRST, place)
+        follow(OF_0_1 / f"{page}.md", place)
+        return place
 
     def walk(page):
         for before in filter(None, (FIRST if page != FIRST else None, AFTER.get(page))):
             walk(before)
         if page not in done:
             done.add(page)
-            with contextlib.chdir(folder):
-                for step in steps_of((DOCS / f"{page}.md").read_text()):
-                    do(step)
+            follow(DOCS / f"{page}.md", folder)
+            if page == FIRST:
+                shutil.copytree(folder, folder.parent / FIRST)
         return folder
 
+    walk.of_0_1 = walk_of_0_1
     return walk
 
 
@@ -91,6 +107,16 @@ def test_each_command_and_snippet_of_a_tutorial_runs(page, walk):
     ]
     assert ran
     assert all((folder / name).exists() for name in named if name in ran)
+
+
+@pytest.mark.parametrize("page", CHANGED)
+def test_a_tutorial_of_0_1_runs_unchanged_with_warnings(page, walk):
+    for needed in NEEDS.get(page, ()):
+        pytest.importorskip(needed, reason=f"{needed} is not installed")
+    former = (OF_0_1 / f"{page}.md").read_text()
+    assert steps_of(former) != steps_of((DOCS / f"{page}.md").read_text())
+    with pytest.warns(DeprecationWarning, match=r"world2minecraft"):
+        walk.of_0_1(page)
 
 
 def test_the_page_of_tutorials_names_each():

@@ -1,6 +1,7 @@
 """Photorealistic images of a block scene: path-traced, denoised and exposed."""
 
 import time
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from itertools import pairwise
@@ -62,6 +63,7 @@ def render_photo(
     budget_s: float | None = None,
     progress: Progress = no_progress,
     emitters: Emitters | None = None,
+    lamps: Emitters | None = None,
 ) -> Photo:
     """Render a path-traced image of a scene.
 
@@ -79,12 +81,16 @@ def render_photo(
         progress: Callback for the stage ``photo`` after each pass, with the samples done and the
             remaining time.
         emitters: The result of ``emitters_of(scene)``, to reuse for several images of a scene.
+        lamps: Former name of ``emitters``.
 
     Raises:
         ValueError: If a number is out of range, or if the light preset has no time of day.
     """
     _check(camera, samples, depth)
     sky = sky_light(light)
+    if lamps is not None:
+        warnings.warn("lamps is deprecated; use emitters", DeprecationWarning, stacklevel=2)
+        emitters = lamps
     emitters = emitters_of(scene) if emitters is None else emitters
     pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
     rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
