@@ -188,7 +188,7 @@ def _joined(
         raise CaptureError(
             path,
             f"the predictions show fewer than {MIN_CELLS} occupied cells in the images; check "
-            "--classes and --convention",
+            "cam_pose (camera to world), --classes and --convention",
         )
     points, classes = [], []
     first = found[0][1]
