@@ -51,6 +51,16 @@ def convert(*words):
     return cli.run(["convert", *map(str, words)])
 
 
+def test_the_target_is_an_argument_or_an_option(schem, tmp_path, capsys):
+    target = tmp_path / "b.schem"
+    assert convert(schem, "--out", target) == 0 and target.is_file()
+    assert convert(schem, "-o", tmp_path / "c.schem") == 0
+    assert convert(schem) == 2
+    assert "the output is missing; add TARGET or --out TARGET" in capsys.readouterr().err
+    assert convert(schem, target, "-o", target) == 2
+    assert "the output is given twice" in capsys.readouterr().err
+
+
 def test_a_schematic_goes_to_a_world_and_back(schem, volume, tmp_path, capsys):
     assert convert(schem, tmp_path / "worlds" / "house") == 0
     assert convert(tmp_path / "worlds" / "house", tmp_path / "b.schem") == 0

@@ -52,7 +52,7 @@ def test_json_takes_the_file_that_follows_it():
 def test_the_output_is_given_once(verb, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert cli.run(["dataset", verb]) == 2
-    assert "the output folder is missing; add DIR or --out DIR" in capsys.readouterr().err
+    assert "the output is missing; add DIR or --out DIR" in capsys.readouterr().err
     assert cli.run(["dataset", verb, "A", "-o", "B"]) == 2
     assert "the output is given twice; omit DIR or --out" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

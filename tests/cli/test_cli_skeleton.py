@@ -63,7 +63,17 @@ def test_the_first_part_of_each_help_fits_a_screen(name):
     command = verbs.load(name)
     context = command.make_context(f"w2m {name}", [], resilient_parsing=True, terminal_width=80)
     first = command.get_help(context).partition(f"\n{panels.MORE}:\n")[0].splitlines()
-    assert len(first) <= panels.FIRST_LINES
+    rows = [max(1, -(-len(line) // 80)) for line in first]  # As a terminal wraps them.
+    assert sum(rows) <= panels.FIRST_LINES
+
+
+@pytest.mark.parametrize("name", verbs.VERBS)
+def test_descriptions_of_examples_fit_the_width(name):
+    for width in (80, 120):
+        for line in verbs.load(name).examples.strip().splitlines():
+            shown = verbs.fit_example(f"  {line}", width)
+            assert shown.split() == line.split()
+            assert len(shown.splitlines()[-1]) <= width or not verbs.EXAMPLE.fullmatch(shown)
 
 
 @pytest.mark.parametrize("name", verbs.FAMILIES)
@@ -157,7 +167,7 @@ def test_help_imports_nothing_heavy():
         (["doctr"], "error: no verb is named 'doctr'; did you mean 'doctor'?\n"),
         (["--nope"], "error: no such option: --nope; see w2m --help\n"),
         (["doctor", "x"], "error: got unexpected extra argument(s) (x); see w2m doctor --help\n"),
-        (["convert", "a"], "error: missing argument 'TARGET'; see w2m convert --help\n"),
+        (["convert"], "error: missing argument 'SOURCE'; see w2m convert --help\n"),
         (["convert", "--forc"], "--force"),
     ],
 )

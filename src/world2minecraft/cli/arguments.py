@@ -14,7 +14,7 @@ def output_of(positional: Path | None, option: Path | None, metavar: str = "DIR"
     if positional is not None and option is not None:
         raise UsageError(f"the output is given twice; omit {metavar} or --out")
     if positional is None and option is None:
-        raise UsageError(f"the output folder is missing; add {metavar} or --out {metavar}")
+        raise UsageError(f"the output is missing; add {metavar} or --out {metavar}")
     return (option if positional is None else positional) or Path()
 
 

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from world2minecraft.cli.panels import out_option
+
 EXAMPLES = """\
 w2m convert house.schem worlds/house        a schematic to a world folder
 w2m convert worlds/house house.litematic    a world folder to a Litematica file
@@ -22,11 +24,12 @@ def run(
         Path, typer.Argument(metavar="SOURCE", help="Block file, world, or run folder.")
     ],
     target: Annotated[
-        Path,
+        Path | None,
         typer.Argument(
             metavar="TARGET", help="File or folder to write; the suffix selects the format."
         ),
-    ],
+    ] = None,
+    out: Annotated[Path | None, out_option("TARGET, as an option.", metavar="TARGET")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace TARGET if it exists.")] = False,
     mc_version: Annotated[
         str, typer.Option(help="Minecraft version to write for; newer versions upgrade the file.")
@@ -58,8 +61,10 @@ def run(
     reading only .schematic. Contents that TARGET does not support are listed.
     """
     from world2minecraft.api import convert
+    from world2minecraft.cli.arguments import output_of
     from world2minecraft.cli.render.options import box_of
 
+    target = output_of(target, out, "TARGET")
     done = convert(
         source,
         target,

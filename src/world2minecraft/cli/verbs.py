@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from inspect import cleandoc, signature
 from keyword import iskeyword
+from shutil import get_terminal_size
 from typing import Annotated, Any, NamedTuple
 
 import typer
@@ -120,6 +121,7 @@ COMPLETE_VARIABLE = "_W2M_COMPLETE"
 
 # The placeholder of a value without a metavar, by its type.
 IMPLIED_DEFAULT = re.compile(r"\[default: \((.+?)\)\]")  # Typer's form of show_default texts.
+EXAMPLE = re.compile(r"(\s*\S.*?)(\s{2,})(\S.*)")  # A command and its description.
 VALUE_WORDS = {"Path": "PATH", "str": "TEXT", "float": "X", "int": "N"}
 
 EXAMPLES = """\
@@ -392,6 +394,23 @@ def _global_options(
 
 
 def _write_examples(formatter: Any, examples: str) -> None:
+    width = max(formatter.width, get_terminal_size().columns)
     with formatter.section("Examples"):
         for line in examples.strip().splitlines():
-            formatter.write(f"  {line}\n")
+            formatter.write(f"{fit_example(f'  {line}', width)}\n")
+
+
+def fit_example(line: str, width: int) -> str:
+    """Move the description of an example to the left, or below it, if the line is too long.
+
+    Example:
+        >>> fit_example("w2m scan room.r3d          the export of an app", 40)
+        'w2m scan room.r3d   the export of an app'
+    """
+    excess, parts = len(line) - width, EXAMPLE.fullmatch(line)
+    if excess <= 0 or parts is None:
+        return line
+    command, gap, description = parts.groups()
+    if excess <= len(gap) - 2:
+        return f"{command}{gap[excess:]}{description}"
+    return f"{command}\n      {description}"
