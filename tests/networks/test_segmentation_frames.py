@@ -32,7 +32,7 @@ from world2minecraft.networks.segmentation.public_sets import (
     read_nyu_mat,
     read_sun_rgbd,
 )
-from world2minecraft.reconstruction.semantics.segmentation_channels import (
+from world2minecraft.reconstruction.recognition.segmentation_channels import (
     IS_KNOWN,
     NORMAL_RIGHT,
 )

@@ -37,7 +37,7 @@ from world2minecraft.networks.segmentation.training import (
     class_weights,
     segmentation_loss,
 )
-from world2minecraft.reconstruction.semantics.segmentation import SegmentationModel
+from world2minecraft.reconstruction.recognition.segmentation import SegmentationModel
 
 RUN = SegmentationRun(steps=40, batch=2, warm_steps=5, crop=(64, 48), size=TINY, fall=0.25)
 

@@ -56,18 +56,17 @@ def smooth_depth_steps(depth_m: np.ndarray, step_m: float) -> np.ndarray:
     levels = 0
     while min(depth_m.shape) >> (levels + 1) >= MIN_LEVEL_PX:
         levels += 1
-    inverse: np.ndarray | None = None
+    inverse = np.zeros((0, 0))  # Of the coarser level.
     for level in range(levels, -1, -1):
         every = (slice(None, None, 1 << level),) * 2
         stored, low, high = (x[every].astype(np.float64) for x in (depth_m, far, near))
         # A jump between two pixels of a coarse level may be a slope of many fine ones.
         edge_m = EDGE_STEPS * step_m * (1 + 0.5 * level)
-        if inverse is None:
+        if level == levels:
             inverse = (low + high) / 2
         else:
             inverse = _refined(inverse, stored, low, high, edge_m)
         _relax(inverse, stored, low, high, edge_m, SWEEPS << level)
-    assert inverse is not None  # The loop runs at least once, at level 0.
     with np.errstate(divide="ignore"):
         return np.where(seen, 1 / inverse, 0.0).astype(np.float32)
 

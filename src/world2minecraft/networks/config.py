@@ -125,7 +125,7 @@ class RunConfig:
     frames: int = 0
     steps: int = 2000  # The benchmark's.
     batch: int = 4  # MonoScene's.
-    learning_rate: float = 5e-4  # A guess for small networks trained from scratch; MonoScene's is 1e-4.
+    learning_rate: float = 5e-4  # A guess for networks trained from scratch; MonoScene's is 1e-4.
     weight_decay: float = 1e-4  # MonoScene's.
     schedule: str = "cosine"
     warmup_steps: int = 100  # A guess: 5 % of the steps.

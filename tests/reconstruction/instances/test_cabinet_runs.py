@@ -68,7 +68,7 @@ def _glossy_l():
     return labels
 
 
-def test_an_l_of_counters_with_an_unseen_top_is_one_where_its_fronts_are_alike():
+def test_an_l_of_counters_with_an_unseen_top_is_one_object():
     labels = _glossy_l()
     assert len(_numbers(_parted(labels))) == 1
     colour = np.full((*labels.shape, 3), 120, np.uint8)

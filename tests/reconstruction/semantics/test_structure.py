@@ -36,7 +36,7 @@ def test_a_sharp_wall_takes_nothing_in_front_of_it(noise_m):
     assert _before_m(gap_m, PARAMETERS) == PARAMETERS.before_m
 
 
-def test_a_thick_band_reaches_before_its_wall_but_no_further_than_its_shadow():
+def test_a_thick_band_reaches_no_further_than_its_shadow():
     gap_m = np.random.default_rng(1).normal(0, 0.05, 500)
     thick = _before_m(gap_m, PARAMETERS)
     assert PARAMETERS.before_m < thick <= PARAMETERS.shadow_m

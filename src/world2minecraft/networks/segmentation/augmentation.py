@@ -12,7 +12,7 @@ from world2minecraft.core.jit import njit
 from world2minecraft.geometry.rotations import rotation_from_vector
 from world2minecraft.geometry.unprojection import pixel_rays
 from world2minecraft.networks.segmentation.frames import FLOOR, IGNORED, LabelledFrame
-from world2minecraft.reconstruction.semantics.segmentation_channels import (
+from world2minecraft.reconstruction.recognition.segmentation_channels import (
     COLOUR_MEAN,
     COLOUR_SPREAD,
     GEOMETRY_CHANNELS,

@@ -17,8 +17,8 @@ from world2minecraft.networks.onnx_export import compress_weights
 from world2minecraft.networks.segmentation.calibration import Calibration
 from world2minecraft.networks.segmentation.network import CLASSES, SegmentationNet
 from world2minecraft.networks.segmentation.scores import mirror_geometry
-from world2minecraft.reconstruction.semantics.segmentation import COLOUR, GEOMETRY, PROBABILITY
-from world2minecraft.reconstruction.semantics.segmentation_channels import (
+from world2minecraft.reconstruction.recognition.segmentation import COLOUR, GEOMETRY, PROBABILITY
+from world2minecraft.reconstruction.recognition.segmentation_channels import (
     GEOMETRY_CHANNELS,
     geometry_size,
 )

@@ -12,7 +12,7 @@ from PIL import Image
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import pixel_rays
-from world2minecraft.reconstruction.semantics.segmentation_channels import (
+from world2minecraft.reconstruction.recognition.segmentation_channels import (
     estimate_up,
     fine_depth,
     geometry_size,

@@ -12,7 +12,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from world2minecraft.reconstruction.semantics.segmentation_channels import GEOMETRY_CHANNELS
+from world2minecraft.reconstruction.recognition.segmentation_channels import GEOMETRY_CHANNELS
 
 CLASSES = 40
 SLOPE = 0.1

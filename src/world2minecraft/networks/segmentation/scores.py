@@ -11,8 +11,8 @@ from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes
 from world2minecraft.geometry.unprojection import pixel_rays
 from world2minecraft.networks.segmentation.frames import IGNORED, LabelledFrame
 from world2minecraft.networks.segmentation.network import CLASSES, SegmentationNet
-from world2minecraft.reconstruction.semantics.segmentation import colour_channels
-from world2minecraft.reconstruction.semantics.segmentation_channels import (
+from world2minecraft.reconstruction.recognition.segmentation import colour_channels
+from world2minecraft.reconstruction.recognition.segmentation_channels import (
     GEOMETRY_CHANNELS,
     NORMAL_RIGHT,
     channels_of_fine_depth,

@@ -131,7 +131,8 @@ def grade(
         raise UsageError(f"repeats must be 1 or more, got {repeats}")
     words = prompt_text()
     if wish:
-        words += f"\nThe room should match this description; grade completeness by it.\n\n{wish.strip()}\n"
+        task = "The room should match this description; grade completeness by it."
+        words += f"\n{task}\n\n{wish.strip()}\n"
     turns = (Turn("user", (words, *pictures)),)
     rows = [ask_structured(model, turns, FORM, sample=number).value for number in range(repeats)]
     return Grades(name, method, tuple(rows), tuple(one.sha256 for one in pictures))

@@ -7,11 +7,11 @@ from scipy.spatial.transform import Rotation
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import pixel_rays
-from world2minecraft.reconstruction.semantics.segmentation import (
+from world2minecraft.reconstruction.recognition.segmentation import (
     SegmentationModel,
     colour_channels,
 )
-from world2minecraft.reconstruction.semantics.segmentation_channels import (
+from world2minecraft.reconstruction.recognition.segmentation_channels import (
     HAS_FLOOR,
     HEIGHT,
     INVERSE_DEPTH,

@@ -35,7 +35,7 @@ from PIL import Image
 from world2minecraft.core.errors import DamagedFileError, UsageError, first_line
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import Camera
-from world2minecraft.reconstruction.semantics.segmentation_channels import (
+from world2minecraft.reconstruction.recognition.segmentation_channels import (
     COLOUR_MEAN,
     COLOUR_SPREAD,
     GEOMETRY_CHANNELS,

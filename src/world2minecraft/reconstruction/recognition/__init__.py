@@ -1,0 +1,1 @@
+"""Recognition in pictures: the built-in segmentation network and its input channels."""
