@@ -126,7 +126,8 @@ def reconstruct(
         fov_deg: Vertical field of view in degrees for a single photo without EXIF data.
         plan: RoomPlan file of the same room to use as additional evidence.
         depth_model: Depth estimation network, such as ``hf:ORG/NAME``.
-        semantics: Segmentation network, such as ``hf:ORG/NAME``.
+        semantics: Segmentation network: ``nyu`` for the built-in one, which names things in real
+            rooms, or an id such as ``hf:ORG/NAME``.
         predictor: ``depth``, or ``mono:FILE.onnx`` for a monocular occupancy network.
         predictions: Grids that another network predicted: a folder with one file per view, or one
             file for the whole scene. ``docs/predictions.md`` describes the files.

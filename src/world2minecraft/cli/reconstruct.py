@@ -78,8 +78,8 @@ DepthModel = Annotated[
 ]  # fmt: skip
 Semantics = Annotated[
     str,
-    typer.Option("--semantics", metavar="hf:ID", help="Segmentation network.",
-                 rich_help_panel=MORE),
+    typer.Option("--semantics", metavar="nyu|hf:ID", rich_help_panel=MORE,
+                 help="Segmentation network; nyu is the built-in one, for real rooms."),
 ]  # fmt: skip
 FieldOfView = Annotated[
     float | None,

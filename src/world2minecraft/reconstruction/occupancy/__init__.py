@@ -12,6 +12,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import GridEvidence, PointEvidence, Scan
 from world2minecraft.reconstruction.occupancy.parameters import (
+    WITHOUT_VOTES,
     OccupancyParameters,
     PredictionParameters,
 )
@@ -65,7 +66,7 @@ def predictor(name: str, parameters: OccupancyParameters | None = None) -> Predi
             f"--predictor depth accepts no file, got {name!r}; for a network file, use "
             "--predictor mono:FILE.onnx"
         )
-    if not (chosen.semantics or chosen.mono_votes):
+    if chosen.semantics in WITHOUT_VOTES and not chosen.mono_votes:
         return make(file) if file else make()
     if family != "depth":
         raise UsageError(

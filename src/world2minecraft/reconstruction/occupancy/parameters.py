@@ -6,12 +6,16 @@ from world2minecraft.core.parameters import parameter
 from world2minecraft.formats.class_ids import read_class_set
 from world2minecraft.formats.predicted_grids import GridRules
 
+BUILT_IN = "nyu"
+WITHOUT_VOTES = ("", "none")  # Of ``semantics``.
+
 
 @dataclass(frozen=True)
 class OccupancyParameters:
     """Networks that vote on the surface points of depth; none is used or downloaded by default.
 
-    semantics: Segmentation network for the colour images, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.
+    semantics: Segmentation network for the images: ``nyu`` for the built-in one, an id such as
+        ``hf:ORG/NAME`` or ``hf:FOLDER``, or ``none``.
     label_names: Path of a YAML file that maps label names of the network to classes.
     mono_votes: Whether the monocular network votes for the classes of surface points.
     network: Path of the ONNX file of the monocular network; empty for the built-in network.

@@ -29,7 +29,12 @@ from world2minecraft.core.types import View
 from world2minecraft.reconstruction.occupancy.depth_evidence import Voter
 from world2minecraft.reconstruction.occupancy.label_names import TABLE, label_classes, read_table
 from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
-from world2minecraft.reconstruction.occupancy.parameters import OccupancyParameters
+from world2minecraft.reconstruction.occupancy.parameters import (
+    BUILT_IN,
+    WITHOUT_VOTES,
+    OccupancyParameters,
+)
+from world2minecraft.reconstruction.occupancy.rgbd_votes import RgbdVoter
 
 FOLDER = "semantics"
 MAX_BYTES = 1 << 30  # Some 5,000 pictures.
@@ -120,7 +125,8 @@ def segmenter(name: str) -> Segmenter:
     make: Callable[[str], Segmenter] = SEGMENTERS.load(family)
     if not model:
         raise UsageError(
-            f"--semantics must be FAMILY:MODEL, such as {family}:ORG/NAME, got {name!r}"
+            f"--semantics must be {BUILT_IN}, none or FAMILY:MODEL, such as {family}:ORG/NAME, "
+            f"got {name!r}"
         )
     return make(model)
 
@@ -131,7 +137,9 @@ def voters_of(chosen: OccupancyParameters) -> tuple[Voter, ...]:
     Raises the exceptions of ``segmenter``, ``read_table`` and ``MonoPredictor``.
     """
     voters: list[Voter] = []
-    if chosen.semantics:
+    if chosen.semantics == BUILT_IN:
+        voters.append(RgbdVoter())
+    elif chosen.semantics not in WITHOUT_VOTES:
         voters.append(PixelVoter(segmenter(chosen.semantics), chosen.label_names))
     if chosen.mono_votes:
         voters.append(CellVoter(MonoPredictor(chosen.network)))

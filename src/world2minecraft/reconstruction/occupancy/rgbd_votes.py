@@ -1,0 +1,104 @@
+"""Votes of the built-in segmentation network, which sees colour, depth, gravity and height.
+
+A vote is divided among the classes by the network's probabilities. Pixels at which no class is
+likely do not vote: on real frames their votes are wrong as often as right, and geometry knows
+better. Of many views that show the same from almost the same place, only the first votes.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.core.types import View
+from world2minecraft.reconstruction.recognition.segmentation import NYU40_COUNT, SegmentationModel
+from world2minecraft.reconstruction.recognition.segmentation_channels import (
+    geometry_size,
+    network_size,
+)
+
+MIN_PROBABILITY = 0.4
+MIN_MOVE_M, MIN_TURN_DEG = 0.25, 12.0
+
+
+def class_matrix() -> np.ndarray:
+    """Return the matrix that converts the 40 NYU classes to the program's, float32 [40, 12]."""
+    matrix = np.zeros((NYU40_COUNT, CLASS_COUNT), np.float32)
+    for number in range(NYU40_COUNT):
+        found = nyu40_classes()[number + 1]
+        if found != UNKNOWN:
+            matrix[number, found] = 1
+    matrix[:, 0] = 0
+    return matrix
+
+
+class RgbdVoter:
+    """Votes by the built-in segmentation network at the pixel that shows a point."""
+
+    notes: tuple[str, ...] = ()
+
+    def __init__(self, weights: Path | None = None, *, min_probability: float = MIN_PROBABILITY):
+        self.model = SegmentationModel(weights)
+        self.min_probability = min_probability
+        self.matrix = class_matrix()
+        self._poses: list[np.ndarray] = []
+
+    def votes(
+        self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
+    ) -> np.ndarray:
+        """Return the votes of N points, float32 [N, 12]; see ``Voter``."""
+        nothing = np.zeros((len(points_m), CLASS_COUNT), np.float32)
+        camera = view.colour_camera
+        if view.colour is None or camera is None or view.labels is not None:
+            return nothing
+        pose = scan_to_room @ view.camera_to_scan
+        if not self._is_new(pose):
+            return nothing
+        width, height = network_size(camera.width_px, camera.height_px)
+        rows, columns = np.divmod(colour_px.astype(np.int64), camera.width_px)
+        depth_m = splat_depth(
+            apply(invert_rigid(view.camera_to_scan), points_m.astype(np.float64))[:, 2],
+            (rows + 0.5) / camera.height_px,
+            (columns + 0.5) / camera.width_px,
+            geometry_size(width, height),
+        )
+        found = self.model.predict(view.colour, depth_m, camera, pose[2, :3], float(pose[2, 3]))
+        shares = found @ self.matrix
+        shares[shares.max(axis=2) < self.min_probability] = 0
+        at = (
+            rows * shares.shape[0] // camera.height_px,
+            columns * shares.shape[1] // camera.width_px,
+        )
+        return shares[at]
+
+    def _is_new(self, pose: np.ndarray) -> bool:
+        """Return whether no earlier view was close to a camera-to-room pose, and remember it."""
+        for other in self._poses:
+            moved_m = np.linalg.norm(pose[:3, 3] - other[:3, 3])
+            cosine = np.clip(pose[:3, 2] @ other[:3, 2], -1, 1)
+            if moved_m < MIN_MOVE_M and np.degrees(np.arccos(cosine)) < MIN_TURN_DEG:
+                return False
+        self._poses.append(pose)
+        return True
+
+
+def splat_depth(
+    depth_m: np.ndarray, down: np.ndarray, right: np.ndarray, size_px: tuple[int, int]
+) -> np.ndarray:
+    """Return the depth image of points, float32 [H, W], with the nearest point of each pixel.
+
+    Args:
+        depth_m: Depth of each point along the optical axis in metres, float [N].
+        down: Place of each point in the image from top to bottom, 0 to 1, float [N].
+        right: Place of each point in the image from left to right, 0 to 1, float [N].
+        size_px: Width and height of the image.
+    """
+    width, height = size_px
+    result = np.full(width * height, np.inf, np.float32)
+    rows = np.minimum((down * height).astype(np.int64), height - 1)
+    columns = np.minimum((right * width).astype(np.int64), width - 1)
+    np.minimum.at(result, rows * width + columns, np.asarray(depth_m, np.float32))
+    result[~np.isfinite(result) | (result < 0)] = 0
+    return result.reshape(height, width)
