@@ -4,6 +4,7 @@ import base64
 import io
 import json
 from threading import Thread
+from types import SimpleNamespace
 from urllib.request import Request, urlopen
 
 import numpy as np
@@ -14,7 +15,9 @@ from vln_sets import next_action, next_view, write_pictures
 
 from world2minecraft import cli
 from world2minecraft.cli.vln.live_view import LineView, half_blocks, plain_text
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UsageError
+from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.records import read_episodes, write_items
 from world2minecraft.navigation.running.item_evaluation import select_items
 from world2minecraft.navigation.running.sentence_goals import find_named_landmark
@@ -122,6 +125,20 @@ def test_a_model_is_recorded_and_replayed(flat_path, tmp_path, capsys):
     other = [*words[:3], "Go to the red table", *words[4:], *replay]
     assert cli.run(other) == 3
     assert "no reply is recorded for question" in capsys.readouterr().err
+
+
+def test_a_class_names_a_thing_that_no_noun_does():
+    def landmark(noun, class_id):
+        return Landmark(1, noun, noun, class_id, "", np.zeros(3), np.ones(3), "")
+
+    desk, shelf = landmark("desk", SemanticClass.TABLE), landmark("bookcase", SemanticClass.FURN)
+    scene = SimpleNamespace(landmarks=(desk, shelf), scene_id="study")
+    assert find_named_landmark(scene, "Go to the table") is desk
+    with pytest.raises(UsageError, match="no object of study matches"):
+        find_named_landmark(scene, "Go to the furniture")
+    table = landmark("table", SemanticClass.TABLE)
+    scene.landmarks = (desk, shelf, table)
+    assert find_named_landmark(scene, "Go to the table") is table
 
 
 def test_the_words_say_where_to_go(flat):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.core.classes import SemanticClass, display_name
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.navigation.episodes import target_of
 from world2minecraft.navigation.landmarks import Landmark
@@ -15,6 +16,16 @@ from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.types import Episode, Instruction, Stance
 
 MAX_INSTRUCTION = 4000
+# Other classes, such as furniture and object, do not say what a thing is.
+NAMED_CLASSES = frozenset(
+    {
+        SemanticClass.CHAIR,
+        SemanticClass.BED,
+        SemanticClass.SOFA,
+        SemanticClass.TABLE,
+        SemanticClass.TVS,
+    }
+)
 YAW_STEP_DEG = 15.0  # A turn of most sets of moves.
 
 
@@ -83,7 +94,8 @@ def episode_of_sentence(scene: VlnScene, wish: GoalRequest) -> Episode:
 def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
     """Return the landmark that a sentence names last, which is the goal.
 
-    The last words of a noun suffice, such as "piano" for an upright piano.
+    The last words of a noun suffice, such as "piano" for an upright piano. Where no noun has a
+    word, it may name a class, such as "table" for a desk.
 
     Raises:
         UsageError: If the sentence names no landmark, or an ambiguous one.
@@ -110,17 +122,20 @@ def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
 
 
 def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
-    """Map phrases to landmarks, preferring full names to nouns and nouns to their last words."""
+    """Map phrases to landmarks: full names first, then nouns, their last words, and classes."""
+    classes: dict[str, list[Landmark]] = {}
     names: dict[str, list[Landmark]] = {}
     nouns: dict[str, list[Landmark]] = {}
     ends: dict[str, list[Landmark]] = {}
     for one in landmarks:
         names.setdefault(one.name.lower(), []).append(one)
         nouns.setdefault(one.noun.lower(), []).append(one)
+        if one.class_id in NAMED_CLASSES:
+            classes.setdefault(display_name(one.class_id), []).append(one)
         words = one.noun.lower().split()
         for n in range(1, len(words)):
             ends.setdefault(" ".join(words[n:]), []).append(one)
-    return {**ends, **nouns, **names}
+    return {**classes, **ends, **nouns, **names}
 
 
 def _default_start(scene: VlnScene) -> Stance:
