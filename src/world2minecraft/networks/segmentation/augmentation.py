@@ -151,14 +151,15 @@ def floor_height(frame: LabelledFrame, up: np.ndarray) -> float | None:
 
 def _noisy(depth_m: np.ndarray, rays: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Return depth with noise, a wrong scale, a bend and holes."""
-    known, shape = depth_m > 0, depth_m.shape
+    known, shape = depth_m > 0, (depth_m.shape[0], depth_m.shape[1])
     result = depth_m * np.float32(1 + SCALE_OFF * rng.standard_normal())
     if rng.random() < BENT:
         bend = (BEND * rng.standard_normal(3)).astype(np.float32)
         x, y = rays[..., 0], rays[..., 1]
         result = result * (1 + bend[0] * x + bend[1] * y + bend[2] * 2 * (x * x + y * y))
     coarse = int(rng.integers(1, 4))
-    noise = rng.standard_normal((-(-shape[0] // coarse), -(-shape[1] // coarse)), np.float32)
+    grains = (-(-shape[0] // coarse), -(-shape[1] // coarse))
+    noise = rng.standard_normal(grains, np.float32)
     noise = noise.repeat(coarse, axis=0).repeat(coarse, axis=1)[: shape[0], : shape[1]]
     sigma = np.float32(NOISE_PER_M * rng.random() ** 2)
     result = np.maximum(result + sigma * result * result * noise, 0)

@@ -1,6 +1,6 @@
 """Calibration of the segmentation network: undone class weights and a temperature.
 
-Training with class weights makes rare classes too likely; half of the weights is undone by a
+Training with class weights makes rare classes too likely; most of the weights is undone by a
 constant for each class. A network is too sure of itself on frames that it never saw, so its logits
 are divided by a temperature, which is fitted on frames that were kept from training. Each kind of
 input has its own temperature.
@@ -18,7 +18,7 @@ from world2minecraft.networks.segmentation.frames import IGNORED, LabelledFrame
 from world2minecraft.networks.segmentation.network import SegmentationNet
 from world2minecraft.networks.segmentation.scores import frame_logits, sampled_labels
 
-UNDONE_SHARE = 0.5  # Of the logarithm of the class weights.
+UNDONE_SHARE = 0.75  # Of the logarithm of the class weights; see docs/segmentation.md.
 INPUTS = ({"colour": True, "depth": True}, {"depth": False}, {"colour": False})
 EVERY_PX = 8  # Neighbouring pixels say the same.
 TEMPERATURES = (0.3, 5.0)
