@@ -29,11 +29,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_NAMES, SemanticClass
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, SemanticClass
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import npz_array_names, read_json, read_npy, read_npz
 from world2minecraft.core.types import OBSERVED, UNSEEN, OccupancyGrid
-from world2minecraft.formats.class_ids import read_class_set
+from world2minecraft.formats.class_ids import EMBODIED_EMPTY, read_class_set
 from world2minecraft.formats.paper_json import MAX_CELLS, read_occ_json
 from world2minecraft.formats.run_arrays import GRID_ARRAYS, read_room
 
@@ -65,7 +65,8 @@ def read_occupancy(path: str | Path, classes: str = "") -> OccupancyGrid:
     Args:
         path: Path of the file.
         classes: Class set of the labels of a ``.npy`` or ``.npz`` file, such as ``embodied``. The
-            default is ``nyu12``, whose ids are those of this program.
+            default is ``nyu12``, whose ids are those of this program. ``auto`` selects
+            ``embodied`` if the largest id is 12, which only that set has.
 
     Raises:
         UnknownNameError: If the class set is unknown.
@@ -79,27 +80,36 @@ def read_occupancy(path: str | Path, classes: str = "") -> OccupancyGrid:
             source, "not found; give a room.npz, an occ.json, or labels as .npz or .npy"
         )
     if source.suffix == ".json":
-        if classes not in ("", "nyu12", "occscannet"):
+        if classes not in ("", "auto", "nyu12", "occscannet"):
             raise UsageError(f"--classes is for .npy and .npz files; {source} names its classes")
         return read_occ_json(source)
-    ids = read_class_set(classes or "nyu12")
     if source.suffix == ".npy":
-        return labels_grid(ids.convert(read_npy(source), source), source)
+        return labels_grid(_classes_of(read_npy(source), classes, source), source)
     if source.suffix != ".npz":
         raise InputError(
             source, "is not an occupancy file; expected the suffix .npz, .npy or .json"
         )
     held = npz_array_names(source)
-    if set(GRID_ARRAYS) <= set(held) and not classes:
+    if set(GRID_ARRAYS) <= set(held) and classes in ("", "auto"):
         return read_room(source)[0]
     wanted = ("labels", *(name for name in ("voxel_m", "origin_m") if name in held))
     arrays = read_npz(source, wanted)
     return labels_grid(
-        ids.convert(arrays["labels"], source),
+        _classes_of(arrays["labels"], classes, source),
         source,
         float(arrays.get("voxel_m", DEFAULT_VOXEL_M)),
         np.asarray(arrays.get("origin_m", np.zeros(3)), np.float64),
     )
+
+
+def _classes_of(ids: np.ndarray, classes: str, source: Path) -> np.ndarray:
+    """Return the classes of ids in a class set, or in the set that has them for ``auto``."""
+    if classes == "auto":
+        is_number = ids.dtype.kind in "iuf"
+        known = ids[ids != UNKNOWN] if is_number else ids
+        has_12 = is_number and known.size and known.max() == EMBODIED_EMPTY
+        classes = "embodied" if has_12 else ""
+    return read_class_set(classes or "nyu12").convert(ids, source)
 
 
 def labels_grid(

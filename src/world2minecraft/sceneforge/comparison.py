@@ -23,13 +23,14 @@ SUFFIXES = (".npz", ".npy", ".json")
 def read_file_labels(path: Path, draft: SceneDraft) -> np.ndarray:
     """Return the labels of an occupancy file in the cells of a scene, as uint8 [X, Y, Z].
 
-    Each cell gets the label at its centre, or 255 outside the extent of the file.
+    Each cell gets the label at its centre, or 255 outside the extent of the file. The ids may be
+    those of EmbodiedOcc, whose 12 is empty.
 
     Raises:
         InputError: If the file is not an occupancy file.
         UsageError: If the occupancy does not overlap the scene, or if its cells are larger.
     """
-    return resample_labels(read_occupancy(path), draft)
+    return resample_labels(read_occupancy(path, "auto"), draft)
 
 
 def find_truth_folder(run: Path, capture: Path | None) -> Path | None:

@@ -36,6 +36,7 @@ from world2minecraft.reconstruction.occupancy.saved_grids import (
     view_camera,
 )
 
+INTO_CELLS = (0.25, 1.0)  # So many cells behind its surface, a point looks for its class.
 CLEAR_CELLS = 1.0  # Depth decides up to so far behind its surface.
 MAX_COLOUR_VIEWS = 24  # That give a scene's cells their colours.
 SAME_FOCAL = 0.05  # A lens off by more than this share is another than the network assumes.
@@ -109,7 +110,7 @@ class SavedGridPredictor:
             grid, voxel_m = read.probabilities(), read.voxel_m
         else:
             return item
-        votes = point_votes(item.points_m, grid, place, voxel_m)
+        votes = point_votes(item.points_m, item.camera_m, grid, place, voxel_m)
         others = 0 if item.votes is None else item.votes.astype(np.float32)
         return replace(item, votes=(votes + others).astype(np.float16))
 
@@ -229,16 +230,36 @@ def scene_evidence(grid: PredictedGrid, grid_to_scan: np.ndarray, scan: Scan) ->
 
 
 def point_votes(
-    points_m: np.ndarray, probabilities: np.ndarray, grid_to_scan: np.ndarray, voxel_m: float
+    points_m: np.ndarray,
+    camera_m: np.ndarray,
+    probabilities: np.ndarray,
+    grid_to_scan: np.ndarray,
+    voxel_m: float,
 ) -> np.ndarray:
-    """Return the votes of the cells that contain points of the scan, float32 [N, 12].
+    """Return the votes of the cells behind the points of a surface, float32 [N, 12].
 
-    The share of a cell that is predicted to be empty votes for nothing.
+    A point votes by the first cell behind it that is more likely occupied than not, or not at all.
+
+    Args:
+        points_m: Points of the surface in the scan, float [N, 3].
+        camera_m: Position of the camera in the scan, float [3].
+        probabilities: Probability of each class, float16 [X, Y, Z, 12].
+        grid_to_scan: Transform from the grid's minimum corner to the scan.
+        voxel_m: Edge length of the cells.
     """
     votes = np.zeros((len(points_m), CLASS_COUNT), np.float32)
-    at_m = apply(invert_rigid(grid_to_scan), points_m.astype(np.float64))
-    cells = np.floor(at_m / voxel_m).astype(np.int64)
-    held = np.flatnonzero(((cells >= 0) & (cells < probabilities.shape[:3])).all(axis=1))
-    votes[held] = probabilities[tuple(cells[held].T)]
-    votes[:, 0] = 0
+    scan_to_grid = invert_rigid(grid_to_scan)
+    at_m = apply(scan_to_grid, points_m.astype(np.float64))
+    ray_m = at_m - apply(scan_to_grid, camera_m)
+    ray_m /= np.maximum(np.linalg.norm(ray_m, axis=1, keepdims=True), 1e-9)
+    without = np.arange(len(points_m))
+    for depth in INTO_CELLS:
+        cells = np.floor(at_m[without] / voxel_m + depth * ray_m[without]).astype(np.int64)
+        held = ((cells >= 0) & (cells < probabilities.shape[:3])).all(axis=1)
+        found = np.zeros((len(without), CLASS_COUNT), np.float32)
+        found[held] = probabilities[tuple(cells[held].T)]
+        found[:, 0] = 0
+        solid = found.sum(axis=1) > 0.5
+        votes[without[solid]] = found[solid]
+        without = without[~solid]
     return votes

@@ -43,6 +43,8 @@ BIN_M = 0.04  # Half a cell, in which walls are counted.
 KEEP_YAW = 0.9  # The grid's own axes are kept if their walls are nearly as sharp as the best.
 SQUARE_DEG = 0.5  # Grids at such an angle, or at whole quarters, share their axes.
 INNER = 1.0  # Percent of the floor's cells beyond each side of the room.
+WALL_REACH_M = 0.5  # So far from the floor's end its wall lies.
+WALL_LAYER = 0.3  # Of the fullest layer of cells of a wall, to belong to it.
 MIN_SIZE_M, MAX_SIZE_M = 1.0, 60.0
 
 
@@ -275,6 +277,11 @@ def room_box_m(
     ceiling = points_m[np.equal(classes, SemanticClass.CEILING)]
     ground = floor if len(floor) >= MIN_CELLS else points_m
     low, high = np.percentile(ground[:, :2], [INNER, 100 - INNER], axis=0)
+    low, high = low - half, high + half
+    walls = points_m[np.equal(classes, SemanticClass.WALL), :2]
+    for axis in (0, 1):
+        low[axis] = -inner_face_m(-walls[:, axis], -float(low[axis]), voxel_m)
+        high[axis] = inner_face_m(walls[:, axis], float(high[axis]), voxel_m)
     bottom = float(np.median(floor[:, 2])) + half if len(floor) >= MIN_CELLS else None
     if bottom is None:
         bottom = float(np.percentile(points_m[:, 2], INNER)) - half
@@ -282,4 +289,23 @@ def room_box_m(
         top = float(np.median(ceiling[:, 2])) - half
     else:
         top = float(np.percentile(points_m[:, 2], 100 - INNER)) + half
-    return np.array([*(low - half), bottom]), np.array([*(high + half), top])
+    return np.array([*low, bottom]), np.array([*high, top])
+
+
+def inner_face_m(walls_m: np.ndarray, side_m: float, voxel_m: float) -> float:
+    """Return where the wall at the upper side of the room begins, or the side without a wall.
+
+    Floors often continue below the walls, which are several cells thick.
+
+    Args:
+        walls_m: Centres of wall cells along an axis, float64 [N].
+        side_m: End of the floor along the axis.
+        voxel_m: Edge length of the cells.
+    """
+    layers = np.round((walls_m[np.abs(walls_m - side_m) < WALL_REACH_M] - side_m) / voxel_m)
+    if not len(layers):
+        return side_m
+    first = layers.min()
+    counts = np.bincount((layers - first).astype(np.int64))
+    inner = int(np.flatnonzero(counts >= WALL_LAYER * counts.max())[0])
+    return min(side_m, side_m + float(first + inner - 0.5) * voxel_m)
