@@ -118,3 +118,19 @@ def test_a_sheet_is_drawn(own, tmp_path, capsys):
     assert image.shape[1] > 1000
     red = (image[..., 0] > 120) & (image[..., 1] < 60) & (image[..., 2] < 60)
     assert red.sum() > 500  # The rug.
+
+
+def test_classes_are_chosen_by_readable_names_or_codes(own, capsys):
+    listed = []
+    for name in ("television", "tvs"):
+        assert furniture("list", "--class", name) == 0
+        listed.append(capsys.readouterr().out)
+    assert listed[0] == listed[1] and "tv" in listed[0].lower()
+
+
+def test_a_piece_is_added_under_a_readable_class(own, volume, tmp_path):
+    file = tmp_path / "shelf.schem"
+    write_blocks(volume, file)
+    words = ("--class", "furniture", "--blocks-per-metre", 2, "--front", "north")
+    assert furniture("add", file, *words) == 0
+    assert '"furn"' in (own / "shelf.json").read_text("utf-8")

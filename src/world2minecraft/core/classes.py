@@ -54,15 +54,17 @@ CLASS_COLOURS: tuple[tuple[int, int, int], ...] = (
 
 
 def class_id(name: str) -> int:
-    """Return the id of a class name.
+    """Return the id of a class by its name in files or its readable name.
 
     Raises:
         UnknownNameError: If the class is unknown.
 
     Example:
-        >>> class_id("sofa")
-        7
+        >>> class_id("sofa"), class_id("tvs"), class_id("television")
+        (7, 9, 9)
     """
+    if name in CLASS_DISPLAY_NAMES:
+        return CLASS_DISPLAY_NAMES.index(name)
     if name not in CLASS_NAMES:
         raise UnknownNameError("class", name, CLASS_NAMES)
     return CLASS_NAMES.index(name)

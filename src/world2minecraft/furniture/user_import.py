@@ -10,7 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.classes import (
+    CLASS_DISPLAY_NAMES,
+    CLASS_NAMES,
+    OBJECT_CLASSES,
+    class_id,
+)
 from world2minecraft.core.coordinates import block_axes_to_grid
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume
@@ -67,8 +72,9 @@ def import_blocks(volume: BlockVolume, wish: ImportRequest) -> ImportedFurniture
             class, or no recognizable front.
     """
     _check(wish)
+    kind = CLASS_NAMES[class_id(wish.kind)]
     trimmed = _trim(volume)
-    front = wish.front or front_of(trimmed, wish.kind)
+    front = wish.front or front_of(trimmed, kind)
     if front is None:
         raise UsageError(
             "cannot determine the front side from the blocks; add --front north|east|south|west"
@@ -83,7 +89,7 @@ def import_blocks(volume: BlockVolume, wish: ImportRequest) -> ImportedFurniture
     content = {
         "name": wish.name,
         "title": wish.title or wish.name.replace("_", " ").capitalize(),
-        "class": wish.kind,
+        "class": kind,
         "mount": wish.mount,
         "turns": _turns(turned),
         "match": wish.match,
@@ -98,8 +104,8 @@ def import_blocks(volume: BlockVolume, wish: ImportRequest) -> ImportedFurniture
 
 def _check(wish: ImportRequest) -> None:
     check_name(wish.name)
-    offered = [CLASS_NAMES[number] for number in OBJECT_CLASSES]
-    if wish.kind not in offered:
+    offered = [CLASS_DISPLAY_NAMES[number] for number in OBJECT_CLASSES]
+    if wish.kind not in (*offered, *(CLASS_NAMES[number] for number in OBJECT_CLASSES)):
         raise UnknownNameError("furniture class", wish.kind, offered)
     if wish.front is not None and wish.front not in SIDES:
         raise UnknownNameError("side", wish.front, SIDES)

@@ -11,14 +11,16 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 w2m furniture add my_chair.schem --class chair --blocks-per-metre 2
 w2m furniture add sofa.litematic --class sofa --blocks-per-metre 4 --front south
-w2m furniture add lamp.nbt --class objs --blocks-per-metre 1 --size 0.4 0.4 1.6 --recolour
+w2m furniture add lamp.nbt --class object --blocks-per-metre 1 --size 0.4 0.4 1.6 --recolour
 """
 
 
 Source = Annotated[
     Path, typer.Argument(metavar="FILE", help=".schem, .litematic, .nbt or other block file.")
 ]
-Kind = Annotated[str, typer.Option("--class", help="chair, bed, sofa, table, tvs, furn or objs.")]
+Kind = Annotated[
+    str, typer.Option("--class", help="chair, bed, sofa, table, television, furniture or object.")
+]
 Scale = Annotated[float, typer.Option(help="Scale at which the piece was built.")]
 Name = Annotated[str, typer.Option(help="Name in the library.", show_default="FILE's name")]
 Title = Annotated[str, typer.Option(help="Readable name.", show_default="its name")]

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
 w2m furniture list                    list all pieces by class
-w2m furniture list --class furn       list one class
+w2m furniture list --class furniture  list one class
 w2m furniture list --markdown         print the tables in docs/furniture-library.md
 w2m furniture list fridge --json      search names and titles, and print JSON
 """
@@ -23,7 +23,9 @@ def run(
     kind: Annotated[
         str,
         typer.Option(
-            "--class", help="chair, bed, sofa, table, tvs, furn or objs.", show_default="all"
+            "--class",
+            help="chair, bed, sofa, table, television, furniture or object.",
+            show_default="all",
         ),
     ] = "",
     as_markdown: Annotated[

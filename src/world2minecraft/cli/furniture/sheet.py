@@ -7,7 +7,7 @@ import typer
 
 EXAMPLES = """\
 w2m furniture sheet -o furniture.png
-w2m furniture sheet --class objs -o small_things.png
+w2m furniture sheet --class object -o small_things.png
 w2m furniture sheet sofa corner_sofa -o sofas.png
 """
 
@@ -23,7 +23,9 @@ def run(
     kind: Annotated[
         str,
         typer.Option(
-            "--class", help="chair, bed, sofa, table, tvs, furn or objs.", show_default="all"
+            "--class",
+            help="chair, bed, sofa, table, television, furniture or object.",
+            show_default="all",
         ),
     ] = "",
 ) -> None:
