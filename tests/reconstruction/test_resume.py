@@ -15,7 +15,7 @@ from world2minecraft.reconstruction.resume import (
 )
 
 THEN = ["voxel_m=0.1", "find.cluster_radius=3", "capture.every=2", "blocks_per_metre=2"]
-FILES = {"capture": "c", "labels": "l", "plan": None, "networks": []}
+FILES = {"capture": "c", "labels": "l", "plan": None, "predictions": "p", "networks": []}
 
 
 def told(folder, parameters, **more):
@@ -86,8 +86,13 @@ def test_what_contradicts_kept_stages_is_refused(tmp_path, start, setting, was, 
 def test_files_that_kept_stages_read_are_told_as_they_were(tmp_path):
     told(tmp_path, then())
     now = {"capture": "c", "labels": None, "plan": None, "networks": [], "palette": "p"}
+    now["predictions"] = "q"
     kept = resume_parameters(tmp_path, "label", STAGES, Parameters())
-    assert resume_manifest(tmp_path, "label", now, kept) == {**now, "labels": "l"}
+    assert resume_manifest(tmp_path, "label", now, kept) == {
+        **now,
+        "labels": "l",
+        "predictions": "p",
+    }
     kept = resume_parameters(tmp_path, "fuse", STAGES, Parameters())
     assert resume_manifest(tmp_path, "fuse", now, kept) == now, "fuse reads labels anew"
     with pytest.raises(InputError, match="made from another capture, or the capture has changed"):

@@ -10,7 +10,7 @@ from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.sceneforge.array_messages import HEADER
-from world2minecraft.sceneforge.comparison import read_truth_labels
+from world2minecraft.sceneforge.comparison import read_file_labels, read_truth_labels
 from world2minecraft.sceneforge.editor import Editor
 
 
@@ -39,6 +39,14 @@ def test_a_file_is_compared_over_http(tmp_path):
         assert np.array_equal(np.frombuffer(body[HEADER.size :], np.uint8), labels.ravel())
         assert script.delete("/api/compare").json()["name"] == ""
         assert "only generated rooms" in script.post("/api/compare/truth").json()["error"]
+
+
+def test_a_grid_of_embodiedocc_is_compared_by_its_own_ids(tmp_path):
+    editor = small_editor(folder=tmp_path / "OUT")
+    labels = editor.draft.labels
+    theirs = np.where(labels == 0, 12, np.where(labels == 255, 0, labels))
+    np.save(tmp_path / "theirs.npy", theirs)
+    assert np.array_equal(read_file_labels(tmp_path / "theirs.npy", editor.draft), labels)
 
 
 @pytest.mark.parametrize(

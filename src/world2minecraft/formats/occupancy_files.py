@@ -103,13 +103,17 @@ def read_occupancy(path: str | Path, classes: str = "") -> OccupancyGrid:
 
 
 def _classes_of(ids: np.ndarray, classes: str, source: Path) -> np.ndarray:
-    """Return the classes of ids in a class set, or in the set that has them for ``auto``."""
-    if classes == "auto":
-        is_number = ids.dtype.kind in "iuf"
-        known = ids[ids != UNKNOWN] if is_number else ids
-        has_12 = is_number and known.size and known.max() == EMBODIED_EMPTY
-        classes = "embodied" if has_12 else ""
-    return read_class_set(classes or "nyu12").convert(ids, source)
+    """Return the classes of ids in a class set, or in the set that has them for ``auto``.
+
+    Without a class set, ids up to 12 are refused with the option that reads them, and others are
+    returned unchanged.
+    """
+    if classes in ("", "auto"):
+        known = ids[ids != UNKNOWN] if ids.dtype.kind in "iuf" else ids[:0]
+        if not known.size or known.max() != EMBODIED_EMPTY:
+            return ids
+        classes = "embodied" if classes == "auto" else "nyu12"
+    return read_class_set(classes).convert(ids, source)
 
 
 def labels_grid(
