@@ -5,6 +5,7 @@ import inspect
 import subprocess
 import sys
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
@@ -14,7 +15,7 @@ from world2minecraft import api
 ROOT = Path(__file__).resolve().parents[2]
 CLI = ROOT / "src" / "world2minecraft" / "cli"
 MAX_NAMES = 40
-HEAVY = ("numpy", "numba", "scipy", "PIL", "torch", "rich")
+HEAVY = ("numpy", "numba", "scipy", "PIL", "torch", "rich", "typing", "inspect", "tempfile")
 # What verbs may use beside the API: errors, progress, files, the kernels' cache, the machine.
 ALLOWED = ("api", "cli", "core")
 
@@ -36,6 +37,12 @@ def test_every_public_name_is_documented(name):
         assert "Example:" in text or name == "build_on_server", name  # That one needs a server.
         for parameter in inspect.signature(value).parameters:
             assert f"{parameter}:" in text, f"{name}: {parameter} is not described"
+
+
+def test_the_page_of_the_api_shows_the_exceptions():
+    page = (ROOT / "docs" / "api.md").read_text()
+    tree = dedent((w2m.errors.__doc__ or "").partition("::\n\n")[2].partition("\n\nEach")[0])
+    assert tree.count("Error") >= 13 and tree in page
 
 
 def test_importing_the_package_loads_no_library():

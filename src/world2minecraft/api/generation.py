@@ -35,6 +35,10 @@ def generate_room(
         out: Folder to write ``layout.json``, ``truth.npz`` and ``preview.png`` to. None writes no
             files.
 
+    Returns:
+        The room. Among its attributes are ``objects``, ``layout`` and ``size_m``. ``scan_room``
+        scans it.
+
     Raises:
         UsageError: If an argument is out of range.
         OutputError: If the output folder cannot be written.

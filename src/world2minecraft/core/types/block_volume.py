@@ -74,6 +74,10 @@ class BlockVolume:
         put(self, "corner", corner)
         put(self, "block_to_room", checks.floats("block_to_room", self.block_to_room, (4, 4)))
 
+    def __repr__(self) -> str:
+        size = " x ".join(str(side) for side in self.states.shape)
+        return f"BlockVolume({size} blocks of {self.blocks_per_metre:g} per metre at {self.corner})"
+
     @property
     def blocks_per_metre(self) -> float:
         """The number of blocks per metre of the room."""

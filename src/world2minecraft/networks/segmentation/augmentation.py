@@ -170,7 +170,8 @@ def _noisy(depth_m: np.ndarray, rays: np.ndarray, rng: np.random.Generator) -> n
 
 def _draw_holes(shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
     """Return a mask of random patches with ragged edges."""
-    coarse = ndimage.zoom(rng.standard_normal((8, 10)).astype(np.float32), (3, 3), order=1)
+    spots = rng.standard_normal((8, 10)).astype(np.float32)
+    coarse = np.asarray(ndimage.zoom(spots, (3, 3), order=1), np.float32)
     coarse += 0.3 * rng.standard_normal((24, 30), np.float32)
     limit = np.quantile(coarse, 1 - 0.35 * rng.random() ** 2)
     return sample_nearest(coarse > limit, shape[1], shape[0])

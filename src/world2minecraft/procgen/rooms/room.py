@@ -31,6 +31,16 @@ class Room:
     class IDs, with 0 for air. The inner box of a room extends from (0, 0, 0) to its size and is
     surrounded by the shell of walls, floor slab and ceiling. In a house, this applies to the box
     around all rooms.
+
+    Attributes:
+        kind: Room type, such as ``kitchen``.
+        seed: Random seed.
+        layouts: Layout of each room: floor, openings and objects, in metres.
+        labels: Class of each voxel as uint8 [X, Y, Z].
+        instance: Instance of each voxel as uint16 [X, Y, Z], or 0.
+        colour: Colour of each voxel as uint8 [X, Y, Z, 3].
+        voxel_m: Side length of a voxel in metres.
+        origin_m: Minimum corner of voxel (0, 0, 0) in metres, float64 [3].
     """
 
     kind: str
@@ -58,6 +68,10 @@ class Room:
         sides = np.max([layout.floor_polygon_m.max(axis=0) for layout in self.layouts], axis=0)
         top = max(layout.floor_z_m + layout.wall_height_m for layout in self.layouts)
         return np.array([*sides, top])
+
+    def __repr__(self) -> str:
+        size = " x ".join(f"{side:.1f}" for side in self.size_m)
+        return f"Room({self.kind!r}, seed {self.seed}, {size} m, {len(self.objects)} objects)"
 
 
 def generate_room(

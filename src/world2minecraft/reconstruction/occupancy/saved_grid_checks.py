@@ -242,7 +242,7 @@ def measure(samples: Sequence[Sample], grids: Sequence[PredictedGrid], scan: Sca
     """Measure how well grids fit the capture."""
     places = [_place(sample, grid, scan) for sample, grid in zip(samples, grids, strict=True)]
     up = _up(samples, places, scan)
-    levels, belows, empties, leans = [], [], [], []
+    levels, shares_below, empties, leans = [], [], [], []
     for grid, place in zip(grids, places, strict=True):
         known = grid.labels != UNKNOWN
         empties.append(float((grid.labels == 0).sum() / max(known.sum(), 1)))
@@ -250,10 +250,10 @@ def measure(samples: Sequence[Sample], grids: Sequence[PredictedGrid], scan: Sca
         found = floor_measures(grid, place, up)
         if found is not None:
             levels.append(found[0])
-            belows.append(found[1])
+            shares_below.append(found[1])
     return Plausibility(
         _mean(levels),
-        _mean(belows),
+        _mean(shares_below),
         _mean(empties),
         blocked_rays(samples, grids, places, scan),
         _mean(leans),
