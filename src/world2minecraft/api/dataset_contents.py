@@ -37,7 +37,8 @@ def dataset_statistics(
         folder: A data set in our own format or in any format that ``open_dataset`` supports.
         split: Count only ``train`` or only ``test``. Defaults to all splits.
         format: Format of a published data set. Detected automatically by default.
-        jobs: Number of processes. Defaults to one per core.
+        jobs: Number of processes. Defaults to one per core. With more than one, a script must call
+            this function under ``if __name__ == "__main__":``, because each process imports it.
         progress: Callback that receives the number of images counted.
 
     Raises:

@@ -166,7 +166,8 @@ def build_dataset(
         paper_compat: Also store the matrices K and E exactly as printed in the paper.
         seed: Random seed for houses, views and the split. Must be 0 or more.
         engine: ``pool`` (processes on this machine) or ``ray`` (a Ray cluster).
-        jobs: Number of processes. Defaults to one per core.
+        jobs: Number of processes. Defaults to one per core. With more than one, a script must call
+            this function under ``if __name__ == "__main__":``, because each process imports it.
         progress: Callback that reports progress on scenes, images and the index.
 
     Returns:

@@ -39,7 +39,7 @@ def test_a_long_thin_look_fills_few_blocks_of_its_box():
     map_.add(PointEvidence("v", np.zeros(3), points_m, np.full(3, 0.01, np.float32)))
     assert map_.blocks.used[0] <= 3 * (5.0 / 0.64 + 2)
     assert map_.blocks.table.size > 400
-    assert map_.fused().log_odds.shape == (63, 63, 63)
+    assert map_.fused().log_odds.shape == (63, 63, 64)  # And the layer below z = 0.
 
 
 def test_a_box_of_a_town_is_refused_before_memory_is_taken():

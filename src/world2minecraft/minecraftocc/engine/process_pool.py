@@ -24,6 +24,7 @@ from typing import Any
 from world2minecraft.core.errors import WorkerError
 from world2minecraft.rendering.batch.workers import picklable_error
 
+UNCAUGHT = 1  # Exit code of a Python process that an exception ends.
 MAX_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
 PATIENCE_S = 5.0
 
@@ -207,9 +208,15 @@ class PoolEngine:
         code, deaths[number] = worker.process.exitcode, deaths[number] + 1
         how = f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
         if deaths[number] == MAX_DEATHS:
+            what = f"{MAX_DEATHS} workers in a row exited {how} on part {number + 1} of {count}"
+            if code == UNCAUGHT:
+                raise WorkerError(
+                    f"{what}; see their errors above, and in a script of your own call the "
+                    'function under if __name__ == "__main__":'
+                )
             raise WorkerError(
-                f"{MAX_DEATHS} workers in a row exited {how} on part {number + 1} of {count}, "
-                "possibly for lack of memory; run the same command with fewer --jobs to resume"
+                f"{what}, possibly for lack of memory; run the same command with fewer --jobs to "
+                "resume"
             )
         self.notes.append(f"A worker exited {how}; another worker resumed its task.")
         waiting.appendleft(number)

@@ -345,9 +345,10 @@ def _bend(
     """Return the distance of a wall from its plane around each position, float [A, B], metres.
 
     Lens and sensor bend a long wall by some centimetres. The mean over about half a metre follows
-    the bend and tends to 0 where little of the wall was seen.
+    the bend and tends to 0 where little of the wall was seen. Backs of shelves and pictures, in front
+    of the wall, do not count.
     """
-    near = occupied & (np.abs(gap) <= parameters.plane_gate_m)
+    near = occupied & (gap >= -parameters.before_m) & (gap <= parameters.plane_gate_m)
     sigma = parameters.bend_m / view.voxel_m
     total = ndimage.gaussian_filter(np.where(near, gap, 0.0).sum(axis=0), sigma, mode="constant")
     count = ndimage.gaussian_filter(near.sum(axis=0).astype(float), sigma, mode="constant")
