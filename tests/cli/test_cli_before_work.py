@@ -20,12 +20,12 @@ WORDS = [
     ("build room.npz --into W --at 1 2", 2, "requires 3 arguments; see w2m build --help"),
     ("clean OUT --undo 0", 2, "see w2m clean --help"),
     ("undo nowhere --list", 3, "nowhere: is not a world folder: level.dat not found"),
-    ("dataset build D --houses 1 --hour 99", 2, "--hour must be 0 to 24, not 99"),
-    ("dataset build D --houses 1 --seed -1", 2, "--seed must be 0 or more, not -1"),
+    ("dataset build D --houses 1 --hour 99", 2, "--hour must be 0 to 24, got 99"),
+    ("dataset build D --houses 1 --seed -1", 2, "--seed must be 0 or more, got -1"),
     ("dataset build D --houses 2 --preset 9k", 2, "no preset is named '9k'"),
-    ("dataset tour W --seed -1", 2, "--seed must be 0 or more, not -1"),
+    ("dataset tour W --seed -1", 2, "--seed must be 0 or more, got -1"),
     ("dataset sheet tour.jsonl --world W", 3, "tour.jsonl: not found"),
-    ("dataset sheet tour.jsonl --world W --hour nan", 2, "--hour must be 0 to 24, not nan"),
+    ("dataset sheet tour.jsonl --world W --hour nan", 2, "--hour must be 0 to 24, got nan"),
     ("vln run OUT Go --chunk 9", 2, "see w2m vln run --help"),
 ]
 

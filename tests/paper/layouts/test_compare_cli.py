@@ -129,4 +129,4 @@ def test_a_layout_is_described(built, tmp_path, capsys):
     assert json.loads(target.read_text())["boundary"]["wall_height"] == 2.6
     assert cli.run(["compare", "describe", str(built), "--for", "layoutvml"]) == 2
     assert cli.run([*words, "--agent", "gemini"]) == 2
-    assert "photos have no sizes" in capsys.readouterr().err
+    assert "photos, which contain no sizes" in capsys.readouterr().err
