@@ -98,7 +98,9 @@ def test_a_start_has_three_or_four_finite_numbers(flat_path, tmp_path, start):
 
 
 def test_a_size_is_checked_before_any_work(flat_path, tmp_path):
-    with pytest.raises(UsageError, match="--size must be WIDTHxHEIGHT, 16 to 4096 pixels each, got 8x8"):
+    with pytest.raises(
+        UsageError, match="--size must be WIDTHxHEIGHT, 16 to 4096 pixels each, got 8x8"
+    ):
         build_navigation_set([flat_path], tmp_path / "set", size=(8, 8))
     assert not (tmp_path / "set").exists()
 

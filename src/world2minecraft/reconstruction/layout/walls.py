@@ -345,8 +345,8 @@ def _bend(
     """Return the distance of a wall from its plane around each position, float [A, B], metres.
 
     Lens and sensor bend a long wall by some centimetres. The mean over about half a metre follows
-    the bend and tends to 0 where little of the wall was seen. Backs of shelves and pictures, in front
-    of the wall, do not count.
+    the bend and tends to 0 where little of the wall was seen. Backs of shelves and pictures, which
+    are in front of the wall, do not count.
     """
     near = occupied & (gap >= -parameters.before_m) & (gap <= parameters.plane_gate_m)
     sigma = parameters.bend_m / view.voxel_m
