@@ -48,7 +48,7 @@ def test_back_of_an_open_shelf_is_shelf_a_picture_is_not():
     room.add((2.2, 0.0, 1.1, 2.8, 0.04, 1.6), 11, rooms.RED)
     result, truth = labelled(room)
     assert rooms.label_share(result, truth, 10) > 0.9
-    assert rooms.label_share(result, truth, 11) > 0.65
+    assert rooms.label_share(result, truth, 11) > 0.7
 
 
 def test_a_lit_monitor_on_a_table_is_a_screen():

@@ -28,6 +28,7 @@ MAX_ASKEW = 0.07  # 4 degrees: a wall off the frame, or a frame off its walls.
 FIT_ROUNDS = 4
 PASSED_FROM = 2
 SIGMAS, SIGMA_OF_MEDIAN = 2.5, 1.48
+MAX_BEND_M = 0.02  # Into the room; the back of a shelf and a picture are 4 cm thick.
 MIN_GAIN = 1.1  # A plane that is askew must explain this many times the cells of a straight one.
 
 
@@ -348,7 +349,7 @@ def _bend(
     the bend and tends to 0 where little of the wall was seen. Backs of shelves and pictures, which
     are in front of the wall, do not count.
     """
-    near = occupied & (gap >= -parameters.before_m) & (gap <= parameters.plane_gate_m)
+    near = occupied & (gap >= -MAX_BEND_M) & (gap <= parameters.plane_gate_m)
     sigma = parameters.bend_m / view.voxel_m
     total = ndimage.gaussian_filter(np.where(near, gap, 0.0).sum(axis=0), sigma, mode="constant")
     count = ndimage.gaussian_filter(near.sum(axis=0).astype(float), sigma, mode="constant")
