@@ -7,17 +7,15 @@ weights.
 """
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
-from pathlib import Path
+from dataclasses import dataclass, field
 
 import numpy as np
 import torch
-from safetensors.torch import load_file, save_file
 from torch import Tensor
 from torch.nn import functional
 
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
-from world2minecraft.core.files import write_text
+from world2minecraft.networks.averaged_training import AveragedTrainer
 from world2minecraft.networks.completion.augmentation import CROP
 from world2minecraft.networks.completion.network import CompletionNet, CompletionSize
 from world2minecraft.networks.completion.sample_pool import REFRESH_EVERY_STEPS, SamplePool
@@ -92,7 +90,7 @@ class CompletionRun:
     size: CompletionSize = field(default_factory=CompletionSize)
 
 
-class Trainer:
+class Trainer(AveragedTrainer[CompletionNet]):
     """A training run in progress."""
 
     def __init__(self, run: CompletionRun, pool: SamplePool):
@@ -142,49 +140,3 @@ class Trainer:
         self.optimiser.step()
         self._update_mean()
         return {name: float(value.detach()) for name, value in losses.items()}
-
-    def learning_rate_at(self, step: int) -> float:
-        """Return the learning rate at a step."""
-        run = self.run
-        left = (run.steps - step) / max(run.fall * run.steps, 1)
-        return run.rate * min((step + 1) / run.warm_steps, 1.0, max(left, 0.01))
-
-    @torch.no_grad()
-    def _update_mean(self) -> None:
-        """Update the running mean of the weights, faster at the beginning."""
-        keep = min(self.run.mean_of, (self.step + 1) / (self.step + 10))
-        new = self.network.state_dict()
-        for name, value in self.mean.state_dict().items():
-            if value.dtype.is_floating_point:
-                value.lerp_(new[name], 1 - keep)
-            else:
-                value.copy_(new[name])
-
-    def save(self, folder: Path) -> None:
-        """Write the weights and the optimizer state to a folder."""
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, network in (("network", self.network), ("mean", self.mean)):
-            state = {key: value.contiguous() for key, value in network.state_dict().items()}
-            save_file(state, str(folder / f"{name}.tmp"))
-            (folder / f"{name}.tmp").replace(folder / f"{name}.safetensors")
-        state, names = {}, dict(self.network.named_parameters())
-        for name, parameter in names.items():
-            for key, value in self.optimiser.state.get(parameter, {}).items():
-                state[f"{name}/{key}"] = torch.as_tensor(value).contiguous()
-        save_file(state, str(folder / "optimiser.tmp"))
-        (folder / "optimiser.tmp").replace(folder / "optimiser.safetensors")
-        write_text(folder / "step.txt", f"{self.step}\n")
-        write_text(folder / "run.txt", f"{asdict(self.run)}\n")
-
-    def resume(self, folder: Path) -> bool:
-        """Load the state written by ``save``. Return False if the folder contains none."""
-        if not (folder / "step.txt").is_file():
-            return False
-        self.network.load_state_dict(load_file(str(folder / "network.safetensors")))
-        self.mean.load_state_dict(load_file(str(folder / "mean.safetensors")))
-        state = load_file(str(folder / "optimiser.safetensors"))
-        for name, parameter in self.network.named_parameters():
-            keys = [key for key in state if key.rpartition("/")[0] == name]
-            self.optimiser.state[parameter] = {key.rpartition("/")[2]: state[key] for key in keys}
-        self.step = int((folder / "step.txt").read_text())
-        return True

@@ -7,16 +7,14 @@ running mean of the weights.
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import asdict, dataclass, field
-from pathlib import Path
+from dataclasses import dataclass, field
 
 import numpy as np
 import torch
-from safetensors.torch import load_file, save_file
 from torch import Tensor
 from torch.nn import functional
 
-from world2minecraft.core.files import write_text
+from world2minecraft.networks.averaged_training import AveragedTrainer
 from world2minecraft.networks.segmentation.augmentation import CROP, Example, draw_example
 from world2minecraft.networks.segmentation.frames import IGNORED, LabelledFrame, class_shares
 from world2minecraft.networks.segmentation.network import SegmentationNet, SegmentationSize
@@ -91,8 +89,10 @@ def segmentation_loss(logits: Tensor, labels: Tensor, weights: Tensor) -> Tensor
     return (entropy * each).sum() / each.sum().clamp(min=1e-6)
 
 
-class Trainer:
+class Trainer(AveragedTrainer[SegmentationNet]):
     """A training run in progress."""
+
+    min_rate = 0.005
 
     def __init__(self, run: SegmentationRun, frames: Sequence[LabelledFrame]):
         self.run, self.frames = run, frames
@@ -168,55 +168,8 @@ class Trainer:
         self._update_mean()
         return float(loss.detach())
 
-    def learning_rate_at(self, step: int) -> float:
-        """Return the learning rate at a step."""
-        run = self.run
-        left = (run.steps - step) / max(run.fall * run.steps, 1)
-        return run.rate * min((step + 1) / run.warm_steps, 1.0, max(left, 0.005))
-
-    @torch.no_grad()
-    def _update_mean(self) -> None:
-        """Update the running mean of the weights, faster at the beginning."""
-        keep = min(self.run.mean_of, (self.step + 1) / (self.step + 10))
-        new = self.network.state_dict()
-        for name, value in self.mean.state_dict().items():
-            if value.dtype.is_floating_point:
-                value.lerp_(new[name], 1 - keep)
-            else:
-                value.copy_(new[name])
-
-    def save(self, folder: Path) -> None:
-        """Write the weights and the optimizer state to a folder."""
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, network in (("network", self.network), ("mean", self.mean)):
-            _write(network.state_dict(), folder / f"{name}.safetensors")
-        state = {"class_weights": self.weights}
-        for name, parameter in self.network.named_parameters():
-            for key, value in self.optimiser.state.get(parameter, {}).items():
-                state[f"{name}/{key}"] = torch.as_tensor(value)
-        _write(state, folder / "optimiser.safetensors")
-        write_text(folder / "step.txt", f"{self.step}\n")
-        write_text(folder / "run.txt", f"{asdict(self.run)}\n")
-
-    def resume(self, folder: Path) -> bool:
-        """Load the state written by ``save``. Return False if the folder contains none."""
-        if not (folder / "step.txt").is_file():
-            return False
-        self.network.load_state_dict(load_file(str(folder / "network.safetensors")))
-        self.mean.load_state_dict(load_file(str(folder / "mean.safetensors")))
-        state = load_file(str(folder / "optimiser.safetensors"))
-        for name, parameter in self.network.named_parameters():
-            keys = [key for key in state if key.rpartition("/")[0] == name]
-            self.optimiser.state[parameter] = {key.rpartition("/")[2]: state[key] for key in keys}
-        self.step = int((folder / "step.txt").read_text())
-        return True
-
-
-def _write(state: dict[str, Tensor], path: Path) -> None:
-    """Write tensors to a file, whole or not at all."""
-    spare = path.with_suffix(".tmp")
-    save_file({key: value.contiguous() for key, value in state.items()}, str(spare))
-    spare.replace(path)
+    def _further_state(self) -> dict[str, Tensor]:
+        return {"class_weights": self.weights}
 
 
 def collate_examples(examples: Sequence[Example]) -> tuple[Tensor, Tensor, Tensor]:
