@@ -91,7 +91,7 @@ def reconstruct(
     fov_deg: float | None = None,
     plan: str | Path | None = None,
     depth_model: str = "",
-    semantics: str = "",
+    semantics: str = "auto",
     predictor: str = "depth",
     predictions: str | Path | None = None,
     convention: str = "",
@@ -126,8 +126,9 @@ def reconstruct(
         fov_deg: Vertical field of view in degrees for a single photo without EXIF data.
         plan: RoomPlan file of the same room to use as additional evidence.
         depth_model: Depth estimation network, such as ``hf:ORG/NAME``.
-        semantics: Segmentation network: ``nyu`` for the built-in one, which names things in real
-            rooms, or an id such as ``hf:ORG/NAME``.
+        semantics: Segmentation network that names what images show: ``auto`` or ``nyu`` for the
+            built-in one, ``generated`` for one that saw generated rooms alone, ``none``, or an id
+            such as ``hf:ORG/NAME``.
         predictor: ``depth``, or ``mono:FILE.onnx`` for a monocular occupancy network.
         predictions: Grids that another network predicted: a folder with one file per view, or one
             file for the whole scene. ``docs/predictions.md`` describes the files.
@@ -169,7 +170,10 @@ def reconstruct(
         depth_model=depth_model,
         plan="" if plan is None else str(plan),
     )
-    named = {"occupy.semantics": semantics or None, "capture.fov_deg": fov_deg}
+    named = {
+        "occupy.semantics": None if semantics == "auto" else semantics,
+        "capture.fov_deg": fov_deg,
+    }
     given = {key: value for key, value in named.items() if value is not None}
     given |= _prediction_settings(predictions, convention, classes)
     options = BuildOptions(

@@ -133,6 +133,8 @@ def with_model_options(
     ]  # fmt: skip
 
     def with_options(run: Callable[..., Any]) -> Callable[..., Any]:
+        """Return the verb with one parameter for each model option."""
+
         @wraps(run)
         def called(**given: Any) -> Any:
             given_options = {one.name: given.pop(one.name) for one in options if one.name in given}

@@ -29,6 +29,7 @@ def with_compile_note(progress: Progress) -> Progress:
     noted = False
 
     def report(stage: str, done: int, total: int, note: str = "") -> None:
+        """Print the note before the first report and forward all of them."""
         nonlocal noted
         if not noted:
             noted = True

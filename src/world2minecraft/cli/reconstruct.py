@@ -78,8 +78,9 @@ DepthModel = Annotated[
 ]  # fmt: skip
 Semantics = Annotated[
     str,
-    typer.Option("--semantics", metavar="nyu|hf:ID", rich_help_panel=MORE,
-                 help="Segmentation network; nyu is the built-in one, for real rooms."),
+    typer.Option("--semantics", metavar="auto|generated|none|hf:ID",
+                 rich_help_panel=MORE,
+                 help="Segmentation network that names things; auto is the built-in one."),
 ]  # fmt: skip
 FieldOfView = Annotated[
     float | None,
@@ -132,7 +133,7 @@ def run(
     known: Known = None,
     known_points: KnownPoints = None,
     depth_model: DepthModel = "",
-    semantics: Semantics = "",
+    semantics: Semantics = "auto",
     predictor: PredictorName = "depth",
     predictions: Predictions = None,
     convention: Convention = "",

@@ -296,7 +296,10 @@ class VerbGroup(TyperGroup):
 
 
 def _indent_families(summaries: dict[str, str]) -> list[tuple[str, str]]:
-    """Return the rows of a group, in which a common first word is written only once."""
+    """Return rows of (verb, summary) in which the first word of a family is shown only once.
+
+    After ``rooms generate``, for example, the verb ``rooms scan`` is shown as ``      scan``.
+    """
     rows, previous = [], ""
     for verb, summary in summaries.items():
         first, _, second = verb.partition(" ")

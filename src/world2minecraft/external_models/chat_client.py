@@ -132,6 +132,7 @@ class ChatModel:
         import tenacity  # noqa: PLC0415  # An extra.
 
         def once() -> Reply:
+            """Ask once; count the held cost as spent if a failed request may have been billed."""
             try:
                 return transport.ask(question)
             except ServerError as error:

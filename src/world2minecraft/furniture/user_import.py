@@ -244,6 +244,7 @@ def _turns(volume: BlockVolume) -> int:
     """Return the number of different quarter turns of a piece: 1, 2 or 4."""
 
     def same(turns: int) -> bool:
+        """Return whether the piece is unchanged after a number of quarter turns."""
         turned = turn_volume(volume, turns)
         if turned.states.shape != volume.states.shape:
             return False

@@ -140,6 +140,7 @@ def _turn_once(volume: BlockVolume) -> BlockVolume:
         return replace(entity, block_pos=cell_of(entity.block_pos))
 
     def turned_entity(entity: Entity) -> Entity:
+        """Return an entity at its new position, with its NBT turned and its block moved."""
         x, y, z = (old_to_new @ [*entity.position, 1.0])[:3].tolist()
         nbt = _turn_nbt(dict(entity.nbt), entity.id)
         held = named_block(nbt)

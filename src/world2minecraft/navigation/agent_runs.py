@@ -178,6 +178,7 @@ def _walk(
     films: list[Film] = []
 
     def watching(episode: Episode, ground: Any) -> list[Observer]:
+        """Return the observers of an episode, which write its trace and video."""
         place = walk_folder(request.folder, episodes.index(episode), episodes)
         found: list[Any] = [*request.observers, TraceWriter(place), *_people(agent)]
         (place / FILM_FILE).unlink(missing_ok=True)  # Of an earlier walk.

@@ -146,6 +146,7 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:  # The library's name.
+            """Send the page, the stream of frames or the new text."""
             request = self._authorized_request()
             if request is None:
                 return
@@ -159,6 +160,7 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
                 self.send_error(404)
 
         def do_POST(self) -> None:
+            """Queue a key that was pressed in the page."""
             request = self._authorized_request()
             if request is None:
                 return

@@ -19,6 +19,7 @@ def _bedstead(pillows: tuple[tuple[float, float], ...]) -> Build:
     """Return the parts of a bed whose pillows lie at these shares of its width from its middle."""
 
     def build(depth: float, width: float, height: float, look: Look) -> list[Part]:
+        """Return the mattress, the headboard and the pillows."""
         top = min(look["mattress_height"], max(height - 0.1, height / 2))
         head = (0.08 - depth / 2, 0.45 - depth / 2)
         return [

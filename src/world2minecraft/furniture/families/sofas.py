@@ -21,6 +21,7 @@ BACK_M, ARM_M = 0.2, 0.18
 
 def _upholstered(back_m: float, arm_m: float) -> Build:
     def build(depth: float, width: float, height: float, look: Look) -> list[Part]:
+        """Return the seat, the backrest and the arms."""
         seat = min(look["seat_height"], 0.7 * height)
         ends = arms(depth, width, seat, min(look["arm_height"], height), arm_m)
         # Full arms are upholstered like the seat, low ones are of wood.

@@ -326,6 +326,7 @@ class _Build:
         self.progress(stage, 0, total)
 
         def tick(count: int) -> None:
+            """Report the samples completed so far and their rate."""
             nonlocal done, first
             if done == 0 and count > 1:
                 first = count  # Found, not made.

@@ -94,6 +94,7 @@ class _Pool:
     by_scene: dict[str, list[tuple[str, StoredPicture]]]
 
     def elsewhere(self, trajectory: Trajectory, rng: np.random.Generator) -> list[StoredPicture]:
+        """Draw images of other trajectories in the same scene."""
         own = [
             one
             for name, one in self.by_scene[trajectory.scene_id]
@@ -102,6 +103,7 @@ class _Pool:
         return _drawn(own, rng)
 
     def other_scene(self, trajectory: Trajectory, rng: np.random.Generator) -> list[StoredPicture]:
+        """Draw images of a random other scene."""
         others = [name for name in sorted(self.by_scene) if name != trajectory.scene_id]
         if not others:
             return []

@@ -27,6 +27,7 @@ def _report_bad_rows(check: Check) -> Check:
 
     @wraps(check)
     def checked(root: Path, *rest: Any) -> None:
+        """Run the check and raise DamagedFileError for a malformed row."""
         try:
             check(root, *rest)
         except (KeyError, TypeError, AttributeError, ValueError) as error:

@@ -131,6 +131,7 @@ class _State:
         self.end: str | None = None
 
     def decide(self) -> None:
+        """Show the agent the current view and execute its decision."""
         here = self.stances[-1]
         colour = _DARK if self.agent.is_blind else self.ground.view(here)
         sight = Observation(self.steps, colour, here, self.last)
@@ -150,6 +151,7 @@ class _State:
             self.end = "out of steps"
 
     def walk(self) -> EpisodeWalk:
+        """Return the completed walk with its score."""
         return EpisodeWalk(
             self.episode, self.agent.name, tuple(self.stances), tuple(self.made),
             self.end or "", self.steps, self.decisions, self.counts["invalid"],

@@ -78,6 +78,7 @@ class _GroupNormFunction(torch.autograd.Function):
     def forward(
         ctx: Any, values: Tensor, weight: Tensor, bias: Tensor, groups: int, eps: float
     ) -> Tensor:
+        """Normalize the groups and save the values for ``backward``."""
         sizes = _sizes(values)
         found, mean, spread = torch.native_group_norm(values, weight, bias, *sizes, groups, eps)
         ctx.save_for_backward(values, weight, mean, spread)
@@ -86,6 +87,7 @@ class _GroupNormFunction(torch.autograd.Function):
 
     @staticmethod
     def backward(ctx: Any, *grads: Tensor) -> tuple[Tensor | None, ...]:
+        """Return the gradients of the values, the weight and the bias."""
         values, weight, mean, spread = ctx.saved_tensors
         layout = _layout(values)  # torch reads a gradient of another layout as if it had this one.
         found = torch.ops.aten.native_group_norm_backward(

@@ -83,6 +83,7 @@ class _PooledConv(nn.Module):
         self.carry = conv3d(channels, out_channels, norm, kernel=1)
 
     def forward(self, cells: Tensor) -> Tensor:
+        """Average pairs of cells along the halved axes and apply the convolution."""
         odd = [
             int(halved and side % 2)
             for halved, side in zip(self.axes, cells.shape[2:], strict=True)

@@ -102,6 +102,7 @@ class _UpsampleStep(nn.Module):
         self.refine = DDRBlock(out_channels, norm)
 
     def forward(self, volume: Tensor, picture: Tensor) -> Tensor:
+        """Double the depth of a volume and add image features weighted by attention."""
         sides = (2 * int(volume.shape[2]), int(picture.shape[2]), int(picture.shape[3]))
         volume = self.up(volume, sides)
         key, value = self.key(picture)[:, :, None], self.value(picture)[:, :, None]

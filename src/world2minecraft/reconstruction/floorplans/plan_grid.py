@@ -83,7 +83,11 @@ def colour_of(category: str) -> Colour:
 
 
 class Canvas:
-    """The labels, instances and colours of all rooms; ``first`` is the index of cell (0, 0, 0)."""
+    """A cell grid that contains all rooms of a plan, into which the rooms are drawn.
+
+    ``labels``, ``instance`` and ``colour`` are arrays over the same cells [X, Y, Z]. ``first`` is
+    the offset of their cell (0, 0, 0) from the plan's origin, in cells.
+    """
 
     def __init__(self, rooms: Sequence[PlacedRoom], voxel_m: float):
         """Create an empty canvas for the rooms.

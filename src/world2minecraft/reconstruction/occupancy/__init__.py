@@ -12,6 +12,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import GridEvidence, PointEvidence, Scan
 from world2minecraft.reconstruction.occupancy.parameters import (
+    AUTO,
     WITHOUT_VOTES,
     OccupancyParameters,
     PredictionParameters,
@@ -66,7 +67,8 @@ def predictor(name: str, parameters: OccupancyParameters | None = None) -> Predi
             f"--predictor depth accepts no file, got {name!r}; for a network file, use "
             "--predictor mono:FILE.onnx"
         )
-    if chosen.semantics in WITHOUT_VOTES and not chosen.mono_votes:
+    silent = WITHOUT_VOTES if family == "depth" else (*WITHOUT_VOTES, AUTO)
+    if chosen.semantics in silent and not chosen.mono_votes:
         return make(file) if file else make()
     if family != "depth":
         raise UsageError(

@@ -6,22 +6,25 @@ from world2minecraft.core.parameters import parameter
 from world2minecraft.formats.class_ids import read_class_set
 from world2minecraft.formats.predicted_grids import GridRules
 
-BUILT_IN = "nyu"
+AUTO, NYU, GENERATED = "auto", "nyu", "generated"
+BUILT_IN = (AUTO, NYU, GENERATED)
 WITHOUT_VOTES = ("", "none")  # Of ``semantics``.
 
 
 @dataclass(frozen=True)
 class OccupancyParameters:
-    """Networks that vote on the surface points of depth; none is used or downloaded by default.
+    """Networks that vote on the surface points of depth; none is downloaded by default.
 
-    semantics: Segmentation network for the images: ``nyu`` for the built-in one, an id such as
-        ``hf:ORG/NAME`` or ``hf:FOLDER``, or ``none``.
+    semantics: Segmentation network for the images: ``auto`` or ``nyu`` for the built-in one,
+        ``generated`` for one that was trained on generated rooms alone, an id such as
+        ``hf:ORG/NAME`` or ``hf:FOLDER``, or ``none``. ``auto`` votes only where depth is the
+        evidence and an image has neither labels nor votes of another network.
     label_names: Path of a YAML file that maps label names of the network to classes.
     mono_votes: Whether the monocular network votes for the classes of surface points.
     network: Path of the ONNX file of the monocular network; empty for the built-in network.
     """
 
-    semantics: str = parameter("")
+    semantics: str = parameter(AUTO)
     label_names: str = parameter("")
     mono_votes: bool = parameter(False)
     network: str = parameter("")

@@ -30,11 +30,14 @@ from world2minecraft.reconstruction.occupancy.depth_evidence import Voter
 from world2minecraft.reconstruction.occupancy.label_names import TABLE, label_classes, read_table
 from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
 from world2minecraft.reconstruction.occupancy.parameters import (
+    AUTO,
     BUILT_IN,
+    GENERATED,
     WITHOUT_VOTES,
     OccupancyParameters,
 )
 from world2minecraft.reconstruction.occupancy.rgbd_votes import RgbdVoter
+from world2minecraft.reconstruction.recognition.segmentation import GENERATED_WEIGHTS
 
 FOLDER = "semantics"
 MAX_BYTES = 1 << 30  # Some 5,000 pictures.
@@ -125,7 +128,8 @@ def segmenter(name: str) -> Segmenter:
     make: Callable[[str], Segmenter] = SEGMENTERS.load(family)
     if not model:
         raise UsageError(
-            f"--semantics must be {BUILT_IN}, none or FAMILY:MODEL, such as {family}:ORG/NAME, "
+            f"--semantics must be {', '.join(BUILT_IN)}, none or FAMILY:MODEL, such as "
+            f"{family}:ORG/NAME, "
             f"got {name!r}"
         )
     return make(model)
@@ -137,8 +141,10 @@ def voters_of(chosen: OccupancyParameters) -> tuple[Voter, ...]:
     Raises the exceptions of ``segmenter``, ``read_table`` and ``MonoPredictor``.
     """
     voters: list[Voter] = []
-    if chosen.semantics == BUILT_IN:
-        voters.append(RgbdVoter())
+    if chosen.semantics == AUTO and chosen.mono_votes:
+        pass
+    elif chosen.semantics in BUILT_IN:
+        voters.append(RgbdVoter(GENERATED_WEIGHTS if chosen.semantics == GENERATED else None))
     elif chosen.semantics not in WITHOUT_VOTES:
         voters.append(PixelVoter(segmenter(chosen.semantics), chosen.label_names))
     if chosen.mono_votes:

@@ -145,6 +145,7 @@ def clicked(
     cameras = {frame.name: frame.colour_camera for frame in judged.frames}
 
     def found(text: str) -> tuple[str, tuple[float, float]]:
+        """Return a photo's name and a clicked point in the pixels of its camera."""
         image, (x, y) = _clicked(text)
         name = image if image in cameras else Path(image).stem
         camera = cameras.get(name)

@@ -1,7 +1,8 @@
 """The segmentation network: the probabilities of the 40 NYU classes for each pixel of an image.
 
-The network (``weights/segmentation.onnx``) was trained on labelled frames of real rooms. It takes
-colour, depth or both. It is run by ONNX Runtime on one thread, so the same image gives the same
+The network (``weights/segmentation.onnx``) was trained on labelled frames of real and of generated
+rooms, ``weights/segmentation_generated.onnx`` on those of generated rooms alone. It takes colour,
+depth or both. It is run by ONNX Runtime on one thread, so the same image gives the same
 bytes.
 
 The ONNX file has these inputs and outputs:
@@ -45,6 +46,7 @@ from world2minecraft.reconstruction.recognition.segmentation_channels import (
 )
 
 WEIGHTS = Path(__file__).parents[2] / "weights" / "segmentation.onnx"
+GENERATED_WEIGHTS = WEIGHTS.with_name("segmentation_generated.onnx")
 NYU40_COUNT = 40
 COLOUR, GEOMETRY, PROBABILITY = "colour", "geometry", "probability"
 MAX_BYTES = 256 << 20

@@ -342,6 +342,7 @@ class _Table:
         return int(m), int(n)
 
     def apply(self, change: Change) -> None:
+        """Replace a placement and update its solid, bounding box and overlaps."""
         index = change.which
         self.placements[index] = change.placement
         self.solids[index] = self.solid(change.placement)

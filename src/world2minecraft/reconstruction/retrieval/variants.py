@@ -70,7 +70,12 @@ def _alike(other: Template, own: Template, size_m: np.ndarray) -> bool:
 
 
 def _taken_over(other: Template, values: dict[str, float]) -> dict[str, float] | None:
-    """Return another design's parameters with these values, or None if one is out of range."""
+    """Apply the parameter values of the matched design to another design.
+
+    Returns:
+        The default parameters of ``other``, updated with ``values``, or None if ``other`` lacks a
+        parameter or does not allow its value.
+    """
     result = other.complete()
     for name, value in values.items():
         if name not in other.parameters or abs(other.parameters[name].clip(value) - value) > 1e-6:

@@ -272,7 +272,7 @@ class CompletionLabeller:
         counts = votes.reshape(-1, CLASS_COUNT)[origin[cells], 1:].astype(np.float32).T
         has = counts.any(axis=0)
         shares = counts[:, has] / counts[:, has].sum(axis=0)
-        prior = geometric_prior(base.labels[cells][has]).T
+        prior = geometric_prior(base.labels[cells][has], counts[:, has].T).T
         scores[:, has] = shares + prior + self.parameters.beside_votes * share[:, has]
         labels, confidence = base.labels.copy(), np.array(base.confidence, np.float32)
         kinds = scores.argmax(axis=0)

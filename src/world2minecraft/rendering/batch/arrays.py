@@ -17,11 +17,11 @@ from world2minecraft.rendering.picture_arrays import OUTPUT_BITS, PixelArrays
 from world2minecraft.rendering.ray_caster.picture_kernel import draw_rows
 from world2minecraft.rendering.ray_caster.ray import GridCamera
 
-MAX_BYTES = 1 << 36  # 64 GiB of outputs; larger batches are mistakes.
+MAX_BYTES = 1 << 36  # 64 GiB; a larger batch is probably a mistake.
 MAX_PICTURES = 1_000_000
 EMPTY = np.empty(0)
 Size = tuple[int, int]  # height, width
-# Of each array: its output, its name in the kernel, its dtype, and numbers a pixel.
+# Array: (output, name in the kernel, dtype, trailing shape).
 _PLAN = {
     "depth_m": ("depth", "depth", np.float32, ()),
     "range_m": ("range", "distance", np.float32, ()),
@@ -38,7 +38,7 @@ _PLAN = {
 }
 _ALWAYS = ("depth", "distance", "block", "face", "thing")  # The kernel always writes these.
 BATCH_OUTPUTS = (*dict.fromkeys(output for output, *_ in _PLAN.values()), "free")
-# What ``render_volume`` always makes.
+# Outputs that ``render_volume`` always renders.
 PICTURE_OUTPUTS = ("depth", "range", "block", "face", "cube")
 ArraySpec = tuple[tuple[int, ...], np.dtype]
 
@@ -46,7 +46,8 @@ ArraySpec = tuple[tuple[int, ...], np.dtype]
 class BatchPixels(NamedTuple):
     """``PixelArrays`` with a leading axis for N images.
 
-    Arrays that were not requested but that the renderer needs have one image per slot.
+    An array that the kernel needs but the user did not request holds one image per thread, which
+    each image of that thread overwrites.
     """
 
     depth: np.ndarray  # float32 [N, H, W]
@@ -67,26 +68,26 @@ class BatchPixels(NamedTuple):
 class BatchPart(NamedTuple):
     """The rows and images that one thread renders."""
 
-    start: int  # the first picture
-    stride: int  # from one picture to the next
-    first: int  # the first row, a whole number of tiles
-    last: int  # past the last row
-    slot: int  # the picture of arrays that have fewer than N
+    start: int  # index of the first image
+    stride: int  # step to the next image
+    first: int  # first row, a multiple of the tile height
+    last: int  # last row + 1
+    slot: int  # index of the thread in arrays with one image per thread
 
 
 @lean
 def draw_poses(tables, side_px, poses, rays, part, shading, memory, out):
-    """Render a part of the images of pinhole cameras.
+    """Render every ``part.stride``-th image, in the rows of ``part``, with a pinhole camera.
 
     Args:
         tables: ``SceneTables`` with textures of ``side_px``.
         side_px: Texture size in pixels.
-        poses: Camera to grid transforms, float64 [N, 3, 4].
-        rays: Ray parameters, float64 [N, 4]; see ``GridCamera``.
-        part: ``BatchPart``.
+        poses: Camera-to-grid transforms of all N images, float64 [N, 3, 4].
+        rays: Ray parameters of all N images, float64 [N, 4]; see ``GridCamera``.
+        part: ``BatchPart`` with the images and rows to render.
         shading: ``ShadingParameters``.
-        memory: ``BandMemory`` of the caller.
-        out: ``BatchPixels``.
+        memory: ``BandMemory`` of the calling thread.
+        out: ``BatchPixels``, which receives the images.
     """
     count, slot = len(poses), part.slot
     for n in range(part.start, count, part.stride):
@@ -111,7 +112,7 @@ def draw_poses(tables, side_px, poses, rays, part, shading, memory, out):
 
 @inlined
 def picture_row(array, n, slot, count):
-    """Return the index in an array into which image ``n`` is rendered."""
+    """Return the index of image ``n`` in an array of ``count`` images or of one per thread."""
     return n if len(array) == count else min(slot, len(array) - 1)
 
 

@@ -193,6 +193,7 @@ def _drawer(
     fine = pixel_arrays((height * samples, width * samples), ("colour",)) if separate else None
 
     def draw(start: int, stride: int, rows: tuple[int, int], slot: int) -> None:
+        """Render some rows of every ``stride``-th image with the arrays of a slot."""
         memory = band_memory()
         part = BatchPart(start, stride, *rows, slot)
         draw_poses(scene.tables, scene.side_px, views.poses, views.rays, part, shading, memory, out)
@@ -210,7 +211,14 @@ def _drawer(
 
 
 def _shrink(fine: PixelArrays, samples: int, rows: tuple[int, int], colour: np.ndarray) -> None:
-    """Write the mean of every samples x samples of pixels, in some rows of a picture."""
+    """Average each samples x samples square of ``fine`` into a pixel of ``colour``.
+
+    Args:
+        fine: An image ``samples`` times as large as ``colour``.
+        samples: Side length of a square in pixels.
+        rows: First row of ``colour`` to write and last row + 1.
+        colour: The result, uint8 [H, W, 3].
+    """
     first, last = rows
     part = fine.colour[first * samples : last * samples]
     squares = part.reshape(last - first, samples, -1, samples, 3)

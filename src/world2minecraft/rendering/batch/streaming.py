@@ -50,6 +50,7 @@ def prefetch(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, Non
                 return
 
     def take() -> None:
+        """Queue the items, then the end or the error of the iterator."""
         try:
             for thing in things:
                 put("thing", thing)

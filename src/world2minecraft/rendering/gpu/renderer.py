@@ -206,6 +206,7 @@ class GpuRenderer:
         plan = plan_submissions(ask, _count(poses))
 
         def jobs() -> Iterator[_Job]:
+            """Yield one job for each band of rows of each pose."""
             for camera_to_room in poses:
                 pose = (scene.room_to_grid @ np.asarray(camera_to_room, np.float64))[:3]
                 check_pose(pose)

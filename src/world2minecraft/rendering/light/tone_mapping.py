@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.core.jit import inlined
 
 SCREEN_POWER = 2.2  # Products of colours then equal products of screen values.
-ENCODE_STEPS = 4096  # The darkest step of sRGB is 0.8 of a screen value.
+ENCODE_STEPS = 4096  # The first step of sRGB near black spans 0.8 of a screen value.
 SHOULDER = 0.60  # Linear; 0.79 on the screen.
 PALING = 0.18  # Rate at which light brighter than white loses its colour.
 CONTRAST = 1.12  # Exponent for linear light; increases the low contrast of even room light.
@@ -24,7 +24,7 @@ class Tone(NamedTuple):
 
     decode: np.ndarray  # float32 [256]: linear light of a texel's channel
     encode: np.ndarray  # uint8 [ENCODE_STEPS]: screen value of linear light 0 to 1
-    shoulder: float  # linear light from which the tone map presses; NEVER for a plain cut at 1
+    shoulder: float  # linear light from which colours are compressed; NEVER to clip at 1 instead
 
 
 def filmic_tone() -> Tone:
@@ -61,7 +61,15 @@ def linear_to_srgb(light: np.ndarray) -> np.ndarray:
 
 
 def tone_map(light: np.ndarray, shoulder: float = SHOULDER) -> np.ndarray:
-    """Return linear colours [..., 3] compressed below 1, float64."""
+    """Compress bright colours so that no channel reaches 1, keeping their hue.
+
+    Args:
+        light: Linear colours, 0 or more, [..., 3].
+        shoulder: Brightness of the largest channel from which colours are compressed.
+
+    Returns:
+        Linear colours below 1, float64 [..., 3]. Very bright ones are also shifted towards white.
+    """
     light = np.maximum(np.asarray(light, np.float64), 0)
     peak = light.max(axis=-1, keepdims=True)
     room = 1 - shoulder

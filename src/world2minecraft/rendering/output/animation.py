@@ -87,6 +87,7 @@ def ffmpeg_program() -> str:
 
 def _frame_collector(held: list[np.ndarray], target: Path) -> FrameWriter:
     def take(colour: np.ndarray) -> None:
+        """Hold a frame in memory, up to the memory limit."""
         if sum(one.nbytes for one in held[:1]) * (len(held) + 1) > MAX_BUFFERED_BYTES:
             raise LimitError(
                 target,
@@ -169,6 +170,7 @@ def _frame_sender(
     messages: IO[bytes],
 ) -> FrameWriter:
     def send(colour: np.ndarray) -> None:
+        """Write a frame to the encoder, which the first frame starts."""
         height, width = colour.shape[0] // 2 * 2, colour.shape[1] // 2 * 2  # Codecs want even.
         if not running:
             words = [program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",

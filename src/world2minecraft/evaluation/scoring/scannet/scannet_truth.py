@@ -212,6 +212,7 @@ def _agreed(
     done = {"frames": 0}
 
     def agreed(used: UsedFrame, depth_m: np.ndarray) -> np.ndarray:
+        """Return the rays that agree with the frame's depth image, bool [H, W]."""
         done["frames"] += 1
         progress("seen", done["frames"], len(frames), used.name)
         path = frames[used.name].depth_path
