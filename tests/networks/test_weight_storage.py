@@ -112,6 +112,30 @@ def test_a_weight_that_is_read_elsewhere_stays_whole():
     assert compress_weights(model, "int8") == model
 
 
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from(["Conv", "ConvTranspose", "MatMul"]))
+def test_widened_bytes_are_the_quantized_weights(seed, kind):
+    rng = np.random.default_rng(seed)
+    sides, axis = {"Conv": ([8, 5, 3, 3], 0), "ConvTranspose": ([8, 5, 3, 3], 1)}.get(
+        kind, ([16, 8], 1)
+    )
+    values = (rng.standard_normal(sides) * 10.0 ** rng.uniform(-2, 2, sides)).astype(np.float32)
+    node = onnx.helper.make_node(kind, ["x", "w"], ["y"])
+    shape = [None] * len(sides)
+    ends = [onnx.helper.make_tensor_value_info(name, 1, shape) for name in "xy"]
+    weight = numpy_helper.from_array(values, "w")
+    graph = onnx.helper.make_graph([node], "g", ends[:1], ends[1:], [weight])
+    opset = [onnx.helper.make_opsetid("", 17)]
+    small = compress_weights(onnx.helper.make_model(graph, opset_imports=opset), "int8")
+    assert [one.op_type for one in small.graph.node] == ["Cast", "Mul", kind]
+    whole, scales = quantize_weights(values, axis)
+    stored = _weights_of(small)
+    assert (stored["w_int8"] == whole).all()
+    widened = stored["w_int8"].astype(np.float32) * stored["w_scales"]
+    shape = [-1 if n == axis else 1 for n in range(values.ndim)]
+    np.testing.assert_array_equal(widened, whole * scales.reshape(shape))
+
+
 def test_nothing_moves_where_weights_are_stored_as_they_are(traced):
     model, _ = traced
     assert compress_weights(model, "float") == model

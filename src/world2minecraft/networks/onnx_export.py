@@ -63,7 +63,7 @@ def compress_weights(model: Any, kind: str) -> Any:
         values = numpy_helper.to_array(weight)
         if values.dtype == np.float32 and values.size >= SMALL:
             widen = _store_float16 if kind == "half" else _store_int8
-            widening.append(widen(result.graph, weight, values, axes[weight.name]))
+            widening.extend(widen(result.graph, weight, values, axes[weight.name]))
     nodes = [*widening, *result.graph.node]
     del result.graph.node[:]
     result.graph.node.extend(nodes)
@@ -112,23 +112,28 @@ def _axis(node: Any) -> int:
     return 0 if turned else _WEIGHTS[node.op_type]
 
 
-def _store_float16(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
+def _store_float16(graph: Any, weight: Any, values: np.ndarray, axis: int) -> list[Any]:
     name = weight.name
     weight.CopyFrom(numpy_helper.from_array(values.astype(np.float16), f"{name}_half"))
-    return onnx.helper.make_node("Cast", [f"{name}_half"], [name], to=onnx.TensorProto.FLOAT)
+    return [onnx.helper.make_node("Cast", [f"{name}_half"], [name], to=onnx.TensorProto.FLOAT)]
 
 
-def _store_int8(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
+def _store_int8(graph: Any, weight: Any, values: np.ndarray, axis: int) -> list[Any]:
+    """Store int8 weights, widened by nodes that ONNX Runtime folds when it loads the model.
+
+    It does not fold ``DequantizeLinear``, and widens such weights again in each run.
+    """
     name = weight.name
     whole, scales = quantize_weights(values, axis)
     weight.CopyFrom(numpy_helper.from_array(whole, f"{name}_int8"))
-    graph.initializer.append(numpy_helper.from_array(scales, f"{name}_scales"))
-    return onnx.helper.make_node(
-        "DequantizeLinear",
-        [f"{name}_int8", f"{name}_scales"],
-        [name],
-        axis=axis % values.ndim,
-    )
+    shape = [1] * values.ndim
+    shape[axis] = -1
+    graph.initializer.append(numpy_helper.from_array(scales.reshape(shape), f"{name}_scales"))
+    float_type = onnx.TensorProto.FLOAT
+    return [
+        onnx.helper.make_node("Cast", [f"{name}_int8"], [f"{name}_whole"], to=float_type),
+        onnx.helper.make_node("Mul", [f"{name}_whole", f"{name}_scales"], [name]),
+    ]
 
 
 class ExportReport(NamedTuple):
