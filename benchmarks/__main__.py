@@ -33,6 +33,7 @@ INPUTS = {
     "check_fuzz": "block files",
     "check_layouts": "runs, or layouts of LayoutGPT",
     "check_photos": "a capture, or --seeds",
+    "check_segmentation": "frames of NYUv2",
     "check_tsdf": "frames and a run folder",
     "check_vln_oracle": "world folders",
 }

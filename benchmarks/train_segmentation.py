@@ -1,12 +1,17 @@
-"""Train the segmentation network on labelled frames of NYUv2.
+"""Train the segmentation network on labelled frames of NYUv2, of SUN RGB-D and of generated rooms.
 
-``python -m benchmarks.train_segmentation --nyu FOLDER --run FOLDER [--backbone FILE.param]
-[--sun-rgbd FOLDER] [--steps 7000] [--export segmentation.onnx]``
+``python -m benchmarks.train_segmentation --nyu FOLDER --run FOLDER [--generated FOLDER]
+[--backbone FILE.pth] [--sun-rgbd FOLDER] [--device cuda --workers 6] [--export FILE.onnx]``
 
-``--nyu`` takes a folder of frames or ``nyu_depth_v2_labeled.mat``. An interrupted run continues
-from its folder; with fewer ``--steps`` it ends earlier, with more it goes on longer. At intervals
-pixel accuracy and mIoU on the validation frames are printed. ``--export`` fits the calibration and
-writes the averaged weights as ONNX; with ``--until 0`` it does so without training.
+``--nyu`` takes a folder of frames or ``nyu_depth_v2_labeled.mat``. ``--generated`` takes frames of
+generated rooms; with ``--rooms N`` those of N rooms are written there first. An interrupted run
+continues from its folder. With fewer ``--steps`` it ends earlier, with more it goes on longer. At
+intervals, pixel accuracy and mIoU on the validation frames of ``--nyu`` are printed. ``--export``
+fits the calibration and writes the averaged weights as ONNX; with ``--until 0`` it does so without
+training.
+
+``--only-generated`` trains on generated frames alone. Those of the last ten rooms are kept for the
+calibration. ``--nyu`` is needed all the same, for its validation frames.
 """
 
 import argparse
@@ -23,7 +28,13 @@ from world2minecraft.networks.segmentation.backbone import start_encoder
 from world2minecraft.networks.segmentation.calibration import fit_calibration, undo_class_weights
 from world2minecraft.networks.segmentation.export import export_segmentation
 from world2minecraft.networks.segmentation.frames import LabelledFrame, Part, read_nyu_folder
-from world2minecraft.networks.segmentation.network import SegmentationNet
+from world2minecraft.networks.segmentation.generated import (
+    FIRST_SEED,
+    generate_frames,
+    read_frames,
+    write_frames,
+)
+from world2minecraft.networks.segmentation.network import LITE0, LITE2, SegmentationNet
 from world2minecraft.networks.segmentation.public_sets import (
     find_sun_rgbd,
     read_nyu_mat,
@@ -32,6 +43,8 @@ from world2minecraft.networks.segmentation.public_sets import (
 from world2minecraft.networks.segmentation.scores import score_network
 from world2minecraft.networks.segmentation.training import SegmentationRun, Trainer
 
+SIZES = {"lite0": LITE0, "lite2": LITE2}
+HELD_OUT_ROOMS = 10  # The last ones, for the calibration with --only-generated.
 CURVE_EVERY_PX = 4  # Of the learning curve; the final scores look at every pixel.
 
 
@@ -42,9 +55,22 @@ def read_nyu(place: Path, part: Part, cache: Path | None) -> list[LabelledFrame]
     return read_nyu_folder(place, [part], cache)
 
 
-def write_onnx(run: Path, out: Path, frames: list[LabelledFrame], weights: str) -> None:
+def split_rooms(
+    frames: list[LabelledFrame],
+) -> tuple[list[LabelledFrame], list[LabelledFrame]]:
+    """Return the generated frames of all rooms but the last ones, and those of the last ones."""
+    rooms = [frame.name.partition("-")[0] for frame in frames]
+    kept = set(sorted(set(rooms))[-HELD_OUT_ROOMS:])
+    first = [frame for frame, room in zip(frames, rooms, strict=True) if room not in kept]
+    last = [frame for frame, room in zip(frames, rooms, strict=True) if room in kept]
+    if not first:
+        sys.exit(f"--only-generated keeps {HELD_OUT_ROOMS} rooms; generate more with --rooms N")
+    return first, last
+
+
+def write_onnx(run: Path, out: Path, frames: list[LabelledFrame], weights: str, size: str) -> None:
     """Calibrate and export the averaged weights of a run."""
-    network = SegmentationNet()
+    network = SegmentationNet(SIZES[size])
     network.load_state_dict(load_file(str(run / "mean.safetensors")))
     shares = load_file(str(run / "optimiser.safetensors"))["class_weights"].numpy()
     calibration = fit_calibration(network, frames, shares)
@@ -65,10 +91,17 @@ def write_onnx(run: Path, out: Path, frames: list[LabelledFrame], weights: str) 
 def parsed() -> argparse.Namespace:
     """Return the options of the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--nyu", type=Path, required=True)
+    parser.add_argument("--nyu", type=Path, required=True, help="frames of NYUv2")
     parser.add_argument("--sun-rgbd", type=Path, help="labelled frame folders to add")
-    parser.add_argument("--run", type=Path, required=True)
-    parser.add_argument("--backbone", type=Path, help="ncnn .param of a ShuffleNetV2 1.0x")
+    parser.add_argument("--run", type=Path, required=True, help="folder of the run")
+    parser.add_argument("--generated", type=Path, help="folder of frames of generated rooms")
+    parser.add_argument("--rooms", type=int, help="number of rooms to generate frames of first")
+    parser.add_argument("--only-generated", action="store_true", help="train on no real frame")
+    parser.add_argument("--size", default="lite2", choices=sorted(SIZES))
+    parser.add_argument("--backbone", type=Path, help="published weights of an EfficientNet-Lite")
+    parser.add_argument("--device", default="cpu", help="device of PyTorch, such as cuda")
+    parser.add_argument("--workers", type=int, default=0, help="processes that prepare batches")
+    parser.add_argument("--batch", type=int, default=SegmentationRun.batch, help="windows a step")
     parser.add_argument("--cache", type=Path, help="folder that keeps the smoothed depth")
     parser.add_argument("--steps", type=int, default=SegmentationRun.steps)
     parser.add_argument("--until", type=int, help="stop before the last step")
@@ -77,26 +110,46 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--export", type=Path, help="write the trained network as ONNX")
     parser.add_argument("--weights", default="half", help="format of the exported weights")
-    return parser.parse_args()
+    chosen = parser.parse_args()
+    if chosen.generated is None and (chosen.rooms or chosen.only_generated):
+        parser.error("--rooms and --only-generated need --generated FOLDER")
+    return chosen
 
 
 def main() -> None:
     """Train, print, save, export."""
     chosen = parsed()
     torch.set_num_threads(chosen.threads)
+    if chosen.rooms:
+        seeds = range(FIRST_SEED, FIRST_SEED + chosen.rooms)
+        write_frames(chosen.generated, generate_frames(seeds))
     if chosen.until != 0:
         train(chosen)
     if chosen.export:
-        frames = read_nyu(chosen.nyu, "calibration", chosen.cache)
-        write_onnx(chosen.run, chosen.export, frames, chosen.weights)
+        if chosen.only_generated:
+            frames = split_rooms(read_frames(chosen.generated))[1]
+        else:
+            frames = read_nyu(chosen.nyu, "calibration", chosen.cache)
+        write_onnx(chosen.run, chosen.export, frames, chosen.weights, chosen.size)
 
 
 def train(chosen: argparse.Namespace) -> None:
-    """Train from where the run folder stands."""
-    frames = read_nyu(chosen.nyu, "train", chosen.cache)
-    if chosen.sun_rgbd:
-        frames += [read_sun_rgbd(folder) for folder in find_sun_rgbd(chosen.sun_rgbd)]
-    trainer = Trainer(SegmentationRun(steps=chosen.steps), frames)
+    """Train from the state in the run folder, if there is one."""
+    generated = read_frames(chosen.generated) if chosen.generated else []
+    frames: list[LabelledFrame] = []
+    if chosen.only_generated:
+        generated, _ = split_rooms(generated)
+    else:
+        frames = read_nyu(chosen.nyu, "train", chosen.cache)
+        if chosen.sun_rgbd:
+            frames += [read_sun_rgbd(folder) for folder in find_sun_rgbd(chosen.sun_rgbd)]
+    trainer = Trainer(
+        SegmentationRun(steps=chosen.steps, batch=chosen.batch, size=SIZES[chosen.size]),
+        frames,
+        generated,
+        device=chosen.device,
+        workers=chosen.workers,
+    )
     if not trainer.resume(chosen.run) and chosen.backbone:
         network = SegmentationNet(trainer.run.size)
         network.load_state_dict(trainer.network.state_dict())
@@ -105,7 +158,7 @@ def train(chosen: argparse.Namespace) -> None:
     chosen.run.mkdir(parents=True, exist_ok=True)
     write_text(chosen.run / "command.txt", f"python {shlex.join(sys.argv)}\n")
     held_out = read_nyu(chosen.nyu, "validation", chosen.cache)
-    offset = undo_class_weights(trainer.weights.numpy())
+    offset = undo_class_weights(trainer.weights.cpu().numpy())
     start, before = time.process_time(), trainer.step
     scoring = 0.0
 

@@ -1,4 +1,4 @@
-"""The segmentation network: shapes, start, learning, resumed runs, calibration and export."""
+"""The segmentation network: shapes, learning, resumed runs, calibration and export."""
 
 from dataclasses import replace
 
@@ -7,14 +7,8 @@ import pytest
 import torch
 from labelled_rooms import room_frame
 
-from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.networks.segmentation import training
-from world2minecraft.networks.segmentation.augmentation import draw_example
-from world2minecraft.networks.segmentation.backbone import (
-    encoder_convolutions,
-    read_ncnn_convolutions,
-    start_encoder,
-)
+from world2minecraft.networks.segmentation.augmentation import Example
 from world2minecraft.networks.segmentation.calibration import (
     Calibration,
     fit_calibration,
@@ -23,15 +17,17 @@ from world2minecraft.networks.segmentation.calibration import (
 )
 from world2minecraft.networks.segmentation.export import CalibratedNet, export_segmentation
 from world2minecraft.networks.segmentation.frames import IGNORED
-from world2minecraft.networks.segmentation.network import TINY, SegmentationNet
+from world2minecraft.networks.segmentation.network import TINY, InvertedResidual, SegmentationNet
 from world2minecraft.networks.segmentation.scores import (
     SegmentationScores,
     calibration_error,
     confusion_matrix,
     frame_logits,
+    mirror_geometry,
     score_network,
 )
 from world2minecraft.networks.segmentation.training import (
+    ExampleBatches,
     SegmentationRun,
     Trainer,
     class_weights,
@@ -68,97 +64,14 @@ def test_geometry_starts_without_effect_and_gets_gradients():
 
 
 def test_training_computes_what_evaluation_does():
-    # Training takes matrix products and another order of the axes; without norms they agree.
-    network = SegmentationNet(TINY)
-    for module in network.modules():
-        if isinstance(module, torch.nn.BatchNorm2d | torch.nn.Dropout2d):
-            module.eval()
+    # Training takes matrix products and another order of axes; without what is random they agree.
+    network = SegmentationNet(TINY).eval()
     given = random_inputs(48, 64)
-    trained = network.eval()(*given)
+    evaluated = network(*given)
+    random = torch.nn.BatchNorm2d | torch.nn.Dropout2d | InvertedResidual
     for module in network.modules():
-        is_fixed = isinstance(module, torch.nn.BatchNorm2d | torch.nn.Dropout2d)
-        module.training = not is_fixed
-    assert torch.allclose(network(*given), trained, atol=1e-5)
-
-
-def write_ncnn(path, weights, *, half=True):
-    """A pair of files with a convolution for each (weight, bias), and layers between them."""
-    lines, data = ["7767517", f"{len(weights) + 1} 2", "Input in 0 1 in"], b""
-    for n, (weight, bias) in enumerate(weights):
-        kind = "ConvolutionDepthWise" if n % 2 else "Convolution"
-        lines.append(
-            f"{kind} conv{n} 1 1 a b 0={len(weight)} 1={weight.shape[2]} 5={int(bias is not None)} "
-            f"6={weight.size} 9=2 -23310=1,1.0e-01"
-        )
-        lines.append(f"ShuffleChannel shuffle{n} 1 1 a b 0=2")
-        stored = weight.astype("<f2" if half else "<f4").tobytes()
-        data += (0x01306B47 if half else 0).to_bytes(4, "little") + stored
-        data += b"\0" * (-len(stored) % 4)
-        data += b"" if bias is None else bias.astype("<f4").tobytes()
-    path.write_text("\n".join(lines) + "\n")
-    path.with_suffix(".bin").write_bytes(data)
-    return path
-
-
-def random_weights(shapes, seed=0):
-    rng = np.random.default_rng(seed)
-    return [
-        (rng.standard_normal(s).astype(np.float16).astype(np.float32), rng.random(s[0], np.float32))
-        for s in shapes
-    ]
-
-
-@pytest.mark.parametrize("half", [True, False])
-def test_ncnn_weights_come_back(tmp_path, half):
-    weights = random_weights([(4, 3, 3, 3), (3, 1, 3, 3), (5, 4, 1, 1)])  # 27 halves are padded.
-    layers = read_ncnn_convolutions(write_ncnn(tmp_path / "net.param", weights, half=half))
-    assert [layer.name for layer in layers] == ["conv0", "conv1", "conv2"]
-    for layer, (weight, bias) in zip(layers, weights, strict=True):
-        assert (layer.weight == weight).all()
-        assert (layer.bias == bias).all()
-
-
-def test_ncnn_layer_without_biases_has_zeros(tmp_path):
-    ((weight, _),) = random_weights([(4, 3, 1, 1)])
-    (layer,) = read_ncnn_convolutions(write_ncnn(tmp_path / "net.param", [(weight, None)]))
-    assert (layer.bias == 0).all()
-
-
-def test_damaged_ncnn_files_are_named(tmp_path):
-    path = write_ncnn(tmp_path / "net.param", random_weights([(4, 3, 3, 3)]))
-    data = path.with_suffix(".bin").read_bytes()
-    path.with_suffix(".bin").write_bytes(data[:-8])
-    with pytest.raises(DamagedFileError, match="ends inside layer conv0"):
-        read_ncnn_convolutions(path)
-    path.with_suffix(".bin").write_bytes(b"\x01\x02\x03\x04" + data[4:])
-    with pytest.raises(DamagedFileError, match="unknown way"):
-        read_ncnn_convolutions(path)
-    with pytest.raises(DamagedFileError, match="has 0 convolutions"):
-        path.write_text("7767517\n0 0\n")
-        read_ncnn_convolutions(path, 1)
-    path.write_text("hello\n")
-    with pytest.raises(DamagedFileError, match="not an ncnn network"):
-        read_ncnn_convolutions(path)
-
-
-def test_encoder_starts_from_a_backbone(tmp_path):
-    network = SegmentationNet(TINY)
-    shapes = [tuple(one.weight.shape) for one in encoder_convolutions(network)]
-    weights = random_weights(shapes)
-    start_encoder(network, write_ncnn(tmp_path / "net.param", weights))
-    first, *others = encoder_convolutions(network)
-    assert (first.weight.detach().numpy() == weights[0][0][:, ::-1]).all()  # From BGR to RGB.
-    for module, (weight, bias) in zip(others, weights[1:], strict=True):
-        assert (module.weight.detach().numpy() == weight).all()
-        assert (module.bias.detach().numpy() == bias).all()
-
-
-def test_backbone_of_another_size_is_named(tmp_path):
-    network = SegmentationNet(TINY)
-    shapes = [tuple(one.weight.shape) for one in encoder_convolutions(network)]
-    shapes[1] = (9, 1, 3, 3)
-    with pytest.raises(DamagedFileError, match="conv1 has the shape"):
-        start_encoder(network, write_ncnn(tmp_path / "net.param", random_weights(shapes)))
+        module.training = not isinstance(module, random)
+    assert torch.allclose(network(*given), evaluated, atol=1e-5)
 
 
 def test_ignored_pixels_do_not_count():
@@ -182,20 +95,21 @@ def test_class_weights_fall_with_the_root_of_the_share():
 
 
 def test_a_run_learns(frames):
-    trainer = Trainer(replace(RUN, steps=160), frames)
+    trainer = Trainer(replace(RUN, steps=20, rate=1e-2, encoder_rate=1.0, mean_of=0.8), frames)
     losses = []
-    trainer.train(160, lambda step, loss, network: losses.append(loss), 20)
+    trainer.train(20, lambda step, loss, network: losses.append(loss), 5)
     assert losses[-1] < 0.5 * losses[0]
     assert score_network(trainer.mean, frames).pixel_accuracy > 0.5
 
 
 def test_a_resumed_run_ends_with_the_same_weights(frames, tmp_path):
-    whole = Trainer(RUN, frames)
+    run = replace(RUN, pretraining=0.1, generated_share=0.3)  # 4 steps of generated frames.
+    whole = Trainer(run, frames[:2], frames[2:])
     whole.train(7)
-    part = Trainer(RUN, frames)
+    part = Trainer(run, frames[:2], frames[2:])
     part.train(4)
     part.save(tmp_path)
-    rest = Trainer(RUN, frames)
+    rest = Trainer(run, frames[:2], frames[2:])
     assert not rest.resume(tmp_path / "elsewhere")
     assert rest.resume(tmp_path)
     rest.train(7)
@@ -204,18 +118,51 @@ def test_a_resumed_run_ends_with_the_same_weights(frames, tmp_path):
         assert all(torch.equal(states[0][key], states[1][key]) for key in states[0])
 
 
-def test_each_frame_is_drawn_once_a_round(frames, monkeypatch):
-    trainer, seen = Trainer(replace(RUN, batch=2), frames), []
+@pytest.fixture
+def shown(frames, monkeypatch):
+    """A function that returns the names of the frames in each of the first steps of a run."""
+    names = []
 
     def noted(frame, rng, crop):
-        seen.append(frame.name)
-        return draw_example(frame, rng, crop)
+        names.append(frame.name)
+        return Example(np.zeros((3, 2, 2)), np.zeros((7, 1, 1)), np.zeros((1, 1), np.uint8))
+
+    def names_of(run, real, generated, steps):
+        batches = ExampleBatches(run, real, generated)
+        for step in range(steps):
+            batches[step]
+        return np.array(names).reshape(steps, run.batch)
 
     monkeypatch.setattr(training, "draw_example", noted)
-    for step in range(6):
-        trainer.batch(step)
-    rounds = [sorted(seen[n : n + 3]) for n in range(0, 12, 3)]
-    assert rounds == [["0000", "0001", "0002"]] * 4
+    return names_of
+
+
+def test_each_frame_is_drawn_once_a_round(frames, shown):
+    seen = shown(RUN, frames, [], 6).reshape(4, 3)
+    assert (np.sort(seen, axis=1) == ["0000", "0001", "0002"]).all()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
+def test_generated_frames_have_their_share(frames, shown, share):
+    run = replace(RUN, steps=100, batch=8, pretraining=0.25, generated_share=share)
+    is_generated = shown(run, frames[:1], frames[1:], 100) != "0000"
+    assert is_generated[:25].all()
+    assert is_generated[25:].mean() == pytest.approx(share, abs=0.07 if share == 0.4 else 0)
+
+
+@pytest.mark.parametrize("kind", ["real", "generated"])
+def test_a_run_may_have_one_kind_of_frames(frames, shown, kind):
+    run = replace(RUN, pretraining=0.5, generated_share=0.5)
+    given = (frames, []) if kind == "real" else ([], frames)
+    assert set(shown(run, *given, 40).flat) == {"0000", "0001", "0002"}
+
+
+def test_batches_of_a_step_are_the_same(frames):
+    first, second = (ExampleBatches(RUN, frames[:2], frames[2:]) for _ in range(2))
+    first[3]
+    for one, other in zip(first[7], second[7], strict=True):
+        assert torch.equal(one, other)
+    assert not torch.equal(first[7][0], first[8][0])
 
 
 def test_learning_rate_is_constant_and_then_falls(frames):
@@ -227,9 +174,9 @@ def test_learning_rate_is_constant_and_then_falls(frames):
 
 def test_encoder_learns_at_a_lower_rate(frames):
     trainer = Trainer(replace(RUN, encoder_rate=0.0, decay=0.0), frames)
-    before = {key: value.clone() for key, value in trainer.network.state_dict().items()}
+    before = {key: value.clone() for key, value in trainer.network.named_parameters()}
     trainer.train(2)
-    for key, value in trainer.network.state_dict().items():
+    for key, value in trainer.network.named_parameters():
         if key.startswith("encoder."):
             assert torch.equal(value, before[key])
     after = trainer.network.decoder.classify[1].weight
@@ -269,7 +216,7 @@ def test_undone_weights_are_a_share_of_their_logarithm():
 
 def test_calibration_has_a_temperature_for_each_input(frames):
     trainer = Trainer(RUN, frames)
-    trainer.train(20)
+    trainer.train(5)
     with torch.no_grad():
         trainer.mean.decoder.classify[1].weight.mul_(20)  # Too sure of itself.
     calibration = fit_calibration(trainer.mean, frames[:1], trainer.weights.numpy())
@@ -278,20 +225,40 @@ def test_calibration_has_a_temperature_for_each_input(frames):
     assert calibration.offset.shape == (40,)
 
 
-@pytest.mark.parametrize("inputs", [{}, {"depth": False}, {"colour": False}])
-def test_exported_file_computes_what_the_network_does(frames, tmp_path, inputs):
+@pytest.fixture(scope="module")
+def exported(frames, tmp_path_factory):
+    """A network, its calibration, and an exported file with the report."""
     trainer = Trainer(RUN, frames)
     trainer.train(10)
-    offset = np.linspace(-1, 1, 40, dtype=np.float32)
-    calibration = Calibration(offset, (1.5, 2.0, 3.0))
-    path = tmp_path / "segmentation.onnx"
+    calibration = Calibration(np.linspace(-1, 1, 40, dtype=np.float32), (1.5, 2.0, 3.0))
+    path = tmp_path_factory.mktemp("exported") / "segmentation.onnx"
     report = export_segmentation(trainer.mean, calibration, path, {"steps": "10"})
+    return trainer.mean, calibration, path, report
+
+
+def test_export_reports_how_far_it_is_off(exported):
+    _, _, path, report = exported
     assert report.difference < 1e-5
-    assert report.moved < 1e-4
+    assert 0 < report.moved < 1e-4
+    assert report.size == path.stat().st_size
+
+
+def test_int8_file_is_smaller_and_close(exported, tmp_path):
+    network, calibration, _, half = exported
+    path = tmp_path / "small.onnx"
+    report = export_segmentation(network, calibration, path, {}, weights="int8")
+    assert report.size < half.size
+    assert half.moved < report.moved < 1e-3
+
+
+@pytest.mark.parametrize("inputs", [{}, {"depth": False}, {"colour": False}])
+def test_exported_file_computes_what_the_network_does(frames, exported, inputs):
+    network, calibration, path, _ = exported
     frame = frames[0]
     temperature = {"depth": 2.0, "colour": 3.0}.get(next(iter(inputs), ""), 1.5)
-    logits = frame_logits(trainer.mean, frame, mirrored=True, **inputs)
-    wanted = ((logits + torch.from_numpy(offset)[:, None, None]) / temperature).softmax(dim=0)
+    logits = frame_logits(network, frame, mirrored=True, **inputs)
+    offset = torch.from_numpy(calibration.offset)[:, None, None]
+    wanted = ((logits + offset) / temperature).softmax(dim=0)
     found = SegmentationModel(path).predict(
         frame.colour if inputs.get("colour", True) else None,
         frame.stored_m if inputs.get("depth", True) else None,
@@ -303,12 +270,22 @@ def test_exported_file_computes_what_the_network_does(frames, tmp_path, inputs):
     assert np.abs(sampled - wanted.numpy()).max() < 0.02
 
 
+def test_mirrored_batch_is_the_mean_of_two_runs(frames):
+    network = Trainer(RUN, frames).mean.eval()
+    offset = torch.linspace(-1, 1, 40)
+    calibrated = CalibratedNet(network, Calibration(offset.numpy(), (2.0, 1, 1)), mirrored=True)
+    colour, geometry = random_inputs(48, 64)
+    turned = network(colour.flip(3), mirror_geometry(geometry)).flip(3)
+    logits = ((network(colour, geometry) + turned) / 2 + offset.view(-1, 1, 1)) / 2.0
+    fine = torch.nn.functional.interpolate(logits, (48, 64), mode="bilinear", align_corners=False)
+    assert torch.allclose(calibrated(colour, geometry), fine.softmax(dim=1), atol=1e-6)
+
+
 def test_mirrored_look_is_symmetric(frames):
     network = CalibratedNet(
         Trainer(RUN, frames).mean, Calibration(np.zeros(40, np.float32)), mirrored=True
     )
     colour, geometry = random_inputs(48, 64)
-    turned = geometry.flip(3).clone()
-    turned[:, 4] *= -1
-    first, second = network(colour, geometry), network(colour.flip(3), turned)
+    first = network(colour, geometry)
+    second = network(colour.flip(3), mirror_geometry(geometry))
     assert torch.allclose(first, second.flip(3), atol=1e-5)

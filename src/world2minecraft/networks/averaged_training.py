@@ -47,11 +47,15 @@ class AveragedTrainer(Generic[Network]):
         """Update the running mean of the weights, faster at the beginning."""
         keep = min(self.run.mean_of, (self.step + 1) / (self.step + 10))
         new = self.network.state_dict()
+        means: list[Tensor] = []
+        values: list[Tensor] = []
         for name, value in self.mean.state_dict().items():
             if value.dtype.is_floating_point:
-                value.lerp_(new[name], 1 - keep)
+                means.append(value)
+                values.append(new[name])
             else:
                 value.copy_(new[name])
+        torch._foreach_lerp_(means, values, 1 - keep)  # type: ignore[reportPrivateImportUsage]
 
     def _further_state(self) -> dict[str, Tensor]:
         """Return further tensors to save beside the optimizer state."""
@@ -79,13 +83,20 @@ class AveragedTrainer(Generic[Network]):
         state = load_file(str(folder / "optimiser.safetensors"))
         for name, parameter in self.network.named_parameters():
             keys = [key for key in state if key.rpartition("/")[0] == name]
-            self.optimiser.state[parameter] = {key.rpartition("/")[2]: state[key] for key in keys}
+            self.optimiser.state[parameter] = {
+                key.rpartition("/")[2]: _moved(state[key], parameter.device) for key in keys
+            }
         self.step = int((folder / "step.txt").read_text())
         return True
+
+
+def _moved(value: Tensor, device: torch.device) -> Tensor:
+    """Return a tensor of the optimizer on a device. Counts of steps stay on the CPU."""
+    return value.to(device) if value.dim() else value
 
 
 def _write(state: dict[str, Tensor], path: Path) -> None:
     """Write tensors to a file, whole or not at all."""
     spare = path.with_suffix(".tmp")
-    save_file({key: value.contiguous() for key, value in state.items()}, str(spare))
+    save_file({key: value.contiguous().cpu() for key, value in state.items()}, str(spare))
     spare.replace(path)

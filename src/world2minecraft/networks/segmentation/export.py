@@ -56,10 +56,14 @@ class CalibratedNet(nn.Module):
 
     def forward(self, colour: Tensor, geometry: Tensor) -> Tensor:
         """Return probabilities [1, 40, H, W]."""
-        logits = self.network(colour, geometry)
-        if self.mirrored:
-            turned = self.network(colour.flip(3), mirror_geometry(geometry))
-            logits = (logits + turned.flip(3)) / 2
+        if self.mirrored:  # In one batch, so that the file holds the weights once.
+            pair = self.network(
+                torch.cat([colour, colour.flip(3)]),
+                torch.cat([geometry, mirror_geometry(geometry)]),
+            )
+            logits = (pair[:1] + pair[1:].flip(3)) / 2
+        else:
+            logits = self.network(colour, geometry)
         both, no_depth, no_colour = self.temperatures
         has_colour = colour.abs().amax() > 0
         temperature = torch.where(geometry.abs().amax() > 0, both, no_depth)

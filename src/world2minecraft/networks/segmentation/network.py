@@ -1,9 +1,9 @@
-"""The segmentation network: a ShuffleNetV2 for colour, a stem for geometry and a light decoder.
+"""The segmentation network: an EfficientNet-Lite for colour, a stem for geometry, a light decoder.
 
-The encoder is ShuffleNetV2 1.0x (Ma et al., 2018) with LeakyReLU and with norms folded into the
-convolutions, as in the backbone that may start it. Geometry has its own small stem and is added to
-the features of colour at strides 4, 8 and 16 through convolutions that start at zero, so that a
-trained encoder is not disturbed. Either of the two inputs may be all zero.
+The encoder is EfficientNet-Lite (Tan and Le, 2019, without squeeze-and-excitation and with ReLU6),
+so that published weights can start it. Geometry has its own small stem and is added to the features
+of colour at strides 4, 8 and 16 through convolutions that start at zero, so that a trained encoder
+is not disturbed. Either of the two inputs may be all zero.
 """
 
 from dataclasses import dataclass
@@ -17,26 +17,41 @@ from world2minecraft.reconstruction.recognition.segmentation_channels import GEO
 CLASSES = 40
 SLOPE = 0.1
 OUTPUT_STRIDE = 4
+# Of the seven groups of blocks of an EfficientNet.
+KERNELS, STRIDES = (3, 3, 5, 3, 5, 5, 3), (1, 2, 2, 2, 1, 2, 1)
+EXPANSIONS = (1, 6, 6, 6, 6, 6, 6)
+LEVELS = ((0, 1), (2,), (3, 4), (5, 6))  # Groups that end at strides 4, 8, 16 and 32.
+NORM_EPSILON = 1e-3  # Of the published weights.
+MOST_DROPPED = 0.2  # How often training leaves out the last block.
 
 
 @dataclass(frozen=True)
 class SegmentationSize:
-    """The numbers of channels of a segmentation network.
+    """The numbers of channels and blocks of a segmentation network. The default is ``LITE2``.
 
     Attributes:
-        encoder: Channels of the colour features at strides 4, 8, 16 and 32.
-        blocks: Number of units of stride 1 in each of the last three stages of the encoder.
+        stem: Channels of the first convolution of the encoder.
+        widths: Channels of the seven groups of blocks of the encoder.
+        repeats: Number of blocks in each group.
         geometry: Channels of the geometry features at strides 4, 8 and 16.
         decoder: Channels of the decoder.
     """
 
-    encoder: tuple[int, int, int, int] = (24, 116, 232, 464)
-    blocks: tuple[int, int, int] = (3, 7, 3)
+    stem: int = 32
+    widths: tuple[int, ...] = (16, 24, 48, 88, 120, 208, 352)
+    repeats: tuple[int, ...] = (1, 3, 3, 4, 4, 5, 1)
     geometry: tuple[int, int, int] = (32, 64, 96)
-    decoder: int = 80
+    decoder: int = 96
+
+    @property
+    def encoder(self) -> tuple[int, ...]:
+        """Channels of the colour features at strides 4, 8, 16 and 32."""
+        return tuple(self.widths[groups[-1]] for groups in LEVELS)
 
 
-TINY = SegmentationSize((8, 12, 16, 24), (1, 1, 1), (8, 8, 8), 12)
+LITE2 = SegmentationSize()
+LITE0 = SegmentationSize(widths=(16, 24, 40, 80, 112, 192, 320), repeats=(1, 2, 2, 3, 3, 4, 1))
+TINY = SegmentationSize(8, (8, 8, 12, 16, 16, 24, 24), (1,) * 7, (8, 8, 8), 12)
 
 
 def _activation() -> nn.Module:
@@ -61,56 +76,80 @@ class Pointwise(nn.Conv2d):
         return functional.linear(rows, self.weight[:, :, 0, 0], self.bias).permute(0, 3, 1, 2)
 
 
-class ShuffleUnit(nn.Module):
-    """A unit of ShuffleNetV2. With a stride of 2 it has two branches, else half is passed on."""
+class Padded(nn.Conv2d):
+    """A convolution with the padding of TensorFlow where the sides of the input are even.
 
-    def __init__(self, channels_in: int, channels_out: int, stride: int):
-        super().__init__()
-        half = channels_out // 2
-        self.stride = stride
-        self.shortcut = nn.Sequential()
-        if stride == 2:
-            self.shortcut = nn.Sequential(
-                _depthwise(channels_in, 3, 2, bias=True),
-                Pointwise(channels_in, half),
-                _activation(),
-            )
-        self.body = nn.Sequential(
-            Pointwise(channels_in if stride == 2 else half, half),
-            _activation(),
-            _depthwise(half, 3, stride, bias=True),
-            Pointwise(half, half),
-            _activation(),
+    With a stride of 2 the result has half the size, rounded up.
+    """
+
+    def __init__(self, given: int, taken: int, kernel: int, stride: int, groups: int = 1):
+        half = kernel // 2
+        super().__init__(
+            given, taken, kernel, stride, half if stride == 1 else 0, groups=groups, bias=False
         )
+        self.sides = (half - 1, half + 1) * 2 if stride == 2 else None
+
+    def forward(self, input: Tensor) -> Tensor:
+        """Apply the convolution to [B, C, H, W]."""
+        if self.sides:
+            input = functional.pad(input, self.sides)
+        return super().forward(input)
+
+
+def _norm(channels: int) -> nn.BatchNorm2d:
+    return nn.BatchNorm2d(channels, eps=NORM_EPSILON)
+
+
+class InvertedResidual(nn.Module):
+    """A block of EfficientNet-Lite: expand, depthwise convolution, project."""
+
+    def __init__(self, given: int, taken: int, kernel: int, stride: int, expansion: int):
+        super().__init__()
+        wide = given * expansion
+        expand = [Pointwise(given, wide, bias=False), _norm(wide), nn.ReLU6(inplace=True)]
+        self.body = nn.Sequential(
+            *(expand if expansion > 1 else []),
+            Padded(wide, wide, kernel, stride, groups=wide),
+            _norm(wide),
+            nn.ReLU6(inplace=True),
+            Pointwise(wide, taken, bias=False),
+            _norm(taken),
+        )
+        self.is_residual = stride == 1 and given == taken
+        self.dropped = 0.0
 
     def forward(self, x: Tensor) -> Tensor:
-        """Apply the unit and interleave the channels of its two halves."""
-        if self.stride == 2:
-            first, second = self.shortcut(x), self.body(x)
-        else:
-            first, second = x.chunk(2, dim=1)
-            second = self.body(second)
-        if not self.training:
-            return torch.stack([first, second], dim=2).flatten(1, 2)
-        rows = [half.permute(0, 2, 3, 1) for half in (first, second)]  # Channels stay last.
-        return torch.stack(rows, dim=4).flatten(3, 4).permute(0, 3, 1, 2)
+        """Apply the block. Training leaves a residual block out at random, for each image."""
+        added = self.body(x)
+        if not self.is_residual:
+            return added
+        if self.training and self.dropped:
+            kept = torch.rand(len(x), 1, 1, 1, device=x.device) >= self.dropped
+            added = added * (kept / (1 - self.dropped)).to(added.dtype)
+        return x + added
 
 
 class ColourEncoder(nn.Module):
-    """ShuffleNetV2 without its classifier. ``stem`` has stride 4, ``stages`` 8, 16 and 32."""
+    """The EfficientNet-Lite without its head. Its levels end at strides 4, 8, 16 and 32."""
 
     def __init__(self, size: SegmentationSize):
         super().__init__()
-        widths = size.encoder
         self.stem = nn.Sequential(
-            nn.Conv2d(3, widths[0], 3, 2, 1), _activation(), nn.MaxPool2d(3, 2, 1)
+            Padded(3, size.stem, 3, 2), _norm(size.stem), nn.ReLU6(inplace=True)
         )
-        self.stages = nn.ModuleList(
-            nn.Sequential(
-                ShuffleUnit(before, after, 2), *(ShuffleUnit(after, after, 1) for _ in range(count))
-            )
-            for before, after, count in zip(widths, widths[1:], size.blocks, strict=False)
-        )
+        given, done, total = size.stem, 0, sum(size.repeats)
+        self.levels = nn.ModuleList()
+        for groups in LEVELS:
+            level = nn.Sequential()
+            for group in groups:
+                width, kernel, expansion = size.widths[group], KERNELS[group], EXPANSIONS[group]
+                for number in range(size.repeats[group]):
+                    stride = STRIDES[group] if number == 0 else 1
+                    block = InvertedResidual(given, width, kernel, stride, expansion)
+                    block.dropped = MOST_DROPPED * done / total  # Later ones more often.
+                    level.append(block)
+                    given, done = width, done + 1
+            self.levels.append(level)
 
 
 class SeparableBlock(nn.Module):
@@ -226,11 +265,11 @@ class SegmentationNet(nn.Module):
             Logits of the 40 classes [B, 40, ceil(H / 4), ceil(W / 4)].
         """
         added = self.geometry(geometry)
-        x = self.encoder.stem(colour) + added[0]
-        features = [x]
-        for level, stage in enumerate(self.encoder.stages):
-            x = stage(x)
-            if level + 1 < len(added):
-                x = x + added[level + 1]
+        x = self.encoder.stem(colour)
+        features = []
+        for number, level in enumerate(self.encoder.levels):
+            x = level(x)
+            if number < len(added):
+                x = x + added[number]
             features.append(x)
         return self.decoder(features)

@@ -117,13 +117,14 @@ def frame_logits(
     geometry = np.zeros(shape, np.float32)
     if depth:
         geometry = channels_of_fine_depth(frame.depth_m, pixel_rays(frame.depth_camera))
-    given = torch.from_numpy(colours)[None], torch.from_numpy(geometry)[None]
+    device = next(network.parameters()).device
+    given = tuple(torch.from_numpy(one)[None].to(device) for one in (colours, geometry))
     logits = network(*given)
     if mirrored:
         turned = network(given[0].flip(3), mirror_geometry(given[1]))
         logits = (logits + turned.flip(3)) / 2
     size = sampled_labels(frame, every_px).shape
-    return functional.interpolate(logits, size=size, mode="bilinear", align_corners=False)[0]
+    return functional.interpolate(logits, size=size, mode="bilinear", align_corners=False)[0].cpu()
 
 
 def sampled_labels(frame: LabelledFrame, every_px: int) -> np.ndarray:
