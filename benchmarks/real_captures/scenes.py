@@ -112,7 +112,7 @@ def list_scenes(data: Path, nyu: int) -> list[Scene]:
         Scene("realsense-unposed", _in_place("aims_realsense_unposed")),
         Scene("bedroom-photos", _in_place("real_captures/vggt_bedroom")),
         Scene("short-clip", _in_place("real_captures/deepv2d_nyu_0")),
-        *(_nyu_scene(number) for number in sample_nyu(data / NYU_FOLDER, nyu)),
+        *(nyu_scene(number) for number in sample_nyu(data / NYU_FOLDER, nyu)),
     ]
 
 
@@ -215,7 +215,8 @@ def write_emsanet(data: Path, folder: Path) -> Path:
     return _write_frame(folder, "lounge", source / "sample_rgb.png", depth_m, AZURE_CAMERA)
 
 
-def _nyu_scene(number: int) -> Scene:
+def nyu_scene(number: int) -> Scene:
+    """Return the scene of one labelled frame of NYUv2, lifted with its depth."""
     name = f"{number:04d}"
 
     def prepare(data: Path, folder: Path) -> Path:

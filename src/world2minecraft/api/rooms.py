@@ -289,11 +289,13 @@ def _check_stage(start: str | None, follow: bool, chosen: "Parameters") -> None:
 
     path = chosen.predictions.path
     if follow and path:
-        raise UsageError("--follow cannot be combined with --predictions; omit one of them")
+        raise UsageError("follow cannot be combined with predictions; omit one of them")
     if not path and start is None and chosen.predictions != type(chosen.predictions)():
-        raise UsageError("--classes and --convention describe predictions; add --predictions DIR")
+        raise UsageError(
+            "classes and convention describe predictions; add some (--predictions DIR)"
+        )
     if follow and start is not None:
-        raise UsageError("--follow cannot be combined with --from; omit one of them")
+        raise UsageError("follow cannot be combined with a start stage (--from); omit one of them")
     stages = (*STAGES, "report")
     if start is not None and start not in stages:
         raise UnknownNameError("stage", start, stages)

@@ -122,9 +122,9 @@ def with_method(parameters: Parameters, method: str) -> Parameters:
     """Return the parameters with the settings of one of ``METHODS``.
 
     ``best`` does not change the parameters. ``paper`` follows the paper exactly: no refinement of
-    poses and depth, each DBSCAN cluster is an object, templates are matched by IoU over all cells
-    and rotations, and the build is not corrected. Values that the paper does not state (k, tau,
-    eta, fusion, labels) are the same in both.
+    poses and depth, no votes of a segmentation network, each DBSCAN cluster is an object, templates
+    are matched by IoU over all cells and rotations, and the build is not corrected. Values that the
+    paper does not state (k, tau, eta, fusion, labels) are the same in both.
 
     Raises:
         UnknownNameError: If the method does not exist.
@@ -135,6 +135,7 @@ def with_method(parameters: Parameters, method: str) -> Parameters:
     return replace(
         parameters,
         register=replace(parameters.register, passes=0),
+        occupy=replace(parameters.occupy, semantics="none"),
         find=replace(parameters.find, paper_compat=True),
         furnish=replace(parameters.furnish, paper_compat=True),
         mend=False,

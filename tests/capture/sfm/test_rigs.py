@@ -87,5 +87,5 @@ def test_panoramas_of_different_rooms_are_refused_by_name(places):
               RigMember(f"p{i // VIEWS}", i % VIEWS, view_to_panorama(i % VIEWS)))
         for i, one in enumerate(apart)
     ]  # fmt: skip
-    with pytest.raises(CaptureError, match="the places of 3 panoramas cannot be found"):
+    with pytest.raises(CaptureError, match="the positions of 3 panoramas cannot be estimated"):
         find_poses(apart, SMALL)

@@ -87,5 +87,5 @@ def test_predictors_are_found_by_name():
 
 
 def test_depth_takes_no_file():
-    with pytest.raises(UsageError, match="--predictor depth accepts no file, got 'depth:3'; for"):
+    with pytest.raises(UsageError, match="the predictor depth accepts no file, got 'depth:3'; for"):
         predictor("depth:3")

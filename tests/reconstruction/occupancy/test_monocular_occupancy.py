@@ -182,7 +182,7 @@ def test_a_scan_becomes_a_map_whatever_the_order_of_its_views(network):
 def test_without_pictures_there_is_nothing_to_say(network):
     bare = view_at(POSES[0], colour=None, colour_camera=None)
     scan = Scan([bare], np.eye(4), np.ones(3), ("v",))
-    with pytest.raises(CaptureError, match="contains no colour images; use --predictor depth"):
+    with pytest.raises(CaptureError, match="contains no colour images; use the predictor depth"):
         list(predictor(f"mono:{network}").predict(scan))
 
 

@@ -19,6 +19,8 @@ from world2minecraft.reconstruction.occupancy.rgbd_votes import (
     class_matrix,
     splat_depth,
 )
+from world2minecraft.reconstruction.parameters import Parameters, with_method
+from world2minecraft.reconstruction.recognition.segmentation import GENERATED_WEIGHTS, WEIGHTS
 
 ROOM = BoxRoom()
 CHAIR, SOFA, WALL = (nyu40_names()[name] - 1 for name in ("chair", "sofa", "wall"))
@@ -125,11 +127,27 @@ def test_each_pixel_has_the_depth_of_its_nearest_point(points):
     np.testing.assert_array_equal(found, wanted)
 
 
-def test_the_built_in_network_is_chosen_by_name():
-    (made,) = predictor("depth", OccupancyParameters(semantics="nyu")).voters  # type: ignore[attr-defined]
+def voters(name: str, **chosen) -> tuple:
+    """Return the voters of the predictor of depth."""
+    return predictor("depth", OccupancyParameters(semantics=name, **chosen)).voters  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("name", "file"),
+    [("auto", WEIGHTS), ("nyu", WEIGHTS), ("generated", GENERATED_WEIGHTS)],
+)
+def test_the_built_in_network_is_chosen_by_name(name, file):
+    (made,) = voters(name)
     assert isinstance(made, RgbdVoter)
+    assert made.model.weights == file
+    assert file.is_file()
+
+
+def test_no_network_votes_where_none_is_wanted():
     for name in ("", "none"):
-        assert predictor("depth", OccupancyParameters(semantics=name)).voters == ()  # type: ignore[attr-defined]
+        assert voters(name) == ()
+    assert OccupancyParameters().semantics == "auto"
+    assert with_method(Parameters(), "paper").occupy.semantics == "none"
 
 
 def test_shipped_weights_give_the_same_votes_on_each_run():

@@ -232,8 +232,8 @@ def test_ids_without_empty_cells_are_named(with_depth, tmp_path):
         labels = np.where(labels == 0, 255, labels).transpose(0, 2, 1)
         (tmp_path / f"{view.name}.pkl").write_bytes(dump_pickle({**stored, "y_pred": labels}))
     assert contradicted(with_depth, tmp_path) == (
-        "read as monoscene (axes x, z, y), only 0% of the cells are empty; check --classes, or "
-        "skip this check with --set predictions.check=false"
+        "read as monoscene (axes x, z, y), only 0% of the cells are empty; check the classes "
+        "(--classes), or skip this check with --set predictions.check=false"
     )
 
 

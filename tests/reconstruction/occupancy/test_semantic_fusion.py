@@ -165,7 +165,7 @@ def test_monocular_network_votes_by_the_cell_of_a_point(tmp_path):
 
 
 def test_voters_are_for_depth_alone(tmp_path):
-    with pytest.raises(UsageError, match="require --predictor depth, got 'mono'"):
+    with pytest.raises(UsageError, match="require the predictor depth, got 'mono'"):
         predictor("mono:x.onnx", OccupancyParameters(semantics="hf:a/b"))
     with pytest.raises(UsageError, match="requires --set occupy.mono_votes=true"):
         predictor("depth", OccupancyParameters(network="x.onnx"))

@@ -55,7 +55,7 @@ def test_a_run_with_a_segmenter(tmp_path, capture, monkeypatch):
 def test_a_run_with_votes_of_a_monocular_network(tmp_path, capture):
     """They join by the option alone, and by fusing anew what a run without them left."""
     pytest.importorskip("onnx")
-    plain = Parameters()
+    plain = Parameters(occupy=OccupancyParameters(semantics="none"))
     reconstruct(capture, tmp_path / "OUT", plain)
     assert not np.load(tmp_path / "OUT" / "evidence.npz")["votes"].any()
     network = write_network(tmp_path / "n.onnx")

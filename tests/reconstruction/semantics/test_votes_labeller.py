@@ -10,7 +10,12 @@ from hypothesis.extra import numpy as stn
 
 from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 from world2minecraft.reconstruction.semantics.smoothing import smooth_labels
-from world2minecraft.reconstruction.semantics.votes_labeller import VotesLabeller
+from world2minecraft.reconstruction.semantics.votes_labeller import (
+    ON_WALL_PENALTY,
+    VotesLabeller,
+    geometric_prior,
+    is_from_network,
+)
 
 
 def furnished():
@@ -35,6 +40,22 @@ def test_wrong_votes_are_outvoted():
     result = VotesLabeller().label(grid, replace(evidence, votes=noisy))
     kept = result.occupied & (truth > 0)
     assert (result.labels[kept] == truth[kept]).mean() > 0.99
+
+
+def test_shape_counts_less_beside_votes_of_a_network():
+    whole = np.zeros((4, 11), np.float32)
+    whole[:, 2] = 3
+    soft = whole + np.float32(0.25)
+    labels = np.array([3, 1, 10, 11])  # Wall, ceiling, furniture, object.
+    assert not is_from_network(whole).any()
+    assert is_from_network(soft).all()
+    beside_labels, beside_network = geometric_prior(labels, whole), geometric_prior(labels, soft)
+    at = (np.arange(4), labels - 1)
+    assert (beside_labels[at] > beside_network[at]).all()
+    assert (beside_network[at] > 0).all()
+    assert beside_network[0, 10] == np.float32(-ON_WALL_PENALTY)
+    assert (np.delete(beside_network, 10, axis=1) >= 0).all()
+    assert (beside_labels >= 0).all()
 
 
 def test_without_votes_the_geometric_label_stands():

@@ -64,16 +64,16 @@ def predictor(name: str, parameters: OccupancyParameters | None = None) -> Predi
         raise UsageError("occupy.network requires --set occupy.mono_votes=true")
     if file and family == "depth":
         raise UsageError(
-            f"--predictor depth accepts no file, got {name!r}; for a network file, use "
-            "--predictor mono:FILE.onnx"
+            f"the predictor depth accepts no file, got {name!r}; for a network file, use "
+            "mono:FILE.onnx (--predictor)"
         )
     silent = WITHOUT_VOTES if family == "depth" else (*WITHOUT_VOTES, AUTO)
     if chosen.semantics in silent and not chosen.mono_votes:
         return make(file) if file else make()
     if family != "depth":
         raise UsageError(
-            f"--semantics and occupy.mono_votes require --predictor depth, got {family!r}; "
-            "omit --predictor"
+            f"semantics and occupy.mono_votes require the predictor depth, got {family!r}; omit "
+            "the predictor (--predictor)"
         )
     from world2minecraft.reconstruction.occupancy.semantic_fusion import voters_of  # noqa: PLC0415  # Few runs have any.
 

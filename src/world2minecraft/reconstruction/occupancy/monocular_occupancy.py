@@ -60,7 +60,8 @@ class MonoPredictor:
                 yield self.look(view, scan.scan_to_room)
         if none:
             raise CaptureError(
-                "capture", "contains no colour images; use --predictor depth instead of mono"
+                "capture",
+                "contains no colour images; use the predictor depth instead of mono (--predictor)",
             )
 
     def look(self, view: View, scan_to_room: np.ndarray) -> GridEvidence:

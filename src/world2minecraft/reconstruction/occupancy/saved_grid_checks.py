@@ -132,7 +132,8 @@ def check_predictions(
     if given.empty is not None and given.empty < MIN_EMPTY:
         raise InputError(
             files.path,
-            f"{read_as_}, {faults[0]}; check --classes, or skip this check with --set "
+            f"{read_as_}, {faults[0]}; check the classes (--classes), or skip this check with "
+            "--set "
             "predictions.check=false",
         )
     return (f"the predictions, {read_as_}, are implausible: {'; '.join(faults)}",)

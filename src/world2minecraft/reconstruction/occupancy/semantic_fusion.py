@@ -128,7 +128,7 @@ def segmenter(name: str) -> Segmenter:
     make: Callable[[str], Segmenter] = SEGMENTERS.load(family)
     if not model:
         raise UsageError(
-            f"--semantics must be {', '.join(BUILT_IN)}, none or FAMILY:MODEL, such as "
+            f"semantics must be {', '.join(BUILT_IN)}, none or FAMILY:MODEL, such as "
             f"{family}:ORG/NAME, "
             f"got {name!r}"
         )

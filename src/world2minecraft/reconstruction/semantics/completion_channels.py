@@ -14,9 +14,9 @@ from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 
 KINDS = CLASS_COUNT - 1  # The classes of occupied cells, 1 to 11.
 ODDS_STEP = 0.05  # Log-odds a step of int8: -6 to 6 are -120 to 120.
-OFFSET_STEP = 0.01  # Half cells a step of int8: the mean surface point within its cell.
+OFFSET_STEP = 0.01  # Half cells per step of int8.
 HITS_STEP = 1 / 16  # log(1 + points) a step of uint8: 16 million points at most.
-HEIGHT_M = 2.5  # What a height is told in: about a room's.
+HEIGHT_M = 2.5  # Unit of heights: about that of a room.
 GREY = 127.5
 # occupied, free, unknown, certainty, height, whether height is known
 DENSE = 6

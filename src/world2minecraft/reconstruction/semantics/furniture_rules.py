@@ -38,9 +38,10 @@ REACH_M = {
     SemanticClass.SOFA: (0.32, 1.0),
     SemanticClass.CHAIR: (0.24, 1.15),
 }
-HEAD_M = 0.55  # How far pillows reach from the head of a bed.
+HEAD_M = 0.55  # Extent of pillows from the head of a bed, in metres.
 APART_M = 0.5  # A chair belongs to a table no further off.
 WALL_CELLS = 4  # In a column; then things to both sides of it stand apart.
+FLUSH_M = 0.12  # A picture reaches no farther from its wall.
 MARGIN_M = 0.64  # Walls matter within 0.45 m of a thing.
 TOP_M = 0.06  # A plate's cells lie this near its height.
 # What has a say before what: the arms of an easy chair are plates too, and would pass for a box.
@@ -235,12 +236,13 @@ def _is_foot(piece: Piece, seat: Seat, parameters: PieceParameters) -> bool:
 def _is_screen(piece: Piece, parameters: PieceParameters) -> bool:
     """Return whether a piece is a thin upright plate above the floor, wider than high.
 
-    It must be dark, or small, flat and blue like a lit screen, since cupboards may also be blue.
+    It must be dark, or small, flat and blue like a lit screen that is not flush with a wall, since
+    cupboards and pictures may also be blue.
     """
     off_floor = piece.low_m[2] >= parameters.screen_bottom_m
     dark = piece.oklab[0] <= parameters.screen_lightness
     small = piece.long_m <= parameters.monitor_m and piece.flat_share >= parameters.monitor_flat
-    lit = small and screen_share(piece.oklab[None], parameters) > 0
+    lit = small and piece.off_wall_m > FLUSH_M and screen_share(piece.oklab[None], parameters) > 0
     if not (off_floor and (dark or lit)):
         return False
     sized = within(piece.long_m, parameters.screen_width_m)

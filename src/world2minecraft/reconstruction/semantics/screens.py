@@ -17,7 +17,7 @@ from world2minecraft.reconstruction.layout.walls import WallRun
 
 PLATE_GATE_M = 0.05  # A screen's cells lie within this of its plane.
 ALIKE = 0.12  # Oklab difference of one cloth in the light and in its own shadow.
-MAX_DEPTHS = 6  # How many depths before one wall are looked at.
+MAX_DEPTHS = 6  # Maximum number of depths to examine before a wall.
 
 
 def label_screens(
