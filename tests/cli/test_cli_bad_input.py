@@ -175,7 +175,7 @@ def test_an_out_that_is_a_file_is_refused(good, tmp_path, capsys):
     out = tmp_path / "OUT"
     out.write_text("mine")
     assert w2m(["reconstruct", str(good), "--out", str(out)]) == 3
-    assert "is a file; --out must be a folder" in capsys.readouterr().err
+    assert "is a file; the output must be a folder" in capsys.readouterr().err
     assert out.read_text() == "mine"
 
 

@@ -77,7 +77,7 @@ def test_what_is_there_stays_without_force(schem, volume, tmp_path, capsys):
     (tmp_path / "b.schem").write_bytes(b"mine")
     assert convert(schem, tmp_path / "b.schem") == 2
     assert capsys.readouterr().err == (
-        f"error: {tmp_path / 'b.schem'} exists; add --force to replace it\n"
+        f"error: {tmp_path / 'b.schem'} exists; pass force (--force) to replace it\n"
     )
     assert (tmp_path / "b.schem").read_bytes() == b"mine"
     assert convert(schem, tmp_path / "b.schem", "--force") == 0
@@ -274,7 +274,8 @@ def test_a_scale_may_be_said_where_there_is_none(schem, run_folder, tmp_path, ca
     assert read_volume(tmp_path / "a.glb").blocks_per_metre == 4
     assert convert(schem, tmp_path / "b.glb", "--blocks-per-metre", "0") == 2
     assert convert(run_folder, tmp_path / "b.glb", "--blocks-per-metre", "2") == 2
-    assert "this room has a fixed scale of 4; omit --blocks-per-metre" in capsys.readouterr().err
+    expected = "this room has a fixed scale of 4; omit blocks per metre (--blocks-per-metre)"
+    assert expected in capsys.readouterr().err
 
 
 def test_meshes_of_others_are_refused(tmp_path, capsys):

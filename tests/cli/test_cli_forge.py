@@ -89,7 +89,7 @@ def test_a_port_that_is_taken_is_one_line(labels, capsys):
         assert run(["forge", str(labels), "--no-browser", "--port", port]) == 2
     told = capsys.readouterr().err
     assert told.startswith(f"error: cannot listen on 127.0.0.1:{port} (Address already in use)")
-    assert told.endswith("omit --port to use a free port\n")
+    assert told.endswith("omit the port (--port) to use a free one\n")
 
 
 @pytest.mark.parametrize(

@@ -56,15 +56,14 @@ def test_nothing_is_replaced_unless_it_is_said(own, volume, tmp_path, capsys):
     assert furniture(*words) == 0
     before = (own / "a.json").read_bytes()
     assert furniture(*words) == 2
-    assert "a.json exists; add --force to replace it, or choose another --name" in (
+    assert "a.json exists; choose another name (--name), or pass force (--force) to replace it" in (
         capsys.readouterr().err
     )
     assert furniture(*words, "--force") == 0
     assert (own / "a.json").read_bytes() == before
     assert furniture(*words, "--name", "sofa") == 2
     assert (
-        "the library already contains sofa; choose another name with --name"
-        in capsys.readouterr().err
+        "the library already contains sofa; choose another name (--name)" in capsys.readouterr().err
     )
 
 

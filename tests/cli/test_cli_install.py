@@ -66,7 +66,7 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
     pack(home, "Old", "1.20")
     assert cli.run(["install", str(out)]) == 2
     assert capsys.readouterr().err == (
-        "error: 3 games found; choose one with --game NUMBER: 1 Minecraft launcher, "
+        "error: 3 games found; choose one (--game NUMBER): 1 Minecraft launcher, "
         "2 Prism: Fabric, 3 Prism: Old\n"
     )
     assert cli.run(["install", str(out), "--game", "fab"]) == 0
@@ -89,7 +89,7 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
     ("words", "code", "reason"),
     [
         (["install"], 2, "no world given; add the run folder, as in w2m install OUT"),
-        (["install", "{out}"], 2, "no game found; use --saves DIR to name a saves folder"),
+        (["install", "{out}"], 2, "no game found; name a saves folder (--saves DIR)"),
         (
             ["install", "{home}", "--saves", "{home}"],
             3,
@@ -103,7 +103,7 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
         (
             ["install", "{out}", "--saves", "{home}", "--name", "/"],
             2,
-            "--name must contain letters or digits",
+            "name must contain letters or digits",
         ),
     ],
 )
@@ -120,7 +120,7 @@ def test_what_cannot_be_is_one_line(out, home, capsys, words, code, reason):
         ("7", "--game 7 does not exist, because only 2 games were found; run w2m install --list"),
         (
             "bedrock",
-            "no game is named 'bedrock'; choose one with --game NUMBER: 1 Minecraft launcher",
+            "no game is named 'bedrock'; choose one (--game NUMBER): 1 Minecraft launcher",
         ),
         ("minecraft launcher", None),
     ],

@@ -114,8 +114,8 @@ def test_a_world_that_was_saved_since_is_not_overwritten(schem, world, capsys):
     capsys.readouterr()
     assert cli.run(["undo", str(world)]) == 3
     assert capsys.readouterr().err == (
-        f"error: {world}: region/r.0.0.mca has changed since the build; add --blocks to "
-        "undo only the build, or --force to restore the old files\n"
+        f"error: {world}: region/r.0.0.mca has changed since the build; pass blocks (--blocks) "
+        "to undo only the build, or force (--force) to restore the old files\n"
     )
     assert cli.run(["undo", str(world), "--blocks"]) == 0
     assert f"{world}: 24 blocks restored." in capsys.readouterr().out
@@ -148,7 +148,7 @@ def test_force_brings_the_old_files_back(schem, world):
         (
             ["{schem}", "--into", "{world}", "--at", "1", "2", "3", "--air", "all"],
             2,
-            "--air must be one of room, box, none, got 'all'",
+            "air must be one of room, box, none, got 'all'",
         ),
         (
             ["{schem}", "--into", "{world}", "--at", "1", "400", "3"],
@@ -158,7 +158,7 @@ def test_force_brings_the_old_files_back(schem, world):
         (
             ["{schem}", "--out", "x"],
             2,
-            "contains blocks, but --out requires a room; use w2m convert",
+            "contains blocks, but an output folder requires a room; use w2m convert",
         ),
         (["nothing.npz", "--into", "{world}", "--at", "1", "70", "3"], 3, "nothing.npz: not found"),
     ],

@@ -140,7 +140,7 @@ def test_a_capture_becomes_the_cells_of_its_room(capture, tmp_path, capsys):
     ("words", "code", "text"),
     [
         (["nowhere", "--grid", "GRID"], 3, "not found; give a depth PNG, a photo or a capture"),
-        (["DEPTH"], 2, "is a depth image; add --grid FILE, which defines the position"),
+        (["DEPTH"], 2, "is a depth image; add a grid (--grid FILE), which defines the position"),
         (["PHOTO", "--grid", "GRID"], 3, "this is a photo, expected a depth image"),
         (["DEPTH", "--grid", "GRID", "--predictor", "mono:NET"], 3, "mono needs a photo"),
         (["PHOTO", "--grid", "GRID", "--predictor", "mano:NET"], 2, "did you mean 'mono'"),
@@ -154,7 +154,7 @@ def test_a_capture_becomes_the_cells_of_its_room(capture, tmp_path, capsys):
             2,
             "requires depth; choose a",
         ),
-        (["CAPTURE", "--colour", "PHOTO"], 2, "--colour requires a single depth image"),
+        (["CAPTURE", "--colour", "PHOTO"], 2, "colour requires a single depth image"),
         (["PHOTO"], 3, "--predictor mono"),
         (["EMPTY"], 3, "EMPTY"),
     ],

@@ -22,7 +22,7 @@ def test_addresses(text, address):
 
 @pytest.mark.parametrize("text", ["", ":25575", "a b:1", "host:0", "host:99999", "host:1:2"])
 def test_no_addresses(text):
-    with pytest.raises(UsageError, match="--rcon must be HOST:PORT"):
+    with pytest.raises(UsageError, match="the server must be HOST:PORT"):
         parse_address(text)
 
 

@@ -181,48 +181,50 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
         (["--orbit", "--pose", "1,2,3,4,5"],
          "--orbit and --pose exclude each other; use only one of them"),
         (["--pose", "1,2,3,4,5", "--frames", "3"],
-         "--frames requires --orbit, --tour or --turntable and cannot be used with --pose"),
+         "frames requires the view orbit, tour or turntable (--orbit, --tour or --turntable) and "
+         "cannot be used with pose"),
         (["--vfov", "70", "--hfov", "90"],
-         "--vfov and --hfov cannot be combined; give only one of them"),
+         "the vertical and the horizontal field of view (--vfov, --hfov) cannot be combined; give "
+         "only one of them"),
         (["--vfov", "0"], "the field of view must be above 0 and at most 170 degrees, got 0"),
-        (["--frames", "0"], "--frames must be 1 to 1,000,000, got 0"),
-        (["--fps", "0"], "--fps must be 1 to 240, got 0"),
+        (["--frames", "0"], "frames must be 1 to 1,000,000, got 0"),
+        (["--fps", "0"], "fps must be 1 to 240, got 0"),
         (["--box", "1,2,3"], "--box must be six integers x0,y0,z0,x1,y1,z1, got '1,2,3'"),
         (["--box", "1,2,3,1,5,6"],
          "--box must have x0 < x1, y0 < y1 and z0 < z1, got '1,2,3,1,5,6'"),
         (["--box", "100,0,0,101,1,1"],
-         "--box does not overlap the build, which is 8 x 5 x 7 blocks from"),
-        (["--format", "bmp"], "--format must be png, jpg or webp, got 'bmp'"),
-        (["--depth-format", "tif"], "--depth-format must be png, exr or npy, got 'tif'"),
-        (["--quality", "0"], "--quality must be 1 to 100, got 0"),
-        (["--depth-scale", "0"], "--depth-scale must be 1 to 65535, got 0"),
+         "the box does not overlap the build, which is 8 x 5 x 7 blocks from"),
+        (["--format", "bmp"], "the image format must be png, jpg or webp, got 'bmp'"),
+        (["--depth-format", "tif"], "the depth format must be png, exr or npy, got 'tif'"),
+        (["--quality", "0"], "quality must be 1 to 100, got 0"),
+        (["--depth-scale", "0"], "the depth scale must be 1 to 65535, got 0"),
         (["--outputs", "rbg"], "no output is named 'rbg'; did you mean 'rgb'?"),
         (["--out", "a.tiff"],
-         "a.tiff: --out must end in .png, .jpg, .jpeg, .webp, .exr, .npy, .gif, .apng, .mp4, "
+         "a.tiff: the output must end in .png, .jpg, .jpeg, .webp, .exr, .npy, .gif, .apng, .mp4, "
          ".webm, or have no suffix to write a folder"),
         (["--orbit", "--frames", "3", "--out", "a.png"],
-         "cannot write 3 images to a.png; choose a folder for --out, or a name that ends in .gif, "
+         "cannot write 3 images to a.png; choose an output folder, or a name that ends in .gif, "
          ".webp or .mp4"),
         (["--tour", "--out", "a.gif", "--outputs", "rgb,depth"],
          "a.gif: an animation can only contain rgb; use a folder for depth"),
         (["--turntable", "--out", "a", "--outputs", "depth"],
-         "--turntable can only output rgb; use --orbit for depth and ids"),
+         "turntable can only output rgb; use orbit (--orbit) for depth and ids"),
         (["--turntable", "--photo"],
-         "--turntable cannot be combined with --photo; use --orbit --photo"),
-        (["--samples", "9"], "--samples must be 1 to 4, got 9"),
-        (["--textures", "24"], "--textures must be 16, 32, 64 or 128, got 24"),
+         "turntable cannot be combined with photo; use orbit (--orbit --photo)"),
+        (["--samples", "9"], "samples must be 1 to 4, got 9"),
+        (["--textures", "24"], "the texture size must be 16, 32, 64 or 128, got 24"),
         (["--light", "disco"],
          "light: preset must be one of shader, game, neutral, got 'disco'"),
         (["--exposure", "0"], "light: exposure must be 0.01 to 100, got 0.0"),
-        (["--device", "tpu"], "--device must be auto, cpu or gpu, got 'tpu'"),
-        (["--jobs", "0"], "--jobs must be 1 to 256, got 0"),
+        (["--device", "tpu"], "device must be auto, cpu or gpu, got 'tpu'"),
+        (["--jobs", "0"], "jobs must be 1 to 256, got 0"),
         (["--jobs", "2", "--photo"],
-         "--jobs cannot be combined with --photo; remove one of them"),
+         "jobs cannot be combined with photo; remove one of them"),
         (["--jobs", "2", "--device", "gpu"],
-         "--jobs cannot be combined with --device gpu; remove one of them"),
+         "jobs cannot be combined with the device gpu; remove one of them"),
         (["--jobs", "2", "--turntable", "--out", "t.gif"],
-         "--turntable cannot be combined with --jobs; remove --jobs"),
-        (["--photo-samples", "0"], "--photo-samples must be 1 to 4,096, got 0"),
+         "turntable cannot be combined with jobs; omit jobs (--jobs)"),
+        (["--photo-samples", "0"], "photo samples must be 1 to 4,096, got 0"),
     ],
 )  # fmt: skip
 def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
@@ -238,8 +240,8 @@ def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
         ("-3x4", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got '-3x4'"),
         ("0x4", "invalid camera: width_px must be 1 to 20000, got 0"),
         ("99999x4", "invalid camera: width_px must be 1 to 20000, got 99999"),
-        ("9000x9000", "9000x9000 with --samples 2 is too large; the limits are 64,000,000 "
-                      "samples in total and 20,000 pixels per side"),
+        ("9000x9000", "9000x9000 with 2 x 2 samples per pixel is too large; the limits are "
+                      "64,000,000 samples in total and 20,000 pixels per side"),
     ],
 )  # fmt: skip
 def test_a_wrong_size_is_told(schem, size, text, capsys):
@@ -249,7 +251,7 @@ def test_a_wrong_size_is_told(schem, size, text, capsys):
 
 def test_threads_are_counted(schem, capsys):
     assert cli.run(["render", str(schem), "--threads", "0"]) == 2
-    assert capsys.readouterr().err == "error: --threads must be 1 to 512, got 0\n"
+    assert capsys.readouterr().err == "error: threads must be 1 to 512, got 0\n"
 
 
 def test_bad_input_is_told(tmp_path, schem, capsys):

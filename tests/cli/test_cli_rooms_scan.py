@@ -70,7 +70,7 @@ def test_a_trial_is_scanned_by_name(tmp_path, monkeypatch):
     ("words", "text"),
     [
         ([], "nothing to scan; give a room folder, --seed or --trial"),
-        (["--seed", "-1"], "--seed must be 0 or more, got -1"),
+        (["--seed", "-1"], "seed must be 0 or more, got -1"),
         (["--seed", "1", "--kind", "barn"], "no room kind is named 'barn'; known:"),
         (["--seed", "1", "--sensor", "rgb"], "no sensor is named 'rgb'; did you mean 'rgbd'"),
         (["--seed", "1", "--frames", "0"], "frames must be 1 or more, got 0"),
@@ -104,7 +104,8 @@ def test_wrong_words_are_told_in_one_line(words, text, tmp_path, capsys):
 def test_a_folder_with_a_capture_is_refused(tmp_path, capsys):
     (tmp_path / "capture.json").write_text("{}")
     assert w2m(["rooms", "scan", "--seed", "1", "--out", str(tmp_path)]) == 2
-    line = f"error: {tmp_path} already contains a capture; delete it or choose another --out\n"
+    advice = "delete it or choose another output folder"
+    line = f"error: {tmp_path} already contains a capture; {advice}\n"
     assert capsys.readouterr().err == line
 
 
@@ -124,7 +125,7 @@ def test_a_generated_room_is_not_written_over(tmp_path, capsys):
     write_generated(generate_room(3, kind="study"), tmp_path)
     before = (tmp_path / "truth.npz").read_bytes()
     assert w2m(["rooms", "scan", str(tmp_path), "--out", str(tmp_path)]) == 2
-    line = f"error: {tmp_path} already contains a generated room; choose another --out\n"
+    line = f"error: {tmp_path} already contains a generated room; choose another output folder\n"
     assert capsys.readouterr().err == line
     assert (tmp_path / "truth.npz").read_bytes() == before
 

@@ -266,7 +266,7 @@ def test_what_cannot_be_built_is_refused():
     grid = Sketch().grid()
     with pytest.raises(UsageError, match="blocks_per_metre must be above 0, got -1; try 4"):
         build_volume(grid, (), (), blocks_per_metre=-1)
-    with pytest.raises(UsageError, match="use fewer, such as --blocks-per-metre 2"):
+    with pytest.raises(UsageError, match="use fewer, such as 2 .--blocks-per-metre 2."):
         build_volume(grid, (), (), blocks_per_metre=900)
     with pytest.raises(UnknownNameError, match="no palette is named 'vanila'; did you mean"):
         build_volume(grid, (), (), parameters=BuildParameters(palette="vanila"))

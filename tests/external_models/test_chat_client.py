@@ -273,7 +273,7 @@ def test_the_budget_stops_before_it_is_passed():
         for sample in range(2):
             model.ask(HELLO, sample=sample)
         assert model.ledger.usd == pytest.approx(0.22)
-        with pytest.raises(BudgetError, match=r"\$0.2200 has been spent .* more than the \$0.2500"):
+        with pytest.raises(BudgetError, match=r"\$0.2200 has been spent .* the limit of \$0.2500"):
             model.ask(HELLO, sample=3)
         assert len(server.requests) == 2
 
@@ -293,7 +293,7 @@ def test_an_attempt_without_reply_costs_its_maximum():
     price = Price(0.0, 100.0)  # 1,024 tokens of reply: at most 10.24 cents an attempt.
     ledger = Ledger(price, max_usd=0.25)
     with scripted([SLOW]) as server:
-        with pytest.raises(BudgetError, match=r"\$0.2048 has been spent .* more than the \$0.2500"):
+        with pytest.raises(BudgetError, match=r"\$0.2048 has been spent .* the limit of \$0.2500"):
             model_at(server, ledger=ledger, attempts=5, timeout_s=0.3).ask(HELLO)
         assert len(server.requests) == 2
     assert (ledger.calls, ledger.usd) == (1, pytest.approx(0.2048))
@@ -351,7 +351,7 @@ def test_endpoints_are_names_or_addresses():
         ("http://", "is not a valid server address"),
         ("ftp://host/v1", "is not a valid server address"),
         ("http://host:99999/v1", "is not a valid server address"),
-        ("https://me:secret@host/v1", "use --key-env NAME"),
+        ("https://me:secret@host/v1", "--key-env NAME"),
     ]:
         with pytest.raises(UsageError, match=error):
             resolve_endpoint(text)
@@ -363,7 +363,7 @@ def test_the_only_model_of_a_server_needs_no_name():
     with scripted(["fine"], models=("tiny",)) as server:
         assert open_chat(server.url).name == "tiny"
     several = pytest.raises(
-        ServerError, match=("provides several models: a, b; choose one with --model")
+        ServerError, match=("provides several models: a, b; choose one .--model")
     )
     with scripted(["fine"], models=("a", "b")) as server, several:
         open_chat(server.url)

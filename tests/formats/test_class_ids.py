@@ -49,10 +49,10 @@ def test_a_list_of_names_counts_from_0(tmp_path):
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        (np.array([0, 12]), "f: contains the class id 12, which is empty in EmbodiedOcc; add "
-         "--classes embodied"),
-        (np.array([99, 255]), "f: contains the class id 99, which nyu12 does not have; state the "
-         "classes with --classes nyu12, embodied, occscannet or a YAML file of ids and names"),
+        (np.array([0, 12]), "f: contains the class id 12, which is empty in EmbodiedOcc; set "
+         "classes to embodied"),
+        (np.array([99, 255]), "f: contains the class id 99, which nyu12 does not have; set "
+         "classes (--classes) to nyu12, embodied, occscannet or a YAML file of ids and names"),
         (np.array([-1, 2]), "f: contains the value -1, expected class ids from 0 to 65535"),
         (np.array([0.5]), "f: contains fractions, expected class ids; scores need one more axis, "
          "with a channel for each class"),

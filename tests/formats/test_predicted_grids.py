@@ -155,8 +155,8 @@ def refused(path, kind=DamagedFileError, is_frame=True, **rules):
 def test_what_the_shape_cannot_tell_is_asked_for(tmp_path):
     path = saved(tmp_path, truth(7), np.uint8)
     assert refused(path, InputError) == (
-        "has 60x60x36 cells, which may lie as x, y, z (EmbodiedOcc) or as y, x, z (ISO); add "
-        "--convention embodiedocc or --convention iso"
+        "has 60x60x36 cells, which may lie as x, y, z (EmbodiedOcc) or as y, x, z (ISO); set the "
+        "convention to embodiedocc or iso (--convention)"
     )
 
 
@@ -187,8 +187,8 @@ def test_a_shape_of_no_convention_is_named(tmp_path):
         (np.full((60, 60, 36), np.nan, np.float32), "contains NaN or infinity, expected class ids"),
         (np.full((60, 60, 36), 0.5), "contains fractions, expected class ids; scores need one more "
          "axis, with a channel for each class"),
-        (np.full((60, 60, 36), 77), "contains the class id 77, which nyu12 does not have; state "
-         "the classes with --classes nyu12, embodied, occscannet or a YAML file of ids and names"),
+        (np.full((60, 60, 36), 77), "contains the class id 77, which nyu12 does not have; set "
+         "classes (--classes) to nyu12, embodied, occscannet or a YAML file of ids and names"),
         (np.zeros((60, 60, 36), bool), "must contain class ids or scores, got values of type bool"),
         (np.zeros((60, 60, 36), "c8"), "must contain class ids or scores, got values of type "
          "complex64"),

@@ -166,8 +166,8 @@ def test_what_would_not_stay_and_what_is_a_mods_is_told():
         ({"kind": "chairs"}, "no furniture class is named 'chairs'; did you mean 'chair'?"),
         ({"front": "up"}, "no side is named 'up'"),
         ({"mount": "roof"}, "no mount is named 'roof'"),
-        ({"blocks_per_metre": 0.0}, "--blocks-per-metre must be 0.1 to 64, got 0"),
-        ({"blocks_per_metre": float("nan")}, "--blocks-per-metre must be 0.1 to 64"),
+        ({"blocks_per_metre": 0.0}, "the scale must be 0.1 to 64 blocks per metre, got 0"),
+        ({"blocks_per_metre": float("nan")}, "the scale must be 0.1 to 64 blocks per metre"),
         ({"size_m": (1.0, 1.0, 100.0)}, "of the piece must be 0.02 to 20 m, got 1.00 x 1.00 x 100"),
     ],
 )
@@ -180,9 +180,7 @@ def test_a_wish_that_cannot_be_is_refused(wish, message):
 def test_blocks_that_cannot_be_are_refused():
     with pytest.raises(UsageError, match="the selection contains no blocks"):
         import_blocks(volume_of({}), WISH)
-    with pytest.raises(
-        UsageError, match="cannot determine the front side from the blocks; add --front"
-    ):
+    with pytest.raises(UsageError, match="cannot determine the front side from the blocks; set it"):
         import_blocks(volume_of({(1, 1, 1): "minecraft:stone"}), WISH)
     far = volume_of({(0, 0, 0): "minecraft:stone", (39, 0, 0): "minecraft:stone"}, side=40)
     with pytest.raises(UsageError, match="a piece may have at most 32 blocks per side"):

@@ -149,7 +149,7 @@ def test_an_old_game_is_refused_with_what_to_do_instead():
     check_displays(furnished(), game_version("1.20.1"))
     expected = (
         "Minecraft 1.19.3 does not support display entities (new in 1.19.4); use "
-        "build.style=blocks or another --mc-version"
+        "build.style=blocks or another version (--mc-version)"
     )
     with pytest.raises(UsageError) as told:
         datapack_files(furnished(), old, "room")

@@ -114,7 +114,7 @@ def test_names_are_those_that_every_system_takes(name, expected):
 
 @pytest.mark.parametrize("name", ["", "...", "///", "\0\x1f", " . "])
 def test_a_name_of_nothing_is_refused(name):
-    with pytest.raises(UsageError, match="--name must contain letters or digits"):
+    with pytest.raises(UsageError, match="name must contain letters or digits"):
         check_name(name)
 
 

@@ -417,7 +417,7 @@ def test_a_world_too_wide_to_hold_asks_for_a_box(world):
     )
     far = world / "region" / "r.900.0.mca"
     far.write_bytes(pack_region({(31 + 32 * 900, 0): stone})[0])
-    with pytest.raises(LimitError, match=r"blocks, the limit is 67,108,864; use --box"):
+    with pytest.raises(LimitError, match=r"blocks, the limit is 67,108,864; use a box"):
         read_world(world)
     assert read_world(world, box=(0, 64, 0, 16, 80, 16)).states.any()
 

@@ -397,9 +397,9 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "line", "code"),
     [
-        ([], "no scenes; add --houses", 2),
-        (["--houses", "0", "--images", "5"], "--houses must be 1 or more, got 0", 2),
-        (["--houses", "2", "--world", "x"], "--houses cannot be combined with --worlds", 2),
+        ([], "no scenes; add houses", 2),
+        (["--houses", "0", "--images", "5"], "houses must be 1 or more, got 0", 2),
+        (["--houses", "2", "--world", "x"], "houses cannot be combined with worlds", 2),
         (["--tour", "t.jsonl", "--screenshots", "d"], "cannot be combined; use only one", 2),
         (
             ["--houses", "2", "--screenshots", "gone", "--at", "eye"],
@@ -407,7 +407,7 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
             3,
         ),
         (["--world", "gone"], "gone: not found", 3),
-        (["--worlds", "gone"], "gone: not a folder; --worlds needs", 3),
+        (["--worlds", "gone"], "gone: not a folder; expected a folder", 3),
         (["--houses", "2", "--camera", "nyuu"], "no camera is named 'nyuu'; did you mean 'nyu'", 2),
         (["--houses", "2", "--size", "big"], "--size must be WIDTHxHEIGHT in pixels", 2),
         (["--houses", "2", "--voxel", "big"], "--voxel must be a size in metres or 'block'", 2),

@@ -81,12 +81,12 @@ def test_a_plan_is_json():
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ({"scenes": [], "images": 3}, "no scenes; add --houses, --worlds"),
-        ({"images": 1}, r"--images must be from 2 \(one per scene\)"),
+        ({"scenes": [], "images": 3}, "no scenes; add houses or worlds"),
+        ({"images": 1}, r"images must be from 2 \(one per scene\)"),
         ({"images": None}, "got none"),
-        ({"images": 9, "preset": "8k"}, "sets the number of images; remove --images"),
+        ({"images": 9, "preset": "8k"}, "sets the number of images; omit images"),
         ({"scenes": house_scenes(1), "preset": "8k"}, "needs at least two scenes"),
-        ({"images": 9, "test_share": 1.0}, "--test-share must be at least 0 and below 1"),
+        ({"images": 9, "test_share": 1.0}, "the test share must be at least 0 and below 1"),
     ],
 )
 def test_what_does_not_go_together_is_told(words, text):

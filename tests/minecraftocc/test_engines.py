@@ -58,7 +58,7 @@ def test_an_item_that_kills_every_worker_is_reported():
         list(engine.run(tasks.die, [1], print))
     assert str(caught.value) == (
         "3 workers in a row exited with code 7 on part 1 of 1, possibly for lack of memory; "
-        "run the same command with fewer --jobs to resume"
+        "run the same command with fewer jobs (--jobs) to resume"
     )
 
 

@@ -175,7 +175,7 @@ def test_what_is_no_depth_is_refused(depth_m, tmp_path):
         depth_of_png(tmp_path, np.ones((4, 4), np.uint16), "feet")
     with pytest.raises(CaptureError, match="16 bits"):
         depth_of_png(tmp_path, np.zeros((4, 4), np.uint16))
-    with pytest.raises(CaptureError, match="try --depth-code"):
+    with pytest.raises(CaptureError, match="try the depth code"):
         depth_of_png(tmp_path, np.full((4, 4), 30_000, np.uint16), "mm")
     away = GridPlace(np.array([50.0, 0.0, 0.0]), POSE)
     with pytest.raises(CaptureError, match="no part of the grid"):

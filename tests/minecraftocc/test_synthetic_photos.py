@@ -93,8 +93,8 @@ def test_the_same_seed_gives_the_same_set(samples):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ((0, 5), "--rooms must be from 1 to 1000, got 0"),
-        ((5, 3), "--images must be at least 5, one per room, got 3"),
+        ((0, 5), "rooms must be from 1 to 1000, got 0"),
+        ((5, 3), "images must be at least 5, one per room, got 3"),
         ((1, 3, 0.5), "--test-share 0.5 leaves no room for training"),
     ],
 )

@@ -191,7 +191,7 @@ def test_the_grpo_recipe_trains_on_few_rows_and_says_so(grpo):
     ) in grpo.notes
     assert (
         "mcvln_next_view_base_train: no recipe was written, because 5 rows do not fill one "
-        "batch on 8 GPUs; set --gpus to 5 or fewer"
+        "batch on 8 GPUs; use 5 or fewer (--gpus)"
     ) in grpo.notes
     extend = yaml.safe_load((grpo.out / "next_action_extend_grpo.yaml").read_text())
     assert extend["trainer"]["val_before_train"] is False  # Nothing of it is held out.
@@ -261,8 +261,8 @@ def test_pictures_that_overflow_a_prompt_are_told(tmp_path):
     with pytest.raises(UsageError) as caught:
         export_set(folder, "easyr1", tmp_path / "out", ExportOptions(max_pixels=1 << 24))
     assert re.fullmatch(
-        r"item \S+ needs up to 8,\d\d\d tokens, more than the 4,096 of a prompt; export with "
-        "a smaller --max-pixels",
+        r"item \S+ needs up to 8,\d\d\d tokens, more than the 4,096 of a prompt; export with a "
+        r"lower pixel limit \(--max-pixels\)",
         str(caught.value),
     )
     done = export_set(folder, "easyr1", tmp_path / "capped")
@@ -327,7 +327,7 @@ def test_a_failed_export_leaves_nothing_and_can_be_repeated(format, tmp_path):
     assert not (tmp_path / "out").exists()
     large = small_set(tmp_path / "large", width=1280, height=960)
     if format in ("llamafactory", "easyr1", "trl"):
-        with pytest.raises(UsageError, match="export with a smaller --max-pixels"):
+        with pytest.raises(UsageError, match="export with a lower pixel limit"):
             export_set(large, format, tmp_path / "out", ExportOptions(max_pixels=1 << 24))
         assert not (tmp_path / "out").exists()
     assert export_set(large, format, tmp_path / "out").written

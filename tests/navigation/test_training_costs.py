@@ -141,12 +141,12 @@ def test_a_set_without_what_is_wanted_is_told():
         ({"tasks": ("next_viev",)}, "no task is named 'next_viev'; did you mean 'next_view'?"),
         ({"compositions": ("all",)}, "no composition is named 'all'; known: base, combined, ext"),
         ({"image_style": "inline"}, "no image style is named 'inline'; known: embedded, paths"),
-        ({"max_pixels": 5}, "--max-pixels must be 784 to 16777216, got 5"),
-        ({"gpus": 0}, "--gpus must be 1 to 4096, got 0"),
-        ({"max_samples": -1}, "--max-samples must be 0 (all rows) or more, got -1"),
+        ({"max_pixels": 5}, "the pixel limit (--max-pixels) must be 784 to 16777216, got 5"),
+        ({"gpus": 0}, "gpus must be 1 to 4096, got 0"),
+        ({"max_samples": -1}, "the row limit (--max-samples) must be 0 (all rows) or more, got -1"),
         (
             {"model": "a\nb"},
-            ("--model must be a model name such as Qwen/Qwen2.5-VL-3B-Instruct, or a folder"),
+            ("model must be a model name such as Qwen/Qwen2.5-VL-3B-Instruct, or a folder"),
         ),
     ],
 )

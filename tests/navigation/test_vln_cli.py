@@ -159,7 +159,7 @@ GOLDEN = [
     (
         ["SCENE", "Go to the piano", "--start", "1,2"],
         2,
-        "--start must be X,Y,Z or X,Y,Z,YAW, got '1,2'",
+        "start must be X,Y,Z or X,Y,Z,YAW, got '1,2'",
     ),
     (
         ["SCENE", "Go to the piano", "--map", "globe"],

@@ -93,13 +93,13 @@ def test_a_display_starts_with_the_first_walk(flat_path, tmp_path):
 
 @pytest.mark.parametrize("start", [(1, 2), (1, 2, float("nan")), (1, 2, 3, 4, 5)])
 def test_a_start_has_three_or_four_finite_numbers(flat_path, tmp_path, start):
-    with pytest.raises(UsageError, match="--start must be X,Y,Z or X,Y,Z,YAW"):
+    with pytest.raises(UsageError, match="start must be X,Y,Z or X,Y,Z,YAW"):
         run_agent(flat_path, "Go to the piano", start=start, out=tmp_path)
 
 
 def test_a_size_is_checked_before_any_work(flat_path, tmp_path):
     with pytest.raises(
-        UsageError, match="--size must be WIDTHxHEIGHT, 16 to 4096 pixels each, got 8x8"
+        UsageError, match="size must be WIDTHxHEIGHT, 16 to 4096 pixels each, got 8x8"
     ):
         build_navigation_set([flat_path], tmp_path / "set", size=(8, 8))
     assert not (tmp_path / "set").exists()

@@ -121,7 +121,7 @@ def test_saved_predictions_of_all_kinds_are_read_as_ours(tmp_path):
     for key in ("plain", "nyu", "scores"):
         np.testing.assert_array_equal(saved.labels(key), LABELS, err_msg=key)
     np.testing.assert_array_equal(saved.labels("ours"), LABELS % 12)
-    with pytest.raises(DamagedFileError, match="add --classes embodied"):
+    with pytest.raises(DamagedFileError, match="set classes to embodied"):
         saved.labels("embodied")
     embodied = SavedPredictions(tmp_path / "embodied.pkl", classes="embodied")
     np.testing.assert_array_equal(embodied.labels("any"), LABELS)
@@ -227,7 +227,7 @@ def test_single_files_and_folders_of_bins_are_scored(tmp_path, capsys):
     ("words", "code", "text"),
     [
         (["train"], 2, "no network given; name one, as in w2m train monoscene --data DIR"),
-        (["train", "monoscene"], 2, "no training data; add --data DIR"),
+        (["train", "monoscene"], 2, "no training data; add a data set"),
         (["train", "x", "--data", "d", "--image", "big"], 2, "--image must be WIDTHxHEIGHT"),
         (["train", "x", "--data", "d", "--preset", "8"], 2, "no preset is named '8'"),
         (["evaluate", "occupancy", "gone", "."], 3, "gone: not found"),

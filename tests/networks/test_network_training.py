@@ -117,7 +117,7 @@ def test_a_loss_that_is_no_number_ends_a_run(store, cache, tmp_path, monkeypatch
             return OccOutput(said.logits * (float("nan") if self.calls > 4 else 1.0))
 
     monkeypatch.setattr(training, "make_network", lambda *_, **__: Lost())
-    told = r"the loss at step 5 is not finite \(learning rate .*\); use a lower --lr"
+    told = r"the loss at step 5 is not finite \(learning rate .*\); use a lower learning rate"
     with pytest.raises(UsageError, match=told):
         trained(toy_config(store), tmp_path / "run", cache)
     assert read_facts(tmp_path / "run" / "checkpoint.safetensors")["step"] == 3

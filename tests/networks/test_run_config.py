@@ -76,7 +76,7 @@ GOLDEN = {
     ),
     "network: iso\ndata: []": (
         UsageError,
-        "no training data; add --data DIR with a data set from w2m dataset build",
+        "no training data; add a data set from w2m dataset build (--data DIR)",
     ),
 }
 

@@ -145,4 +145,5 @@ def test_scenes_are_scored_from_the_command_line(truth, tmp_path, capsys):
     said = capsys.readouterr().out
     assert SCENES in said and "100.00" in said
     assert w2m([*words, "--classes", "embodied", "--protocol", "iso"]) == 2
-    assert "complete scenes; use --protocol embodied" in capsys.readouterr().err
+    expected = "complete scenes; use the protocol embodied (--protocol embodied)"
+    assert expected in capsys.readouterr().err

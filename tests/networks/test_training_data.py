@@ -95,7 +95,7 @@ def test_scenes_are_in_one_part_alone_and_the_test_split_is_kept():
 
 def test_a_split_that_cannot_be_says_why():
     assert split_rows(["a", "b"], ["train", "test"], 0, "set").val == [1]
-    with pytest.raises(UsageError, match="reserve scenes for validation with --val-share"):
+    with pytest.raises(UsageError, match="reserve scenes for validation .--val-share"):
         split_rows(["a", "b"], ["", ""], 0, "set")
     with pytest.raises(UsageError, match="only 1 training scene, so none can be used"):
         split_rows(["a", "b"], ["", "test"], 0.1, "set")

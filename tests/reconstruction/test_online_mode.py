@@ -177,4 +177,4 @@ def test_following_ends_as_it_says_and_has_shown_the_room(batch, tmp_path, endin
 def test_follow_and_from_exclude_each_other(tmp_path, capsys):
     words = ["reconstruct", str(tmp_path), "--out", str(tmp_path / "OUT")]
     assert w2m([*words, "--follow", "--from", "build"]) == 2
-    assert "--follow cannot be combined with --from" in capsys.readouterr().err
+    assert "follow cannot be combined with a start stage (--from)" in capsys.readouterr().err

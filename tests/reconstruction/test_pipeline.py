@@ -137,7 +137,7 @@ def test_from_tells_the_settings_of_the_stages_that_it_keeps(out, capture, tmp_p
     assert manifest["parameters"]["find"]["min_cells"] == 12
     before = digests(tmp_path / "again")
     assert w2m([*words, "build", "--set", "find.min_cells=20"]) == 2
-    assert "omit find.min_cells, or start with --from find" in capsys.readouterr().err
+    assert "omit find.min_cells, or start at find (--from)" in capsys.readouterr().err
     assert digests(tmp_path / "again") == before, "nothing is touched"
 
 

@@ -110,8 +110,8 @@ def test_the_manifest_knows_the_files_and_their_rules(place, tmp_path):
 
 def test_options_that_describe_no_predictions_are_refused(place, tmp_path):
     for options, message in (
-        ({"convention": "iso"}, "--classes and --convention describe predictions; add --predicti"),
-        ({"predictions": place / "monoscene", "follow": True}, "--follow cannot be combined with "),
+        ({"convention": "iso"}, "classes and convention describe predictions; add some"),
+        ({"predictions": place / "monoscene", "follow": True}, "follow cannot be combined with "),
         ({"predictions": place / "monoscene", "convention": "kitti"}, "no convention is named"),
         ({"predictions": place / "monoscene", "classes": "nyu21"}, "no class set is named 'nyu21'"),
     ):
@@ -133,7 +133,7 @@ def test_build_reads_the_ids_of_a_foreign_grid(tmp_path, capsys):
     np.save(tmp_path / "ours.npy", labels)
     np.save(tmp_path / "theirs.npy", ids)
     assert cli(["build", str(tmp_path / "theirs.npy"), "-o", str(tmp_path / "no")]) == 3
-    assert "12, which is empty in EmbodiedOcc; add --classes embodied" in capsys.readouterr().err
+    assert "12, which is empty in EmbodiedOcc; set classes to embodied" in capsys.readouterr().err
     words = ["build", str(tmp_path / "theirs.npy"), "-o", str(tmp_path / "A")]
     assert cli([*words, "--classes", "embodied"]) == 0
     assert cli(["build", str(tmp_path / "ours.npy"), "-o", str(tmp_path / "B")]) == 0

@@ -78,8 +78,8 @@ def test_what_contradicts_kept_stages_is_refused(tmp_path, start, setting, was, 
     with pytest.raises(UsageError) as caught:
         resume_parameters(tmp_path, start, STAGES, with_settings(Parameters(), [setting]))
     assert str(caught.value) == (
-        f"--from {start} keeps results made with {key}={was}, got {now}; "
-        f"omit {key}, or start with --from {stage}"
+        f"starting at {start} keeps results made with {key}={was}, got {now}; "
+        f"omit {key}, or start at {stage} (--from)"
     )
 
 
@@ -98,7 +98,7 @@ def test_files_that_kept_stages_read_are_told_as_they_were(tmp_path):
     with pytest.raises(InputError, match="made from another capture, or the capture has changed"):
         resume_manifest(tmp_path, "fuse", {**now, "capture": "d"}, kept)
     kept = resume_parameters(tmp_path, "build", STAGES, Parameters())
-    with pytest.raises(UsageError, match="without these --labels; start with --from fuse"):
+    with pytest.raises(UsageError, match="without these labels; start at fuse"):
         resume_manifest(tmp_path, "build", {**now, "labels": "m"}, kept)
 
 

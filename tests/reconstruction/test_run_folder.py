@@ -114,7 +114,7 @@ def test_stage_times_add_up_and_are_written_from_begin_on(tmp_path):
 def test_an_out_that_is_a_file_is_refused_and_kept(tmp_path):
     target = tmp_path / "out"
     target.write_text("mine")
-    with pytest.raises(OutputError, match="is a file; --out must be a folder"):
+    with pytest.raises(OutputError, match="is a file; the output must be a folder"):
         RunFolder(target, STAGES)
     with pytest.raises(OutputError):
         check_writable(target)

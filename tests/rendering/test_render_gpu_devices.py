@@ -76,8 +76,8 @@ def test_gpu_says_which_adapters_there_are(machine, monkeypatch):
         choose_device("gpu")
     assert str(caught.value) == (
         "no GPU found (adapters: llvmpipe (LLVM 15.0.6, 256 bits)); install its "
-        "Vulkan driver or use --device cpu (W2M_GPU_ADAPTER=software selects a software adapter "
-        "for tests)"
+        "Vulkan driver or use the CPU (--device cpu); W2M_GPU_ADAPTER=software selects a software "
+        "adapter for tests"
     )
     assert caught.value.exit_code == 2
     machine(CARD)
@@ -92,7 +92,9 @@ def test_without_wgpu_gpu_fails_and_auto_uses_the_cpu(machine, monkeypatch, scen
     monkeypatch.setattr("world2minecraft.rendering.gpu.device.find_spec", lambda name: None)
     with pytest.raises(MissingExtraError) as caught:
         choose_device("gpu")
-    assert str(caught.value) == ("--device gpu needs an extra: pip install 'world2minecraft[gpu]'")
+    assert str(caught.value) == (
+        "the device gpu needs an extra: pip install 'world2minecraft[gpu]'"
+    )
     assert choose_device("auto") == "cpu"
     assert renderer_for("auto", scene).name == "CPU"
     assert list_adapters() == []
@@ -117,7 +119,7 @@ def test_a_card_that_gives_no_device_is_named(machine, scene):
     machine(broken)
     with pytest.raises(GpuError) as caught:
         renderer_for("gpu", scene)
-    assert str(caught.value) == "Old Card cannot be used: limits; use --device cpu"
+    assert str(caught.value) == "Old Card cannot be used: limits; use the CPU (--device cpu)"
     assert renderer_for("auto", scene).name == "CPU"
 
 
@@ -131,7 +133,7 @@ def test_a_world_that_is_too_large_is_named_with_its_sizes(scene, monkeypatch):
         small.check_fits(scene)
     assert str(caught.value) == (
         "a world of 9 x 7 x 8 blocks is too large for Small Card: buffer light needs "
-        "1,500 MB, the limit is 134 MB; use --device cpu or a smaller --box"
+        "1,500 MB, the limit is 134 MB; use the CPU (--device cpu) or a smaller box (--box)"
     )
 
 

@@ -166,7 +166,7 @@ def test_where_nobody_can_stand_there_is_no_tour():
     with pytest.raises(UsageError) as told:
         plan_tour(volume, CAMERA, 4)
     assert str(told.value) == (
-        "cannot plan a tour: the build has no place for a player to stand; try --orbit"
+        "cannot plan a tour: the build has no place for a player to stand; try an orbit (--orbit)"
     )
 
 

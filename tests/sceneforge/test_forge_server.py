@@ -177,5 +177,5 @@ def test_a_port_that_is_taken_is_said_so():
     from world2minecraft.core.errors import UsageError
     from world2minecraft.sceneforge.server.server_process import ForgeServer
 
-    with served(small_editor()) as one, pytest.raises(UsageError, match="omit --port"):
+    with served(small_editor()) as one, pytest.raises(UsageError, match="omit the port"):
         ForgeServer(port=one.port)

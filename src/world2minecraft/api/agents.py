@@ -453,7 +453,7 @@ def _stance(start: Sequence[float] | None) -> "Stance | None":
         return None
     if len(start) not in (3, 4) or not all(isfinite(one) for one in start):
         raise UsageError(
-            f"--start must be X,Y,Z or X,Y,Z,YAW, got {','.join(f'{one:g}' for one in start)!r}"
+            f"start must be X,Y,Z or X,Y,Z,YAW, got {','.join(f'{one:g}' for one in start)!r}"
         )
     return Stance(*start)
 
@@ -484,5 +484,7 @@ def _baseline(
     letters = baseline_letters(name, every, items, images)
     known = [item for item in items if item.item_id in letters]
     if not known:
-        raise UsageError(f"the baseline {name} cannot answer this task; add --task both")
+        raise UsageError(
+            f"the baseline {name} cannot answer this task; set the task to both (--task both)"
+        )
     return LetterAnswerer(name, letters), known

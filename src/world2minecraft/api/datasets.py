@@ -473,13 +473,13 @@ def camera_named(
 def check_seed(seed: int) -> None:
     """Raise UsageError if the seed is negative."""
     if seed < 0:
-        raise UsageError(f"--seed must be 0 or more, got {seed}")
+        raise UsageError(f"seed must be 0 or more, got {seed}")
 
 
 def check_hour(hour: float | None) -> None:
     """Raise UsageError if the hour is not between 0 and 24. None (one hour per scene) is valid."""
     if hour is not None and not 0 <= hour <= 24:
-        raise UsageError(f"--hour must be 0 to 24, got {hour:g}")
+        raise UsageError(f"hour must be 0 to 24, got {hour:g}")
 
 
 def _region_rule(kind: str, voxel_m: float | None) -> "RegionRule":

@@ -225,10 +225,12 @@ def _free_file(name: str, force: bool) -> Path:
     from world2minecraft.furniture.user_library import user_design_folder
 
     if name in builtin_design_files():
-        raise UsageError(f"the library already contains {name}; choose another name with --name")
+        raise UsageError(f"the library already contains {name}; choose another name (--name)")
     target = user_design_folder() / f"{name}.json"
     if target.exists() and not force:
-        raise UsageError(f"{target} exists; add --force to replace it, or choose another --name")
+        raise UsageError(
+            f"{target} exists; choose another name (--name), or pass force (--force) to replace it"
+        )
     return target
 
 

@@ -306,9 +306,9 @@ def demo(
     from world2minecraft.runs import run_capture
 
     if seed < 0:
-        raise UsageError(f"--seed must be 0 or more, got {seed}")
+        raise UsageError(f"seed must be 0 or more, got {seed}")
     if frames < MIN_FRAMES:
-        raise UsageError(f"--frames must be {MIN_FRAMES} or more, got {frames}; try 40")
+        raise UsageError(f"frames must be {MIN_FRAMES} or more, got {frames}; try 40")
     plaque = {"build.plaque": f"A {kind} room"}
     options = BuildOptions(blocks_per_metre, style, palette, formats, settings=plaque)
     chosen = options.parameters()
@@ -382,7 +382,9 @@ def evaluate(
     foreign = foreign_file(place)
     if foreign is not None:
         if stages:
-            raise UsageError(f"{place} was not created by w2m reconstruct; omit --stages")
+            raise UsageError(
+                f"{place} was not created by w2m reconstruct; omit the stages (--stages)"
+            )
         return evaluate_foreign(foreign, folder)
     _check_run(place)
     scores = evaluate_reconstruction(place, folder)
@@ -411,6 +413,8 @@ def _check_empty(out: Path) -> None:
 
     check_writable(out)
     if (out / "layout.json").exists():
-        raise UsageError(f"{out} already contains a generated room; choose another --out")
+        raise UsageError(f"{out} already contains a generated room; choose another output folder")
     if any((out / name).exists() for name in ("capture.json", "capture.mp4", "truth.npz")):
-        raise UsageError(f"{out} already contains a capture; delete it or choose another --out")
+        raise UsageError(
+            f"{out} already contains a capture; delete it or choose another output folder"
+        )

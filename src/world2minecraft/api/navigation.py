@@ -148,7 +148,7 @@ def build_navigation_set(
         tuple(map(str, streams)), parse_at(at), work,
     )  # fmt: skip
     if not (scenes or rooms or houses):
-        raise UsageError("no scenes given; add scenes, or generate some with --rooms 3")
+        raise UsageError("no scenes given; add scenes, or generate some (--rooms 3)")
     folder, processes = Path(out), workers or usable_cores()
     check_writable(folder)
     generated = make_scenes(folder / SCENES_FOLDER, rooms, houses, seed, processes, progress)
@@ -444,7 +444,7 @@ def _checked_moves(name: str) -> str:
 def _check_size(size: tuple[int, int]) -> None:
     if len(size) != 2 or not all(16 <= side <= 4096 for side in size):
         named = "x".join(str(side) for side in size)
-        raise UsageError(f"--size must be WIDTHxHEIGHT, 16 to 4096 pixels each, got {named}")
+        raise UsageError(f"size must be WIDTHxHEIGHT, 16 to 4096 pixels each, got {named}")
 
 
 def _reworded(

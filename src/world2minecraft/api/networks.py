@@ -454,7 +454,7 @@ def predict_occupancy(
     else:
         _check_no_depth(path)
         if colour is not None:
-            raise UsageError("--colour requires a single depth image and --grid")
+            raise UsageError("colour requires a single depth image and a grid (--grid)")
         cells, scan_to_room = _capture_cells(
             path, place, predictor, labels, fov_deg, run_folder, progress
         )
@@ -500,7 +500,8 @@ def _check_no_depth(source: Path) -> None:
 
     if source.suffix.lower() == ".png" and read_header(source).mode.startswith("I"):
         raise UsageError(
-            f"{source} is a depth image; add --grid FILE, which defines the position of the cells"
+            f"{source} is a depth image; add a grid (--grid FILE), which defines the position of "
+            "the cells"
         )
 
 
@@ -534,7 +535,7 @@ def _run_config(
     if config is not None:
         if network or preset:
             raise UsageError(
-                "--config already defines the network and its size; omit NET and --preset"
+                "config already defines the network and its size; omit the network and the preset"
             )
         held = read_config(config)
         return replace(held, **(changes | ({"data": sources} if sources else {})))

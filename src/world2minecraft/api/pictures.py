@@ -235,7 +235,7 @@ def _thread_count(asked: int | None) -> int:
     if asked is None:
         return usable_cores()
     if not 1 <= asked <= MAX_THREADS:
-        raise UsageError(f"--threads must be 1 to {MAX_THREADS}, got {asked}")
+        raise UsageError(f"threads must be 1 to {MAX_THREADS}, got {asked}")
     return asked
 
 
@@ -269,13 +269,13 @@ def _file_formats(image: str, depth: str, quality: int, per_metre: int) -> "File
     from world2minecraft.rendering.output import FileFormats
 
     if image not in ("png", "jpg", "jpeg", "webp"):
-        raise UsageError(f"--format must be png, jpg or webp, got {image!r}")
+        raise UsageError(f"the image format must be png, jpg or webp, got {image!r}")
     if depth not in ("png", "exr", "npy"):
-        raise UsageError(f"--depth-format must be png, exr or npy, got {depth!r}")
+        raise UsageError(f"the depth format must be png, exr or npy, got {depth!r}")
     if not 1 <= quality <= 100:
-        raise UsageError(f"--quality must be 1 to 100, got {quality}")
+        raise UsageError(f"quality must be 1 to 100, got {quality}")
     if not 1 <= per_metre <= 65535:
-        raise UsageError(f"--depth-scale must be 1 to 65535, got {per_metre}")
+        raise UsageError(f"the depth scale must be 1 to 65535, got {per_metre}")
     return FileFormats(f".{image}", f".{depth}", quality, per_metre)
 
 

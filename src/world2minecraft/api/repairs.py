@@ -186,7 +186,7 @@ def _check_unplayed(world: Path) -> None:
 
     if read_level(world).get(MAKER_TAG) != MAKER:
         reason = "has been played in or was not created by World2Minecraft"
-        raise OutputError(world, f"{reason}; build the room again with another --out")
+        raise OutputError(world, f"{reason}; build the room again in another output folder")
 
 
 def _open_history(build: Path) -> "History":

@@ -138,10 +138,14 @@ def _with_scale(volume: "BlockVolume", blocks_per_metre: float | None) -> "Block
     if blocks_per_metre is None:
         return volume
     if not 0.01 <= blocks_per_metre <= 1000:
-        raise UsageError(f"--blocks-per-metre must be 0.01 to 1000, got {blocks_per_metre:g}")
+        raise UsageError(
+            f"the scale must be 0.01 to 1000 blocks per metre, got {blocks_per_metre:g}"
+        )
     own = volume.blocks_per_metre
     if volume.semantic.any() and abs(own - blocks_per_metre) > 1e-6:
-        raise UsageError(f"this room has a fixed scale of {own:g}; omit --blocks-per-metre")
+        raise UsageError(
+            f"this room has a fixed scale of {own:g}; omit blocks per metre (--blocks-per-metre)"
+        )
     to_room = volume.block_to_room.copy()
     to_room[:3] *= own / blocks_per_metre
     return replace(volume, block_to_room=to_room)
@@ -182,7 +186,7 @@ def _check_target(source: Path, target: Path, force: bool) -> None:
     if target.exists() and source.samefile(target):
         raise UsageError(f"{target} is both the source and the target; choose another target")
     if not force:
-        raise UsageError(f"{target} exists; add --force to replace it")
+        raise UsageError(f"{target} exists; pass force (--force) to replace it")
     if (target / "level.dat").is_file():
         from world2minecraft.minecraft.worlds.session_lock import session_lock
 
@@ -202,7 +206,7 @@ def _replace_target(written: Path, target: Path, force: bool) -> None:
     for path in beside:
         place = target.parent / path.name
         if place.exists() and not force:
-            raise UsageError(f"{place} exists; add --force to replace it")
+            raise UsageError(f"{place} exists; pass force (--force) to replace it")
     for path in beside:
         _put_in_place(path, target.parent / path.name)
     _put_in_place(written, target)
@@ -300,7 +304,7 @@ def install_world(
     world = installation.find_world(path_of(source))
     chosen = Game("the game", Path(saves)) if saves else choose_game(find_games(), game)
     if not chosen.saves.parent.is_dir():
-        reason = "parent folder not found; give the saves folder of a game with --saves DIR"
+        reason = "parent folder not found; give the saves folder of a game (--saves DIR)"
         raise InputError(chosen.saves, reason)
     target = installation.install_world(world, chosen.saves, name or None)
     return InstalledWorld(
@@ -386,7 +390,9 @@ def undo_build(world: str | Path, *, blocks: bool = False, force: bool = False) 
     from world2minecraft.editing.file_backups import DONE, revert_last_step
 
     if blocks and force:
-        raise UsageError("--blocks and --force exclude each other; omit one of them")
+        raise UsageError(
+            "blocks (--blocks) and force (--force) exclude each other; omit one of them"
+        )
     if blocks:
         done = remove_build(Path(world))
         return Undone(blocks=done.blocks, unchanged=done.kept)

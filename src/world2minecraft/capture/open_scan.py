@@ -14,7 +14,7 @@ from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
 
-ALIGNMENT_FRAMES = 24  # Of the kitchen's 40; more moved its floor by under 2 mm.
+ALIGNMENT_FRAMES = 24  # With all 40 frames of the kitchen, its floor moved by under 2 mm.
 CALIBRATION_FRAMES = 12  # Ten gave the kitchen's focal length to 0.3 %, whichever ten.
 MAX_CELLS = 40_000_000  # A grid of 400 x 400 x 250; its evidence takes about 2.5 GB.
 STAGE = "scan"
@@ -133,7 +133,7 @@ def check_cell_count(alignment: Alignment, voxel_m: float) -> None:
     if volume_m3 / voxel_m**3 > MAX_CELLS:
         min_voxel_m = (volume_m3 / MAX_CELLS) ** (1 / 3)
         raise UsageError(
-            f"--voxel {voxel_m:g} divides this room into {volume_m3 / voxel_m**3:,.0f} "
-            f"cells, the limit is {MAX_CELLS:,}; use at least --voxel "
-            f"{math.ceil(1000 * min_voxel_m) / 1000:.3f}"
+            f"cells of {voxel_m:g} m divide this room into {volume_m3 / voxel_m**3:,.0f} cells, "
+            f"the limit is {MAX_CELLS:,}; use cells of at least "
+            f"{math.ceil(1000 * min_voxel_m) / 1000:.3f} m (--voxel)"
         )

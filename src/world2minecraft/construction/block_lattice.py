@@ -108,7 +108,7 @@ def lattice_over(
     if float(east) * up * south > MAX_BLOCKS:
         raise UsageError(
             f"the room has {east} x {up} x {south} blocks at {blocks_per_metre:g} blocks per "
-            f"metre, the limit is {MAX_BLOCKS:,}; use fewer, such as --blocks-per-metre 2"
+            f"metre, the limit is {MAX_BLOCKS:,}; use fewer, such as 2 (--blocks-per-metre 2)"
         )
     return Lattice(tuple(low.tolist()), (east, south, up), corner_m, blocks_per_metre)
 

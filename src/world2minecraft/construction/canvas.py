@@ -33,7 +33,7 @@ class Canvas:
         if full not in self._ids:
             if len(self._ids) > np.iinfo(np.uint16).max:
                 raise LimitError(
-                    "palette", "contains over 65,536 block states; use a --palette of fewer blocks"
+                    "palette", "contains over 65,536 block states; use a palette of fewer blocks"
                 )
             self._ids[full] = len(self._ids)
         return self._ids[full]

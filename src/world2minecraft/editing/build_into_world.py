@@ -173,7 +173,7 @@ def edit_of_step(step: Step) -> BlockEdit:
 def check_air(air: str) -> None:
     """Raise UsageError if ``air`` is not one of ``AIR_CHOICES``."""
     if air not in AIR_CHOICES:
-        raise UsageError(f"--air must be one of {', '.join(AIR_CHOICES)}, got {air!r}")
+        raise UsageError(f"air must be one of {', '.join(AIR_CHOICES)}, got {air!r}")
 
 
 def affected_mask(volume: BlockVolume, air: str) -> np.ndarray:
@@ -201,7 +201,7 @@ def _check_entities(entities: Sequence[Entity], box: WorldBox) -> None:
     displays = any(entity.id.endswith("_display") for entity in entities)
     if displays and box.data_version < FIRST_DISPLAY_VERSION:
         reason = "is from a version before 1.19.4, which has no display entities"
-        raise UsageError(f"{box.world} {reason}; build with --style blocks")
+        raise UsageError(f"{box.world} {reason}; build with the style blocks (--style blocks)")
 
 
 def _numbers_of(volume: BlockVolume, box: WorldBox) -> np.ndarray:

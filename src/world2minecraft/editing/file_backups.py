@@ -228,9 +228,10 @@ def revert_last_step(world: Path, force: bool = False) -> Step:
         changed = changed_since(steps[-1])
         if changed and not force:
             reason = (
-                f"{changed[0]} has changed since the build; add --blocks to undo only the build"
+                f"{changed[0]} has changed since the build; pass blocks (--blocks) to undo only "
+                "the build"
             )
-            raise ConflictError(world, f"{reason}, or --force to restore the old files")
+            raise ConflictError(world, f"{reason}, or force (--force) to restore the old files")
         revert_step(steps[-1])
         return steps[-1]
 

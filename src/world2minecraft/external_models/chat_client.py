@@ -25,9 +25,9 @@ from world2minecraft.external_models.chat_transport import (
 )
 from world2minecraft.external_models.reply_cache import ReplyStore
 
-ATTEMPTS = 5  # As often is a busy server asked; with the waits below that is about a minute.
+ATTEMPTS = 5  # Requests to a busy server; about a minute with the waits below.
 FIRST_WAIT_S, MAX_WAIT_S = 1.0, 30.0
-TIMEOUT_S = 60.0  # Of one attempt, from the question to the last byte.
+TIMEOUT_S = 60.0  # Time limit for one attempt, in seconds.
 
 
 class Transport(Protocol):
@@ -204,7 +204,7 @@ def open_chat(
     transport = None if replays else ChatTransport(endpoint, timeout_s=timeout_s)
     name = endpoint.model or (single_model(transport.models(), endpoint.url) if transport else "")
     if not name:
-        raise UsageError("replaying requires the name of the recorded model; pass --model NAME")
+        raise UsageError("replaying requires the name of the recorded model (--model NAME)")
     table = read_prices(prices) if prices else read_prices()
     ledger = Ledger(find_price(name, table), max_usd=max_usd, max_calls=max_calls)
     return ChatModel(
@@ -222,4 +222,4 @@ def single_model(names: tuple[str, ...], url: str) -> str:
     if len(names) == 1:
         return names[0]
     some = ", ".join(names[:8]) or "none"
-    raise ServerError(f"{url} provides several models: {some}; choose one with --model NAME")
+    raise ServerError(f"{url} provides several models: {some}; choose one (--model NAME)")

@@ -100,11 +100,13 @@ class Ledger:
         """
         if max_usd is not None and price is None:
             raise UsageError(
-                "the price of this model is unknown, so --max-usd cannot be enforced; "
-                "pass a price file with --prices, or limit the calls with --max-calls"
+                "the price of this model is unknown, so the cost limit (--max-usd) cannot be "
+                "enforced; pass a price file (--prices), or limit the calls (--max-calls)"
             )
         if (max_usd is not None and not max_usd >= 0) or (max_calls is not None and max_calls < 0):
-            raise UsageError("--max-usd and --max-calls must be 0 or more")
+            raise UsageError(
+                "the limits on cost and calls (--max-usd, --max-calls) must be 0 or more"
+            )
         self.price, self.max_usd, self.max_calls = price, max_usd, max_calls
         self.calls = self.replayed = self.prompt_tokens = self.completion_tokens = 0
         self._held_usd = 0.0  # What the calls under way may cost,
@@ -130,7 +132,7 @@ class Ledger:
         with self._lock:
             if self.max_calls is not None and self.calls >= self.max_calls:
                 raise BudgetError(
-                    f"{self.calls:,} calls have been made, the limit of --max-calls; raise "
+                    f"{self.calls:,} calls have been made, which is the limit (--max-calls); raise "
                     "it to continue"
                 )
             self._check(self._held_usd, most)
@@ -158,7 +160,7 @@ class Ledger:
         if self.max_usd is not None and spent + most_usd > self.max_usd:
             raise BudgetError(
                 f"${spent:.4f} has been spent and the next call may cost ${most_usd:.4f}, "
-                f"more than the ${self.max_usd:.4f} of --max-usd; raise it to continue"
+                f"more than the limit of ${self.max_usd:.4f} (--max-usd); raise it to continue"
             )
 
     def settle(self, held_usd: float, reply: Reply | None) -> None:

@@ -62,8 +62,8 @@ class Endpoint:
         key = (os.environ if environment is None else environment).get(self.key_name, "").strip()
         if not key:
             raise UsageError(
-                f"{self.url} requires an API key: export {self.key_name}=..., or name "
-                "another environment variable with --key-env"
+                f"{self.url} requires an API key: export {self.key_name}=..., or name another "
+                "environment variable (--key-env)"
             )
         return key
 
@@ -134,8 +134,8 @@ def _check_address(address: str) -> str:
         fine, secret = False, None
     if secret:
         raise UsageError(
-            "the address contains a password, which would be saved in records; use --key-env "
-            "NAME instead"
+            "the address contains a password, which would be saved in records; name an "
+            "environment variable (--key-env NAME) instead"
         )
     if not fine:
         raise UsageError(

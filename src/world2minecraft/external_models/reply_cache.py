@@ -67,7 +67,10 @@ class ReplyStore:
         if self.path.exists():
             self._read()
         elif mode == "replay":
-            raise InputError(path, "not found; a run with --out writes replies.jsonl")
+            raise InputError(
+                path,
+                "not found; a run with an output folder (--out) writes replies.jsonl",
+            )
 
     def __len__(self) -> int:
         return len(self._replies)

@@ -86,7 +86,7 @@ def read_build(
     source.volume = trim_air(source.volume)
     if not source.volume.states.any():
         where = "in this box" if box else "here"
-        raise InputError(path, f"contains only air {where}; choose another --box")
+        raise InputError(path, f"contains only air {where}; choose another box (--box)")
     return source
 
 

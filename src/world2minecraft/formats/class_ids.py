@@ -104,10 +104,12 @@ class ClassSet:
     def _unknown_id(self, ids: np.ndarray, table: np.ndarray) -> str:
         wrong = int(ids[table[ids] == _INVALID].max())
         if self.name in ("nyu12", "occscannet") and wrong == EMBODIED_EMPTY:
-            return "contains the class id 12, which is empty in EmbodiedOcc; add --classes embodied"
+            return (
+                "contains the class id 12, which is empty in EmbodiedOcc; set classes to embodied"
+            )
         return (
-            f"contains the class id {wrong}, which {self.name} does not have; state the classes "
-            "with --classes nyu12, embodied, occscannet or a YAML file of ids and names"
+            f"contains the class id {wrong}, which {self.name} does not have; set classes "
+            "(--classes) to nyu12, embodied, occscannet or a YAML file of ids and names"
         )
 
 

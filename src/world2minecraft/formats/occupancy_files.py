@@ -81,7 +81,7 @@ def read_occupancy(path: str | Path, classes: str = "") -> OccupancyGrid:
         )
     if source.suffix == ".json":
         if classes not in ("", "auto", "nyu12", "occscannet"):
-            raise UsageError(f"--classes is for .npy and .npz files; {source} names its classes")
+            raise UsageError(f"classes is for .npy and .npz files; {source} names its classes")
         return read_occ_json(source)
     if source.suffix == ".npy":
         return labels_grid(_classes_of(read_npy(source), classes, source), source)

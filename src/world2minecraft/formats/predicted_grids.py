@@ -379,7 +379,7 @@ def _detect_convention(stored: StoredGrid, is_frame: bool) -> str:
     raise InputError(
         stored.path,
         f"has {_sides(stored.cells)} cells, which may lie as x, y, z (EmbodiedOcc) or as y, x, z "
-        "(ISO); add --convention embodiedocc or --convention iso",
+        "(ISO); set the convention to embodiedocc or iso (--convention)",
     )
 
 

@@ -26,7 +26,7 @@ def crop_volume(volume: BlockVolume, box: Box) -> BlockVolume:
     if (high == low).any():
         size = " x ".join(str(side) for side in volume.states.shape)
         at = ",".join(str(value) for value in volume.corner)
-        raise UsageError(f"--box does not overlap the build, which is {size} blocks from {at}")
+        raise UsageError(f"the box does not overlap the build, which is {size} blocks from {at}")
     cut = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     x, y, z = (int(value) for value in corner + low)
     first, last = corner + low, corner + high

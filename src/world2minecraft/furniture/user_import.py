@@ -77,7 +77,8 @@ def import_blocks(volume: BlockVolume, wish: ImportRequest) -> ImportedFurniture
     front = wish.front or front_of(trimmed, kind)
     if front is None:
         raise UsageError(
-            "cannot determine the front side from the blocks; add --front north|east|south|west"
+            "cannot determine the front side from the blocks; set it (--front "
+            "north|east|south|west)"
         )
     turned = _join_connections(turn_volume(trimmed, -SIDES.index(front)))
     cells = block_axes_to_grid(turned.states)
@@ -112,7 +113,9 @@ def _check(wish: ImportRequest) -> None:
     if wish.mount not in ("floor", "wall", "ceiling", "any"):
         raise UnknownNameError("mount", wish.mount, ("floor", "wall", "ceiling", "any"))
     if not 0.1 <= wish.blocks_per_metre <= 64:
-        raise UsageError(f"--blocks-per-metre must be 0.1 to 64, got {wish.blocks_per_metre:g}")
+        raise UsageError(
+            f"the scale must be 0.1 to 64 blocks per metre, got {wish.blocks_per_metre:g}"
+        )
 
 
 def _check_size(size: np.ndarray) -> None:
@@ -120,7 +123,7 @@ def _check_size(size: np.ndarray) -> None:
         given = " x ".join(f"{side:.2f}" for side in size)
         raise UsageError(
             f"each side of the piece must be {MIN_SIDE_M:g} to {MAX_SIDE_M:g} m, got {given}; "
-            "set the scale with --blocks-per-metre"
+            "set the scale (--blocks-per-metre)"
         )
 
 

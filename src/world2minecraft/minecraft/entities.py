@@ -156,7 +156,7 @@ def check_displays(volume: BlockVolume, version: GameVersion) -> None:
     ):
         raise UsageError(
             f"Minecraft {version.name} does not support display entities (new in 1.19.4); use "
-            "build.style=blocks or another --mc-version"
+            "build.style=blocks or another version (--mc-version)"
         )
 
 

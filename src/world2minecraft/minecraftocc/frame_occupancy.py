@@ -46,7 +46,8 @@ class Frame:
         if header.mode in ("RGB", "RGBA", "CMYK", "YCbCr"):
             raise CaptureError(
                 self.source,
-                "this is a photo, expected a depth image; choose a depth image or --predictor mono",
+                "this is a photo, expected a depth image; choose a depth image or the predictor "
+                "mono (--predictor mono)",
             )
         check_depth_kind(self.source, header)
         depth_m = depth_of_png(self.source, read_raw(self.source), self.depth_code)
@@ -76,7 +77,8 @@ class Frame:
         if read_header(photo).mode.startswith(("I", "F")):
             raise CaptureError(
                 photo,
-                "this is a depth image, but --predictor mono needs a photo; add --colour PHOTO",
+                "this is a depth image, but the predictor mono needs a photo; add one (--colour "
+                "PHOTO)",
             )
         loaded = MonoPredictor(network).network
         pixels = read_colour(photo)

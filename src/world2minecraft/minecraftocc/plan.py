@@ -247,21 +247,21 @@ def source_scenes(paths: Sequence[Path]) -> list[SceneSpec]:
 
 def _check(scenes: Sequence[SceneSpec], images: int | None, preset: str, test_share: float) -> None:
     if not scenes:
-        raise UsageError("no scenes; add --houses, --worlds, --world or --schem")
+        raise UsageError("no scenes; add houses or worlds (--houses, --worlds, --world or --schem)")
     if len(scenes) > MAX_SCENES:
         raise UsageError(f"a data set may have at most {MAX_SCENES:,} scenes, got {len(scenes):,}")
     if preset:
         if images is not None:
-            raise UsageError(f"--preset {preset} sets the number of images; remove --images")
+            raise UsageError(f"preset {preset} sets the number of images; omit images (--images)")
         if len(scenes) < 2:
-            raise UsageError(f"--preset {preset} needs at least two scenes, one for each split")
+            raise UsageError(f"preset {preset} needs at least two scenes, one for each split")
     elif images is None or not len(scenes) <= images <= MAX_IMAGES:
         given = "none" if images is None else f"{images:,}"
         raise UsageError(
-            f"--images must be from {len(scenes):,} (one per scene) to {MAX_IMAGES:,}, got {given}"
+            f"images must be from {len(scenes):,} (one per scene) to {MAX_IMAGES:,}, got {given}"
         )
     if not 0 <= test_share < 1:
-        raise UsageError(f"--test-share must be at least 0 and below 1, got {test_share:g}")
+        raise UsageError(f"the test share must be at least 0 and below 1, got {test_share:g}")
 
 
 def _test_scenes(scenes: int, share: float) -> int:

@@ -161,8 +161,8 @@ def depth_of_png(path: Path, raw: np.ndarray, code: str = "auto") -> np.ndarray:
     if not PLAUSIBLE_M[0] <= middle <= PLAUSIBLE_M[1]:
         raise CaptureError(
             path,
-            f"implausible median depth of {middle:.2f} m with depth code {code}; try "
-            "--depth-code mm or 8000",
+            f"implausible median depth of {middle:.2f} m with depth code {code}; try the depth "
+            "code mm or 8000 (--depth-code)",
         )
     return depth_m
 

@@ -42,9 +42,9 @@ def select_scenes(
         InputError: If a world is not found.
     """
     if worlds and houses is not None:
-        raise UsageError("--houses cannot be combined with --worlds or --world")
+        raise UsageError("houses cannot be combined with worlds (--worlds, --world)")
     if given is not None and len(worlds) != 1:
-        raise UsageError("--tour and --screenshots need exactly one --world")
+        raise UsageError("tour and screenshots need exactly one world (--world)")
     if worlds:
         for place in worlds:
             if not place.exists():
@@ -53,7 +53,7 @@ def select_scenes(
         return [replace(one, blocks_per_metre=blocks_per_metre, given=given) for one in found]
     count = preset_named(preset).houses if preset and houses is None else houses
     if count is not None and count < 1:
-        raise UsageError(f"--houses must be 1 or more, got {count}")
+        raise UsageError(f"houses must be 1 or more, got {count}")
     return house_scenes(count or 0)
 
 
@@ -74,7 +74,7 @@ def read_given_views(
         InputError: If a file cannot be read.
     """
     if tour is not None and screenshots is not None:
-        raise UsageError("--tour and --screenshots cannot be combined; use only one of them")
+        raise UsageError("tour and screenshots cannot be combined; use only one of them")
     if tour is not None:
         return GivenViews(str(tour)), len(read_tour(tour))
     if screenshots is None:
@@ -94,8 +94,8 @@ def position_reference(at: str) -> Literal["feet", "eye"]:
     if at == "feet" or at == "eye":
         return at
     raise UsageError(
-        "the reference point of the screenshot positions is required: --at feet (as shown by F3 "
-        "and most mods) or --at eye; a wrong choice shifts all labels by 1.62 blocks"
+        "the reference point of the screenshot positions is required: feet (as shown by F3 and "
+        "most mods) or eye (--at feet, --at eye); a wrong choice shifts all labels by 1.62 blocks"
     )
 
 
@@ -106,7 +106,7 @@ def find_worlds(folder: Path) -> list[Path]:
         InputError: If the folder does not exist or contains no worlds.
     """
     if not folder.is_dir():
-        raise InputError(folder, "not a folder; --worlds needs a folder that contains worlds")
+        raise InputError(folder, "not a folder; expected a folder that contains worlds")
     found = [
         path for path in sorted(folder.iterdir()) if path.name[0] != "." and is_scene_source(path)
     ]

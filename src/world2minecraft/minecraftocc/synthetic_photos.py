@@ -63,10 +63,10 @@ class PhotoRooms:
 
     def __post_init__(self):
         if not 1 <= self.rooms <= ROOMS_PER_SEED:
-            raise UsageError(f"--rooms must be from 1 to {ROOMS_PER_SEED}, got {self.rooms}")
+            raise UsageError(f"rooms must be from 1 to {ROOMS_PER_SEED}, got {self.rooms}")
         if self.images < self.rooms:
             raise UsageError(
-                f"--images must be at least {self.rooms}, one per room, got {self.images}"
+                f"images must be at least {self.rooms}, one per room, got {self.images}"
             )
         if not 0 <= self.test_share < 1 or self.test_rooms >= self.rooms:
             raise UsageError(
@@ -131,7 +131,7 @@ def _room(plan: PhotoRooms, number: int) -> Room:
     for kind in (*kinds[turn:], *kinds[:turn]):
         with suppress(World2MinecraftError):  # Its furniture found no place here.
             return generate_room(seed, kind=kind, clutter=clutter, shape=None)
-    raise UsageError(f"no room can be generated with seed {seed}; choose another --seed")
+    raise UsageError(f"no room can be generated with seed {seed}; choose another seed (--seed)")
 
 
 def _of_room(plan: PhotoRooms, number: int, room: Room, split: str) -> Iterator[OccSample]:

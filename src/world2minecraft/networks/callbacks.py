@@ -99,7 +99,8 @@ class TrainingCallback(lightning.Callback):
             rate = learning_rate_at(self._config, self.state.step - 1)
             raise UsageError(
                 f"the loss at step {self.state.step:,} is not finite (learning rate {rate:.2g}); "
-                "use a lower --lr or --precision 32 with another --out "
+                "use a lower learning rate (--lr) or 32-bit precision (--precision 32) with "
+                "another output folder "
                 "(the best weights are kept)"
             )
 

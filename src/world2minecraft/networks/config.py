@@ -54,9 +54,7 @@ class DataSource:
 
     def __post_init__(self):
         if not self.path:
-            raise UsageError(
-                "the path of a data set is empty; expected --data DIR or --data DIR:WEIGHT"
-            )
+            raise UsageError("the path of a data set is empty; expected DIR or DIR:WEIGHT (--data)")
         if not 0 < self.weight < math.inf:
             raise UsageError(
                 f"the weight of {self.path} must be above 0 and finite, got {self.weight:g}"
@@ -153,9 +151,7 @@ class RunConfig:
         _one_of("precision", self.precision, PRECISIONS)
         _one_of("class_weights", self.class_weights, CLASS_WEIGHTS)
         if not self.data:
-            raise UsageError(
-                "no training data; add --data DIR with a data set from w2m dataset build"
-            )
+            raise UsageError("no training data; add a data set from w2m dataset build (--data DIR)")
         if len(self.image) != 2:
             raise UsageError(f"image must be a width and a height, got {self.image}")
         for name, (low, high) in _RANGES.items():

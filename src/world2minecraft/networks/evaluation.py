@@ -130,8 +130,8 @@ class Evaluation:
             return None
         if self.protocols not in ((), ("embodied",)):
             raise UsageError(
-                f"{self.predicted} contains predictions for complete scenes; use "
-                "--protocol embodied"
+                f"{self.predicted} contains predictions for complete scenes; use the protocol "
+                "embodied (--protocol embodied)"
             )
         return saved_scene_scores(saved, scenes, names, seed=self.seed, progress=progress)
 

@@ -135,7 +135,7 @@ class SavedPredictions:
             raise DamagedFileError(
                 path,
                 f"contains the unknown class {int(labels[labels != UNKNOWN].max())}; for 13 "
-                "classes in which 12 is empty, add --classes embodied",
+                "classes in which 12 is empty, set classes to embodied (--classes embodied)",
             )
         return np.ascontiguousarray(labels.transpose(ORDERS[order or _order_of(labels)]))
 
@@ -178,8 +178,8 @@ def grid_of_labels(labels: np.ndarray, path: Path) -> Grid:
             return grid
     raise DamagedFileError(
         path,
-        f"expected 60x60x36 or 30x30x18 cells as x, y, z, got {_sides(labels.shape)}; "
-        "check --order",
+        f"expected 60x60x36 or 30x30x18 cells as x, y, z, got {_sides(labels.shape)}; check the "
+        "axis order (--order)",
     )
 
 

@@ -158,7 +158,7 @@ def check_folder(config: RunConfig, folder: Path) -> None:
         for name, (held, wanted) in zip(names, texts, strict=True)
     )
     raise ConflictError(
-        folder, f"contains a run with other settings ({differences}); choose another --out"
+        folder, f"contains a run with other settings ({differences}); choose another output folder"
     )
 
 
@@ -218,7 +218,7 @@ def _read_state(checkpoint: Path) -> RunState:
     facts = read_facts(checkpoint)
     if facts.keys() != vars(RunState()).keys():
         raise DamagedFileError(
-            checkpoint, "written by another version of w2m train; choose another --out"
+            checkpoint, "written by another version of w2m train; choose another output folder"
         )
     return RunState(**facts)
 

@@ -43,12 +43,12 @@ def rebuild(
             room.
     """
     if out.exists() and source.exists() and out.samefile(source):
-        raise UsageError(f"--out {out} is the source folder; choose another output folder")
+        raise UsageError(f"{out} is the source folder; choose another output folder")
     if is_block_file(source):
         ways = f"use w2m convert {source} {out} to make a world, or --into WORLD --at X Y Z"
-        raise UsageError(f"{source} contains blocks, but --out requires a room; {ways}")
+        raise UsageError(f"{source} contains blocks, but an output folder requires a room; {ways}")
     if classes and source.is_dir():
-        raise UsageError(f"--classes requires an occupancy grid, but {source} is a run folder")
+        raise UsageError(f"classes requires an occupancy grid, but {source} is a run folder")
     if source.is_dir():
         _copy_run(source, out)
         stages: tuple[str, ...] = ("build",)
@@ -78,7 +78,7 @@ def blocks_of(
         UsageError: If classes are given for another source than an occupancy grid.
     """
     if classes and (source.is_dir() or is_block_file(source)):
-        raise UsageError(f"--classes requires an occupancy grid, which {source} is not")
+        raise UsageError(f"classes requires an occupancy grid, which {source} is not")
     if is_block_file(source):
         return read_blocks(source)
     if source.is_dir():

@@ -63,8 +63,9 @@ def resume_parameters(
     for key, was, now in _differing(old.get("parameters"), requested.as_json(), retained):
         if now != _at(default, key):
             raise UsageError(
-                f"--from {start} keeps results made with {key}={_shown(was)}, got {_shown(now)}; "
-                f"omit {key}, or start with --from {first_reader(key)}"
+                f"starting at {start} keeps results made with {key}={_shown(was)}, got "
+                f"{_shown(now)}; "
+                f"omit {key}, or start at {first_reader(key)} (--from)"
             )
         chosen = _with_value(chosen, key.split("."), was, out)
         changed.append(f"{key}={_shown(was)}")
@@ -83,11 +84,14 @@ def resume_manifest(
     """
     if retained.facts.get("capture", now["capture"]) != now["capture"]:
         raise InputError(
-            out, "was made from another capture, or the capture has changed since; omit --from"
+            out,
+            "was made from another capture, or the capture has changed since; omit the start "
+            "stage (--from)",
         )
     if now["labels"] is not None and retained.facts.get("labels", now["labels"]) != now["labels"]:
         raise UsageError(
-            f"--from {start} keeps results made without these --labels; start with --from fuse"
+            f"starting at {start} keeps results made without these labels; start at fuse (--from "
+            "fuse)"
         )
     return {**now, **retained.facts}
 

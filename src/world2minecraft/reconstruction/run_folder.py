@@ -26,7 +26,7 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.machine import usable_cores
 
 FREE_BYTES = 64 << 20  # A reconstruction of one room writes 1 to 20 MB.
-BUILT_FROM = ("room.npz", "objects.json", "placements.json")  # What a world is built from.
+BUILT_FROM = ("room.npz", "objects.json", "placements.json")  # Files from which a world is built.
 
 
 class RunFolder:
@@ -48,7 +48,7 @@ class RunFolder:
         if start is not None and start not in stages:
             raise UnknownNameError("stage", start, stages)
         if folder.exists() and not folder.is_dir():
-            raise OutputError(folder, "is a file; --out must be a folder")
+            raise OutputError(folder, "is a file; the output must be a folder")
         self.folder = folder
         self.stages = tuple(stages)
         self.start = start
@@ -76,7 +76,9 @@ class RunFolder:
             missing = [stage for stage in wanted if stage not in self._recorded()]
             if missing:
                 raise InputError(
-                    self.folder, f"the stage {missing[0]!r} has not been completed; omit --from"
+                    self.folder,
+                    f"the stage {missing[0]!r} has not been completed; omit the start stage "
+                    "(--from)",
                 )
             done = wanted
         self.finished = done
@@ -181,16 +183,16 @@ def check_writable(folder: Path) -> None:
         OutputError: If it is a file, is not writable or its disk is full.
     """
     if folder.exists() and not folder.is_dir():
-        raise OutputError(folder, "is a file; --out must be a folder")
+        raise OutputError(folder, "is a file; the output must be a folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(folder, f"cannot create the folder: {error.strerror or error}") from error
     if not os.access(folder, os.W_OK):
-        raise OutputError(folder, "the folder is not writable; choose another --out")
+        raise OutputError(folder, "the folder is not writable; choose another output folder")
     free = shutil.disk_usage(folder).free
     if free < FREE_BYTES:
-        needed = f"{FREE_BYTES >> 20} MB are required; free some space or choose another --out"
+        needed = f"{FREE_BYTES >> 20} MB are required; free some space or choose another folder"
         raise OutputError(folder, f"the disk has {free >> 20} MB free, {needed}")
 
 

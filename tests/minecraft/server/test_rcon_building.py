@@ -181,7 +181,7 @@ def test_what_a_neighbour_of_the_place_changes_is_no_fault():
     ("said", "advice"),
     [
         ("Too many blocks in the specified area (maximum 9, specified 27)", "commandModification"),
-        ("That position is out of this world!", "choose another --at"),
+        ("That position is out of this world!", "choose another position"),
     ],
 )
 def test_a_refusal_comes_with_what_helps(said, advice):
@@ -195,7 +195,7 @@ def test_a_refusal_comes_with_what_helps(said, advice):
 
 @pytest.mark.parametrize("host", ["localhost..", "x" * 64])
 def test_a_host_that_can_be_no_name_is_told(host):
-    with pytest.raises(ServerError, match="is not a valid host name; check --rcon"):
+    with pytest.raises(ServerError, match="is not a valid host name; check the address"):
         RconClient(host, 1, "x", 1).connect()
 
 
@@ -213,7 +213,7 @@ def test_a_refused_command_is_shown_with_what_the_server_said():
         build(console, volume)
     assert str(caught.value) == (
         "the server rejected 'setblock -3 64 5 tmeo:shafa': Unknown block type 'tmeo:shafa'; "
-        "check that --mc-version is the server's version"
+        "check that the version (--mc-version) is the server's"
     )
 
 

@@ -290,6 +290,6 @@ def test_an_export_with_axes_iso_reads_back_the_same(made, tmp_path):
 def test_axes_are_an_option_of_occscannet_alone(made, tmp_path, format):
     with pytest.raises(UsageError) as caught:
         export_samples(made, format, tmp_path, ExportRule(axes="iso"))
-    assert str(caught.value) == f"--axes iso requires --format occscannet, got {format}"
+    assert str(caught.value) == f"axes iso requires the format occscannet, got {format}"
     with pytest.raises(UsageError, match="no order of axes is named 'zyx'"):
         ExportRule(axes="zyx")

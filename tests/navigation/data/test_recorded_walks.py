@@ -116,7 +116,7 @@ def test_a_stream_finds_its_scene(tmp_path):
         UsageError, match=("belongs to scene 'west', which is not one of east, north")
     ):
         assign_streams([str(both)], ["east", "north"])
-    with pytest.raises(UsageError, match="--at must be 'feet' or 'eye', got 'head'"):
+    with pytest.raises(UsageError, match="at must be 'feet' or 'eye', got 'head'"):
         parse_at("head")
 
 

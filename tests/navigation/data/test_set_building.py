@@ -74,7 +74,7 @@ def test_a_rule_shares_the_papers_walks_among_the_scenes():
     assert BuildRule(paper_size=True).walks_of(kinds) == {"a": 180, "b": 180, "c": 600}
     assert BuildRule().walks_of(kinds) == {"a": 30, "b": 30, "c": 110}
     assert BuildRule(trajectories=7, paper_size=True).walks_of(kinds) == {"a": 7, "b": 7, "c": 7}
-    with pytest.raises(UsageError, match="omit --unseen-share"):
+    with pytest.raises(UsageError, match="omit the unseen share"):
         BuildRule(paper_split=True, unseen_share=0.5)
 
 
@@ -222,4 +222,4 @@ def test_a_room_without_a_way_is_made_again(tmp_path, monkeypatch):
 def test_a_build_without_a_scene_says_what_to_do(tmp_path, capsys):
     assert cli.run(["vln", "build", "--out", str(tmp_path / "set")]) == 2
     told = capsys.readouterr().err
-    assert told == "error: no scenes given; add scenes, or generate some with --rooms 3\n"
+    assert told == "error: no scenes given; add scenes, or generate some (--rooms 3)\n"

@@ -104,7 +104,7 @@ def test_a_capture_that_spans_a_town_is_refused():
     moved = PointEvidence(
         far.view, far.camera_m, far.points_m * np.float32(500), far.weight, far.colour
     )
-    with pytest.raises(CaptureError, match="larger --voxel"):
+    with pytest.raises(CaptureError, match="larger cells"):
         fused(moved)
 
 

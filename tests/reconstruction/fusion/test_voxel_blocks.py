@@ -86,7 +86,7 @@ def test_a_capture_that_fills_too_many_cells_is_refused():
     blocks.used[0] = MAX_CELLS // BLOCK_CELLS
     blocks.reserve_box(np.zeros(3, np.int64), np.array([8, 8, 8]), 0.08)
     blocks.used[0] += 1
-    with pytest.raises(CaptureError, match="needs too many cells; use a larger --voxel"):
+    with pytest.raises(CaptureError, match="needs too many cells; use larger cells"):
         blocks.reserve_box(np.zeros(3, np.int64), np.array([8, 8, 8]), 0.08)
 
 

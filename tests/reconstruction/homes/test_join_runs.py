@@ -174,11 +174,11 @@ def test_what_was_seen_through_the_door_decides():
 def test_a_room_without_a_door_needs_a_place():
     closed = run_of("store", room((0.0, 0.0, 2.0, 2.0)))
     with pytest.raises(
-        UsageError, match="it has no detected door.*; set its position with --at store="
+        UsageError, match="it has no detected door.*; set its position .--at store="
     ):
         place_runs([kitchen(), closed])
     placed = place_runs([kitchen(), closed], {"store": Move(1, (100, 0, 0))})
-    assert "store was placed at the position given with --at" in placed.lines
+    assert "store was placed at the given position (--at)" in placed.lines
 
 
 def test_rooms_in_one_place_are_refused():

@@ -292,6 +292,6 @@ def test_a_scale_reaches_what_single_frames_state(tmp_path, views):
 
 def test_nothing_is_written_into_the_photos_themselves(tmp_path, views, stood_in):
     folder = write_photos(tmp_path / "capture", views)
-    with pytest.raises(UsageError, match="choose another --out"):
+    with pytest.raises(UsageError, match="choose another output folder"):
         prepare_capture(folder, tmp_path, Parameters())
     assert len(list(folder.iterdir())) == len(views) and not stood_in

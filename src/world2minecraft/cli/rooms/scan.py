@@ -139,4 +139,4 @@ def _check_source(
     elif room_dir is not None and kind is not None:
         raise UsageError(f"the type of {room_dir} is fixed; omit --kind")
     if seed is not None and seed < 0:
-        raise UsageError(f"--seed must be 0 or more, got {seed}")
+        raise UsageError(f"seed must be 0 or more, got {seed}")

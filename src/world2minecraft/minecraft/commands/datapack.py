@@ -93,7 +93,7 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
         first = game_versions()[0].name
         raise UsageError(
             f"data packs require Minecraft {first} or later, got {version.name}; "
-            "choose another --mc-version"
+            "choose another version (--mc-version)"
         )
     volume = convert_volume(volume, version.data_version)
     files = {"pack.mcmeta": pack_mcmeta(f"Builds {name}", version)}

@@ -62,8 +62,8 @@ def write_structure_pack(
     version = version or game_version()
     if version.data_version < FIRST_PLACE_VERSION:
         raise UsageError(
-            f"Minecraft {version.name} cannot place structures by command; choose --mc-version "
-            "1.19 or later, or write a .schem file"
+            f"Minecraft {version.name} cannot place structures by command; choose version 1.19 "
+            "or later (--mc-version), or write a .schem file"
         )
     space = to_namespace(name)
     files: dict[str, str | bytes] = {

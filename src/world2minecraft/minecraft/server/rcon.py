@@ -35,7 +35,7 @@ def parse_address(text: str) -> tuple[str, int]:
     found = _ADDRESS.fullmatch(text)
     port = int(found["port"] or PORT) if found else 0
     if not found or not 1 <= port <= 65535:
-        raise UsageError(f"--rcon must be HOST:PORT, such as localhost:{PORT}, got {text!r}")
+        raise UsageError(f"the server must be HOST:PORT, such as localhost:{PORT}, got {text!r}")
     return found["host"].strip("[]"), port
 
 
@@ -86,7 +86,9 @@ class RconClient:
         try:
             self._socket = socket.create_connection((self.host, self.port), self.timeout_s)
         except UnicodeError as error:  # A name with an empty part, or one of over 63 letters.
-            raise ServerError(f"{self.host} is not a valid host name; check --rcon") from error
+            raise ServerError(
+                f"{self.host} is not a valid host name; check the address (--rcon)"
+            ) from error
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._send(LOG_IN, self._password.encode("utf-8", "surrogateescape"))
         number, _ = self._receive()

@@ -140,7 +140,7 @@ def _check_layers(volume: BlockVolume, version: GameVersion) -> None:
     if low < version.min_y or high > version.max_y:
         raise UsageError(
             f"the build has layers {low} to {high}, but the world has layers {version.min_y} to "
-            f"{version.max_y}; choose another --at or fewer blocks per metre"
+            f"{version.max_y}; choose another position (--at) or fewer blocks per metre"
         )
 
 
@@ -387,5 +387,5 @@ def _advice(reply: str) -> str:
     if "Too many blocks" in reply:
         return "set the game rule commandModificationBlockLimit back to 32768"
     if "of this world" in reply or "of the world" in reply:
-        return "choose another --at, because the build is outside the server's world"
-    return "check that --mc-version is the server's version"
+        return "choose another position (--at), because the build is outside the server's world"
+    return "check that the version (--mc-version) is the server's"

@@ -375,7 +375,8 @@ def read_chunk(
         raise InputError(
             path,
             f"chunk {place} was saved before Minecraft 1.13 (data version {version}); optimize "
-            "the world in a newer game (Edit, Optimize World), or use a --box with newer chunks",
+            "the world in a newer game (Edit, Optimize World), or use a box (--box) with newer "
+            "chunks",
         )
     is_old = version < FIRST_WITHOUT_LEVEL or "Level" in root
     if is_old:

@@ -71,7 +71,7 @@ def check_name(name: str) -> str:
     text = " ".join("".join(letter for letter in text if letter.isprintable()).split())
     text = text[:MAX_NAME].strip(". ")
     if not text:
-        raise UsageError(f"--name must contain letters or digits, got {name!r}")
+        raise UsageError(f"name must contain letters or digits, got {name!r}")
     return f"{text} world" if _RESERVED.fullmatch(text) else text
 
 

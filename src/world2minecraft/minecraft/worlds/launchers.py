@@ -65,7 +65,7 @@ def choose_game(games: Sequence[Game], wanted: str) -> Game:
         UsageError: If no game or several games match.
     """
     if not games:
-        raise UsageError("no game found; use --saves DIR to name a saves folder")
+        raise UsageError("no game found; name a saves folder (--saves DIR)")
     if wanted.isdecimal():
         if not 1 <= int(wanted) <= len(games):
             count = f"{len(games)} games were" if len(games) > 1 else "1 game was"
@@ -79,7 +79,7 @@ def choose_game(games: Sequence[Game], wanted: str) -> Game:
         return named[0]
     names = ", ".join(f"{games.index(g) + 1} {g.name}" for g in (named or games))
     what = f"no game is named {wanted!r}" if not named else f"{len(named)} games found"
-    raise UsageError(f"{what}; choose one with --game NUMBER: {names}")
+    raise UsageError(f"{what}; choose one (--game NUMBER): {names}")
 
 
 def _launcher_folders(platform: str, home: Path, environment: Mapping[str, str]) -> Iterator[Path]:

@@ -125,7 +125,7 @@ def _gather(regions: list[Path], box: Box | None) -> "_ChunkContents":
                 raise LimitError(
                     path,
                     f"exceeds the limit of {MAX_CELLS:,} blocks or the memory limit; "
-                    "use --box to read a part of the world",
+                    "use a box (--box) to read a part of the world",
                 )
             held = _block_entities(root, path)
             found.block_entities += found.within(upgrade_signs(held, root["DataVersion"]), path)
@@ -151,7 +151,7 @@ class _ChunkContents:
             raise LimitError(
                 path,
                 f"exceeds the limit of {MAX_STATES:,} block states; "
-                "use --box to read a part of the world",
+                "use a box (--box) to read a part of the world",
             )
         self.sections.append((section.place, np.array(own, np.uint16), section.words))
 
@@ -169,7 +169,7 @@ class _ChunkContents:
             raise LimitError(
                 path,
                 f"exceeds the limit of {MAX_HELD_BYTES:,} bytes of entities; "
-                "use --box to read a part of the world",
+                "use a box (--box) to read a part of the world",
             )
         return held
 
@@ -225,7 +225,7 @@ def _fill(
         raise LimitError(
             root,
             f"has {shown} blocks, the limit is {MAX_CELLS:,}; "
-            "use --box to read a part of the world",
+            "use a box (--box) to read a part of the world",
         )
     states = np.zeros(tuple(size.tolist()), np.uint16)
     for place, own, words in sections:

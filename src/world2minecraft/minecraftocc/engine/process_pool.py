@@ -215,8 +215,8 @@ class PoolEngine:
                     'function under if __name__ == "__main__":'
                 )
             raise WorkerError(
-                f"{what}, possibly for lack of memory; run the same command with fewer --jobs to "
-                "resume"
+                f"{what}, possibly for lack of memory; run the same command with fewer jobs "
+                "(--jobs) to resume"
             )
         self.notes.append(f"A worker exited {how}; another worker resumed its task.")
         waiting.appendleft(number)

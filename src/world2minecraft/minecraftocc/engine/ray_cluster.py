@@ -31,7 +31,7 @@ class RayEngine:
         try:
             self._ray = import_module("ray")
         except ImportError as error:
-            raise MissingExtraError("--engine ray", "data") from error
+            raise MissingExtraError("the engine ray", "data") from error
         self.notes: list[str] = []
         self._jobs, self._is_ours = jobs, False
 

@@ -122,7 +122,7 @@ def _entries(
 def _exporter(format: str, root: Path, rule: ExportRule) -> Exporter:
     """Create the exporter for a format, importing only its module."""
     if rule.axes != "published" and format in FORMATS and format != "occscannet":
-        raise UsageError(f"--axes {rule.axes} requires --format occscannet, got {format}")
+        raise UsageError(f"axes {rule.axes} requires the format occscannet, got {format}")
     if format == "nyu":
         from world2minecraft.minecraftocc.exporters.nyu import NyuExporter  # noqa: PLC0415
 
@@ -167,10 +167,12 @@ def _claim(root: Path, choices: dict[str, Any], sha256: str) -> None:
     if names:
         differences = ", ".join(f"{name} {known.get(name)!r}" for name in names)
         raise ConflictError(
-            root, f"contains an export with {differences}; use the same options or another --out"
+            root,
+            f"contains an export with {differences}; use the same options or another output folder",
         )
     if sha256 and known.get(SOURCE, sha256) != sha256:
         raise ConflictError(
-            root, "contains an export of another data set or of an earlier build; "
-            "choose another --out"
+            root,
+            "contains an export of another data set or of an earlier build; choose another "
+            "output folder",
         )  # fmt: skip

@@ -122,7 +122,7 @@ class OccScanNetExporter:
                     sample.key,
                     "the region is rotated with the view, but scene packages need "
                     "regions along the "
-                    "room axes; build the data set with --region paper",
+                    "room axes; build the data set with the region paper (--region paper)",
                 )
             self._turned += 1
             box = region_box(sample)

@@ -168,7 +168,9 @@ def _parts(
                 task, pictures = tasks.popleft()  # Else every part would be held to the end.
                 yield task.result(), pictures
         except RuntimeError as error:  # A broken pool is one.
-            raise WorkerError(f"a worker process has exited ({error}); try --jobs 1") from error
+            raise WorkerError(
+                f"a worker process has exited ({error}); try a single job (--jobs 1)"
+            ) from error
         finally:
             pool.shutdown(cancel_futures=True)
 

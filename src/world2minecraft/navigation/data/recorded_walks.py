@@ -32,7 +32,7 @@ def parse_at(text: str) -> At:
         UsageError: If the text is neither "feet" nor "eye".
     """
     if text not in ("feet", "eye"):
-        raise UsageError(f"--at must be 'feet' or 'eye', got {text!r}")
+        raise UsageError(f"at must be 'feet' or 'eye', got {text!r}")
     return "feet" if text == "feet" else "eye"
 
 

@@ -169,12 +169,15 @@ class BuildRule:
     def __post_init__(self):
         if self.composition not in COMPOSITIONS:
             raise UsageError(
-                f"--composition must be base, extend or combined, got {self.composition!r}"
+                f"composition must be base, extend or combined, got {self.composition!r}"
             )
         if self.trajectories is not None and self.trajectories < 1:
-            raise UsageError(f"--trajectories must be 1 or more, got {self.trajectories}")
+            raise UsageError(f"trajectories must be 1 or more, got {self.trajectories}")
         if self.paper_split and self.unseen_share not in (0, UNSEEN_SHARE):
-            raise UsageError("the paper's split does not hold out any scenes; omit --unseen-share")
+            raise UsageError(
+                "the paper's split does not hold out any scenes; omit the unseen share "
+                "(--unseen-share)"
+            )
 
     def walks_of(self, kinds: Mapping[str, str]) -> dict[str, int]:
         """Return the number of walks to request from each scene.
@@ -264,7 +267,7 @@ def build_navigation_set(
     if not items:
         raise UsageError(
             "no items could be built: the scenes lack landmarks or walkable floor; choose "
-            "furnished scenes, or generate some with --rooms 3"
+            "furnished scenes, or generate some (--rooms 3)"
         )
     _write(Path(out), how, works, items, splits, {scene_of[path]: path for path in wanted})
     return BuiltSet(items, works, find_leaks(items), [path for path in kinds if path not in wanted])

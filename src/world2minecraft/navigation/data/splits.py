@@ -36,7 +36,7 @@ def scene_splits(
         {'a': 'train', 'b': 'val_unseen', 'c': 'train'}
     """
     if not 0 <= unseen_share <= 1:
-        raise UsageError(f"--unseen-share must be 0 to 1, got {unseen_share:g}")
+        raise UsageError(f"the unseen share must be 0 to 1, got {unseen_share:g}")
     splits = {}
     for kind in sorted(set(compositions.values())):
         names = sorted(

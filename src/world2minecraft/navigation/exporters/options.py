@@ -51,14 +51,19 @@ class ExportOptions:
                 if name not in known:
                     raise UnknownNameError(kind, name, known)
         if not 28 * 28 <= self.max_pixels <= 1 << 24:
-            raise UsageError(f"--max-pixels must be 784 to 16777216, got {self.max_pixels}")
+            raise UsageError(
+                f"the pixel limit (--max-pixels) must be 784 to 16777216, got {self.max_pixels}"
+            )
         if self.gpus is not None and not 1 <= self.gpus <= 4096:
-            raise UsageError(f"--gpus must be 1 to 4096, got {self.gpus}")
+            raise UsageError(f"gpus must be 1 to 4096, got {self.gpus}")
         if self.max_samples < 0:
-            raise UsageError(f"--max-samples must be 0 (all rows) or more, got {self.max_samples}")
+            raise UsageError(
+                "the row limit (--max-samples) must be 0 (all rows) or more, got "
+                f"{self.max_samples}"
+            )
         if not self.model.strip() or not self.model.isprintable():
             raise UsageError(
-                "--model must be a model name such as Qwen/Qwen2.5-VL-3B-Instruct, or a folder"
+                "model must be a model name such as Qwen/Qwen2.5-VL-3B-Instruct, or a folder"
             )
 
     def as_data(self) -> dict[str, Any]:

@@ -73,7 +73,7 @@ def grpo_plan(rows: int, gpus: int) -> GrpoPlan:
     batch = min(GRPO_BATCH, rows) // gpus * gpus
     if batch == 0:
         raise UsageError(
-            f"{rows} rows do not fill one batch on {gpus} GPUs; set --gpus to {rows or 1} or fewer"
+            f"{rows} rows do not fill one batch on {gpus} GPUs; use {rows or 1} or fewer (--gpus)"
         )
     steps = rows // batch
     return GrpoPlan(batch, steps, steps * GRPO_EPOCHS, rows - steps * batch)
@@ -144,6 +144,6 @@ def check_longest(lengths: Iterable[tuple[Item, int]], limit: int, what: str) ->
     if most > limit:
         raise UsageError(
             f"item {item.item_id} needs up to {most:,} tokens, more than the {limit:,} of "
-            f"{what}; export with a smaller --max-pixels"
+            f"{what}; export with a lower pixel limit (--max-pixels)"
         )
     return most

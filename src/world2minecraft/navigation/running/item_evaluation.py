@@ -71,9 +71,9 @@ def evaluate(
         ServerError: If the server fails for several items in a row.
     """
     if not items:
-        raise UsageError("no items to answer; check --split")
+        raise UsageError("no items to answer; check the split (--split)")
     if jobs < 1:
-        raise UsageError(f"--jobs must be 1 or more, got {jobs}")
+        raise UsageError(f"jobs must be 1 or more, got {jobs}")
     found: list[AnsweredItem] = []
     failed, right = 0, 0
     for item, answer in _ask_all(items, answerer.answer, jobs):
@@ -216,7 +216,7 @@ def select_items(
     if not found:
         raise UsageError(
             f"none of the {len(items):,} items has split {split}, task {task} and "
-            f"composition {composition}; try --split all"
+            f"composition {composition}; try the split all (--split all)"
         )
     if count is None or count >= len(found):
         return found

@@ -73,8 +73,8 @@ def episode_of_sentence(scene: VlnScene, wish: GoalRequest) -> Episode:
     if scene.distance_m(start.feet, goals) == float("inf"):
         raise InputError(
             scene.path,
-            f"no path leads from the start to the {target.name}; choose another start with "
-            "--start X,Y,Z",
+            f"no path leads from the start to the {target.name}; choose another start (--start "
+            "X,Y,Z)",
         )
     return Episode(
         episode_id="wish",
@@ -116,7 +116,8 @@ def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
     if len(named[phrase]) > 1:
         some = ", ".join(repr(one.name) for one in named[phrase][:6])
         raise UsageError(
-            f"{phrase!r} matches {len(named[phrase])} objects; use one of {some}, or --goal NAME"
+            f"{phrase!r} matches {len(named[phrase])} objects; use one of {some}, or name the "
+            "goal (--goal NAME)"
         )
     return named[phrase][0]
 

@@ -171,7 +171,8 @@ def _fill(source: ImportedSet, rule: FrameRule, folder: Path, progress: Progress
     if need > shutil.disk_usage(folder.parent).free:
         raise OutputError(
             folder,
-            f"not enough free disk space for {need / 1e9:.1f} GB; use --cache DIR or --cache off",
+            f"not enough free disk space for {need / 1e9:.1f} GB; choose another cache folder "
+            "(--cache DIR) or no cache (--cache off)",
         )
     folder.mkdir(exist_ok=True)
     arrays = {

@@ -87,7 +87,8 @@ def make_frame(sample: OccSample, rule: FrameRule) -> Frame:
     """
     if sample.colour is None:
         raise InputError(
-            sample.key, "the sample has no image; build the data set without --labels-only"
+            sample.key,
+            "the sample has no image; build the data set with images (without --labels-only)",
         )
     if any(sample.camera.distortion):
         raise InputError(sample.key, "the camera has lens distortion; undistort the images first")
@@ -149,7 +150,8 @@ def _factor(sample: OccSample, grid: Grid) -> int:
         raise InputError(
             sample.key,
             f"a region of {have} cells of {region.voxel_m:g} m cannot be converted to {want} cells "
-            f"of {voxel_m:g} m; build the data set with --voxel 0.08 or choose another grid",
+            f"of {voxel_m:g} m; build the data set with cells of 0.08 m (--voxel 0.08) or choose "
+            "another grid",
         )
     return factor
 

@@ -58,7 +58,7 @@ def split_rows(scenes: list[str], splits: list[str], val_share: float, name: str
     if not val_share:
         if not test:
             raise UsageError(
-                f"{name} has no test split; reserve scenes for validation with --val-share 0.1"
+                f"{name} has no test split; reserve scenes for validation (--val-share 0.1)"
             )
         return Split(pool, test, test)
     names = sorted({scenes[row] for row in pool}, key=_digest)
@@ -66,7 +66,7 @@ def split_rows(scenes: list[str], splits: list[str], val_share: float, name: str
     if len(held_out) == len(names):
         raise UsageError(
             f"{name} has only {len(names)} training scene, so none can be used for validation; add "
-            "scenes, or validate on the test split with --val-share 0"
+            "scenes, or validate on the test split (--val-share 0)"
         )
     train = [row for row in pool if scenes[row] not in held_out]
     return Split(train, [row for row in pool if scenes[row] in held_out], test)

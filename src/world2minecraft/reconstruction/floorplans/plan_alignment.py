@@ -126,7 +126,8 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
         best = places[0][0] if places else 0.0
         raise PlanMismatchError(
             f"the plan does not match the scan: at most {best:.0%} of its walls coincide with "
-            f"scanned walls, {LAID_FIT:.0%} are required; omit --plan or pass the plan of this room"
+            f"scanned walls, {LAID_FIT:.0%} are required; omit the plan (--plan) or pass the "
+            "plan of this room"
         )
     rivals = [places[0]]
     for place in places[1:]:

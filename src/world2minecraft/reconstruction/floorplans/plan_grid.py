@@ -102,8 +102,8 @@ class Canvas:
         if np.prod(shape, dtype=np.float64) > MAX_CELLS:
             metres = " x ".join(f"{side * voxel_m:.0f}" for side in shape)
             raise UsageError(
-                f"the plan measures {metres} m, too large for the grid; use larger cells, "
-                "such as --voxel 0.16"
+                f"the plan measures {metres} m, too large for the grid; use larger cells, such "
+                "as 0.16 m (--voxel 0.16)"
             )
         self.voxel_m, self.first = voxel_m, first
         self.labels = np.full(shape, UNKNOWN, np.uint8)

@@ -125,8 +125,8 @@ class EvidenceMap:
             extent = " x ".join(f"{side * self.parameters.voxel_m:.0f}" for side in shape)
             raise CaptureError(
                 "capture",
-                f"spans {extent} m but most of that is empty: a frame may have a wrong pose; check "
-                "the poses with w2m scan, or use a larger --voxel",
+                f"spans {extent} m but most of that is empty: a frame may have a wrong pose; "
+                "check the poses with w2m scan, or use larger cells (--voxel)",
             )
         log_odds, record = np.zeros(shape, np.float32), np.zeros(shape, np.int32)
         for number, start in zip(numbers, first - low, strict=True):

@@ -96,7 +96,7 @@ class Blocks:
         cells = (int(self.used[0]) + missing + 1) * BLOCK_CELLS
         if int(self.used[0]) * BLOCK_CELLS > MAX_CELLS:
             raise CaptureError(
-                "capture", "needs too many cells; use a larger --voxel, such as --voxel 0.16"
+                "capture", "needs too many cells; use larger cells, such as 0.16 m (--voxel 0.16)"
             )
         for name in ("log_odds", "record", "mark"):
             setattr(self, name, _grown(getattr(self, name), cells))
@@ -122,7 +122,7 @@ class Blocks:
         if wanted.astype(np.float64).prod() > MAX_TABLE:
             extent = " x ".join(f"{side * SIDE * voxel_m:.0f}" for side in wanted)
             raise CaptureError(
-                "capture", f"spans {extent} m, too large for the grid; use a larger --voxel"
+                "capture", f"spans {extent} m, too large for the grid; use larger cells (--voxel)"
             )
         table = np.zeros(tuple(int(side) for side in wanted), np.int32)
         shift = self.low - first

@@ -59,7 +59,7 @@ def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
     if len(sizes) > 1:
         raise UsageError(
             f"the runs have different cell sizes ({sizes[0]:g} m and {sizes[-1]:g} m); reconstruct "
-            "them with the same --voxel"
+            "them with the same cell size (--voxel)"
         )
     return tuple(runs)
 
@@ -100,7 +100,7 @@ def join(
     """
     chosen = parameters or Parameters()
     if any(out.exists() and folder.exists() and out.samefile(folder) for folder in folders):
-        raise UsageError(f"--out {out} is one of the joined runs; choose another output folder")
+        raise UsageError(f"{out} is one of the joined runs; choose another output folder")
     progress("join", 0, 1)
     runs = read_runs(folders)
     voxel_m = runs[0].grid.voxel_m

@@ -112,7 +112,7 @@ def _one_grid(runs: Sequence[Run]) -> tuple[_Cells, list[int]]:
         extent = " x ".join(f"{side * voxel_m:.0f}" for side in shape)
         raise UsageError(
             f"the joined rooms span {extent} m, too large for one grid; join fewer rooms or set "
-            "their positions with --at"
+            "their positions (--at)"
         )
     offsets = np.cumsum([0, *(_most_id(run) for run in runs)]).tolist()
     if offsets[-1] > MAX_OBJECTS:

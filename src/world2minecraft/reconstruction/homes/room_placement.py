@@ -266,7 +266,7 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
     hand = dict(by_hand or {})
     first = runs[0].name
     moves: dict[str, Move] = {first: hand.get(first, Move())}
-    lines = {run.name: f"{run.name} was placed at the position given with --at" for run in runs}
+    lines = {run.name: f"{run.name} was placed at the given position (--at)" for run in runs}
     lines[first] = f"{first} keeps its scanned position" if first not in hand else lines[first]
     moves |= {run.name: hand[run.name] for run in runs if run.name in hand}
     left = [run for run in runs if run.name not in moves]
@@ -312,7 +312,7 @@ def _undecided(left: list[Run], options: Mapping[str, list[Fit]], voxel_m: float
         without = "" if doorways_of(run) else " (it has no detected door)"
         return (
             f"{run.name} matches no door of the other rooms{without}; "
-            f"set its position with --at {run.name}=X,Y,TURNS (metres, quarter turns)"
+            f"set its position (--at {run.name}=X,Y,TURNS, in metres and quarter turns)"
         )
     name = open_ones[0].name
     found = options[name]
@@ -338,7 +338,7 @@ def _check_apart(placed: Sequence[Run], hand: set[str]) -> None:
             if {one.name, other.name} & hand and not seen_alike:
                 raise UsageError(
                     f"{one.name} and {other.name} overlap by {shared:.1f} m2 of floor; move one "
-                    f"of them with --at {one.name}=X,Y,TURNS"
+                    f"of them (--at {one.name}=X,Y,TURNS)"
                 )
 
 
@@ -371,7 +371,7 @@ def parse_place(text: str, names: Sequence[str], voxel_m: float) -> tuple[str, M
             f"got {text!r}"
         ) from None
     if name not in names:
-        raise UsageError(f"--at names an unknown room {name!r}; known rooms: {', '.join(names)}")
+        raise UsageError(f"no room is named {name!r} (--at); known rooms: {', '.join(names)}")
     place = [*numbers[:2], numbers[3] if len(numbers) == 4 else 0.0]
     cells = tuple(round(value / voxel_m) for value in place)
     return name, Move(turns % 4, cells)  # type: ignore[arg-type]

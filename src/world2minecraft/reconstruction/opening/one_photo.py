@@ -49,7 +49,7 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
         raise CaptureError(
             judged.capture.folder,
             "a single photo has no depth; take 30 or more photos of the room, or estimate depth "
-            "with --depth hf:ORG/NAME or --predictor mono",
+            "with a network (--depth hf:ORG/NAME or --predictor mono)",
         )
     stated: dict[str, Any] = {
         "made_from": judged.capture.source,
@@ -63,7 +63,8 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
             raise CaptureError(
                 judged.capture.folder,
                 f"a single photo requires depth in metres, which {model.name} does not predict; "
-                "use --depth hf:depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf",
+                "use another model (--depth "
+                "hf:depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf)",
             )
         views = _with_depth(judged, model)
         stated |= {"scale_sigma": SIGMA_DEPTH, "notes": [*judged.notes, _told_depth(model)]}

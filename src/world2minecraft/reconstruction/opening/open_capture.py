@@ -42,7 +42,7 @@ from world2minecraft.reconstruction.run_folder import check_writable, hash_captu
 
 FOLDER = "capture"
 STAMP = "prepared.json"
-UNNAMED_CAPTURE = "photos"  # What steps that know no path call the capture.
+UNNAMED_CAPTURE = "photos"  # Name of the capture in steps that know no path.
 UNIT = "0.0002"  # Metres a step: a scene of median depth 2.5 is kept to 13.
 MIN_PHOTOS = 3
 Told = dict[str, Any]
@@ -75,13 +75,14 @@ def prepare_capture(
     if has_poses_and_depth(found):
         if chosen.known is not None or chosen.known_points is not None:
             raise UsageError(
-                f"{capture} contains poses and depth, so its scale is fixed; omit --known and "
-                "--known-points"
+                f"{capture} contains poses and depth, so its scale is fixed; omit the known "
+                "lengths (--known, --known-points)"
             )
         return capture
     if capture.resolve() == (out / FOLDER).resolve():
         raise UsageError(
-            f"{capture} is the folder for intermediate results of --out {out}; choose another --out"
+            f"{capture} is the folder for intermediate results of {out}; choose another output "
+            "folder"
         )
     fresh = not out.exists()
     check_writable(out)
@@ -208,7 +209,7 @@ def _with_stereo(
     if not chosen.stereo.network_alone:
         maps = compute_depth_maps(photos, scene, chosen.stereo, progress, guide)
     elif guide is None:
-        raise UsageError("stereo.network_alone=true requires --depth, such as --depth hf:ORG/NAME")
+        raise UsageError("stereo.network_alone=true requires a depth model (--depth hf:ORG/NAME)")
     else:
         maps = network_maps(photos, scene, guide, chosen.stereo, progress)
     return stereo_views(photos, scene, maps)

@@ -39,12 +39,12 @@ from world2minecraft.reconstruction.parameters import Parameters
 
 MIN_CELLS = 50  # Occupied, of all grids together: fewer are no room.
 YAW_STEP_DEG = 0.5
-BIN_M = 0.04  # Half a cell, in which walls are counted.
+BIN_M = 0.04  # Bin width for finding walls, in metres: half a cell.
 KEEP_YAW = 0.9  # The grid's own axes are kept if their walls are nearly as sharp as the best.
 SQUARE_DEG = 0.5  # Grids at such an angle, or at whole quarters, share their axes.
 INNER = 1.0  # Percent of the floor's cells beyond each side of the room.
-WALL_REACH_M = 0.5  # So far from the floor's end its wall lies.
-WALL_LAYER = 0.3  # Of the fullest layer of cells of a wall, to belong to it.
+WALL_REACH_M = 0.5  # Maximum distance of a wall from the end of the floor, in metres.
+WALL_LAYER = 0.3  # Minimum cells, as a share of the wall's fullest layer.
 MIN_SIZE_M, MAX_SIZE_M = 1.0, 60.0
 
 
@@ -83,8 +83,7 @@ def prepare_predicted(
     if not single and judged.capture.scale == "unknown":
         raise CaptureError(
             judged.capture.folder,
-            "its poses have no metric scale, which --predictions need; add depth, or poses in "
-            "metres",
+            "its poses have no metric scale, which predictions need; add depth, or poses in metres",
         )
     poses = _poses(judged, photos, files, chosen) if single else None
     level = _level_frame(judged, chosen)
@@ -190,7 +189,7 @@ def _joined(
         raise CaptureError(
             path,
             f"the predictions show fewer than {MIN_CELLS} occupied cells in the images; check "
-            "cam_pose (camera to world), --classes and --convention",
+            "cam_pose (camera to world), the classes (--classes) and the convention (--convention)",
         )
     points, classes = [], []
     first = found[0][1]

@@ -84,7 +84,7 @@ def find_adapter(name: str | None = None) -> Any:
         GpuError: If no such adapter is found.
     """
     if find_spec("wgpu") is None:
-        raise MissingExtraError("--device gpu", "gpu")
+        raise MissingExtraError("the device gpu", "gpu")
     wanted = (name or os.environ.get(ADAPTER_VARIABLE, "")).strip().lower()
     found = _adapters()
     for adapter in found:
@@ -99,8 +99,8 @@ def find_adapter(name: str | None = None) -> Any:
     if wanted:
         raise GpuError(f"GPU adapter {wanted!r} not found; adapters: {names}")
     raise GpuError(
-        f"no GPU found (adapters: {names}); install its Vulkan driver or use --device cpu "
-        f"({ADAPTER_VARIABLE}={SOFTWARE} selects a software adapter for tests)"
+        f"no GPU found (adapters: {names}); install its Vulkan driver or use the CPU "
+        f"(--device cpu); {ADAPTER_VARIABLE}={SOFTWARE} selects a software adapter for tests"
     )
 
 
@@ -124,7 +124,7 @@ def open_device(adapter: Any) -> Any:
         return adapter.request_device_sync(required_limits=limits)
     except Exception as error:  # wgpu raises errors of many kinds, RuntimeError among them.
         raise GpuError(
-            f"{info_of(adapter).name} cannot be used: {error}; use --device cpu"
+            f"{info_of(adapter).name} cannot be used: {error}; use the CPU (--device cpu)"
         ) from error
 
 
@@ -185,7 +185,7 @@ class Engine:
                 raise GpuError(
                     f"a world of {shape} blocks is too large for {self.name}: buffer {name} needs "
                     f"{size / 1e6:,.0f} MB, the limit is {most / 1e6:,.0f} MB; "
-                    "use --device cpu or a smaller --box"
+                    "use the CPU (--device cpu) or a smaller box (--box)"
                 )
 
     def upload(self, arrays: Mapping[str, np.ndarray]) -> dict[str, Any]:
@@ -204,7 +204,7 @@ class Engine:
             }
         except device_errors() as error:
             raise GpuError(
-                f"cannot upload the world to {self.name}: {error}; use --device cpu"
+                f"cannot upload the world to {self.name}: {error}; use the CPU (--device cpu)"
             ) from error
 
 

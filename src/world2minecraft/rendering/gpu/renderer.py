@@ -44,7 +44,7 @@ from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_
 
 MAX_IN_FLIGHT = 2  # Submissions under way: one is drawn while another is read.
 MAX_FREE = MAX_IN_FLIGHT  # Sets of buffers that are kept for the next call.
-LOST = "the GPU {} no longer responds: {}; use --device cpu"
+LOST = "the GPU {} no longer responds: {}; use the CPU (--device cpu)"
 
 
 def unpack_rows(arrays: PixelArrays, planes: np.ndarray, row: int, layout: PlaneLayout) -> None:

@@ -75,7 +75,9 @@ def choose_target(
         return Target(_file(out), "picture", wanted, replace(choice, depth_suffix=suffix))
     if suffix and not out.is_dir():
         known = ", ".join(dict.fromkeys((*COLOUR_SUFFIXES, *DEPTH_SUFFIXES, *ANIMATION_SUFFIXES)))
-        raise UsageError(f"{out}: --out must end in {known}, or have no suffix to write a folder")
+        raise UsageError(
+            f"{out}: the output must end in {known}, or have no suffix to write a folder"
+        )
     if out.exists() and not out.is_dir():
         raise OutputError(out, "this is a file; choose a folder, or a name such as house.png")
     return Target(out, "folder", layers, choice)
@@ -169,7 +171,7 @@ def check_many(target: Target, count: int) -> None:
     """
     if target.medium == "picture" and count != 1:
         raise UsageError(
-            f"cannot write {count} images to {target.path.name}; choose a folder for --out, or a "
+            f"cannot write {count} images to {target.path.name}; choose an output folder, or a "
             "name that ends in .gif, .webp or .mp4"
         )
 
@@ -184,8 +186,8 @@ def check_pixels(cameras: Iterable[Camera], samples: int) -> None:
         rays = width * height * samples**2
         if rays > MAX_PIXELS or max(width, height) * samples > MAX_SIDE_PX:
             raise UsageError(
-                f"{width}x{height} with --samples {samples} is too large; the limits are "
-                f"{MAX_PIXELS:,} samples in total and {MAX_SIDE_PX:,} pixels per side"
+                f"{width}x{height} with {samples} x {samples} samples per pixel is too large; the "
+                f"limits are {MAX_PIXELS:,} samples in total and {MAX_SIDE_PX:,} pixels per side"
             )
 
 
@@ -197,4 +199,4 @@ def check_same_size(shots: Iterable[Shot], target: Target) -> None:
     """
     sizes = {(shot.camera.width_px, shot.camera.height_px) for shot in shots}
     if target.medium == "moving" and len(sizes) > 1:
-        raise UsageError("the poses have different image sizes; choose a folder for --out")
+        raise UsageError("the poses have different image sizes; choose an output folder")

@@ -78,20 +78,20 @@ class DrawSettings:
 
     def __post_init__(self):
         if self.samples is not None and not 1 <= self.samples <= MAX_SAMPLES:
-            raise UsageError(f"--samples must be 1 to {MAX_SAMPLES}, got {self.samples}")
+            raise UsageError(f"samples must be 1 to {MAX_SAMPLES}, got {self.samples}")
         if self.texture_px is not None and self.texture_px not in TEXTURES_PX:
-            raise UsageError(f"--textures must be 16, 32, 64 or 128, got {self.texture_px}")
+            raise UsageError(f"the texture size must be 16, 32, 64 or 128, got {self.texture_px}")
         if not 1 <= self.photo_samples <= MAX_PHOTO_SAMPLES:
             raise UsageError(
-                f"--photo-samples must be 1 to {MAX_PHOTO_SAMPLES:,}, got {self.photo_samples}"
+                f"photo samples must be 1 to {MAX_PHOTO_SAMPLES:,}, got {self.photo_samples}"
             )
         if self.device not in DEVICES:
-            raise UsageError(f"--device must be auto, cpu or gpu, got {self.device!r}")
+            raise UsageError(f"device must be auto, cpu or gpu, got {self.device!r}")
         if not 1 <= self.jobs <= MAX_JOBS:
-            raise UsageError(f"--jobs must be 1 to {MAX_JOBS}, got {self.jobs}")
+            raise UsageError(f"jobs must be 1 to {MAX_JOBS}, got {self.jobs}")
         if self.jobs > 1 and (self.photo or self.device == "gpu"):
-            other = "--photo" if self.photo else "--device gpu"
-            raise UsageError(f"--jobs cannot be combined with {other}; remove one of them")
+            other = "photo" if self.photo else "the device gpu"
+            raise UsageError(f"jobs cannot be combined with {other}; remove one of them")
 
     def light_of(self, kind: Kind) -> LightSettings:
         """Return the light for a kind of view, which is neutral by default for a turntable.
@@ -184,7 +184,7 @@ def _photos(
                 samples=settings.photo_samples, threads=settings.threads, progress=report,
             )  # fmt: skip
         except ValueError as error:
-            raise UsageError(f"--photo: {error}") from error
+            raise UsageError(f"photo: {error}") from error
         step(settings.photo_samples - reported)
         light = replace(light, exposure=clamp_exposure(picture.exposure))
         yield picture

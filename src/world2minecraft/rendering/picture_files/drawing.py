@@ -125,11 +125,11 @@ def _check_turntable(view: View, target: Target, settings: DrawSettings) -> None
     if view.kind != "turntable":
         return
     if settings.photo:
-        raise UsageError("--turntable cannot be combined with --photo; use --orbit --photo")
+        raise UsageError("turntable cannot be combined with photo; use orbit (--orbit --photo)")
     if settings.jobs > 1:
-        raise UsageError("--turntable cannot be combined with --jobs; remove --jobs")
+        raise UsageError("turntable cannot be combined with jobs; omit jobs (--jobs)")
     if target.layers != ("rgb",):
-        raise UsageError("--turntable can only output rgb; use --orbit for depth and ids")
+        raise UsageError("turntable can only output rgb; use orbit (--orbit) for depth and ids")
 
 
 def _draw_plan(

@@ -24,8 +24,8 @@ from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
 
 Kind = Literal["pose", "poses", "orbit", "tour", "turntable", "spawn"]
 Medium = Literal["picture", "folder", "moving"]
-ORBIT_FOV_DEG = 40.0  # From outside, with less distortion than the game's.
-TURN_S = 5.0  # Of an animated orbit or turntable.
+ORBIT_FOV_DEG = 40.0  # For views from outside; less distortion than the game's.
+TURN_S = 5.0  # Duration of an animated orbit or turntable, in seconds.
 FOLDER_TURN, FOLDER_TOUR = 36, 24  # Pictures in a folder.
 MAX_FRAMES = 1_000_000
 
@@ -41,7 +41,10 @@ class CameraChoice:
 
     def __post_init__(self):
         if self.vertical_fov_deg is not None and self.horizontal_fov_deg is not None:
-            raise UsageError("--vfov and --hfov cannot be combined; give only one of them")
+            raise UsageError(
+                "the vertical and the horizontal field of view (--vfov, --hfov) cannot be "
+                "combined; give only one of them"
+            )
         self.camera(70.0)  # Raises where a value is out of range.
 
     @property
@@ -78,13 +81,13 @@ class View:
 
     def __post_init__(self):
         if self.frames is not None and not 1 <= self.frames <= MAX_FRAMES:
-            raise UsageError(f"--frames must be 1 to {MAX_FRAMES:,}, got {self.frames}")
+            raise UsageError(f"frames must be 1 to {MAX_FRAMES:,}, got {self.frames}")
         if not 1 <= self.rate_hz <= 240:
-            raise UsageError(f"--fps must be 1 to 240, got {self.rate_hz:g}")
+            raise UsageError(f"fps must be 1 to 240, got {self.rate_hz:g}")
         if self.frames is not None and self.kind in ("pose", "poses"):
             raise UsageError(
-                f"--frames requires --orbit, --tour or --turntable and cannot be used with "
-                f"--{self.kind}"
+                "frames requires the view orbit, tour or turntable (--orbit, --tour or "
+                f"--turntable) and cannot be used with {self.kind}"
             )
 
 

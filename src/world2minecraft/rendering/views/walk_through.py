@@ -23,14 +23,14 @@ from world2minecraft.rendering.views.visibility import (
 )
 
 HEADINGS = 72  # Five degrees apart.
-PITCHES_DEG = (-4.0, 8.0, 22.0)  # Of the rays, down is positive.
+PITCHES_DEG = (-4.0, 8.0, 22.0)  # Pitch angles of the rays; positive is down.
 NEAR_M, GOOD_M = 0.6, 3.2  # No view, a good view.
-SKY_WORTH = 0.1  # Of a ray that meets nothing: the sky is no room.
+SKY_WORTH = 0.1  # Value of a ray that hits nothing.
 THING_WORTH = 0.45  # More for a ray that meets furniture,
 AHEAD_WORTH = 0.22  # for looking the way one goes,
 WALL_COST = 0.8  # less for a wall before one's nose, within
 WALL_M = 1.1
-TURN_COST = 0.035  # Of five degrees.
+TURN_COST = 0.035  # Cost of a turn by five degrees.
 MAX_TURN = 5  # Headings from one place to the next.
 SAMPLE_M = 0.15  # Between places of the way at which one decides where to look.
 SMOOTH_M = 0.45  # Corners are rounded so much,
@@ -141,7 +141,8 @@ def plan_tour(
     ways = WalkRoutes(volume, hiding)
     if not len(ways.feet):
         raise UsageError(
-            "cannot plan a tour: the build has no place for a player to stand; try --orbit"
+            "cannot plan a tour: the build has no place for a player to stand; try an orbit "
+            "(--orbit)"
         )
     eye_blocks = eye_height_blocks(hiding.blocks_per_metre)
     feet = ways.feet[ways.way(None if start is None else np.array(start))]

@@ -198,7 +198,7 @@ def _bound(host: str, port: int) -> socket.socket:
         held.close()
         reason = getattr(error, "strerror", None) or str(error)
         raise UsageError(
-            f"cannot listen on {host}:{port} ({reason}); omit --port to use a free port"
+            f"cannot listen on {host}:{port} ({reason}); omit the port (--port) to use a free one"
         ) from error
     return held
 
