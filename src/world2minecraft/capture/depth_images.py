@@ -15,7 +15,7 @@ from world2minecraft.core.errors import CaptureError, UnknownNameError
 
 INVALID = 65535  # Kinect drivers write 0 or 65535 where they saw nothing.
 MAX_INDOOR_M = 12.0  # No depth camera for rooms reaches further.
-STEPPED_SHARE = 0.9  # Of the values that must be multiples of 5 or 8; SUN frames show 0.97.
+STEPPED_SHARE = 0.9  # Minimum share of multiples of 5 or 8; SUN frames have 0.97.
 DISTINCT_VALUES = 12  # Fewer say nothing about steps.
 
 

@@ -26,7 +26,7 @@ from world2minecraft.core.errors import (
 
 MAX_PIXELS = 64_000_000  # A 48-megapixel phone photo passes; decoding it takes 144 MB.
 FORMATS = ("PNG", "JPEG", "TIFF", "PPM", "WEBP", "BMP")
-HEIF_SUFFIXES = (".heic", ".heif", ".hif")  # What phones write; read by an extra.
+HEIF_SUFFIXES = (".heic", ".heif", ".hif")  # Written by phones; reading them needs an extra.
 HEIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"mif1", b"msf1")
 HEAD_BYTES = 12  # A HEIF file's first box: its length, "ftyp" and the brand.
 SUFFIXES = (".png", ".jpg", ".jpeg", ".tiff", ".tif", ".ppm", ".pgm", ".webp", ".bmp")

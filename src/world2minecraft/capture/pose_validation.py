@@ -10,8 +10,8 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import read_bytes
 
 ORTHONORMAL_TOLERANCE = 1e-3  # The shared kitchen is off by 4e-4; a scale of 1.001 is no slip.
-ROUNDING = 1e-12  # What is orthonormal already stays as stated, to the last bit.
-MAX_DISTANCE_M = 25.0  # From the middle of the cameras; further ones did not see one room.
+ROUNDING = 1e-12  # Rotations that are orthonormal to this tolerance are not changed.
+MAX_DISTANCE_M = 25.0  # Maximum distance from the cameras' centre within one room.
 MAX_POSE_BYTES = 10_000
 
 

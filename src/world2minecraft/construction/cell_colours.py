@@ -22,7 +22,7 @@ WOOD_HUE, WOOD_REACH, WOOD_FADE = 65.0, 20.0, 10.0
 # reach is that of the kitchen's reds in haze; lightness tells a pink thing from a red one.
 STRONG_CHROMA, PAINT_CELLS, MAX_PAINTS = 0.09, 150, 3
 HUE_BIN, PAINT_REACH, PAINT_LIGHT = 15.0, 25.0, 0.2
-NEAR_BLOCKS = 2.0  # So far a block that nobody saw takes the colour of the nearest that was seen.
+NEAR_BLOCKS = 2.0  # Unseen blocks take the colour of the nearest seen one within this.
 
 
 def coloured_cells(grid: OccupancyGrid) -> np.ndarray:

@@ -17,9 +17,9 @@ from world2minecraft.geometry.connected_components import label_face_components
 NARROWEST_M, WIDEST_M = 0.5, 1.8  # A wider gap is open at any scale.
 THICKEST_M = 0.45  # A gap that goes on for longer is a corridor.
 BODY_M = (0.3, 1.7)  # Over thresholds, under lintels.
-BODY_SHARE = 0.9  # Of a column of cells at a body's height that was seen free.
+BODY_SHARE = 0.9  # Minimum free share of a column at the height of a body.
 HIGHEST_M = 2.2
-OPEN_COVER = 0.7  # Of a block's width, for it to be open.
+OPEN_COVER = 0.7  # Minimum open share of a block's width.
 PLAYER_BLOCKS = 2
 
 

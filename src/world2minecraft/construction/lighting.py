@@ -23,9 +23,9 @@ from world2minecraft.minecraft.rules.light import (
 
 LAMP_M = 0.3  # A shade's width.
 CORD_M = 0.35
-WALK_M, WALK_BLOCKS = 2.0, 2  # What stays free under a lamp: a person, and a player.
+WALK_M, WALK_BLOCKS = 2.0, 2  # Headroom below a lamp for a person and a player.
 TABLE_M = 1.45  # Over a table nobody walks.
-REACH_M = 2.6  # How far one lamp is taken to light. A guess: about 4 m between two.
+REACH_M = 2.6  # Assumed range of a lamp, in metres; lamps stand about 4 m apart.
 WALL_M = 0.5  # No lamp hangs nearer to a wall, unless the room is that narrow.
 MAX_LAMPS = 24  # Lamps a storey.
 CHAIN = "minecraft:chain[axis=y,waterlogged=false]"
@@ -33,8 +33,8 @@ LANTERN = "minecraft:lantern[hanging=true,waterlogged=false]"
 SHADE = "minecraft:sea_lantern"
 DOWNLIGHT = "minecraft:ochre_froglight[axis=y]"
 LEVEL = BRIGHTEST
-MIN_LIGHT = 8  # Of a walkable floor cell; monsters need 0, and a person reads at 8.
-MIN_CORNER_LIGHT = 5  # Of any air in the room. A guess: a wall there is dim, and not black.
+MIN_LIGHT = 8  # Minimum light on walkable floor cells; monsters spawn at 0.
+MIN_CORNER_LIGHT = 5  # Assumed minimum light in the air of a room; walls there are dim.
 ABOVE_FLOOR = 2  # Over the head of a player that stands.
 SPACING = 8  # Blocks between lights: half way, at the floor, the light is still 8 or more.
 APART = 6  # Blocks between lights that are added in one round.

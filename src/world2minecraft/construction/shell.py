@@ -28,7 +28,7 @@ from world2minecraft.geometry.morphology import dilate
 ROUNDS = 4
 SCALE = 0.05  # Oklab distance at which a block counts half in the fit.
 MIN_BLOCKS = 12  # A fit of six numbers to fewer blocks says nothing.
-MAX_SHARE = 0.6  # What covers more of a surface is the surface.
+MAX_SHARE = 0.6  # Maximum share of a surface; larger parts are the surface itself.
 SURE_SHARE = 0.3  # Of a part that stands out. A guess: a picture's rim is half wall.
 MIN_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.
 

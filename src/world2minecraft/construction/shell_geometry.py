@@ -47,8 +47,8 @@ STANDING_M = 1.0  # Free space up to here shows that one can stand on the floor 
 FOOTPRINT_SHARE = 0.25
 OPEN_FLOOR = 0.5  # A block of an upper floor of which more was seen free is no floor.
 ROOM_M2 = 0.5  # Smaller pieces of floor lie in a window's niche or behind it.
-LEVEL_SHARE = 0.2  # Of a wall's columns that reach a height, to draw the others up to it.
-FLOORED_SHARE = 0.3  # Of an upper room's plan; furniture and shade hide much of it.
+LEVEL_SHARE = 0.2  # Share of a wall's columns to whose height the others are raised.
+FLOORED_SHARE = 0.3  # Minimum share of an upper room's plan; furniture hides much of it.
 STAIRWELL_M = 0.7  # A narrower hole in an upper floor was left by noise.
 
 

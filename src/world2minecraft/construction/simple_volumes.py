@@ -18,7 +18,7 @@ MIN_SIDE_CELLS = 3  # About a block at 4 blocks per metre.
 MIN_CUT_GAIN = 0.15  # Share of the box that a cut must explain; noise explains about 0.05.
 FRINGE = 0.25  # A row with less than this share of the fullest row's columns is noise.
 MIN_PART = 0.1  # A separate part with less than this share of an object's cells is noise.
-TOP_PERCENTILE = 75.0  # Of the tops of the columns; most noise is below the top.
+TOP_PERCENTILE = 75.0  # Percentile of the columns' tops; most noise is below it.
 GROUNDED_M = 0.4  # What begins lower stands on the floor, unless the space below was seen free.
 FREE_SHARE = 0.5
 

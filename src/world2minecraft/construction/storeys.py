@@ -15,7 +15,7 @@ from world2minecraft.core.types import OccupancyGrid
 
 MIN_HEIGHT_M = 1.9  # Between two floors: under a loft one still has to stand.
 MIN_AREA_M2 = 2.0
-MIN_SHARE = 0.15  # Of the largest floor's area: a podium is none.
+MIN_SHARE = 0.15  # Minimum area, as a share of the largest floor; excludes podiums.
 SLAB_M = 0.4  # Layers of one floor lie no farther apart.
 MIN_BLOCKS = 3  # A floor, and two blocks to stand in.
 

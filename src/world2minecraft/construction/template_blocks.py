@@ -29,7 +29,7 @@ from world2minecraft.minecraft.block_colours import colours_of
 LATE_RANKS = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}
 PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
 MAX_COLOUR_LOSS = 0.06  # Oklab distance that a colour may lose for the sake of a shape.
-MAX_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
+MAX_COLOURS = 400  # Maximum number of an object's colours to search for shapes.
 THIN = 0.75  # Blocks: a part thinner than this along an axis is one layer.
 TIE = 1e-6
 POST = 0.5  # Blocks: an upright part thinner than this both ways is a post.

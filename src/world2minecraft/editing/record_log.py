@@ -16,17 +16,17 @@ from typing import BinaryIO, NamedTuple
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, OutputError
 
-LEVEL = 1  # Of zlib: a build of a million blocks is recorded in half a second.
+LEVEL = 1  # zlib level; a build of a million blocks is recorded in half a second.
 HEAD = struct.Struct(">II")
 NUMBER = struct.Struct(">cI")
-_STREAM = zlib.compress(b"", LEVEL)[:2]  # What each stream begins with.
+_STREAM = zlib.compress(b"", LEVEL)[:2]  # Header of each stream.
 
 
 class Record(NamedTuple):
     """The position of a record in the file, and whether its checksum is correct."""
 
     at: int
-    length: int  # Of its stream.
+    length: int  # Length of the stream.
     is_whole: bool = True
 
     @property

@@ -32,7 +32,7 @@ from world2minecraft.minecraft.worlds.in_place_editing import (
 from world2minecraft.minecraft.worlds.world_reader import read_level
 
 MAX_CELLS = 64 << 20
-MODERN_FOLDER = Path("dimensions/minecraft/overworld")  # From 26.1 on.
+MODERN_FOLDER = Path("dimensions/minecraft/overworld")  # Since Minecraft 26.1.
 Place = tuple[int, int]
 Corner = tuple[int, int, int]
 BUILT_TAG = "w2m_built"  # The tag of the entities that were built into a world.

@@ -20,7 +20,7 @@ from world2minecraft.rendering.shading_parameters import NEUTRAL
 TILE_PX = 150
 COLUMNS = 4  # Cards a row.
 GAP_PX, HEAD_PX, FOOT_PX, GROUP_PX = 14, 40, 18, 54
-FILLED = 0.86  # Of a tile, by the longer side of a picture.
+FILLED = 0.86  # Share of a tile that the longer side of an image fills.
 MAX_PX_PER_BLOCK = 84.0  # A lone block does not fill its tile.
 ELEVATION_DEG, TURN_DEG = 27.0, 34.0
 SUPERSAMPLE = 3

@@ -16,7 +16,7 @@ from world2minecraft.rendering.block_elements import BlockModel, Element, Elemen
 from world2minecraft.rendering.scene_tables import BOXES, EVEN, FULL, SEE_THROUGH, UNSHADED
 from world2minecraft.rendering.texture import Texture
 
-AIR = 0  # What ``kind_of`` gives for a model without elements.
+AIR = 0  # Result of ``kind_of`` for a model without elements.
 _MISSING = Texture(np.full((1, 1, 4), (255, 0, 255, 255), np.uint8))  # Seen at once.
 _INSIDE = 1e-4  # Blocks: a turned element may be off by rounding.
 

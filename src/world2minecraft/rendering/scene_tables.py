@@ -15,7 +15,7 @@ import numpy as np
 # Values of ``space`` that are no air.
 FULL, BOXES = -1, -2
 # Bits of an element's flags.
-ABSOLUTE = 1  # Its coordinates are the grid's, not those of the cell that lists it.
+ABSOLUTE = 1  # Coordinates are the grid's, not those of the listing cell.
 SEE_THROUGH = 2  # Some face has holes or is translucent, or is not there.
 UNSHADED = 4  # The same light on every side.
 JOINS = 8  # Glass and its like: no face towards a neighbour of the same look.

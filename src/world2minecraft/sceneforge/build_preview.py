@@ -24,7 +24,7 @@ from world2minecraft.sceneforge.array_messages import pack_arrays
 from world2minecraft.sceneforge.editor import Editor
 
 MAGIC = b"W2MB"
-MAX_CELLS = 12_000_000  # Of the box around a build; a page draws no more.
+MAX_CELLS = 12_000_000  # Maximum size of a build's bounding box; pages draw no more.
 SCALE_RANGE = (0.25, 100.0)  # Blocks a metre, as ``Parameters`` allows.
 
 

@@ -25,7 +25,7 @@ from world2minecraft.evaluation.scoring.used_frames import computed
 from world2minecraft.geometry.undistort import undistort_image
 
 MAX_SIDE_PX, SMALL_PX = 1280, 200
-CACHE_BYTES = 48 << 20  # Of pictures that were made: some hundred.
+CACHE_BYTES = 48 << 20  # Cache of decoded images: some hundred.
 QUALITY = 84
 
 

@@ -28,7 +28,7 @@ from world2minecraft.geometry.rotations import rotation_from_vector
 
 MIN_FACING_COSINE = 0.97  # Cosine of 14 degrees.
 MIN_FACE_M2 = 0.25
-MIN_FACE_SHARE = 0.08  # Of the largest face in the same direction.
+MIN_FACE_SHARE = 0.08  # Minimum area, as a share of the largest face in the same direction.
 BAND_M = 0.06  # Distance from a face's position within which patches belong to it.
 LIMITS_M = (0.06, 0.05, 0.04, 0.03, 0.03)  # Tukey limits of the plane fit, one per iteration.
 MIN_FACE_PATCHES = 15

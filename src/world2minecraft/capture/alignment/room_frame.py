@@ -35,7 +35,7 @@ FLOOR_BAND_M, MIN_FLOOR_SIGMA_M = 0.06, 0.003
 MAX_TILT_SIGMA_DEG, MAX_YAW_SIGMA_DEG = 90.0, 45.0  # Nothing is known.
 DECIMALS = 9
 UNSEEN_NOTE_STARTS = ("no floor was seen", "no wall was seen", "no ceiling was seen")
-CAMERA_CLEARANCE_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a hand-held camera.
+CAMERA_CLEARANCE_M = (0.3, 0.3, 0.1)  # Space around a hand-held camera for the person, in metres.
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ GAP_PX = 10
 CAPTION_PX = 22
 CONES = 60  # More would hide the room.
 CONE_M, HALF_DEG = 0.34, 24.0
-RELIEF = 1.6  # How strongly steps of height shade the plan.
+RELIEF = 1.6  # Strength of the shading of height steps in the plan.
 WALL_M = 0.06  # The noise of a wall's far side.
 LENGTHS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 

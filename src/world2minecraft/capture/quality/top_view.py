@@ -24,7 +24,7 @@ from world2minecraft.geometry.unprojection import project, unproject_depth
 POINTS_EACH = 60_000
 CELLS = 560  # Along the longer side of the plan.
 CUT_HEIGHT_SHARE, MAX_CUT_M = 0.85, 2.1
-TOP_M = 0.08  # Of each cell's points, those this far below the highest give its colour.
+TOP_M = 0.08  # A cell's colour is that of its points within this depth of the highest.
 RISE_M = 0.10
 TALL_BINS = 9  # Points at so many heights, RISE_M apart, make a wall's full ink.
 MARGIN_M = 0.35

@@ -32,8 +32,8 @@ from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import RigMember
 
 VIEWS = 6  # Level views, each 90 degrees wide: neighbours share a third.
-HEIGHT_SHARE = 1.4  # Of the width: 109 degrees high, from the feet of furniture to the ceiling.
-MAX_SIDE_PX = 1024  # Of the width of a view; photos are read at this size too.
+HEIGHT_SHARE = 1.4  # Height / width: 109 degrees, from furniture feet to the ceiling.
+MAX_SIDE_PX = 1024  # Maximum width of a view; photos are read at this size too.
 MIN_WIDTH_PX = 1000
 ASPECT_TOLERANCE = 0.01
 MIN_PANORAMAS = 3

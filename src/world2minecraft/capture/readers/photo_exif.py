@@ -17,12 +17,12 @@ from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.types import Camera
 
-DIAGONAL_MM = math.hypot(36.0, 24.0)  # Of the film that 35 mm equivalents speak of.
+DIAGONAL_MM = math.hypot(36.0, 24.0)  # Diagonal of 35 mm film, in millimetres.
 ORIENTATION, MAKE, EXIF_IFD = 0x0112, 0x010F, 0x8769
 FOCAL_MM, FOCAL_35MM, TAKEN = 0x920A, 0xA405, 0x9003
 PLANE_RESOLUTION, PLANE_UNIT, PIXELS_ACROSS = 0xA20E, 0xA210, 0xA002
 UNIT_MM = {2: 25.4, 3: 10.0, 4: 1.0}
-SHARE_OF_DIAGONAL = (0.2, 15.0)  # From a fisheye to a long telephoto; else the tag is wrong.
+SHARE_OF_DIAGONAL = (0.2, 15.0)  # Plausible range, from a fisheye to a long telephoto lens.
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from world2minecraft.core.coordinates import focal_px_of_fov
 from world2minecraft.core.types import Camera
 
 SOURCE = "photo"
-DEFAULT_FOCAL = 0.8  # Of the longer side: phones 0.7 to 0.9.
+DEFAULT_FOCAL = 0.8  # Focal length / longer side; phones have 0.7 to 0.9.
 
 
 class SinglePhotoSource:

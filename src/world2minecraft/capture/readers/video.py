@@ -34,13 +34,13 @@ from world2minecraft.core.types import Camera
 SMALL_PX = 192  # The longer side of the small pictures.
 BLOCK = 48  # The side of a block of them; shifts of up to half of it are seen.
 MIN_PEAK = 0.045  # Correlation under it is chance: a bare wall, or another scene.
-MIN_MOTION = 0.04  # Of the longer side: less than this is a shaking hand.
-FRAME_STEP = 0.12  # Of the longer side, from one picture taken to the next: seven eighths overlap.
-SEARCH_STEPS = 0.4  # How far from its place, in steps, the sharpest picture is looked for.
+MIN_MOTION = 0.04  # Share of the longer side; less motion is camera shake.
+FRAME_STEP = 0.12  # Motion between chosen frames / longer side; 7/8 of them overlap.
+SEARCH_STEPS = 0.4  # Search radius for the sharpest frame, in steps.
 MAX_SECONDS = 3600.0
 SHARP_ROWS = 6  # Each sixth row tells the sharpness.
 SUFFIXES = (".mov", ".mp4", ".m4v", ".webm", ".avi", ".mkv")
-DEFAULT_FRAMES = 100  # Of one room; more cost time and tell little new.
+DEFAULT_FRAMES = 100  # Frames for one room; more take longer and add little.
 FOCAL_KEYS = ("com.apple.quicktime.camera.focal_length.35mm_equivalent",)
 _IMAGE_SUFFIXES = (".jpg", ".jpeg", ".png", ".heic", ".heif", ".webp", ".npy", ".tif", ".tiff")
 

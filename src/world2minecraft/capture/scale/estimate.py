@@ -24,7 +24,7 @@ from world2minecraft.geometry.oriented_points import OrientedPoints
 LOG_RANGE = 1.2
 STEPS = 961
 MIN_SIGMA = 0.03  # No prior of furniture is better than that.
-OUTLIER_PROBABILITY = 0.02  # Of the knowns: a slip of the tape, or another table was meant.
+OUTLIER_PROBABILITY = 0.02  # Probability that a known length is wrong.
 MAX_LOG_DIFFERENCE = 0.05  # Two known lengths that differ by more are reported.
 PRIOR_WEIGHT = 0.5  # A known length outweighs habits, but these say which table was meant.
 MAX_NAMED_LEVELS = 2  # More would make the sentence long.

@@ -17,16 +17,16 @@ from world2minecraft.core.types import View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 
 USUAL_DEPTH_M = 1.9  # Median over the virtual walks of seeds 500 to 549, 1.4 to 2.6 each.
-EVERY_PIXEL = 7  # Of the depth images, for their median.
+EVERY_PIXEL = 7  # Stride in depth images for their median.
 USUAL_CAMERA_M = 1.45  # A person who stands and holds a phone before the chest or the eyes.
-USUAL_RANGE_M = 2.0  # How far off the patches are; only the first guess rests on it.
+USUAL_RANGE_M = 2.0  # Typical distance of patches, in metres; for the first guess only.
 MIN_FACING_COSINE = 0.94  # Cosine of 20 degrees.
-LEVEL_RANGE_M = (0.25, 1.30)  # What stands on a floor and has a top to measure by.
+LEVEL_RANGE_M = (0.25, 1.30)  # Heights of furniture tops that are measured, in metres.
 MIN_LEVEL_M2 = 0.10  # A seat has 0.16.
 MIN_CEILING_OVER_CAMERA = 1.15  # Wall cupboards and shelves have undersides too, at the eye.
 MIN_CEILING_M2, MIN_CEILING_SHARE = 0.5, 0.4
 OTHER_STOREY_RATIO = 1.7  # Times the lowest cameras' height: cameras over that stand on stairs.
-SINGLE_STOREY_SHARE = 0.9  # Of the cameras that stand on the lowest floor where it is the only one.
+SINGLE_STOREY_SHARE = 0.9  # Minimum share of cameras over the lowest floor of one storey.
 TOP_QUANTILE = 0.995
 MERGE_DISTANCE_M = 0.035  # Two peaks nearer than that are one noisy face.
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from world2minecraft.core.errors import CaptureError, MissingExtraError
 
-PHOTOS = "photos"  # What an error names: a stream of photos has no path.
+PHOTOS = "photos"  # Name used in errors, as a stream of photos has no path.
 
 
 @contextmanager

@@ -14,12 +14,12 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, SparseScene
 
 MIN_FEATURES = 60  # A photo with fewer shows a bare wall, or is out of focus.
-CHANCE_MATCHES = 6  # So many features match by chance.
+CHANCE_MATCHES = 6  # Number of features that match by chance.
 BLURRED_SHARE = 0.5  # Times the usual sharpness.
 CAPTURE_ADVICE = (
     "move sideways around the room so that each photo overlaps the next by more than half"
 )
-DIGITS = 9  # What is left of rounding in sums; a nanometre.
+DIGITS = 9  # Decimals kept of sums: a nanometre.
 
 
 def explain_left_out(

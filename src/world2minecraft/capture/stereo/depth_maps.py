@@ -19,7 +19,7 @@ from world2minecraft.rendering.thread_pool import run_parallel
 
 SAMPLE_GRID = 7  # A grid of 7x7 rays, each at three depths, stands for what a photo sees.
 DEPTH_PERCENTILES = (20, 50, 80)
-MIN_SHARED_POINTS = 20  # So many points in common prove that nothing stands between.
+MIN_SHARED_POINTS = 20  # Common points that prove an unobstructed view.
 PARALLEL_PHOTOS = 2  # Photos swept side by side; each needs about 60 MB.
 TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
 SURE_TRUST = 160  # Trust of depth that may decide where a flat patch lies.

@@ -12,7 +12,7 @@ from world2minecraft.core.types.photos import PhotoStream, SparseScene
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.geometry.unprojection import project
 
-MIN_SIDE_PX = 16  # So that windows lie in it.
+MIN_SIDE_PX = 16  # Minimum side length, so that matching windows fit.
 
 
 @dataclass(frozen=True, eq=False)

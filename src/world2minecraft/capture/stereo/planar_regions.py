@@ -10,10 +10,10 @@ from scipy import ndimage
 
 # Levels between the brightest and darkest of 3x3 pixels that are of one colour.
 MAX_LEVEL_RANGE = 20
-MIN_PATCH_SHARE = 0.002  # Of the picture: a smaller patch is not worth a plane.
+MIN_PATCH_SHARE = 0.002  # Minimum share of the image.
 RIM_PX = 3  # To either side of a patch's outline; windows reach no farther.
 MIN_RIM_PX = 40
-MIN_INLIER_SHARE = 0.5  # Of the rim's depths that must lie on the plane.
+MIN_INLIER_SHARE = 0.5  # Minimum share of the rim's depths on the plane.
 TOLERANCE = 0.02  # Of the depth, likewise: less than what agrees with another photo.
 # Of the depth: what is found so far behind the rim's plane is a reflection.
 REFLECTION_SHARE = 0.04

@@ -15,9 +15,9 @@ from world2minecraft.core.types import OccupancyGrid
 
 STANDS_M = 0.12  # A bottom this near to the floor stands on it: one and a half cells of 8 cm.
 FLOOR_STANDS_M = 0.3  # The same of furniture that always stands on a floor.
-LIES_M = 0.2  # How far a thing's bottom may be from the top of what carries it.
+LIES_M = 0.2  # Maximum gap between an object and its support, in metres.
 AT_WALL_M = 0.17  # A side this near to a wall's cells stood at the wall: two cells of 8 cm.
-AT_WALL_SHARE = 0.3  # Of a side that has a wall behind it.
+AT_WALL_SHARE = 0.3  # Minimum share of a side that has a wall behind it.
 MAX_BLOCKS = 1.25  # A wall's blocks stand off its plane by less; more would be another wall.
 SUNK_COST = 8.0  # Blocks of way that a thing goes rather than lie wholly in a wall.
 WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))

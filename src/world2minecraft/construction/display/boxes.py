@@ -17,7 +17,7 @@ from world2minecraft.furniture import Part
 from world2minecraft.geometry.box_decomposition import cover_boxes, partition_boxes, simplify_boxes
 from world2minecraft.minecraft.entities import block_display
 
-MIN_IOU = 0.9  # What coarser boxes keep of the shape; the bound.
+MIN_IOU = 0.9  # Minimum overlap of coarser boxes with the shape.
 FINE_M = 0.02  # The grid on which a shape of too many boxes is made coarser.
 SAME_M = 1e-6  # Planes nearer than this are one.
 # Blocks by which boxes that overlap stand back from one another, so that their faces, which lie

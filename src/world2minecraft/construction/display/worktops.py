@@ -24,9 +24,9 @@ PLATE_M = 0.04
 PANEL_M = 0.17  # A thing this thin is a panel: two cells of 8 cm.
 WIDE_M = 0.3  # Narrower things are no front.
 UNIT_M = 0.5  # The depth of a wall unit, at most.
-UNSEEN_SHARE = 0.6  # Of the space between a front and its wall: it was hardly looked into.
-WALL_SHARE = 0.1  # Of the wall behind a unit, that was seen under or over it.
-AROUND_CELLS = 4  # How far under and over the unit its wall is searched.
+UNSEEN_SHARE = 0.6  # Minimum unobserved share of the space between front and wall.
+WALL_SHARE = 0.1  # Minimum observed share of the wall behind a unit, above or below it.
+AROUND_CELLS = 4  # Cells above and below a unit in which its wall is searched.
 
 
 def as_counter(placement: Placement, tops: Mapping[int, Worktop]) -> Placement:

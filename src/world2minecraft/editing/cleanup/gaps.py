@@ -14,7 +14,7 @@ from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 DOWN = np.array([0, -1, 0])
-PLATE = 0.26  # What is no higher than this, in blocks, is a plate: a trapdoor, a carpet.
+PLATE = 0.26  # Maximum height of a plate, such as a trapdoor or carpet, in blocks.
 SUNK_SHARE = 0.25  # A thing takes at most this share of the blocks of what it sinks into.
 
 

@@ -14,7 +14,7 @@ from world2minecraft.editing.scene.scene_draft import SceneDraft
 OWN_CELLS = "cells"  # The template of what is built from its object's own cells.
 MAX_OBJECTS = 65535
 DECIMALS = 9  # Metres and degrees are rounded, so that four quarter turns are none.
-SHOWN = 12  # How many ids an error lists.
+SHOWN = 12  # Maximum number of IDs in an error.
 
 
 def object_by_id(draft: SceneDraft, number: int) -> SceneObject:

@@ -27,7 +27,7 @@ from world2minecraft.editing.scene.object_transforms import (
 )
 from world2minecraft.editing.scene.scene_draft import SceneDraft
 
-ROUNDS = 50  # Of two to eight clusters of an object's cells; most need ten.
+ROUNDS = 50  # Maximum iterations for two to eight clusters; most need ten.
 
 
 class CutPlane(BaseModel):

@@ -16,7 +16,7 @@ from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.furniture import Template, estimate_facing, read_surroundings, size_in_cells
 
 WALLS = (SemanticClass.WALL, SemanticClass.WINDOW)
-WALL_SHARE = 0.5  # Of a side's face before which a wall must stand: a corner post is no wall.
+WALL_SHARE = 0.5  # Minimum share of a side's face with a wall behind it.
 
 
 class StandingBox(NamedTuple):

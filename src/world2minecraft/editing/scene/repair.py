@@ -61,7 +61,7 @@ MAX_CELLS = 30
 HOLE_M2 = 0.25  # A square of half a metre, as for blocks; a cat flap or a chute is no larger.
 HIDDEN_M2 = 4.0  # No piece of furniture is larger.
 PILLAR_CELLS = 3  # A column with so many wall cells bounds the floor.
-FLAT_FACES = 4  # So many other faces has a cell within a sheet.
+FLAT_FACES = 4  # Number of other faces of a cell within a sheet.
 PIT = 17  # Of 26: one below a flat surface. An inner edge, as of seat and back, has 15 and stays.
 
 
@@ -107,7 +107,7 @@ class PlaneGaps:
 
     plane: Plane
     own: np.ndarray  # Where it has a cell, one layer before or behind too.
-    holes: np.ndarray  # What is to be filled.
+    holes: np.ndarray  # Cells to fill.
     openings: np.ndarray  # Doors, windows and stairwells.
 
     @property

@@ -75,7 +75,7 @@ class Protocol:
 
     name: str
     cells: str  # Which cells are counted, in words.
-    unknown: str  # What a true and a predicted 255 are, in words.
+    unknown: str  # Meaning of 255 in the truth and in predictions.
     masks: Callable[[KnownCells], CellMasks]
     needs: tuple[str, ...] = ()  # Which of the masks of ``KnownCells``.
     true_unknown: Literal["left out", "empty"] = "left out"

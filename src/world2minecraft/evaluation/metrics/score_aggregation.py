@@ -20,7 +20,7 @@ from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
 from world2minecraft.evaluation.metrics.protocols import ProtocolCounts
 
 DRAWS = 1000
-SHARE = 0.95  # Of the draws within the interval.
+SHARE = 0.95  # Share of the draws within the interval.
 FIGURES = ("iou", "precision", "recall", "miou")
 
 

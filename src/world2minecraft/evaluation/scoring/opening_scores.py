@@ -12,7 +12,7 @@ from world2minecraft.evaluation.metrics.occupancy import ratio
 from world2minecraft.evaluation.scoring.observed_cells import Reached
 
 KINDS = ("window", "door", "doorway")
-MATCH_DISTANCE_M = 0.3  # As for objects: between the middles of two openings.
+MATCH_DISTANCE_M = 0.3  # Maximum distance between centres, as for objects.
 ASKED_SHARE = 0.5  # An opening is asked for where rays came to half of its face.
 STEP_M = 0.04  # Points on an opening's face, two a default cell.
 

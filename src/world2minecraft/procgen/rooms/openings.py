@@ -14,7 +14,7 @@ from world2minecraft.procgen.rooms.placement import Item, Plan
 DOOR_M = (0.90, 2.04)
 DOOR_SWING_M = 0.9
 SILL_M, HEAD_M = 0.96, 2.1
-RECESS_M = 0.06  # How deep a window or a door leaf lies in its wall.
+RECESS_M = 0.06  # Depth of windows and door leaves in their wall, in metres.
 
 
 @dataclass(frozen=True)

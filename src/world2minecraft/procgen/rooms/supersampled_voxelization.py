@@ -11,8 +11,8 @@ from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.procgen.rooms.furniture_model import STEP_M, Bar, Model, Part, translate_part
 from world2minecraft.procgen.rooms.placement import Item
 
-PROBES = (-1 / 3, 0.0, 1 / 3)  # Of a voxel's side, along each axis.
-ENOUGH = 9  # Of 27: thin boards stay whole when they are turned, and nothing grows fat.
+PROBES = (-1 / 3, 0.0, 1 / 3)  # Offsets along each axis, in voxels.
+ENOUGH = 9  # Minimum number of 27 probes; keeps thin boards closed.
 
 
 def make_model(name: str, class_id: int, parts: Sequence[Part | Bar]) -> Model:

@@ -18,7 +18,7 @@ from world2minecraft.procgen.rooms.room import Room
 STEP_M = 0.1  # Side of a square of floor.
 HEAD_M = 1.9  # Free height over a foot.
 STRIDE_M = 0.26  # The highest step that is climbed.
-BODY_M = 0.25  # From the middle of a person to what is solid.
+BODY_M = 0.25  # Minimum distance from a person's centre to solids, in metres.
 ANKLE_M, KNEE_M, SHOULDER_M = 0.1, 0.5, 1.76  # A body is free from its ankle up, or squeezes.
 SQUEEZE_COST = 6.0  # A squeezed metre is walked only where it saves six others.
 FLOOR_TOLERANCE_M = 0.06

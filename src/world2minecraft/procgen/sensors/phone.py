@@ -31,16 +31,16 @@ from world2minecraft.procgen.sensors.trajectory import camera_positions_m, plan_
 from world2minecraft.procgen.sensors.view_planning import ViewPlanner
 from world2minecraft.rendering.voxel_camera import VoxelScene
 
-TURN = np.radians([14.0, 6.0])  # Of yaw and pitch at most, from one photo to the next.
-LOOK_TURN = np.radians([56.0, 24.0])  # From one look to the next.
+TURN = np.radians([14.0, 6.0])  # Maximum yaw and pitch from one photo to the next.
+LOOK_TURN = np.radians([56.0, 24.0])  # Maximum yaw and pitch from one look to the next.
 LOOK_PHOTOS = 4  # One decides where to look every fourth photo,
 LOOK_PICTURES = 14  # and every fourteenth picture of a video: half a second.
 SMOOTH_PICTURES = 3.0  # A hand that films sways, but does not jerk.
-PHOTO_QUALITY = 92  # What phones write.
+PHOTO_QUALITY = 92  # JPEG quality of phones.
 RATE_HZ = 24
 VIDEO_BITS_PER_PIXEL = 1.6  # A picture; phones spend 0.3 with better codecs.
 KEY_EVERY = 12  # Pictures; any of them is reached after decoding half a second at most.
-SHUTTER = 0.1  # Of the time from one picture of a video to the next.
+SHUTTER = 0.1  # Exposure time as a share of the frame interval.
 MOMENTS = 4  # Rays of a pixel, each at its own moment.
 
 

@@ -30,11 +30,11 @@ from world2minecraft.procgen.sensors.photo_rendering import (
 )
 from world2minecraft.procgen.sensors.trajectory import plan_trajectory
 
-FOCAL_SHARE = 0.82  # Of the width: 525 px at 640, a field of view of 63 degrees.
+FOCAL_SHARE = 0.82  # Focal length / width: 525 px at 640, a field of view of 63 degrees.
 MAX_TILT_DEG = 27.0  # What the shared kitchen's world frame is tilted by.
 LUMINANCE = np.array([0.299, 0.587, 0.114], np.float32)
 DEFAULT_FRAMES = {"photo": 100, "photos": 100, "video": 240}
-USUAL_FRAMES = 40  # Of the sensors with depth.
+USUAL_FRAMES = 40  # Default for sensors with depth.
 PATCH_PX = 8  # Label errors come in patches: a segmenter errs by regions.
 
 

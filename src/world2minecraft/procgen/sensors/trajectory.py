@@ -24,8 +24,8 @@ STOPS = (4, 9)
 STAY_M = 0.6  # A stop takes as long as a walk of this length: one sweeps there.
 JUMP_M = 0.6  # Twice the longest step.
 SMOOTH_M = 0.5  # Nobody walks in steps of a grid.
-EYE_M = (1.2, 1.7)  # Of the camera over the floor.
-SWAY_M = 0.22  # How much the camera rises and sinks along the walk.
+EYE_M = (1.2, 1.7)  # Range of camera heights over the floor, in metres.
+SWAY_M = 0.22  # Vertical motion of the camera along the walk, in metres.
 ASIDE_M = 0.03  # A hand is never still, least of all where one stays.
 YAW_SPREAD, PITCH_SPREAD = np.radians(3.5), np.radians(2.3)
 

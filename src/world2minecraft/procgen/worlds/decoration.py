@@ -7,12 +7,12 @@ from world2minecraft.procgen.worlds.block_house import BlockGap, BlockRoom
 from world2minecraft.procgen.worlds.furnishing import Furnisher
 
 OBJS = int(SemanticClass.OBJS)
-LEAF_SHARE = 0.6  # Of doors between rooms that have a leaf; the others are open frames.
+LEAF_SHARE = 0.6  # Share of inner doors with a leaf; the others are open frames.
 CURTAINS = ("curtain", "curtain_sheer", "curtain_single")
 BLINDS = ("roller_blind", "venetian_blind")
 CEILING_LAMPS = ("ceiling_lamp", "pendant_lamp", "globe_lamp", "lantern_lamp", "chandelier")
 RUGS = ("rug", "rug_checked", "rug_round", "rug_striped")
-RUNNER_M = 3.4  # Of a hall for each of its rugs.
+RUNNER_M = 3.4  # Length of hall per rug, in metres.
 LAMP_AREA_M2 = (14.0, 6.0)  # Of floor that a ceiling lamp is for, by day and by night.
 
 

@@ -19,7 +19,7 @@ from world2minecraft.procgen.worlds.clear_paths import ClearPaths
 from world2minecraft.procgen.worlds.furniture_choice import designs_for, recolour_design
 from world2minecraft.procgen.worlds.styles import RoomLook
 
-AT_WALL_M = 0.12  # What stands nearer to a wall than this stands at it.
+AT_WALL_M = 0.12  # Maximum distance of furniture that stands at a wall, in metres.
 NUDGES = sorted(
     ((a, b) for a in range(-2, 3) for b in range(-2, 3)),
     key=lambda step: (abs(step[0]) + abs(step[1]), step),

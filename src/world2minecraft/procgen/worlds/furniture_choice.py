@@ -106,7 +106,7 @@ DESIGNS: dict[str, tuple[str, ...]] = {
     "washstand": ("pedestal_basin", "vanity", "sink_unit"),
     "whiteboard": ("projector_screen",),
 }  # fmt: skip
-FIRST_CHOICE_SHARE = 0.8  # How often a material that follows the room is the room's first.
+FIRST_CHOICE_SHARE = 0.8  # Probability of a room's first material.
 
 
 def designs_for(name: str, size_m: Sequence[float]) -> tuple[str, ...]:

@@ -13,9 +13,9 @@ from world2minecraft.procgen.worlds.block_house import BlockHouse
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
 from world2minecraft.procgen.worlds.wares_and_stands import WareDeck
 
-DEEP_M = 2.5  # From the outer wall to the hedge.
+DEEP_M = 2.5  # Distance from the outer wall to the hedge, in metres.
 HEDGE_M = 1.3
-PLANTED = 0.06  # Of the ground.
+PLANTED = 0.06  # Share of the ground.
 TREES_A_HOUSE = 7
 
 

@@ -55,7 +55,7 @@ KIND_CHANGES: dict[str, tuple[tuple[str, float], ...]] = {
 }  # fmt: skip
 WARE_KINDS = ("shop", "storage", "greenhouse", "gallery", "workshop")  # Every house has one,
 WARE_KIND_SHARES = (0.4, 0.2, 0.15, 0.1, 0.15)
-MANY_ROOMS = 8  # So many have two.
+MANY_ROOMS = 8  # Number of rooms from which a house has two.
 CONVERTIBLE_KINDS = ("children", "dining", "study", "office")  # of these, where it has one.
 EXTRA_DESIGNS: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
     "living": (

@@ -13,7 +13,7 @@ import numpy as np
 
 WET = ("bathroom", "kitchen", "laundry")
 CALM, CALM_SHARE = 2, 0.7  # Most rooms have calm walls, so that furniture is what one sees.
-ACCENT_SHARE = 0.45  # Of rooms of which one wall differs from the others.
+ACCENT_SHARE = 0.45  # Share of rooms with one accent wall.
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ EIGHTH = np.pi / 4
 # Walls of the two directions of a RoomPlan of a library deviate by up to 7 degrees from their mean.
 SNAP_RAD = np.radians(7.5)
 RUN_M = 0.25  # Parallel sides of an outline that are closer are one wall.
-MOVED_M = 0.5  # How far a corner may move; 7 degrees over a wall of 4 m are 0.25 m at its ends.
+MOVED_M = 0.5  # Maximum shift of a corner; 7 degrees shift the ends of a 4 m wall by 0.25 m.
 PARALLEL = 0.2  # Sine under which two lines have no corner.
 
 

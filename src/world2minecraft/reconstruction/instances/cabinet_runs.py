@@ -33,12 +33,12 @@ MIN_EMPTY_SHARE = 0.2  # And so large a share of its box: noise makes no arm.
 MIN_FREED_SHARE = 0.5  # A cut frees the boxes of so much of that air.
 MIN_ARM_M = 0.3
 NEARLY_BEST = 0.85  # Cuts that free so much of what the best one frees are as good.
-MIN_NEIGHBOURS = 4  # Of the 9 columns around and with one.
+MIN_NEIGHBOURS = 4  # Minimum number of the 9 columns around and including one.
 OPEN_SHARE = 0.5  # A column of which this much was seen free is air; the inside of a case is not.
 
 # What hangs over something else of its class: a wall cupboard over a counter.
-MIN_HANGING_HEIGHT_M = 1.0  # What begins below this stands: a shelf of a bookcase, a drawer.
-MIN_GAP_M = 0.24  # So much free air under a piece; over a counter it is 0.5 m.
+MIN_HANGING_HEIGHT_M = 1.0  # Objects that begin lower stand, such as shelves and drawers.
+MIN_GAP_M = 0.24  # Free height below a hanging unit, in metres; over a counter it is 0.5.
 MIN_HANGING_M2 = 0.06  # A plan of less is a stray cell or a tap.
 MAX_LAYER_SHARE = 0.28  # In the gap less of the plan is filled: kitchens 0.2, bookcases 0.38.
 PLAN_BOX = np.ones((3, 3), np.bool_)

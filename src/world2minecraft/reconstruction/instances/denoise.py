@@ -22,7 +22,7 @@ NEIGHBOURHOOD = np.ones((3, 3, 3), np.bool_)
 # of those of higher confidence that have the wall's colour (n 39). Of 13 generated rooms without
 # label images these are 19 objects, all wrong, and 4 objects, 1 of them right.
 MAX_WALL_DISTANCE_M = 0.25
-NEAR_SHARE = 0.9  # Of the cells of a lump; the rest is noise.
+NEAR_SHARE = 0.9  # Minimum share of a lump's cells; the rest is noise.
 UNCERTAIN = 0.3
 SAME_COLOUR = 0.03  # Oklab distance of medians, with reduced weight of lightness.
 COLOUR_WEIGHTS = np.sqrt([0.4, 1.0, 1.0])  # Walls and what is on them are lit unevenly.

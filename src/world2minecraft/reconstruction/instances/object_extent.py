@@ -14,14 +14,14 @@ from world2minecraft.reconstruction.instances.object_voxels import floor_layer_b
 
 # Chairs that stand askew: the smallest rectangle around their cells in plan, turned freely.
 ANGLES_DEG = np.array([sign * a for a in range(8, 38) for sign in (1, -1)], np.float64)
-MAX_AREA_RATIO = 0.95  # Of the upright rectangle. Straight chairs of 0.08 m cells stay above it.
+MAX_AREA_RATIO = 0.95  # Ratio to the upright rectangle; straight chairs exceed it.
 MIN_MIRRORED_EXCESS = 0.02  # A rectangle turned the other way that is as small: the turn is open.
 RIM_CELLS = 0.6  # Cells from the outermost centres to the sides; cells are met by their corners.
 SIDES_M = (0.34, 0.66)  # Of a whole chair, and of no easy chair, pile, or back alone.
 STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
-MAX_STANDING_BASE_M = 1.0  # What begins higher stands on something else; a chair's back does not.
+MAX_STANDING_BASE_M = 1.0  # Objects that begin higher stand on another object.
 MIN_HANGING_BASE_M = 1.3  # A thing in the air above this hangs from the ceiling, below it stands.
-WALL_CELLS = 2  # What has a wall this near hangs on it.
+WALL_CELLS = 2  # Maximum distance to the wall of a hanging object, in cells.
 MIN_FREE_CELLS = 2  # What has so much free air below it
 MIN_FREE_SHARE = 0.6  # under so many of its columns has nothing that holds it there.
 

@@ -14,8 +14,8 @@ from world2minecraft.reconstruction.instances.object_voxels import cells_by_owne
 from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
 MAX_COLOUR_DIFFERENCE = 0.12  # Neighbouring cells of one paint differ by less, in Oklab.
-MIN_CELLS = 5  # Of a patch that is a thing of its own.
-MIN_WIDTH_M = 0.4  # What is narrower in plan is one thing.
+MIN_CELLS = 5  # Minimum size of a patch that becomes an object.
+MIN_WIDTH_M = 0.4  # Narrower clusters are not split.
 MIN_SHARED_PLAN = 0.34  # The share of the smaller plan that lies over or under the other.
 STEPS = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1)])
 

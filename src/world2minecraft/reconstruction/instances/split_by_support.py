@@ -20,8 +20,8 @@ from world2minecraft.reconstruction.instances.parameters import InstanceParamete
 # What hangs on a wall: the columns of a curtain or a picture among those of small things.
 WALL_CELLS = 2  # A curtain hangs this near its wall.
 MIN_SHEET_CELLS = 12  # At 0.08 m, a picture of 0.3 m side.
-MIN_HANGING_TOP_M = 1.8  # What reaches so high beside a wall hangs there, wherever it ends below.
-MIN_CLEARANCE_M = 0.24  # As does what has so much free air below it.
+MIN_HANGING_TOP_M = 1.8  # Objects this high beside a wall count as hanging.
+MIN_CLEARANCE_M = 0.24  # So do objects with this much free air below.
 AROUND_CELLS = 4  # What stands this near is compared:
 MIN_COLOUR_DIFFERENCE = 0.08  # in Oklab, one thing in light and shade differs by less;
 MIN_RISE_M = 0.16  # and a sheet rises above it,

@@ -26,7 +26,7 @@ ALIKE = 12  # Levels of 255 between colours that are the same paint; guesses dif
 AROUND = 12  # Cells of the wall that tell its colour at a place.
 SEEN_SHARE = 0.5  # Of a wall's columns: one less seen may be an opening, or a guess itself.
 HOLE_CELLS = 4  # Half the width of what was carved; a door is wider.
-CONFIDENCE = 0.3  # Of what is completed.
+CONFIDENCE = 0.3  # Confidence of completed cells.
 
 
 class WallEdge(NamedTuple):

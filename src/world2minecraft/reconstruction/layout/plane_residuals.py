@@ -24,7 +24,7 @@ class PlaneResiduals:
 
     axis: int
     sign: int
-    box: tuple[slice, slice, slice]  # Of the turned grid.
+    box: tuple[slice, slice, slice]  # Part of the rotated grid.
     cells: np.ndarray  # bool [N, A, B]: the cells of the plane and of what noise made of it.
     weight: np.ndarray  # float [A, B], points seen at each place
     depth_m: np.ndarray  # float [A, B], their mean along axis 0; that of the plane where none

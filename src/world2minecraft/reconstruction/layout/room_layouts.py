@@ -25,7 +25,7 @@ INSIDE_SHARE = 0.5
 
 ROOM_M2 = 1.0  # A closet; less is the depth of a wall between the two faces of a doorway.
 FLOOR_SHARE = 0.15  # Of a room's columns, its floor was seen in so many; out of a window, in none.
-PASSED_CELLS = 3  # So many free cells in a column mean that rays passed; fewer are noise.
+PASSED_CELLS = 3  # Free cells in a column that count as rays; fewer are noise.
 ALONG_M = 0.3  # A wall belongs to a room over this length at least.
 
 

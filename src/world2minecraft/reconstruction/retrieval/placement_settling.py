@@ -24,7 +24,7 @@ from world2minecraft.reconstruction.retrieval.rectangle_decomposition import lar
 # Within rooms.
 STEP_M = 0.04  # Step with which placements are fitted to slanted walls.
 LOST_M = 0.6  # Objects farther outside were seen through an opening or in a mirror.
-MIN_REMAINING_SHARE = 0.7  # Of a side that is cut; otherwise the object is moved instead.
+MIN_REMAINING_SHARE = 0.7  # Minimum remaining share of a cut side, else the object is moved.
 HAIR_M = 1e-6
 
 # Overlaps.

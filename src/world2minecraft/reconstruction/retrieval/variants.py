@@ -18,12 +18,12 @@ from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Eviden
 from world2minecraft.reconstruction.retrieval.template_matching import Bias, Scored, score_shifts
 
 LOST_IOU = 0.02  # Maximum loss of IoU by another design: about the noise of a scan.
-SLACK_M = 0.04  # Half a cell: sizes are whole cells.
+SLACK_M = 0.04  # Tolerance of half a cell, as sizes are whole cells.
 NEUTRAL = 0.1  # Oklab distance assumed for designs that suit any colour.
 SIZE_COST = 0.1  # Oklab distance equivalent to a side at the end of its range (estimated).
 CLEAR_CHROMA, FADED = 0.025, 0.1  # Minimum chroma of a hue, and the cost of losing it.
 STAY = 0.02  # Minimum advantage of another design over the match.
-LIGHT = np.sqrt(0.4)  # How much lightness counts against hue, as where blocks are chosen.
+LIGHT = np.sqrt(0.4)  # Weight of lightness against hue, as in the choice of blocks.
 SAME_SET, SAME_SIZE_M = 0.08, 0.12
 NO_SHIFT = np.zeros((1, 3), np.int64)
 

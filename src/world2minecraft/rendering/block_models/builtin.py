@@ -10,7 +10,7 @@ from world2minecraft.rendering.block_models.texture_recipes import PREFIX, split
 from world2minecraft.rendering.texture import Texture
 from world2minecraft.rendering.textures import texture_of
 
-VANILLA_PX = 16  # What the game's own pictures have a block.
+VANILLA_PX = 16  # Texture width of the game, in pixels per block.
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,8 +20,8 @@ from world2minecraft.rendering.gpu.uniforms import (
 )
 from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 
-SLOT_BYTES = 64 << 20  # Of one set; large enough that its overhead is small, small for memory.
-MAX_JOBS = 256  # Of one submission.
+SLOT_BYTES = 64 << 20  # Bytes of one set of buffers.
+MAX_JOBS = 256  # Maximum number of jobs in a submission.
 MAX_RAYS = 16_000_000  # Rays from the eye of one submission.
 TILE = 8  # Pixels a side of a workgroup.
 

@@ -22,7 +22,7 @@ WARM = (1.0, 0.86, 0.62)  # The game's torchlight.
 LAMP_BY_DAY, LAMP_BY_NIGHT = (0.58, 0.52, 0.42), (0.98, 0.72, 0.42)
 GLOW = 1.9  # Brightness of a lamp's face: above the shoulder, so that it looks lit.
 AMBIENT = 0.05
-DIM_BY_NIGHT = (0.45, 0.48, 0.60)  # Of the ambient light.
+DIM_BY_NIGHT = (0.45, 0.48, 0.60)  # Factors of the ambient light at night.
 CORNER = 0.28  # Linear equivalent of the game's value of 0.2 on the screen.
 # Shades of faces: x (east, west), up, down, z (north, south).
 GAME_CORNER = 0.2

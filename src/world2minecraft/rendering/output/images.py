@@ -17,9 +17,9 @@ from world2minecraft.rendering.output.exr import exr_bytes
 COLOUR_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
 DEPTH_SUFFIXES = (".png", ".exr", ".npy")
 QUALITY = 92
-PER_METRE = 1000  # Of 16-bit depth: millimetres, as most RGB-D data sets have it.
+PER_METRE = 1000  # Steps of 16-bit depth: millimetres, as in most RGB-D data sets.
 FARTHEST = 65535
-_PNG_LEVEL = 4  # Of deflate; 6, the usual, takes twice as long and saves 3 %.
+_PNG_LEVEL = 4  # Compression level; the default of 6 takes twice as long to save 3 %.
 _LOSSLESS = 100  # The WebP quality from which it keeps every pixel.
 
 

@@ -25,8 +25,8 @@ GROUND = (233.0, 231.0, 227.0)  # A warm light grey, darker towards the picture'
 CORNER_SHADE = 0.10
 # Shadows by their softness in shares of the build's size, and how dark they are.
 SHADOWS = ((0.014, 0.46), (0.07, 0.36))
-LOW_SHARE = 0.35  # What hangs higher than this share of the build casts a fainter shadow.
-EDGE_SHARE = 0.25  # Of the build's size: so far around it the shadow is kept.
+LOW_SHARE = 0.35  # Parts above this share of the height cast a fainter shadow.
+EDGE_SHARE = 0.25  # Margin of the shadow around the build, as a share of its size.
 FOV_DEG = 24.0  # Narrow: nearly parallel edges read as a model.
 OPEN_ELEVATION_DEG = 44.0  # Into a room, over its furniture.
 CLOSED_ELEVATION_DEG = 26.0  # A house, its roof and its walls.

@@ -19,10 +19,10 @@ from world2minecraft.rendering.resource_packs.json_validation import (
 )
 from world2minecraft.rendering.resource_packs.pack_files import PackStack
 
-MAX_CASES = 4096  # Of a multipart; a game's redstone wire has about 20.
-MAX_CONDITION_DEPTH = 16  # Of conditions within conditions.
+MAX_CASES = 4096  # Maximum cases of a multipart model; redstone wire has about 20.
+MAX_CONDITION_DEPTH = 16  # Maximum depth of nested conditions.
 MAX_PARENTS = 32  # The game's deepest chain has 5.
-MAX_ELEMENTS = 2048  # Of one model; large furniture of mods has some hundred.
+MAX_ELEMENTS = 2048  # Maximum elements of a model; large furniture of mods has hundreds.
 _CURE = "pass the game's client jar before the pack"
 
 

@@ -21,7 +21,7 @@ from world2minecraft.core.files import read_bytes
 from world2minecraft.rendering.resource_packs.json_validation import as_number, parse_resource_name
 
 MAX_FILES = 400_000  # A client jar has about 30,000; a large pack of mods 150,000.
-MAX_DIRECTORY_BYTES = 128 << 20  # Of a zip's own list of files.
+MAX_DIRECTORY_BYTES = 128 << 20  # Maximum size of a zip file's directory.
 MAX_RATIO = 200  # Unpacked to packed, of files over a megabyte; JSON packs to a thirtieth.
 _END, _END_64, _LOCATOR_64 = b"PK\x05\x06", b"PK\x06\x06", b"PK\x06\x07"
 _LOOKS = re.compile(r"assets/[^/]+/(blockstates|models|textures)/.")

@@ -39,7 +39,7 @@ _FLOW_SCALE = 0.5
 SHAPES = ("stairs", "slab", "wall", "fence_gate", "fence", "button", "pressure_plate")
 MADE_OF = ("", "s", "_planks", "_block", "_block_side")
 OTHER_ENDINGS = {"_wood": "_log", "_hyphae": "_stem", "_carpet": "_wool", "_block": ""}
-COVERS = ("waxed_", "infested_")  # What looks as without it.
+COVERS = ("waxed_", "infested_")  # Prefixes of blocks that look the same without them.
 OTHER_NAMES = {
     "smooth_sandstone": "sandstone_top",
     "smooth_red_sandstone": "red_sandstone_top",

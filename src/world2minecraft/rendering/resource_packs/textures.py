@@ -28,19 +28,19 @@ from world2minecraft.rendering.texture import MAX_SIDE_PX, Texture
 
 # The maps of a texture, and what stands for one that a layer lacks where another has it.
 FLAT = {"normal": (128, 128, 255), "roughness": 204, "metal": 0, "emission": 0}
-FIRST_METAL = 230  # Of the green channel: below it is the reflectance of what is no metal.
-NO_EMISSION = 255  # Of alpha; 254 is full.
+FIRST_METAL = 230  # Green values from this are metals; lower ones are reflectance.
+NO_EMISSION = 255  # Alpha value without emission; 254 is full emission.
 MAX_PIXELS = 1 << 25  # 32 frames of 1024 x 1024.
 _HEAD = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
 MAX_PNG_BYTES = 32 << 20
-MAX_TEXTURES = 8192  # Of one run; the game has about 1,500 of blocks.
+MAX_TEXTURES = 8192  # Maximum number in a run; the game has about 1,500 for blocks.
 MIN_PX, MAX_PX = 16, 128  # The sides that the renderer's textures have.
-SAMPLE = 100  # How many textures are looked at for their usual size.
+SAMPLE = 100  # Number of textures that determine the usual size.
 CLEAR = "~clear"  # Ends the name of a texture that a block of clear stuff uses.
 _CLEAR_WORDS = re.compile(r"glass|(?<![a-z])ice(?![a-z])|slime|honey_block|water|portal|jelly")
 # A texture of clear stuff mixes with what is behind it where this share is neither hole nor solid.
 MIN_CLEAR_SHARE = 0.15
-HOLE, SOLID = 13, 242  # Of alpha: what is nearly a hole or nearly solid counts as it.
+HOLE, SOLID = 13, 242  # Alpha values up to and from which a texel is a hole or solid.
 
 
 def overlay_textures(layers: Sequence[tuple[Texture, tuple[int, ...]]]) -> Texture:

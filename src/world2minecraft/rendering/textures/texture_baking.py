@@ -19,8 +19,8 @@ MEAN_MARGIN = 1.0  # White and black may miss their mean by this, so that they a
 # and apart from it in each of red, green and blue.
 MAX_LIGHT, MAX_HUE = 0.4, 0.08
 MIN_MAIN_SHARE = 0.2  # Of all texels; fewer of the main colour would be too far from it.
-ROUNDS = 24  # Of a bisection over -1 to 1.
-SLOPE = 0.6  # Of the normals, times the height's.
+ROUNDS = 24  # Iterations of a bisection over -1 to 1.
+SLOPE = 0.6  # Strength of the normals relative to the height's slope.
 
 
 @dataclass(frozen=True, eq=False)

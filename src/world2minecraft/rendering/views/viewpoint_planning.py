@@ -12,16 +12,16 @@ from world2minecraft.minecraft.physics.shortest_paths import clearance_m
 from world2minecraft.minecraft.physics.walk_graph import WalkGraph, walk_graph
 from world2minecraft.rendering.views.visibility import MAX_VIEW_M, ViewBlockers, cast_view_rays
 
-MAX_PLACES = 400_000  # Of a larger floor only the nearest part is walked.
+MAX_PLACES = 400_000  # Maximum number of cells; of a larger floor the nearest are used.
 MAX_RATED = 1500  # Places that are rated as stops.
 SPACING_M = 1.6  # Between stops,
 MAX_STOPS, MIN_STOPS = 24, 4  # and so many of them, where there is room.
-MIN_NEW_SHARE = 0.12  # Of what one sees at a stop is new, else it is none.
+MIN_NEW_SHARE = 0.12  # Minimum share of a stop's view that is new.
 PATCH_M = 0.5  # Side of the patches that count as seen.
-WALLED_SHARE = 0.8  # Of level rays that end at a wall, indoors.
-OUTSIDE_COST = 2.0  # What a place outdoors costs more.
+WALLED_SHARE = 0.8  # Share of level rays that end at a wall indoors.
+OUTSIDE_COST = 2.0  # Additional cost of a cell outdoors.
 ELBOW_M = 0.7  # One keeps so far from walls where there is room.
-NARROW_COST = 2.5  # What a place at a wall costs more.
+NARROW_COST = 2.5  # Additional cost of a cell at a wall.
 MIN_ROOM_M2 = 1.0  # A smaller roofed floor is no room.
 
 

@@ -42,7 +42,7 @@ from world2minecraft.sceneforge.workspace import Workspace
 
 SCALES = (1, 2, 4, 12.5)
 DEFAULT_SCALE = 4
-CHUNK_BYTES = 4 << 20  # What a page sends at once; a lost connection costs at most so much.
+CHUNK_BYTES = 4 << 20  # Bytes per request; a lost connection loses at most one chunk.
 
 
 def routes() -> list[BaseRoute]:

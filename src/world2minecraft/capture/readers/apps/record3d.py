@@ -51,7 +51,7 @@ _MODES = {"float32": np.float32, "L": np.uint8}
 _PICTURES = (".jpg", ".jpeg", ".png")
 _MIN_POSE_CHANGE = 1e-6  # Poses that differ by less were never tracked.
 MIN_UP_IN_IMAGE = 0.5  # Cameras that look steeply up or down say little of their roll.
-MAX_ROLL_DEG = 15.0  # Of most frames; held by hand, phones roll by about five.
+MAX_ROLL_DEG = 15.0  # Limit for most frames; hand-held phones roll by about 5 degrees.
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
 
 HEADER_BYTES = 64 << 10  # A JPEG's size stands before its pixels, after at most a thumbnail.
-MAX_MEMBER_BYTES = 512 << 20  # As much as is held in memory of a file that lies in a zip.
+MAX_MEMBER_BYTES = 512 << 20  # Maximum size of a zip member that is read into memory.
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ ENCODINGS: dict[str, tuple[str, int, tuple[int, ...]]] = {
 }
 WITHIN_S = 0.025  # Streams of 30 Hz that are not locked lie up to 17 ms apart.
 DEFAULT_UNIT_M = 0.001
-MAX_GROUPS = 8  # Of streams whose places to each other are known; cameras have one or two.
+MAX_GROUPS = 8  # Maximum number of groups of calibrated streams; cameras have 1 or 2.
 MAGIC = b"#ROSBAG V"
 _RECORDED = re.compile(r"(/device_\d+/sensor_\d+)/(Color|Depth)_\d+/image/data")
 _UNITS = re.compile(r"/device_\d+/sensor_\d+/option/Depth[ _]Units/value")

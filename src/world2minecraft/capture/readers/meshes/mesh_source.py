@@ -76,7 +76,7 @@ RenderedView = tuple[np.ndarray, np.ndarray, np.ndarray]
 MARGIN_M = 0.3
 MIN_SIDES_M = (1.0, 1.0, 0.6)  # The upper part of a room may not have been captured.
 MAX_SIDE_M = 200.0
-MAX_BACKFACE_SHARE = 0.9  # Of what is seen from inside; a room of any export has far less.
+MAX_BACKFACE_SHARE = 0.9  # Maximum share of back faces seen from inside; rooms have far fewer.
 UNIT_ADVICE = "if the unit is wrong, set --set capture.unit=m|cm|mm|inch|foot"
 
 

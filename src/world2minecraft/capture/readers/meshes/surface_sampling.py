@@ -8,8 +8,8 @@ from world2minecraft.capture.readers.meshes.mesh_and_cloud import Geometry, Mesh
 from world2minecraft.capture.readers.meshes.surfels import assign_cells, cell_normals
 
 MAX_SAMPLES = 60_000
-CELLS_ALONG = 48  # Of a cloud's longest side, for its normals: 10 cm in a room of 5 m.
-OUTER_SHARE = 0.002  # Of the samples at each end of an axis: stray points and triangles.
+CELLS_ALONG = 48  # Cells along the longest side, for normals: 10 cm in a room of 5 m.
+OUTER_SHARE = 0.002  # Share of samples ignored at each end of an axis, as strays.
 
 
 @dataclass(frozen=True, eq=False)

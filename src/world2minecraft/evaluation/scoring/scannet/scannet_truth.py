@@ -43,7 +43,7 @@ from world2minecraft.evaluation.scoring.truth_files import Truth
 from world2minecraft.evaluation.scoring.used_frames import UsedFrame
 from world2minecraft.procgen.virtual_scan import object_to_json
 
-PIECE = 0.75  # Of a voxel: the longest side of a piece.
+PIECE = 0.75  # Longest side of a piece, in voxels.
 MARGIN = 2  # Free voxels around it all.
 CHUNK_M2 = 4.0  # Of surface at a time, some 200,000 pieces.
 MAX_VALUES = 1 << 16
@@ -52,7 +52,7 @@ MAX_FRAMES = 200  # Evenly spread over the recording: seven a second of a walk o
 APART_M, APART_SHARE = 0.08, 0.05  # A cell, or what such sensors err by at 2 m and beyond.
 
 RECORDINGS = ("scannet_sens", "scannet_folder")
-VOXEL_M = 0.02  # As the truth of generated rooms: a quarter of a cell.
+VOXEL_M = 0.02  # As for generated rooms: a quarter of a cell.
 
 
 @dataclass(frozen=True, eq=False)
