@@ -1,4 +1,4 @@
-"""Inspect captures before a reconstruction, and join finished runs to a home."""
+"""Inspect and segment captures before a reconstruction, and join finished runs to a home."""
 
 import os
 from collections.abc import Sequence
@@ -8,12 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 from world2minecraft.api.results import Run
 from world2minecraft.api.rooms import BuildOptions, Settings, path_of
-from world2minecraft.core.errors import OutputError, UsageError
+from world2minecraft.core.errors import OutputError, UnknownNameError, UsageError
 from world2minecraft.core.progress import Progress, no_progress
 
 if TYPE_CHECKING:
     from world2minecraft.capture import CaptureSummary
+    from world2minecraft.capture.options import ScanOptions
     from world2minecraft.formats.roomplan import CapturedPlan
+    from world2minecraft.reconstruction.recognition.label_folder import LabelledFolder
+
+
+SHOWN_CLASSES = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +78,56 @@ class CaptureReport:
         return "\n".join(self.lines)
 
 
+@dataclass(frozen=True, eq=False)
+class CaptureLabels:
+    """The label images that were written for a capture, with the command that uses them.
+
+    Attributes:
+        capture: Path of the capture.
+        network: Name of the network.
+        written: Folder, names of the labelled and of the skipped frames, and shares of the classes.
+    """
+
+    capture: Path
+    network: str
+    written: "LabelledFolder"
+
+    @property
+    def next_command(self) -> str:
+        """The command that reconstructs the capture with its label images."""
+        from world2minecraft.capture.summary import shell_command
+
+        words = ["w2m", "reconstruct", str(self.capture), "--out", "OUT"]
+        return shell_command([*words, "--labels", str(self.written.folder)])
+
+    @property
+    def lines(self) -> list[str]:
+        """The result as lines of text, ending with the command that uses the label images."""
+        count, skipped = len(self.written.names), self.written.skipped
+        named = [(name, share) for name, share in self.written.shares.items() if name != "unknown"]
+        most = ", ".join(f"{name} {share:.0%}" for name, share in named[:SHOWN_CLASSES])
+        return [
+            *(f"skipped {name}: {reason}" for name, reason in skipped),
+            f"{self.written.folder}: {count} label image{'s' * (count != 1)}"
+            + (f"; {most}" if most else "; all pixels are unknown"),
+            f"next: {self.next_command}",
+        ]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the result as JSON values."""
+        return {
+            "folder": str(self.written.folder),
+            "network": self.network,
+            "frames": list(self.written.names),
+            "skipped": [list(row) for row in self.written.skipped],
+            "shares": self.written.shares,
+            "next": self.next_command,
+        }
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+
 def inspect_capture(capture: str | Path, *, settings: Settings | None = None) -> CaptureReport:
     """Report the contents and shortcomings of a capture within seconds, without reconstructing it.
 
@@ -106,6 +161,112 @@ def inspect_capture(capture: str | Path, *, settings: Settings | None = None) ->
     if plan is not None:
         return CaptureReport(place, plan=read_roomplan(plan))
     return CaptureReport(place, describe_capture(place, options=options))
+
+
+def segment_capture(
+    capture: str | Path,
+    out: str | Path,
+    *,
+    semantics: str = "nyu",
+    min_probability: float = 0.0,
+    overlay: bool = False,
+    force: bool = False,
+    settings: Settings | None = None,
+    progress: Progress = no_progress,
+) -> CaptureLabels:
+    """Write a label image for each colour image of a capture, with or without camera poses.
+
+    Each label image ``NAME.png`` has the name of its frame and the size of the colour image, uint8
+    with NYU40 ids from 1 to 40, and 0 for unknown. The folder can be passed to ``reconstruct`` as
+    ``labels``.
+
+    Args:
+        capture: Photos, a video, the export of a scanning app or RGB-D frames.
+        out: Output folder.
+        semantics: ``nyu``, or ``generated`` for the network trained on generated rooms alone.
+        min_probability: Pixels whose most likely class is less likely than this are unknown, 0 to
+            1.
+        overlay: Whether to write ``NAME.overlay.jpg`` as well: the image in the colours of its
+            classes, with a legend.
+        force: Whether to write into a folder that contains files, and replace those of the same
+            names.
+        settings: Options of the capture reader, such as ``{"capture.every": "10"}``.
+        progress: Callback that reports the progress.
+
+    Returns:
+        The names of the labelled and of the skipped frames, and the shares of the classes.
+
+    Raises:
+        UsageError: If an argument is invalid, or the folder contains files without ``force``.
+        UnknownNameError: If the network is unknown.
+        CaptureError: If the capture cannot be read or has no colour images.
+        OutputError: If a file cannot be written.
+
+    Example:
+        >>> from world2minecraft.api.captures import segment_capture
+        >>> segment_capture(scan, tmp / "labels", semantics="ade")
+        Traceback (most recent call last):
+        ...
+        world2minecraft.core.errors.UnknownNameError: no network is named 'ade'; ...
+    """
+    from world2minecraft.reconstruction.recognition.label_folder import write_label_images
+    from world2minecraft.reconstruction.recognition.segmentation import (
+        GENERATED_WEIGHTS,
+        WEIGHTS,
+        SegmentationModel,
+    )
+
+    weights = {"nyu": WEIGHTS, "generated": GENERATED_WEIGHTS}
+    if semantics not in weights:
+        raise UnknownNameError("network", semantics, weights)
+    if not 0 <= min_probability <= 1:
+        raise UsageError(
+            f"min_probability (--min-probability) must be from 0 to 1, got {min_probability}"
+        )
+    place = Path(out)
+    if place.exists() and not place.is_dir():
+        raise OutputError(place, "is a file; the output must be a folder")
+    if not force and place.is_dir() and any(place.iterdir()):
+        raise UsageError(
+            f"{place} contains files; choose another folder, or pass force (--force) to replace "
+            "those of the same names"
+        )
+    options = _reader_options(settings)
+    source = Path(capture)
+    _check_no_roomplan(source)
+    written = write_label_images(
+        source,
+        place,
+        SegmentationModel(weights[semantics]),
+        network=semantics,
+        options=options,
+        min_probability=min_probability,
+        overlay=overlay,
+        progress=progress,
+    )
+    return CaptureLabels(source, semantics, written)
+
+
+def _reader_options(settings: Settings | None) -> "ScanOptions":
+    """Return the options of the capture reader in settings by key."""
+    from world2minecraft.capture.options import parse_options
+    from world2minecraft.reconstruction.parameters import Parameters, with_settings
+
+    chosen = [f"{key}={value}" for key, value in (settings or {}).items()]
+    return parse_options(with_settings(Parameters(), chosen).capture)
+
+
+def _check_no_roomplan(capture: Path) -> None:
+    """Raise CaptureError if a capture is a RoomPlan without frames."""
+    from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
+    from world2minecraft.core.errors import CaptureError
+
+    if find_lone_roomplan(capture) is not None:
+        raise CaptureError(
+            capture,
+            "is a RoomPlan without frames, which has no pictures to segment; w2m reconstruct "
+            "builds it as measured",
+        )
 
 
 def join_rooms(

@@ -49,6 +49,7 @@ STAGE_TEXTS = {
     "scenes": "Generating scenes",
     "score": "Scoring predictions",
     "seen": "Finding visible cells",
+    "segment": "Segmenting images",
     "shrink": "Resizing photos",
     "stereo": "Estimating depth",
     "train": "Training",

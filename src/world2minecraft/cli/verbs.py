@@ -33,6 +33,7 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
         "doctor": "Check that this machine can run the program.",
     },
     "Reconstruct": {
+        "segment": "Name what each pixel of a capture's pictures shows.",
         "join": "Join reconstructions of single rooms to one home.",
         "convert": "Convert between rooms, builds, worlds, schematics and 3D files.",
         "render": "Render a build as images, depth maps, walks and turntables.",

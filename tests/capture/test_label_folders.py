@@ -1,0 +1,57 @@
+"""Folders of label images: the classes that ``labels.json`` states."""
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from world2minecraft.capture import write_plain
+from world2minecraft.capture.label_images import write_label_facts
+from world2minecraft.capture.options import ScanOptions
+from world2minecraft.capture.validation import validate_capture
+from world2minecraft.capture.view_stream import read_view
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera, View
+
+IDS = np.array([[0, 1, 2, 5], [14, 22, 32, 40]], np.uint8).repeat(24, 0).repeat(16, 1)
+
+
+@pytest.fixture
+def capture(tmp_path):
+    """One frame, and a folder with its label image."""
+    camera = Camera(64, 48, 50.0, 50.0, 32.0, 24.0)
+    pose = look_at(np.array([0, 0, 1.5]), np.array([0, 2, 1.2]))
+    write_plain(tmp_path / "cap", [View("0", pose, np.zeros((48, 64, 3), np.uint8), camera)])
+    (tmp_path / "labels").mkdir()
+    Image.fromarray(IDS).save(tmp_path / "labels" / "0.png")
+    return tmp_path
+
+
+def labels_of(folder):
+    judged = validate_capture(folder / "cap", ScanOptions(), folder / "labels")
+    return read_view(judged.frames[0], judged.encoding).labels
+
+
+def test_nyu40_ids_become_classes(capture):
+    write_label_facts(capture / "labels", "nyu")
+    table, chair, furniture = 8, 5, 10
+    found = labels_of(capture)[::24, ::16].tolist()
+    assert found == [[255, 3, 2, chair], [table, 1, furniture, 11]]
+
+
+def test_without_a_statement_ids_are_classes(capture):
+    with pytest.raises(CaptureError, match="class ids from 0 to 11, or 255; got 14"):
+        labels_of(capture)
+    facts = capture / "labels" / "labels.json"
+    facts.write_text(json.dumps({"classes": "nyu12"}))
+    Image.fromarray(np.minimum(IDS, 11)).save(capture / "labels" / "0.png")
+    assert (labels_of(capture) == np.minimum(IDS, 11)).all()
+
+
+@pytest.mark.parametrize("stated", [{"classes": "ade20k"}, ["nyu40"], {"classes": [1]}])
+def test_unknown_classes_are_refused(stated, capture):
+    (capture / "labels" / "labels.json").write_text(json.dumps(stated))
+    with pytest.raises(CaptureError, match='must state the "classes" nyu12 or nyu40, got'):
+        labels_of(capture)
