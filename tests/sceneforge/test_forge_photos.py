@@ -16,7 +16,9 @@ from world2minecraft.core.types import Camera
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.geometry.undistort import undistort_image
 from world2minecraft.geometry.unprojection import project
+from world2minecraft.reconstruction.recognition.label_images import blend_classes
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.photo_classes import PhotoClasses
 from world2minecraft.sceneforge.run_photos import find_capture_of, ideal_camera, read_photos
 
 
@@ -105,6 +107,29 @@ def test_pictures_have_the_proportions_that_were_told(photos):
         photos.jpeg(99, True)
 
 
+def test_classes_of_photos_are_drawn_on_demand(photos):
+    """The network sees the undistorted photo, its depth, gravity and the height of the camera."""
+    shown = []
+
+    class Doors:
+        def predict(self, colour, depth_m, camera, up=None, camera_height_m=None):
+            shown.append((colour, depth_m, camera, up, camera_height_m))
+            return np.eye(40, dtype=np.float32)[[[7] * 4] * 3]
+
+    drawn = PhotoClasses(photos, Doors())
+    first = drawn.jpeg(2)
+    assert drawn.jpeg(2) is first and len(shown) == 1
+    colour, depth_m, camera, up, height_m = shown[0]
+    assert camera == photos.photos[2].ideal and (depth_m > 0).any()
+    assert up[1] < -0.7 and 0.8 < height_m < 2.2
+    image = np.asarray(Image.open(io.BytesIO(first)), float)
+    assert image.shape == colour.shape
+    wanted = blend_classes(colour, np.full(colour.shape[:2], 8, np.uint8))
+    assert np.median(np.abs(image - wanted)) < 4
+    with pytest.raises(UnknownNameError, match="no photo is named '99'"):
+        drawn.jpeg(99)
+
+
 def test_a_run_that_does_not_say_where_its_photos_lie_says_so(tmp_path):
     with pytest.raises(UsageError, match="--capture PATH_OF_THE_CAPTURE"):
         find_capture_of(tmp_path / "OUT", None)
@@ -118,6 +143,9 @@ def test_the_page_gets_photos_and_their_poses(small_run, tmp_path):
         assert small.headers["content-type"] == "image/jpeg" and small.content[:2] == b"\xff\xd8"
         assert script.get("/api/photos/3/picture.jpg").status_code == 200
         assert script.get("/api/photos/99/picture.jpg").status_code == 400
+        classes = script.get("/api/photos/3/classes.jpg")
+        assert classes.headers["content-type"] == "image/jpeg" and len(classes.content) > 1000
+        assert script.get("/api/photos/99/classes.jpg").status_code == 400
 
 
 def test_a_room_without_photos_says_why(tmp_path):

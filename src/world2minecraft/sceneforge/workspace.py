@@ -16,6 +16,7 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.sceneforge.comparison import find_truth_folder
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.export_options import write_snapshot
+from world2minecraft.sceneforge.photo_classes import PhotoClasses
 from world2minecraft.sceneforge.run_photos import (
     RunPhotos,
     count_photos,
@@ -60,6 +61,7 @@ class Workspace:
         self.compared: Comparison | None = None
         self._capture = capture
         self._photos: tuple[Editor, RunPhotos] | None = None
+        self._classes: PhotoClasses | None = None
         self._lock = threading.Lock()
         self._opening = asyncio.Lock()
         self._exports: tempfile.TemporaryDirectory[str] | None = None
@@ -145,6 +147,17 @@ class Workspace:
                 made = read_photos(self.run, capture, editor.opened.scan_to_room)
                 self._photos = (editor, made)
             return self._photos[1]
+
+    def photo_classes(self) -> PhotoClasses:
+        """Return the classes in the photos of the open run, which are predicted on demand.
+
+        Raises the exceptions of ``photos``.
+        """
+        photos = self.photos()
+        with self._lock:
+            if self._classes is None or self._classes.photos is not photos:
+                self._classes = PhotoClasses(photos)
+            return self._classes
 
     def extras(self) -> dict[str, Any]:
         """Return the additional data available for the scene, as ``Scene.has`` of ``wire.ts``."""

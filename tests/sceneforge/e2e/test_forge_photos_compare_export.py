@@ -70,6 +70,12 @@ def test_photos_are_stood_in_blended_and_left(forge, shot):
         picture.is_visible() and page.locator("[data-photo='4'][aria-pressed='true']").count() == 1
     )
     shot(forge, "photos-photo")
+    page.locator("[data-field='photo-classes']").check()
+    picture.evaluate("one => one.decode()")
+    assert picture.get_attribute("src") == "api/photos/4/classes.jpg"
+    shot(forge, "photos-classes")
+    page.locator("[data-field='photo-classes']").uncheck()
+    assert picture.get_attribute("src") == "api/photos/4/picture.jpg"
     page.locator("canvas.canvas").focus()
     forge.key("p")
     assert picture.evaluate("one => one.style.opacity") == "0.5"

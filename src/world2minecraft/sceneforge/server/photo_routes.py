@@ -4,6 +4,7 @@
 GET /api/photos                     ``{frames: [...], why}``: pose and field of view of each photo
 GET /api/photos/N/small.jpg         the thumbnail of a photo
 GET /api/photos/N/picture.jpg       the undistorted photo, as a pinhole camera would take it
+GET /api/photos/N/classes.jpg       the same in the colours of its classes, which are predicted
 ==================================  ===========================================================
 """
 
@@ -25,6 +26,7 @@ def routes() -> list[BaseRoute]:
         Route("/api/photos", _all),
         Route("/api/photos/{number:int}/small.jpg", _small),
         Route("/api/photos/{number:int}/picture.jpg", _picture),
+        Route("/api/photos/{number:int}/classes.jpg", _classes),
     ]
 
 
@@ -43,6 +45,13 @@ async def _small(request: Request) -> Response:
 
 async def _picture(request: Request) -> Response:
     return await _jpeg(request, False)
+
+
+async def _classes(request: Request) -> Response:
+    number = request.path_params["number"]
+    workspace = get_workspace(request)
+    data = await asyncio.to_thread(lambda: workspace.photo_classes().jpeg(number))
+    return Response(data, media_type="image/jpeg")
 
 
 async def _jpeg(request: Request, small: bool) -> Response:

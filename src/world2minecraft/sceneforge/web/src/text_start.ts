@@ -101,6 +101,7 @@ export const PHOTO_TEXT = {
   blend: "Photo",
   ways: { scene: "Scene", blend: "Blend", beside: "Side by side", photo: "Photo" } as Record<string, string>,
   cameras: "Cameras",
+  classes: "Show classes",
   leave: "Close",
   why: "Select a photo in the strip below the scene first",
 };

@@ -86,15 +86,16 @@ class Strip {
       id: "photo-blend",
     });
     const cameras = check(words.cameras, "photo-cameras", (on) => this.viewer.cameras(this.frames, on));
+    const classes = check(words.classes, "photo-classes", (on) => this.viewer.showClasses(on));
     const leave = plainButton(words.leave, () => this.viewer.leave());
     this.showTools = () => {
       const { frame, way } = this.viewer;
-      ways.node.hidden = leave.hidden = !frame;
+      ways.node.hidden = classes.node.hidden = leave.hidden = !frame;
       blend.node.hidden = !frame || way !== "blend";
       ways.set(way);
       blend.set(this.viewer.blend);
     };
-    this.tools.append(this.note, cameras.node, ways.node, blend.node, leave);
+    this.tools.append(this.note, cameras.node, ways.node, blend.node, classes.node, leave);
     this.showTools();
   }
 

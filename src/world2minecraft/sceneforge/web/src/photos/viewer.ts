@@ -20,6 +20,7 @@ export class PhotoViewer {
   frame: Frame | null = null;
   way: Way = "photo";
   blend = 0.5;
+  private classes = false;
   private readonly picture = h("img", { class: "photo-over", alt: "", hidden: true });
   private readonly lines = new THREE.LineSegments(
     new THREE.BufferGeometry(),
@@ -59,7 +60,7 @@ export class PhotoViewer {
     const { view } = this.app;
     const from: Pose = view.pose ?? poseOfOrbit(view.orbit);
     this.frame = frame;
-    this.picture.src = `api/photos/${frame.n}/picture.jpg`;
+    this.load();
     put(this.chosen, [frame]);
     this.chosen.visible = false; // One stands in it.
     this.lay();
@@ -74,6 +75,12 @@ export class PhotoViewer {
     this.lay();
     this.stand();
     this.changed();
+  }
+
+  /** Show photos in the colours of their classes, or as they were taken. */
+  showClasses(on: boolean): void {
+    this.classes = on;
+    this.load();
   }
 
   next(): void {
@@ -92,6 +99,12 @@ export class PhotoViewer {
     view.pose = null;
     if (pose) view.orbit = orbitAt(pose, LOOKED_AT_M);
     this.changed();
+  }
+
+  private load(): void {
+    if (!this.frame) return;
+    const file = this.classes && !this.frame.is_depth ? "classes" : "picture";
+    this.picture.src = `api/photos/${this.frame.n}/${file}.jpg`;
   }
 
   /** A drag that would turn the view leaves the photo; tools may work in it. */
