@@ -12,7 +12,8 @@ from tests.site.pages import Step, steps_of
 
 from rcon_console import Console
 from world2minecraft import cli
-from world2minecraft.capture.readers.capture_json import write_plain
+from world2minecraft.procgen.rooms.room import generate_room
+from world2minecraft.procgen.virtual_scan import scan_room
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 FIRST = "tutorial-phone-scan"
@@ -31,10 +32,10 @@ SERVER = "localhost:25575"
 
 
 @pytest.fixture(scope="module")
-def walk(tmp_path_factory, box_room):
+def walk(tmp_path_factory):
     """Return a function that does what a page says, once, in a folder with a small scan."""
     folder = tmp_path_factory.mktemp("tutorials") / "now"
-    write_plain(folder / "my_scan", box_room.views(12))
+    scan_room(generate_room(7, kind="study"), folder / "my_scan", frames=16, width=320, height=240)
     done = set()
 
     def follow(path, place):

@@ -170,10 +170,8 @@ def reconstruct(
         depth_model=depth_model,
         plan="" if plan is None else str(plan),
     )
-    named = {
-        "occupy.semantics": None if semantics == "auto" else semantics,
-        "capture.fov_deg": fov_deg,
-    }
+    network = None if semantics == "auto" else semantics
+    named = {"occupy.semantics": network, "capture.fov_deg": fov_deg}
     given = {key: value for key, value in named.items() if value is not None}
     given |= _prediction_settings(predictions, convention, classes)
     options = BuildOptions(
