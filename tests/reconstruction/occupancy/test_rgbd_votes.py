@@ -10,7 +10,7 @@ from tests.exact_room import CAMERA, BoxRoom
 
 from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes, nyu40_names
 from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
-from world2minecraft.core.types import View
+from world2minecraft.core.types import Scan, View
 from world2minecraft.reconstruction.occupancy import OccupancyParameters, predictor
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 from world2minecraft.reconstruction.occupancy.rgbd_votes import (
@@ -98,6 +98,17 @@ def test_views_with_labels_or_from_one_place_do_not_vote():
     turned[:3, :3] = turn @ turned[:3, :3]
     assert votes_of(made, replace(seen, camera_to_scan=turned)).any()
     assert len(network.asked) == 2
+
+
+@pytest.mark.parametrize(("kind", "votes"), [("sensor", True), ("stereo", True), ("exact", False)])
+def test_views_of_meshes_get_no_votes_by_default(kind, votes):
+    (made, _), seen = voter(), view()
+    made.photos_only = True
+    scan = Scan([seen], np.eye(4), np.ones(3), ("v",), depth_kind=kind)
+    (found,) = DepthPredictor(voters=[made]).predict(scan)
+    assert (found.votes is not None and bool(found.votes.any())) is votes
+    assert voters("auto")[0].photos_only
+    assert not voters("nyu")[0].photos_only
 
 
 def test_classes_of_nyu_vote_for_the_classes_of_the_program():

@@ -127,9 +127,15 @@ def _spread(normals, turn, pixels, width_px, side):
 
 
 class Voter(Protocol):
-    """An object that votes for the classes of a view's surface points, such as a network."""
+    """An object that votes for the classes of a view's surface points, such as a network.
+
+    Attributes:
+        notes: Notes for the report.
+        photos_only: Whether views that are rendered from a mesh or a point cloud get no votes.
+    """
 
     notes: tuple[str, ...]
+    photos_only: bool
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
@@ -166,12 +172,19 @@ class DepthPredictor:
     def predict(self, scan: Scan) -> Iterator[PointEvidence]:
         """Yield the surface points of each view, in the frame and the order of the scan."""
         alone = len(scan.views) == 1 and scan.depth_kind == "sensor"
+        is_rendered = scan.depth_kind == "exact"
+        voters = [voter for voter in self.voters if not (is_rendered and voter.photos_only)]
         for view in scan.views:
             if view.depth_m is not None:
-                yield self.lift(view, scan.scan_to_room, alone=alone)
+                yield self.lift(view, scan.scan_to_room, alone=alone, voters=voters)
 
     def lift(
-        self, view: View, scan_to_room: np.ndarray | None = None, *, alone: bool = False
+        self,
+        view: View,
+        scan_to_room: np.ndarray | None = None,
+        *,
+        alone: bool = False,
+        voters: Sequence[Voter] | None = None,
     ) -> PointEvidence:
         """Return the points of a view, without those beyond the maximum depth.
 
@@ -179,6 +192,7 @@ class DepthPredictor:
             view: View with depth.
             scan_to_room: 4x4 transform from the scan to the room, for the voters.
             alone: Whether the scan of a sensor has no other view.
+            voters: Voters that vote on this view. Defaults to all.
         """
         camera, depth_m = view.depth_camera, view.depth_m
         if camera is None or depth_m is None:
@@ -199,17 +213,23 @@ class DepthPredictor:
             normals=facing_of_depth(near_m, camera, camera_to_scan, pixels),
             labels=labels,
             trust=_trust(view, pixels),
-            votes=self._votes(view, scan_to_room, points_m, colour_px),
+            votes=_votes(
+                self.voters if voters is None else voters, view, scan_to_room, points_m, colour_px
+            ),
         )
 
-    def _votes(self, view: View, scan_to_room, points_m, colour_px) -> np.ndarray | None:
-        if not self.voters or colour_px is None:
-            return None
-        to_room = np.eye(4) if scan_to_room is None else scan_to_room
-        total = np.zeros((len(points_m), CLASS_COUNT), np.float32)
-        for voter in self.voters:
-            total += voter.votes(view, to_room, points_m, colour_px)
-        return total.astype(np.float16)
+
+def _votes(
+    voters: Sequence[Voter], view: View, scan_to_room, points_m, colour_px
+) -> np.ndarray | None:
+    """Return the sum of the votes for the points of a view, float16 [N, 12], or None without."""
+    if not voters or colour_px is None:
+        return None
+    to_room = np.eye(4) if scan_to_room is None else scan_to_room
+    total = np.zeros((len(points_m), CLASS_COUNT), np.float32)
+    for voter in voters:
+        total += voter.votes(view, to_room, points_m, colour_px)
+    return total.astype(np.float16)
 
 
 def _trust(view: View, pixels: np.ndarray) -> np.ndarray | None:

@@ -17,8 +17,8 @@ class OccupancyParameters:
 
     semantics: Segmentation network for the images: ``auto`` or ``nyu`` for the built-in one,
         ``generated`` for one that was trained on generated rooms alone, an id such as
-        ``hf:ORG/NAME`` or ``hf:FOLDER``, or ``none``. ``auto`` votes only where depth is the
-        evidence and an image has neither labels nor votes of another network.
+        ``hf:ORG/NAME`` or ``hf:FOLDER``, or ``none``. ``auto`` votes where depth is the
+        evidence and an image was taken by a camera and has no labels.
     label_names: Path of a YAML file that maps label names of the network to classes.
     mono_votes: Whether the monocular network votes for the classes of surface points.
     network: Path of the ONNX file of the monocular network; empty for the built-in network.

@@ -39,7 +39,14 @@ class RgbdVoter:
 
     notes: tuple[str, ...] = ()
 
-    def __init__(self, weights: Path | None = None, *, min_probability: float = MIN_PROBABILITY):
+    def __init__(
+        self,
+        weights: Path | None = None,
+        *,
+        min_probability: float = MIN_PROBABILITY,
+        photos_only: bool = False,
+    ):
+        self.photos_only = photos_only
         self.model = SegmentationModel(weights)
         self.min_probability = min_probability
         self.matrix = class_matrix()

@@ -144,7 +144,8 @@ def voters_of(chosen: OccupancyParameters) -> tuple[Voter, ...]:
     if chosen.semantics == AUTO and chosen.mono_votes:
         pass
     elif chosen.semantics in BUILT_IN:
-        voters.append(RgbdVoter(GENERATED_WEIGHTS if chosen.semantics == GENERATED else None))
+        weights = GENERATED_WEIGHTS if chosen.semantics == GENERATED else None
+        voters.append(RgbdVoter(weights, photos_only=chosen.semantics == AUTO))
     elif chosen.semantics not in WITHOUT_VOTES:
         voters.append(PixelVoter(segmenter(chosen.semantics), chosen.label_names))
     if chosen.mono_votes:
@@ -154,6 +155,8 @@ def voters_of(chosen: OccupancyParameters) -> tuple[Voter, ...]:
 
 class PixelVoter:
     """Votes by the prediction of a segmentation network at the pixel that shows a point."""
+
+    photos_only = False
 
     def __init__(self, network: Segmenter, label_names: str = ""):
         self.network = network
@@ -198,6 +201,7 @@ class CellVoter:
     """Votes by a monocular occupancy network's prediction for the cell of each point."""
 
     notes: tuple[str, ...] = ()
+    photos_only = False
 
     def __init__(self, predictor: MonoPredictor):
         self.predictor = predictor
