@@ -73,7 +73,11 @@ def names_of(tree):
 
 
 def test_what_benchmarks_import_from_each_other_exists():
-    trees = {path.stem: ast.parse(path.read_text("utf-8")) for path in bench.FOLDER.glob("*.py")}
+    files = {path.relative_to(bench.FOLDER): path for path in bench.FOLDER.rglob("*.py")}
+    trees = {
+        ".".join(place.with_suffix("").parts): ast.parse(path.read_text("utf-8"))
+        for place, path in files.items()
+    }
     defined = {name: set(names_of(tree)) for name, tree in trees.items()}
     for name, tree in trees.items():
         for node in ast.walk(tree):

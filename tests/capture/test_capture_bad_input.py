@@ -1,6 +1,7 @@
 """Captures that cannot be used: one line that names the file and the reason, nothing written."""
 
 import json
+import re
 import struct
 import zlib
 from dataclasses import replace
@@ -413,6 +414,8 @@ def test_depth_that_the_device_trusts_nowhere(tmp_path, views):
 @pytest.mark.parametrize("size_m", [(4.0, 3.0, 2.5), (9.7, 8.3, 3.1)])
 def test_the_reported_minimum_voxel_is_accepted(size_m):
     alignment = Alignment(np.eye(4), np.array(size_m), ())
-    with pytest.raises(UsageError, match="use at least --voxel") as caught:
+    with pytest.raises(UsageError, match="use cells of at least") as caught:
         check_cell_count(alignment, 0.001)
-    check_cell_count(alignment, float(str(caught.value).split()[-1]))
+    stated = re.search(r"at least ([0-9.]+) m ", str(caught.value))
+    assert stated is not None
+    check_cell_count(alignment, float(stated[1]))

@@ -166,7 +166,7 @@ def test_every_takes_each_nth_frame_and_wrong_options_are_named(tmp_path, views)
         open_scan(tmp_path, options={"depht_unit": "mm"})
     with pytest.raises(UsageError, match="positive integer, got '0'"):
         open_scan(tmp_path, options={"every": "0"})
-    with pytest.raises(UsageError, match="use at least --voxel 0.010"):
+    with pytest.raises(UsageError, match="use cells of at least 0.010 m"):
         open_scan(tmp_path, voxel_m=0.002)
 
 

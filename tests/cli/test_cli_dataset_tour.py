@@ -79,7 +79,11 @@ def test_screenshots_become_a_tour_file(world, tmp_path, capsys):
     ("words", "code", "text"),
     [
         (["--at", "feet"], 2, "--at, --poses and --pattern require --screenshots DIR"),
-        (["--screenshots", "."], 2, "--at feet (as shown by F3 and most mods) or --at eye"),
+        (
+            ["--screenshots", "."],
+            2,
+            "feet (as shown by F3 and most mods) or eye (--at feet, --at eye)",
+        ),
         (["--screenshots", "none", "--at", "eye"], 3, "expected a folder of screenshots"),
         (["--count", "0"], 2, "the number of views must be 1 or more, got 0"),
         (["--camera", "nyy"], 2, "no camera is named 'nyy'; did you mean 'nyu'?"),

@@ -167,7 +167,7 @@ def test_damaged_photos_are_skipped_and_listed(photos, halves, tmp_path, capsys)
         (["DEPTH"], 3, "contains no colour images; depth alone is not segmented"),
         (["PHOTOS", "--semantics", "hf:a/b"], 2, "no network is named 'hf:a/b'; known: generated"),
         (["PHOTOS", "--min-probability", "1.5"], 2, "must be from 0 to 1, got 1.5"),
-        (["PHOTOS", "--set", "capture.evry=2"], 2, "did you mean"),
+        (["PHOTOS", "--set", "capture.evrey=2"], 2, "did you mean"),
         (["PHOTOS", "--out", "PHOTOS/labels"], 2, "is inside the capture; choose another"),
         (["PHOTOS", "--out", "PHOTOS/a.jpg"], 3, "is a file; the output must be a folder"),
     ],
