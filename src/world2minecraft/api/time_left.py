@@ -42,7 +42,7 @@ COSTS = {
     "stereo": StageCost(2.0, 0.9),
     "scan": StageCost(0.4, 0.011),
     "register": StageCost(0.2, 0.022, has_frames=True),
-    "fuse": StageCost(0.1, 0.035, has_frames=True),
+    "fuse": StageCost(0.8, 0.1, has_frames=True),
     "label": StageCost(0.25, 0.003),
     "find": StageCost(0.1),
     "furnish": StageCost(0.4),
