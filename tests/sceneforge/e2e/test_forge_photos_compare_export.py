@@ -157,5 +157,7 @@ def test_the_scene_is_downloaded_and_installed(forge, shot, tmp_path):
         page.get_by_label("Password").fill("secret")
         page.locator("[data-place='server']").click()
         until(forge, "/[0-9,]+ commands/.test(document.querySelector('.export').textContent)")
-        assert "minecraft:dark_oak_stairs" in {name.partition("[")[0] for name in console.blocks.values()}
+        assert "minecraft:dark_oak_stairs" in {
+            name.partition("[")[0] for name in console.blocks.values()
+        }
     page.keyboard.press("Escape")
