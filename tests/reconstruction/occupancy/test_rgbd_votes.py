@@ -17,10 +17,13 @@ from world2minecraft.reconstruction.occupancy.rgbd_votes import (
     MIN_TURN_DEG,
     RgbdVoter,
     class_matrix,
-    splat_depth,
 )
 from world2minecraft.reconstruction.parameters import Parameters, with_method
-from world2minecraft.reconstruction.recognition.segmentation import GENERATED_WEIGHTS, WEIGHTS
+from world2minecraft.reconstruction.recognition.segmentation import (
+    GENERATED_WEIGHTS,
+    WEIGHTS,
+    splat_depth,
+)
 
 ROOM = BoxRoom()
 CHAIR, SOFA, WALL = (nyu40_names()[name] - 1 for name in ("chair", "sofa", "wall"))

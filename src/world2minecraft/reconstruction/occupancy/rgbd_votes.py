@@ -13,7 +13,11 @@ from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.types import View
-from world2minecraft.reconstruction.recognition.segmentation import NYU40_COUNT, SegmentationModel
+from world2minecraft.reconstruction.recognition.segmentation import (
+    NYU40_COUNT,
+    SegmentationModel,
+    splat_depth,
+)
 from world2minecraft.reconstruction.recognition.segmentation_channels import (
     geometry_size,
     network_size,
@@ -89,23 +93,3 @@ class RgbdVoter:
                 return False
         self._poses.append(pose)
         return True
-
-
-def splat_depth(
-    depth_m: np.ndarray, down: np.ndarray, right: np.ndarray, size_px: tuple[int, int]
-) -> np.ndarray:
-    """Return the depth image of points, float32 [H, W], with the nearest point of each pixel.
-
-    Args:
-        depth_m: Depth of each point along the optical axis in metres, float [N].
-        down: Place of each point in the image from top to bottom, 0 to 1, float [N].
-        right: Place of each point in the image from left to right, 0 to 1, float [N].
-        size_px: Width and height of the image.
-    """
-    width, height = size_px
-    result = np.full(width * height, np.inf, np.float32)
-    rows = np.minimum((down * height).astype(np.int64), height - 1)
-    columns = np.minimum((right * width).astype(np.int64), width - 1)
-    np.minimum.at(result, rows * width + columns, np.asarray(depth_m, np.float32))
-    result[~np.isfinite(result) | (result < 0)] = 0
-    return result.reshape(height, width)

@@ -14,7 +14,7 @@ from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_names
 from world2minecraft.core.types import Camera, View
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.unprojection import project, unproject_depth
-from world2minecraft.reconstruction.recognition.segmentation import NYU40_COUNT
+from world2minecraft.reconstruction.recognition.segmentation import NYU40_COUNT, splat_depth
 from world2minecraft.reconstruction.recognition.segmentation_channels import (
     geometry_size,
     network_size,
@@ -120,13 +120,10 @@ def depth_of_colour_camera(view: View) -> np.ndarray | None:
     small = colour.scaled_to(*geometry_size(*network_size(colour.width_px, colour.height_px)))
     points_m, _ = unproject_depth(view.depth_m, depth, view.depth_to_colour)
     points_m = points_m[points_m[:, 2] > 0]
-    pixels = np.floor(project(points_m.astype(np.float64), small)).astype(np.int64)
-    size = (small.width_px, small.height_px)
-    inside = ((pixels >= 0) & (pixels < size)).all(axis=1)
-    nearest = np.full(size[::-1], np.inf, np.float32)
-    np.minimum.at(nearest, (pixels[inside, 1], pixels[inside, 0]), points_m[inside, 2])
-    nearest[~np.isfinite(nearest)] = 0
-    return nearest
+    places = project(points_m.astype(np.float64), small) / (small.width_px, small.height_px)
+    inside = ((places >= 0) & (places < 1)).all(axis=1)
+    right, down = places[inside].T
+    return splat_depth(points_m[inside, 2], down, right, (small.width_px, small.height_px))
 
 
 def _is_same_lens(one: Camera, other: Camera) -> bool:

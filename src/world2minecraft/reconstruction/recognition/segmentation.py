@@ -68,6 +68,26 @@ def colour_channels(colour: np.ndarray | None, width_px: int, height_px: int) ->
     return np.ascontiguousarray(np.moveaxis(values, 2, 0))
 
 
+def splat_depth(
+    depth_m: np.ndarray, down: np.ndarray, right: np.ndarray, size_px: tuple[int, int]
+) -> np.ndarray:
+    """Return the depth image of points, float32 [H, W], with the nearest point of each pixel.
+
+    Args:
+        depth_m: Depth of each point along the optical axis in metres, float [N].
+        down: Place of each point in the image from top to bottom, 0 to 1, float [N].
+        right: Place of each point in the image from left to right, 0 to 1, float [N].
+        size_px: Width and height of the image.
+    """
+    width, height = size_px
+    result = np.full(width * height, np.inf, np.float32)
+    rows = np.minimum((down * height).astype(np.int64), height - 1)
+    columns = np.minimum((right * width).astype(np.int64), width - 1)
+    np.minimum.at(result, rows * width + columns, np.asarray(depth_m, np.float32))
+    result[~np.isfinite(result) | (result < 0)] = 0
+    return result.reshape(height, width)
+
+
 class SegmentationModel:
     """The segmentation network of a file, which is read on first use."""
 
