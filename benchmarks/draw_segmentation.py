@@ -9,55 +9,37 @@ black in the truth.
 """
 
 import argparse
-import colorsys
 from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from benchmarks.check_segmentation import print_classes
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_names
 from world2minecraft.networks.segmentation.frames import IGNORED, LabelledFrame
 from world2minecraft.networks.segmentation.generated import generate_frames
 from world2minecraft.networks.segmentation.scores import SegmentationScores, confusion_matrix
+from world2minecraft.reconstruction.recognition.label_images import (
+    UNKNOWN_ID,
+    nyu40_colours,
+    write_class_names,
+)
 from world2minecraft.reconstruction.recognition.segmentation import WEIGHTS, SegmentationModel
 
 FIRST_SEED = 300_000
 FRAMES_PER_ROOM = 2
 WORST_ROOMS = 3
 WIDTH, HEIGHT, GAP, LINE = 240, 180, 4, 18
-NAMED_PX = 500  # Smaller classes are not named in the picture.
 COLOURS = 128  # Of the picture, to keep the file small.
 NETWORKS = ("segmentation.onnx", "segmentation_generated.onnx")
 INK, PAPER = (20, 20, 20), (255, 255, 255)
 
 
-def class_colours() -> np.ndarray:
-    """Return a colour for each class, uint8 [40, 3]; black for the ignored one."""
-    made = []
-    for number in range(IGNORED + 1):
-        hue, light = number * 0.381966 % 1, (0.45, 0.6, 0.75)[number % 3]
-        made.append(colorsys.hls_to_rgb(hue, light, 0.55))
-    made[IGNORED] = (0, 0, 0)
-    return np.round(np.array(made) * 255).astype(np.uint8)
-
-
 def named_picture(classes: np.ndarray) -> Image.Image:
-    """Return an image of classes [H, W] with the name of each large one near its middle."""
-    image = Image.fromarray(class_colours()[classes]).resize((WIDTH, HEIGHT), 0)
-    draw, font = ImageDraw.Draw(image), ImageFont.load_default(11)
-    small = np.asarray(Image.fromarray(classes).resize((WIDTH, HEIGHT), 0))
-    for name, number in nyu40_names().items():
-        rows, columns = np.nonzero(small == number - 1)
-        if number - 1 == IGNORED or len(rows) < NAMED_PX:
-            continue
-        middle = np.array([np.median(columns), np.median(rows)])
-        nearest = np.argmin(np.hypot(columns - middle[0], rows - middle[1]))
-        place = (
-            float(np.clip(columns[nearest], 3 * len(name) + 2, WIDTH - 3 * len(name) - 2)),
-            float(rows[nearest]),
-        )
-        draw.text(place, name, INK, font, anchor="mm")
+    """Return an image of classes [H, W], counted from 0, with the name of each large one."""
+    ids = np.where(classes == IGNORED, UNKNOWN_ID, classes + 1).astype(np.uint8)
+    small = np.asarray(Image.fromarray(ids).resize((WIDTH, HEIGHT), Image.Resampling.NEAREST))
+    image = Image.fromarray(nyu40_colours()[small])
+    write_class_names(image, small)
     return image
 
 
