@@ -84,10 +84,10 @@ def main() -> None:
     for name in NETWORKS:
         model = SegmentationModel(WEIGHTS.with_name(name))
         confusion = np.zeros((IGNORED + 1, IGNORED + 1), np.int64)
-        for frame, told in zip(frames, answers, strict=True):
+        for frame, classes in zip(frames, answers, strict=True):
             probability = model.predict(frame.colour, frame.depth_m, frame.camera)
-            told.append(probability.argmax(axis=2).astype(np.uint8))
-            one = confusion_matrix(frame.labels, told[-1])
+            classes.append(probability.argmax(axis=2).astype(np.uint8))
+            one = confusion_matrix(frame.labels, classes[-1])
             confusion += one
             if name == NETWORKS[0]:
                 accuracy.append(SegmentationScores(one).pixel_accuracy)

@@ -6,8 +6,8 @@ from world2minecraft.core.parameters import parameter
 from world2minecraft.formats.class_ids import read_class_set
 from world2minecraft.formats.predicted_grids import GridRules
 
-AUTO, NYU, GENERATED = "auto", "nyu", "generated"
-BUILT_IN = (AUTO, NYU, GENERATED)
+AUTO, GENERATED = "auto", "generated"
+BUILT_IN = (AUTO, "nyu", GENERATED)
 WITHOUT_VOTES = ("", "none")  # Of ``semantics``.
 
 

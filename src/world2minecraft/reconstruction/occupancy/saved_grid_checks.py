@@ -133,8 +133,7 @@ def check_predictions(
         raise InputError(
             files.path,
             f"{read_as_}, {faults[0]}; check the classes (--classes), or skip this check with "
-            "--set "
-            "predictions.check=false",
+            "--set predictions.check=false",
         )
     return (f"the predictions, {read_as_}, are implausible: {'; '.join(faults)}",)
 

@@ -23,9 +23,10 @@ from world2minecraft.reconstruction.recognition.segmentation_channels import (
 UNKNOWN_ID = 0
 SAME_LENS = 5e-3  # Largest difference of intrinsics, relative to the image, of one camera.
 MAX_OVERLAY_PX = 1280
-OVERLAY_SHARE = 0.55  # Of the class colour.
-NAMED_SHARE = 0.002  # Of the image; smaller classes are not in the legend.
-WRITTEN_SHARE, SPARSE_PX = 0.01, 4  # Of the names written into an image.
+OVERLAY_SHARE = 0.55  # Share of the class colour in the overlay.
+NAMED_SHARE = 0.002  # Classes with a smaller share of the image are not in the legend.
+WRITTEN_SHARE = 0.01  # The names of classes with a smaller share are not written into the image.
+SPARSE_PX = 4  # Distance of the pixels that are searched for the place of a name.
 LEGEND_PX, LINE_PX, SWATCH_PX = 150, 18, 12
 WALL_COLOUR, MIN_LIGHTNESS, MAX_LIGHTNESS = (175, 175, 175), 0.45, 0.9  # In Oklab.
 INK, PAPER = (20, 20, 20), (255, 255, 255)

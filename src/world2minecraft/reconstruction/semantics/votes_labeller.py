@@ -1,8 +1,8 @@
 """A labeller for votes of pixels: each cell takes the class with the most votes.
 
 Cells without votes take the geometric label, which also decides between divided votes. Votes come
-from label images, whose errors are patches, edges and far things, or from a segmentation network,
-which also sees that a plane is a wardrobe or a curtain and not a wall.
+from label images, which have errors in patches, at edges and at a distance, or from a segmentation
+network, which can tell a wardrobe or a curtain from a wall.
 """
 
 from dataclasses import replace
@@ -21,9 +21,10 @@ from world2minecraft.reconstruction.semantics.smoothing import smooth_labels
 STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15
 # With the votes of the segmentation network: see docs/semantics.md for the fit on real frames.
 NETWORK_STRUCTURE_PRIOR, NETWORK_OBJECT_PRIOR = 0.1, 0.05
-# Subtracted from the share of objects in cells of walls: papers and switches on a wall are no
-# blocks in front of it. With 0, 0.3 and 0.4, 0.71, 0.83 and 0.86 of the walls of a real kitchen are
-# wall; the class accuracy of NYUv2 frames, where pictures and doors are objects, falls by 0.007.
+# Subtracted from the share of objects in cells of walls, so that papers and switches on a wall do
+# not become blocks in front of it. With 0, 0.3 and 0.4, 0.71, 0.83 and 0.86 of the wall surface of a
+# real kitchen is labelled wall; the class accuracy of NYUv2 frames, in which pictures and doors are
+# objects, falls by 0.007.
 ON_WALL_PENALTY = 0.4
 
 
@@ -85,6 +86,6 @@ def is_from_network(votes: np.ndarray) -> np.ndarray:
     """Return whether the votes of each cell, float [N, 11], come from a network, bool [N].
 
     Pixels of label images vote with 1 and networks with probabilities, so votes that are not whole
-    numbers are those of a network.
+    numbers come from a network.
     """
     return (votes % 1 != 0).any(axis=1)
