@@ -22,9 +22,9 @@ STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15
 # With the votes of the segmentation network: see docs/semantics.md for the fit on real frames.
 NETWORK_STRUCTURE_PRIOR, NETWORK_OBJECT_PRIOR = 0.1, 0.05
 # Subtracted from the share of objects in cells of walls, so that papers and switches on a wall do
-# not become blocks in front of it. With 0, 0.3 and 0.4, 0.71, 0.83 and 0.86 of the wall surface of a
-# real kitchen is labelled wall; the class accuracy of NYUv2 frames, in which pictures and doors are
-# objects, falls by 0.007.
+# not become blocks in front of it. With 0, 0.3 and 0.4, 0.71, 0.83 and 0.86 of the wall surface of
+# a real kitchen is labelled wall; the class accuracy of NYUv2 frames, in which pictures and doors
+# are objects, falls by 0.007.
 ON_WALL_PENALTY = 0.4
 
 
