@@ -65,7 +65,7 @@ class TimeLeft:
         >>> estimate.report("scan", 0, 1, now_s=0.0)
         >>> estimate.report("fuse", 0, 40, now_s=0.84)
         >>> round(estimate.left_s(0.84), 1)
-        1.5
+        4.8
     """
 
     def __init__(self, stages: Sequence[str]):
