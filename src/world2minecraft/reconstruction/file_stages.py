@@ -53,6 +53,7 @@ from world2minecraft.reconstruction.semantics import (
 )
 from world2minecraft.reconstruction.semantics.known_surfaces import label_known_surface
 from world2minecraft.reconstruction.semantics.labeller_choice import choose_labeller
+from world2minecraft.reconstruction.semantics.votes_labeller import is_from_network
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:
@@ -95,13 +96,26 @@ def label_grid(
 def find_stage(folder: Path, chosen: Parameters) -> None:
     """Run the find stage: ``room.npz`` -> instances, ``centers.npz`` and ``objects.json``."""
     grid, scan_to_room = read_room(folder / "room.npz")
-    found = find_objects(grid, chosen.find)
+    found = find_objects(grid, chosen.find, stated=_stated_cells(folder, grid))
     write_room(folder / "room.npz", found.grid, scan_to_room)
     centers = found.centers
     write_centers(folder / "centers.npz", centers.density, centers.candidates, centers.cluster)
     write_objects(folder / "objects.json", found.instances)
     write_occ_json(folder / "occ.json", found.grid)
     write_centers_json(folder / "centers.json", found.instances)
+
+
+def _stated_cells(folder: Path, grid: OccupancyGrid) -> np.ndarray | None:
+    """Return the cells whose class label images state, bool [X, Y, Z], or None if there are none.
+
+    The segmentation network votes with probabilities, label images with whole numbers.
+    """
+    if not (folder / "evidence.npz").is_file():
+        return None
+    votes = read_evidence(folder / "evidence.npz").votes
+    if votes.shape[:3] != grid.shape or not votes.any():
+        return None
+    return votes.any(axis=-1) & ~is_from_network(votes)
 
 
 def furnish_stage(folder: Path, chosen: Parameters) -> None:

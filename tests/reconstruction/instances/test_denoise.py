@@ -10,8 +10,12 @@ from tests.reconstruction.instances.test_instances import grid_of
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.types import FusedEvidence
+from world2minecraft.formats.run_arrays import read_room, write_evidence, write_room
+from world2minecraft.reconstruction.file_stages import find_stage
 from world2minecraft.reconstruction.instances import InstanceParameters, find_objects
 from world2minecraft.reconstruction.instances.denoise import relabel_specks
+from world2minecraft.reconstruction.parameters import Parameters
 
 TABLE, OBJS, FURN = SemanticClass.TABLE, SemanticClass.OBJS, SemanticClass.FURN
 
@@ -130,3 +134,39 @@ def test_the_method_of_the_paper_keeps_lumps():
     box = np.s_[3:5, 8:14, 10:16]
     found = find_objects(_wall_with(box, WALL_RGB, 0.1), InstanceParameters(paper_compat=True))
     assert (found.grid.labels[box] == OBJS).all()
+
+
+LUMP = np.s_[3:6, 8:14, 10:16]
+
+
+def test_a_lump_that_label_images_state_is_kept():
+    grid = _wall_with(LUMP, WALL_RGB, 0.1)
+    stated = np.zeros(grid.shape, bool)
+    stated[LUMP] = True
+    found = find_objects(grid, stated=stated)
+    assert [one.class_id for one in found.instances] == [OBJS]
+    np.testing.assert_array_equal(found.grid.labels, grid.labels)
+    stated[:, 10:] = False  # A third of it is left.
+    assert find_objects(grid, stated=stated).instances == ()
+
+
+@pytest.mark.parametrize(("vote", "kept"), [(2.0, True), (1.5, False)])
+def test_the_find_stage_trusts_votes_of_label_images_alone(tmp_path, vote, kept):
+    grid = _wall_with(LUMP, WALL_RGB, 0.1)
+    votes = np.zeros((*grid.shape, 12), np.float16)
+    votes[LUMP][..., OBJS] = vote
+    evidence = FusedEvidence(
+        log_odds=np.where(grid.occupied, 1, -1).astype(np.float16),
+        votes=votes,
+        colour_sum=np.zeros((*grid.shape, 3), np.float32),
+        hits=grid.occupied.astype(np.uint16),
+        offset_sum=np.zeros((*grid.shape, 3), np.float32),
+        origin_m=grid.origin_m,
+        voxel_m=grid.voxel_m,
+        scan_to_room=np.eye(4),
+    )
+    write_evidence(tmp_path / "evidence.npz", evidence)
+    write_room(tmp_path / "room.npz", grid, np.eye(4))
+    find_stage(tmp_path, Parameters())
+    found, _ = read_room(tmp_path / "room.npz")
+    assert bool(found.instance[LUMP].any()) == kept

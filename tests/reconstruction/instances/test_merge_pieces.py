@@ -65,6 +65,13 @@ def test_an_object_surrounded_by_another_is_part_of_it():
     assert len(oven.instances) == 2
 
 
+def test_a_cushion_that_label_images_state_is_kept():
+    grid = _sofa_with(CUSHION, GREY)
+    stated = np.ones(grid.shape, bool)
+    found = find_objects(grid, stated=stated)
+    assert sorted(one.class_id for one in found.instances) == [SOFA, OBJS]
+
+
 def test_the_method_of_the_paper_keeps_pieces():
     grid = _sofa_with(CUSHION, GREY)
     found = find_objects(grid, InstanceParameters(paper_compat=True))

@@ -147,12 +147,15 @@ def _root(parent: list[int], number: int) -> int:
     return number
 
 
-def merge_flush_pieces(owners: np.ndarray, grid: OccupancyGrid) -> tuple[np.ndarray, np.ndarray]:
+def merge_flush_pieces(
+    owners: np.ndarray, grid: OccupancyGrid, fixed: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Merge small pieces into objects of their colour that they lie against, or that surround them.
 
     Args:
         owners: Number of the object of each cell, int32 [X, Y, Z], 0 for none.
         grid: Grid with labels and colours.
+        fixed: Numbers of objects that are not merged into others, int [N].
 
     Returns:
         The owners, and the labels, uint8 [X, Y, Z], in which merged cells have the host's class.
@@ -161,7 +164,7 @@ def merge_flush_pieces(owners: np.ndarray, grid: OccupancyGrid) -> tuple[np.ndar
     sizes = np.bincount(owners.reshape(-1))
     sizes[0] = 0
     boxes = ndimage.find_objects(owners)
-    small = np.flatnonzero((sizes > 0) & (sizes <= MAX_PIECE_CELLS))
+    small = np.setdiff1d(np.flatnonzero((sizes > 0) & (sizes <= MAX_PIECE_CELLS)), fixed)
     for number in small[np.argsort(sizes[small], kind="stable")].tolist():
         box = tuple(slice(max(side.start - 1, 0), side.stop + 1) for side in boxes[number - 1])
         own = owners[box] == number

@@ -88,13 +88,24 @@ class FoundObjects:
     leftover: int
 
 
-def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = None) -> FoundObjects:
+def find_objects(
+    grid: OccupancyGrid,
+    parameters: InstanceParameters | None = None,
+    *,
+    stated: np.ndarray | None = None,
+) -> FoundObjects:
     """Find the objects of a room.
 
     Objects are sorted by class, then by the centre of their cells (x, y, z), and numbered from 1.
     Lumps on walls become part of the wall. Pieces that touch an object of the same colour become
     part of that object. Other labels are not changed, even those of specks that are assigned to
     another object.
+
+    Args:
+        grid: Grid with labels and colours.
+        parameters: Parameters of the detection.
+        stated: Cells whose class label images state, bool [X, Y, Z]. Objects of which they are the
+            most stay as they are.
 
     Raises:
         UsageError: If there are more objects than ids, so that ``min_cells`` must be increased.
@@ -112,10 +123,11 @@ def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = No
     for refine in () if chosen.paper_compat else PASSES:
         owners = refine(owners, grid, chosen)
     if not chosen.paper_compat:
-        lumps = find_wall_lumps(owners, grid)
+        fixed = np.zeros(0, np.int64) if stated is None else _mostly(owners, stated)
+        lumps = find_wall_lumps(owners, grid) & ~np.isin(owners, fixed)
         owners = np.where(lumps, 0, owners)
         binary &= ~lumps
-        merged, labels = merge_flush_pieces(owners, grid)
+        merged, labels = merge_flush_pieces(owners, grid, fixed)
         changed = merged != owners
         owners = merged
         labels[lumps] = SemanticClass.WALL
@@ -128,6 +140,13 @@ def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = No
     leftover = int(np.count_nonzero(binary & (marked == 0)))
     centers = CenterMap(density, candidates, cluster)
     return FoundObjects(replace(given, instance=marked), instances, centers, leftover)
+
+
+def _mostly(owners: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """Return the numbers of the objects of which most cells are in a mask, int [N]."""
+    sizes = np.bincount(owners.reshape(-1))
+    inside = np.bincount(owners[mask], minlength=len(sizes))
+    return np.flatnonzero(2 * inside > sizes)
 
 
 def _instances(

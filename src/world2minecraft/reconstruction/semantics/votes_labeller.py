@@ -83,9 +83,9 @@ def geometric_prior(labels: np.ndarray, votes: np.ndarray) -> np.ndarray:
 
 
 def is_from_network(votes: np.ndarray) -> np.ndarray:
-    """Return whether the votes of each cell, float [N, 11], come from a network, bool [N].
+    """Return whether the votes of each cell, float [..., K], come from a network, bool [...].
 
     Pixels of label images vote with 1 and networks with probabilities, so votes that are not whole
     numbers come from a network.
     """
-    return (votes % 1 != 0).any(axis=1)
+    return (votes % 1 != 0).any(axis=-1)
