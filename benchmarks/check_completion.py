@@ -7,8 +7,8 @@ Each seed is a separate set of rooms (from 8,000 on, which training never uses),
 noise of the training samples; the share of fused surface cells that are empty in the truth is
 printed. Baselines in the same table: ``surface`` (the fused surface, without classes),
 ``geometric`` (its labels on that surface; not defined for single views outside the room's axes),
-``votes`` (label images, where a scan has them) and ``ceiling`` (the observed surface, and the
-truth everywhere else). Figures are IoU / mIoU of 11 classes in percent, micro-averaged over the
+``votes`` (simulated votes, which every second scan has) and ``ceiling`` (the observed surface, and
+the truth everywhere else). Figures are IoU / mIoU of 11 classes in percent, micro-averaged over the
 rooms of a seed, with mean and spread over the seeds. ``near`` allows an error of one cell.
 """
 
@@ -30,6 +30,7 @@ from world2minecraft.evaluation.metrics.occupancy import (
     count_occupancy,
     iou_of_precision_recall,
 )
+from world2minecraft.networks.completion.augmentation import prepare_evaluation
 from world2minecraft.networks.completion.samples import (
     Sample,
     make_samples,
@@ -96,15 +97,15 @@ class Scores:
 
 
 def samples_of(seed: int, keep: Path | None) -> list[Sample]:
-    """Return the samples of a seed, kept in a folder where one is given."""
+    """Return the samples of a seed with simulated votes, kept in a folder if one is given."""
     path = None if keep is None else keep / f"{seed}.npz"
     if path is not None and path.exists():
-        return read_samples(path)
+        return prepare_evaluation(read_samples(path), seed)
     samples = make_samples(seed)
     if path is not None:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_samples(path, samples)
-    return samples
+    return prepare_evaluation(samples, seed)
 
 
 def answers(sample: Sample, model: CompletionModel) -> dict[str, np.ndarray]:

@@ -47,12 +47,13 @@ from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.minecraftocc.importers.imported_samples import ImportedFrame, make_sample
 from world2minecraft.minecraftocc.scene_completion import SHAPE, VOXEL_M, GridPlace, complete_frame
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, write_trial
+from world2minecraft.procgen.sensors.depth_camera import bend_depth
 from world2minecraft.reconstruction.semantics.completion_labeller import CompletionModel
 
 GROUPS = ("along the walls", "along the camera", "no floor in view")
 PITCH_DEG = (-28.0, 0.0)
 MIN_DEPTH_SHARE = 0.6
-BEND_M, BEND_AT_M = 0.02, 2.5
+BEND_M = 0.02
 TILT_DEG, CAMERA_YAW_DEG = 0.6, 3.0
 SHELL_CELLS = 2  # Of the truth's 2 cm.
 LOW_M = (0.08, 0.6)
@@ -107,21 +108,10 @@ def pick_view(capture: Path, truth: Truth, rng: np.random.Generator) -> View | N
     if not best:
         return None
     depth_m = read_raw(capture / "depth" / f"{best}.png") / 1000.0
-    depth_m = bent(depth_m / (truth.depth_scale or {}).get(best, 1.0), rng)
+    depth_m = bend_depth(depth_m / (truth.depth_scale or {}).get(best, 1.0), BEND_M, rng)
     lean = Rotation.from_rotvec(np.radians([*rng.normal(0, TILT_DEG, 2), 0])).as_matrix()
     colour = read_colour(capture / "colour" / f"{best}.png")
     return View(depth_m, colour, camera, truth.camera_to_truth[best], lean)  # type: ignore[index]
-
-
-def bent(depth_m: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Return depth with the smooth error of a depth camera, float32 [H, W]."""
-    v, u = (np.linspace(-1, 1, side) for side in depth_m.shape)
-    v, u = v[:, None], u[None]
-    a, b, c, d, e = rng.normal(size=5)
-    bend = a * u**2 + b * v**2 + c * u * v + d * np.sin(2.5 * u) + e * np.sin(2.5 * v)
-    bend -= bend.mean()
-    bend *= BEND_M / np.abs(bend).max()
-    return np.where(depth_m > 0, depth_m + bend * (depth_m / BEND_AT_M) ** 2, 0).astype(np.float32)
 
 
 def without_floor(view: View) -> View:

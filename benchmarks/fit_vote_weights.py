@@ -78,21 +78,25 @@ class Frame(NamedTuple):
     voted: FusedEvidence
 
 
-def fused_frame(data: Path, out: Path, number: int) -> Frame:
-    """Register and fuse a frame."""
+def registered_frame(data: Path, out: Path, number: int) -> Scan:
+    """Lift a frame with its depth and align it with its floor and walls."""
     chosen = Parameters()
     capture = nyu_scene(number).prepare(data, out / f"capture-{number}")
     scan = prepare_and_open(capture, out / f"run-{number}", chosen)
     found = register(scan, chosen.register.suited(scan.depth_kind))
-    scan = realign(apply_corrections(scan, found.corrections), found.surface)
-    plain, voted = (
-        fuse_views(
-            predictor("depth", OccupancyParameters(semantics=name)).predict(scan),
-            scan,
-            chosen.fuse.suited(scan.depth_kind),
-        )
-        for name in ("none", "nyu")
-    )
+    return realign(apply_corrections(scan, found.corrections), found.surface)
+
+
+def fused(scan: Scan, semantics: str) -> FusedEvidence:
+    """Fuse a registered frame, with the votes of a segmentation network or ``none``."""
+    views = predictor("depth", OccupancyParameters(semantics=semantics)).predict(scan)
+    return fuse_views(views, scan, Parameters().fuse.suited(scan.depth_kind))
+
+
+def fused_frame(data: Path, out: Path, number: int) -> Frame:
+    """Register and fuse a frame."""
+    scan = registered_frame(data, out, number)
+    plain, voted = (fused(scan, name) for name in ("none", "nyu"))
     return Frame(number, replace(scan, scan_to_room=plain.scan_to_room), plain, voted)
 
 

@@ -1,11 +1,11 @@
 """Train the completion network on the samples of ``make_completion_samples``.
 
 ``python -m benchmarks.train_completion --samples FOLDER --run FOLDER [--steps 4000]
-[--export completion.onnx]``
+[--start OLD.onnx --rate 0.001] [--export completion.onnx]``
 
-An interrupted run continues from its folder. Every 100 steps the losses are printed, and at
-intervals IoU and mIoU on held-out rooms (seeds below 10,000). ``--export`` writes the averaged
-weights as ONNX.
+An interrupted run continues from its folder. ``--start`` continues from an exported network. Every
+100 steps the losses are printed, and at intervals IoU and mIoU on held-out rooms (seeds below
+10,000). ``--export`` writes the averaged weights as ONNX.
 """
 
 import argparse
@@ -17,12 +17,13 @@ import torch
 from safetensors.torch import load_file
 
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
-from world2minecraft.networks.completion.augmentation import crop_sample
+from world2minecraft.networks.completion.augmentation import crop_sample, prepare_evaluation
 from world2minecraft.networks.completion.export import export_completion
 from world2minecraft.networks.completion.network import MULTIPLE, CompletionNet
 from world2minecraft.networks.completion.sample_pool import SamplePool
 from world2minecraft.networks.completion.samples import FIRST_SEED, Sample, read_samples
 from world2minecraft.networks.completion.training import CompletionRun, Trainer
+from world2minecraft.networks.validation import autocast
 from world2minecraft.reconstruction.semantics.completion_channels import network_input
 
 
@@ -45,7 +46,7 @@ def logits_of(network: CompletionNet, sample: Sample) -> np.ndarray:
     """Return float32 [12, X, Y, Z] of a padded sample."""
     network.eval()
     cells = torch.from_numpy(network_input(sample.sight))[None]
-    with torch.autocast("cpu", torch.bfloat16):
+    with autocast("auto", cells.device):
         return network(cells)[0].float().numpy()
 
 
@@ -98,17 +99,24 @@ def main() -> None:
     parser.add_argument("--every", type=int, default=100)
     parser.add_argument("--score-every", type=int, default=400)
     parser.add_argument("--batch", type=int, default=4)
+    parser.add_argument("--rate", type=float, default=CompletionRun.rate, help="learning rate")
+    parser.add_argument("--start", type=Path, help="exported network to begin with")
     parser.add_argument("--export", type=Path, help="write the trained network as ONNX")
     parser.add_argument("--threads", type=int, default=1)
     chosen = parser.parse_args()
     torch.set_num_threads(chosen.threads)
     trainer = Trainer(
-        CompletionRun(steps=chosen.steps, batch=chosen.batch),
+        CompletionRun(steps=chosen.steps, batch=chosen.batch, rate=chosen.rate),
         SamplePool(chosen.samples, range(FIRST_SEED, 1 << 31)),
     )
-    trainer.resume(chosen.run)
+    if not trainer.resume(chosen.run) and chosen.start:
+        trainer.start_from(chosen.start)
     files = sorted(p for p in chosen.samples.glob("*.npz") if int(p.stem) < FIRST_SEED)
-    held_out = [s for path in files[:HELD_OUT_FILES] for s in read_samples(path)]
+    held_out = [
+        sample
+        for path in files[:HELD_OUT_FILES]
+        for sample in prepare_evaluation(read_samples(path), int(path.stem))
+    ]
     start, before = time.process_time(), trainer.step
 
     def report(step: int, losses: dict[str, float], network: CompletionNet) -> None:

@@ -6,8 +6,12 @@ import numpy as np
 import pytest
 import torch
 
-from world2minecraft.core.errors import InputError
-from world2minecraft.networks.completion.export import export_completion, to_half_precision
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.networks.completion.export import (
+    export_completion,
+    restore_export,
+    to_half_precision,
+)
 from world2minecraft.networks.completion.network import TINY, CompletionNet
 from world2minecraft.networks.completion.sample_pool import SamplePool
 from world2minecraft.networks.completion.samples import Sample, write_samples
@@ -143,3 +147,36 @@ def test_tiles_cover_a_side_once(length):
     kept = [n for low, first, last, high in spans(length) for n in range(first, last)]
     assert kept == list(range(length))
     assert all(high - low <= 128 for low, _, _, high in spans(length))
+
+
+def test_training_goes_on_from_an_exported_network(pool, tmp_path):
+    trainer = Trainer(RUN, pool)
+    trainer.train(20)
+    export_completion(trainer.mean, tmp_path / "old.onnx", {})
+    cells, _, _ = pool.batch(np.random.default_rng(1), 2, RUN.crop)
+    restored = CompletionNet(TINY)
+    restore_export(restored, tmp_path / "old.onnx", cells)
+    wanted = to_half_precision(trainer.mean)(cells)
+    assert torch.allclose(restored.eval()(cells), wanted, atol=1e-3)
+    assert torch.allclose(restored.train()(cells), wanted, atol=1e-2)
+    other = Trainer(RUN, pool)
+    other.start_from(tmp_path / "old.onnx")
+    losses = []
+    other.train(10, lambda step, found, _: losses.append(sum(found.values())), every=10)
+    assert losses[0] < first_loss(pool)
+
+
+def first_loss(pool):
+    losses = []
+    Trainer(RUN, pool).train(10, lambda step, found, _: losses.append(sum(found.values())), 10)
+    return losses[0]
+
+
+def test_weights_of_another_network_are_refused(pool, tmp_path):
+    network = CompletionNet(TINY)
+    for weights in network.parameters():
+        torch.nn.init.normal_(weights)  # The file has equal weights only once.
+    export_completion(network, tmp_path / "old.onnx", {})
+    cells = torch.zeros(1, CHANNELS, 16, 16, 16)
+    with pytest.raises(DamagedFileError, match="that the network does not have"):
+        restore_export(CompletionNet(replace(TINY, half=16)), tmp_path / "old.onnx", cells)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_npz
@@ -12,15 +13,21 @@ from world2minecraft.networks.completion.augmentation import (
 )
 from world2minecraft.networks.completion.samples import (
     crop_input,
+    labelled_sample,
     make_samples,
     read_samples,
+    training_room,
     write_samples,
 )
 from world2minecraft.networks.completion.sensor_noise import (
-    corrupt_labels,
+    MAX_LEAN_DEG,
     draw_lost_pixels,
     draw_noise,
+    store_depth,
 )
+from world2minecraft.networks.completion.virtual_views import VirtualScan, fuse_scan, lean_scan
+from world2minecraft.procgen.sensors.depth_camera import bend_depth
+from world2minecraft.procgen.sensors.photo_rendering import prepare_photos
 from world2minecraft.reconstruction.semantics.completion_channels import network_input
 
 SEED = 9_500  # Held out.
@@ -112,7 +119,7 @@ def test_a_seed_augments_as_a_seed(samples):
     assert np.array_equal(one.truth, other.truth)
 
 
-def test_glass_has_no_depth_and_wrong_labels_come_by_their_share():
+def test_glass_has_no_depth():
     rng = np.random.default_rng(0)
     noise = next(
         n for s in range(99) if (n := draw_noise(np.random.default_rng(s), "walk")).glass == 1
@@ -120,7 +127,61 @@ def test_glass_has_no_depth_and_wrong_labels_come_by_their_share():
     labels = np.full((48, 64), 3, np.uint8)
     labels[10:20, 10:20] = 4
     assert draw_lost_pixels(noise, labels, np.ones(labels.shape), rng)[10:20, 10:20].all()
-    wrong = corrupt_labels(np.full((480, 640), 3, np.uint8), 0.25, rng)
-    assert (wrong != 3).mean() == pytest.approx(0.25, abs=0.03)
-    assert wrong.min() >= 1
-    assert wrong.max() <= 11
+
+
+def test_frames_lean_and_some_depth_is_stored_in_steps():
+    noises = [draw_noise(np.random.default_rng(seed), "single") for seed in range(200)]
+    leans = [np.linalg.norm(noise.lean_deg) for noise in noises]
+    assert 1.5 < max(leans) <= MAX_LEAN_DEG + 1e-9
+    depth_m = np.linspace(0, 5, 48, dtype=np.float32).reshape(6, 8)
+    exact = next(noise for noise in noises if not noise.depth_step_m)
+    assert np.array_equal(store_depth(exact, depth_m), depth_m)
+    stepped = next(noise for noise in noises if noise.depth_step_m)
+    steps = store_depth(stepped, depth_m) / stepped.depth_step_m
+    assert np.allclose(steps, np.round(steps), atol=1e-3)
+
+
+def test_the_bend_of_depth_grows_with_its_square():
+    depth_m = np.full((24, 32), 2.5, np.float32)
+    near, far = (
+        bend_depth(scale * depth_m, 0.02, np.random.default_rng(5)) - scale * depth_m
+        for scale in (1, 2)
+    )
+    assert np.abs(near).max() == pytest.approx(0.02, abs=1e-5)
+    assert np.allclose(far, 4 * near, atol=1e-5)
+    assert not bend_depth(np.zeros((24, 32), np.float32), 0.02, np.random.default_rng(5)).any()
+
+
+def test_a_leaning_scan_turns_about_the_floor_below_its_cameras():
+    poses = np.tile(np.eye(4), (2, 1, 1))
+    poses[:, :3, 3] = [[1, 2, 1.5], [3, 2, 1.5]]
+    scan = VirtualScan("walk", poses, np.eye(4), True)
+    leaning = lean_scan(scan, np.array([1.5, -1.0])).room_to_grid
+    assert np.allclose(leaning @ [2, 2, 0, 1], [2, 2, 0, 1])
+    assert np.degrees(np.arccos(leaning[2, 2])) == pytest.approx(np.hypot(1.5, 1.0), abs=1e-3)
+
+
+def test_the_truth_is_empty_beyond_the_room_and_then_unknown(samples):
+    for sample in samples:
+        room = (sample.truth != 255) & (sample.truth != 0)
+        apart = ndimage.distance_transform_edt(~room)
+        assert (sample.truth[apart > 60] == 255).all()
+    single = next(sample for sample in samples if sample.kind == "single")
+    assert (single.truth == 0).mean() > 0.3
+
+
+def test_a_labelled_frame_is_known_where_its_surface_is():
+    room, rng = training_room(SEED), np.random.default_rng(2)
+    poses = np.tile(np.eye(4), (1, 1, 1))
+    poses[0, :3, :3] = np.array([[0, 0, 1], [-1, 0, 0], [0, -1, 0]])
+    poses[0, :3, 3] = [0.6, room.labels.shape[1] * room.voxel_m / 2, 1.5]
+    scan = VirtualScan("single", poses, np.eye(4), True)
+    evidence = fuse_scan(room, prepare_photos(room), scan, draw_noise(rng, "single"), rng)
+    sample = labelled_sample(evidence)
+    assert len(sample.sight.at) > 300
+    surface = sample.truth.reshape(-1)[sample.sight.at]
+    voted = sample.sight.votes.any(axis=1)
+    assert (surface[voted] == sample.sight.votes[voted].argmax(axis=1) + 1).all()
+    assert (surface[~voted] == 255).all()
+    assert (sample.truth[sample.sight.log_odds < 0] == 0).all()
+    assert (sample.truth[sample.sight.log_odds == 0] == 255).all()

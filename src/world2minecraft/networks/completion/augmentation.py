@@ -9,6 +9,7 @@ import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.networks.completion.samples import Sample, crop_input
+from world2minecraft.networks.completion.simulated_votes import simulate_votes
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
 
 CROP = (48, 48, 40)
@@ -27,7 +28,25 @@ def augment_sample(sample: Sample, rng: np.random.Generator, crop: tuple[int, in
     sample = rotate_sample(sample, int(rng.integers(4)), bool(rng.integers(2)))
     sample = crop_sample(sample, _window(sample, rng, crop), crop)
     sight = _drop_channels(_corrupt_input(sample.sight, rng), rng)
+    if sight.votes is not None:
+        sight = simulate_votes(sight, rng)
     return replace(sample, sight=sight)
+
+
+def prepare_evaluation(samples: list[Sample], seed: int) -> list[Sample]:
+    """Return samples whose votes have errors, or are missing in every second one.
+
+    Args:
+        samples: Samples of a room, with the votes of the true labels.
+        seed: Seed of the room.
+    """
+    result = []
+    for number, sample in enumerate(samples):
+        rng = np.random.default_rng([seed, 14, number])
+        voted = number % 2 == 0
+        sight = simulate_votes(sample.sight, rng) if voted else replace(sample.sight, votes=None)
+        result.append(replace(sample, sight=sight))
+    return result
 
 
 def rotate_sample(sample: Sample, quarter_turns: int, is_mirrored: bool) -> Sample:

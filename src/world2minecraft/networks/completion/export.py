@@ -1,21 +1,28 @@
-"""ONNX export of the completion network in half precision, with a comparison to PyTorch."""
+"""ONNX export of the completion network in half precision, with a comparison to PyTorch.
+
+``restore_export`` loads an exported network to continue its training.
+"""
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import onnx
 import onnxruntime
 import torch
-from torch import nn
+from onnx import numpy_helper
+from torch import Tensor, nn
 
-from world2minecraft.core.files import write_bytes
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.networks.completion.network import CompletionNet
 from world2minecraft.networks.onnx_export import SMALL, compress_weights
 from world2minecraft.reconstruction.semantics.completion_channels import CHANNELS
 
 OPSET = 17
 TRIAL_SHAPE = (24, 16, 24)
+MAX_BYTES = 64 << 20
 
 
 def export_completion(network: CompletionNet, path: Path, about: dict[str, str]) -> float:
@@ -36,6 +43,63 @@ def export_completion(network: CompletionNet, path: Path, about: dict[str, str])
     data = _store_weights(_onnx_bytes(network), about)
     write_bytes(path, data)
     return parity(network, data)
+
+
+@torch.no_grad()
+def restore_export(network: CompletionNet, path: Path, cells: Tensor) -> None:
+    """Load the weights of an exported network, to continue its training.
+
+    The norms, which were folded into the convolutions, are set to the statistics of a batch, such
+    that the network predicts what the exported one does.
+
+    Args:
+        network: Network of the same size, which is changed.
+        path: ONNX file from ``export_completion``.
+        cells: Batch of inputs, float [B, CHANNELS, X, Y, Z].
+
+    Raises:
+        DamagedFileError: If the file does not have the weights of such a network.
+    """
+    stored = {
+        entry.name.removesuffix("_half"): numpy_helper.to_array(entry)
+        for entry in onnx.load_from_string(read_bytes(path, MAX_BYTES)).graph.initializer
+    }
+    folded, state = {}, network.state_dict()
+    for name, module in network.named_modules():
+        if isinstance(module, nn.Sequential):
+            for n in range(len(module) - 1):
+                if isinstance(module[n + 1], nn.BatchNorm3d):
+                    folded[f"{name}.{n}.bias"] = module[n + 1]
+    if missing := [name for name in folded if name not in stored]:
+        raise DamagedFileError(path, f"does not have the weights {missing[0]}")
+    for name, value in stored.items():
+        if name not in folded:
+            if name not in state or state[name].shape != value.shape:
+                raise DamagedFileError(path, f"has weights {name} that the network does not have")
+            state[name].copy_(torch.from_numpy(value.astype(np.float32)))
+    hooks = [
+        norm.register_forward_pre_hook(
+            _keeping_scale(torch.tensor(stored[name], dtype=torch.float32))
+        )
+        for name, norm in folded.items()
+    ]
+    network.eval()(cells)
+    for hook in hooks:
+        hook.remove()
+
+
+def _keeping_scale(bias: Tensor) -> Callable[[nn.Module, tuple[Tensor, ...]], None]:
+    """Return a hook that sets a norm to the statistics of its input such that it adds a bias."""
+
+    def hook(norm: nn.Module, inputs: tuple[Tensor, ...]) -> None:
+        assert isinstance(norm, nn.BatchNorm3d)
+        variance, mean = torch.var_mean(inputs[0], dim=(0, 2, 3, 4), unbiased=False)
+        norm.running_mean.copy_(mean)  # type: ignore[union-attr]
+        norm.running_var.copy_(variance)  # type: ignore[union-attr]
+        norm.weight.copy_((variance + norm.eps).sqrt())
+        norm.bias.copy_(mean + bias)
+
+    return hook
 
 
 def to_half_precision(network: CompletionNet) -> CompletionNet:

@@ -1,8 +1,10 @@
 """Training samples for the completion network: the input from a virtual scan, and the ground truth.
 
 The ground truth is the grid of the room, resampled to the cells with the rule used for scoring
-reconstructions. It is 255 outside the rooms that the scan has observed, because the space behind a
-wall cannot be learned.
+reconstructions. Up to ``OUTSIDE_CELLS`` beyond the rooms that the scan has observed it is empty, so
+that the network leaves the space behind walls empty; further cells and other rooms are 255. Frames
+of real data sets have a ground truth on the observed surface only, from their label images
+(``labelled_sample``).
 
 The samples cover rooms of all kinds and shapes, tidy and cluttered, and houses. Training uses seeds
 from 10,000 upwards, so the seeds of the benchmarks (1000 to 1049 and 2000 to 2019, and 500 to 549
@@ -28,6 +30,7 @@ from world2minecraft.networks.completion.virtual_views import (
     VirtualScan,
     draw_scan,
     fuse_scan,
+    lean_scan,
 )
 from world2minecraft.procgen import generate_house, generate_room
 from world2minecraft.procgen.rooms.room import Room
@@ -55,6 +58,7 @@ KIND_SHARES = {
 }
 LOOKS: tuple[ScanKind, ...] = ("walk", "few", "single", "single", "single")
 SHELL_CELLS = 2  # Cells of wall, slab and ceiling around a room that count as its own.
+OUTSIDE_CELLS = 10  # Cells beyond a room that are known to be empty.
 MAX_CELLS = (96, 96, 44)
 FRAME_CELLS = (60, 60, 36)  # Of the grids of single frames.
 PLAN_CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)
@@ -80,7 +84,8 @@ class Sample:
     """A training sample.
 
     Attributes:
-        sight: Input of the network.
+        sight: Input of the network. Its votes are those of the true labels; ``simulate_votes``
+            makes votes of a segmentation network of them.
         truth: Class of each cell (0 to 11 or 255), uint8 [X, Y, Z].
         kind: Kind of the scan.
         hinted: Whether the geometric labeller was used, which requires walls along the axes.
@@ -108,8 +113,8 @@ def make_samples(seed: int) -> list[Sample]:
     samples = []
     for number, kind in enumerate(LOOKS):
         rng = np.random.default_rng([seed, 13, number])
-        look = draw_scan(kind, tour, rng)
         noise = draw_noise(rng, kind)
+        look = lean_scan(draw_scan(kind, tour, rng), noise.lean_deg)
         try:
             evidence = fuse_scan(room, scene, look, noise, rng)
         except CaptureError:
@@ -142,7 +147,11 @@ def make_sample(
     sight = replace(
         crop_input(sight_of(grid, evidence, hint), start, shape), bottom_m=low[2] * voxel_m
     )
-    truth[~mask_seen_rooms(room, truth_to_grid, low, voxel_m, sight.log_odds)] = UNKNOWN
+    seen, other = mask_rooms(room, truth_to_grid, low, voxel_m, sight.log_odds)
+    near = ndimage.distance_transform_edt(~seen) <= OUTSIDE_CELLS if seen.any() else seen
+    empty = near & ~seen & ~other & ((truth == 0) | (truth == UNKNOWN))
+    truth[~seen] = UNKNOWN
+    truth[empty] = 0
     there = truth.reshape(-1)[sight.at]
     false = float((there == 0).sum() / max((there != UNKNOWN).sum(), 1))
     return Sample(sight, truth, look.kind, hint is not None, false)
@@ -200,33 +209,56 @@ def _box(
     return low, tuple(int(side) for side in shape)  # type: ignore[return-value]
 
 
-def mask_seen_rooms(
+def mask_rooms(
     room: Room, room_to_grid: np.ndarray, low: np.ndarray, voxel_m: float, log_odds: np.ndarray
-) -> np.ndarray:
-    """Return the cells of the rooms that a scan has observed, bool [X, Y, Z].
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells of the rooms that a scan has observed, and of other rooms.
 
-    A room with its walls, floor and ceiling is included if at least 5 % of its cells were observed
-    as free.
+    A room includes its walls, floor and ceiling. It is observed if at least 5 % of its cells were
+    observed as free.
+
+    Args:
+        room: Room or house.
+        room_to_grid: Rigid transform from the room to the frame of the cells, float64 [4, 4].
+        low: First cell of the box.
+        voxel_m: Size of a cell in metres.
+        log_odds: Evidence in the box [X, Y, Z]; below 0 free.
+
+    Returns:
+        Two masks, bool [X, Y, Z].
     """
     shape = log_odds.shape
-    middles = (np.moveaxis(np.indices(shape[:2]), 0, -1) + low[:2] + 0.5) * voxel_m
-    flat = np.concatenate([middles, np.zeros((*shape[:2], 1))], axis=-1).reshape(-1, 3)
-    inverse = np.linalg.inv(room_to_grid)
-    plan = apply(inverse, flat)[:, :2]
-    heights = (np.arange(shape[2]) + low[2] + 0.5) * voxel_m
-    result = np.zeros(shape, bool)
-    around = ndimage.generate_binary_structure(2, 2)
+    middles = (np.moveaxis(np.indices(shape), 0, -1).reshape(-1, 3) + low + 0.5) * voxel_m
+    places = apply(np.linalg.inv(room_to_grid), middles)
+    seen, other = np.zeros((2, *shape), bool)
+    around = ndimage.generate_binary_structure(3, 3)
     for layout in room.layouts:
-        inside = _in_polygon(plan, layout.floor_polygon_m).reshape(shape[:2])
-        bottom, top = layout.floor_z_m, layout.floor_z_m + layout.wall_height_m
+        top_m = layout.floor_z_m + layout.wall_height_m
+        inside = _in_polygon(places[:, :2], layout.floor_polygon_m)
+        inside &= (places[:, 2] > layout.floor_z_m) & (places[:, 2] < top_m)
+        inside = inside.reshape(shape)
         free = (log_odds[inside] < 0).mean() if inside.any() else 0
-        if free < 0.05 and len(room.layouts) > 1:
-            continue
-        inside = ndimage.binary_dilation(inside, around, iterations=SHELL_CELLS)
-        edge = SHELL_CELLS * voxel_m
-        within = (heights > bottom - edge) & (heights < top + edge)
-        result |= inside[..., None] & within
-    return result
+        is_seen = free >= 0.05 or len(room.layouts) == 1
+        mask = seen if is_seen else other
+        mask |= ndimage.binary_dilation(inside, around, iterations=SHELL_CELLS)
+    return seen, other & ~seen
+
+
+def labelled_sample(evidence: FusedEvidence, kind: str = "frame") -> Sample:
+    """Create the sample for a fused frame of a data set, with its labels as votes.
+
+    The ground truth is the label with the most votes on observed surface, empty in observed free
+    cells, and 255 elsewhere.
+    """
+    grid = remove_floaters(extract_grid(evidence), CleaningParameters())
+    hint = hint_of(*GeometricLabeller().traced(grid, evidence))
+    sight = sight_of(grid, evidence, hint)
+    truth = np.where(sight.log_odds < 0, np.uint8(0), np.uint8(UNKNOWN))
+    if sight.votes is not None:
+        named = sight.votes.any(axis=1)
+        kinds = sight.votes[named].argmax(axis=1).astype(np.uint8) + 1
+        truth.reshape(-1)[sight.at[named]] = kinds
+    return Sample(sight, truth, kind, hinted=True, false_share=0.0)
 
 
 def _in_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:

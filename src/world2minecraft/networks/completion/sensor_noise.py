@@ -3,19 +3,22 @@
 In real single frames, 23 % of the fused surface cells are empty in the ground truth, because of
 errors in depth, pose and scale, and because annotators fitted furniture models by hand. Virtual
 scans reproduce this with wrong poses, a wrong depth scale in each frame, and a ground truth that is
-shifted slightly. The noise is random and constant within a scan. ``python -m
-benchmarks.check_completion`` prints the fraction.
+shifted slightly. The depth of a scan is bent smoothly, its frame leans by up to 2 degrees, and some
+scans store depth in 256 steps, like NYUv2's 8-bit images. The noise is random and constant within
+a scan. ``python -m benchmarks.check_completion`` prints the fraction.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.sensors.depth_camera import SENSORS, Sensor
 
-MISFIT_M = {"walk": 0.016, "few": 0.045, "single": 0.048}  # Of a quarter false, measured.
-PATCH_SHARE = 1 / 80  # Of the width: 8 px at 640, the patches in which label images err.
+MISFIT_M = {"walk": 0.012, "few": 0.02, "single": 0.03}
+MAX_LEAN_DEG, LEAN_SIGMA_DEG = 2.0, 0.7  # Of the frame against gravity.
+MAX_BEND_M = 0.02  # At 2.5 m.
+DEPTH8_STEP_M, DEPTH8_SHARE = 10 / 255, 0.15  # Steps of 8-bit depth, and how often it is simulated.
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,9 @@ class ScanNoise:
         yaw_error_deg: Rotation between the ground truth and the scan in degrees.
         glass: Fraction of window pixels without depth.
         blots: Mean number of blots without depth in a frame.
-        label_error: Fraction of wrong pixels in label images, or None if there are no label images.
+        lean_deg: Error of the frame's direction of gravity about x and y in degrees, float64 [2].
+        bend_m: Largest smooth error of the depth at 2.5 m, in metres.
+        depth_step_m: Steps in which depth is stored in metres; 0 for exact values.
     """
 
     sensor: Sensor
@@ -40,7 +45,9 @@ class ScanNoise:
     yaw_error_deg: float
     glass: float
     blots: float
-    label_error: float | None
+    lean_deg: np.ndarray  # float64 [2]
+    bend_m: float
+    depth_step_m: float
 
 
 def draw_noise(rng: np.random.Generator, kind: str) -> ScanNoise:
@@ -63,7 +70,9 @@ def draw_noise(rng: np.random.Generator, kind: str) -> ScanNoise:
         yaw_error_deg=float(rng.standard_normal()) * 0.4,
         glass=float(rng.choice([0.0, 0.6, 1.0], p=[0.45, 0.2, 0.35])),
         blots=float(rng.choice([0.0, 3.0], p=[0.6, 0.4])),
-        label_error=float(rng.uniform(0, 0.35)) if rng.random() < 0.45 else None,
+        lean_deg=_draw_lean(rng),
+        bend_m=float(rng.uniform(0, MAX_BEND_M)),
+        depth_step_m=DEPTH8_STEP_M if rng.random() < DEPTH8_SHARE else 0.0,
     )
 
 
@@ -81,16 +90,14 @@ def draw_lost_pixels(
     return lost
 
 
-def corrupt_labels(labels: np.ndarray, error: float, rng: np.random.Generator) -> np.ndarray:
-    """Replace the class of random patches that cover a fraction ``error`` of a label image."""
-    height, width = labels.shape
-    side = max(round(width * PATCH_SHARE), 1)
-    shape = (height // side + 1, width // side + 1)
-    wrong, shift = rng.random(shape) < error, rng.integers(1, CLASS_COUNT - 1, shape)
-    wrong, shift = (
-        values.repeat(side, axis=0).repeat(side, axis=1)[:height, :width]
-        for values in (wrong, shift)
-    )
-    other = (labels.astype(np.int64) - 1 + shift) % (CLASS_COUNT - 1) + 1
-    labelled = (labels > 0) & (labels < CLASS_COUNT)
-    return np.where(wrong & labelled, other, labels).astype(np.uint8)
+def _draw_lean(rng: np.random.Generator) -> np.ndarray:
+    """Choose the rotation of the frame about x and y in degrees, at most ``MAX_LEAN_DEG``."""
+    lean = rng.standard_normal(2) * LEAN_SIGMA_DEG
+    return lean * min(1.0, MAX_LEAN_DEG / max(float(np.linalg.norm(lean)), 1e-9))
+
+
+def store_depth(noise: ScanNoise, depth_m: np.ndarray) -> np.ndarray:
+    """Return depth as it is stored, rounded to whole steps, float32 [H, W]."""
+    if not noise.depth_step_m:
+        return depth_m
+    return (np.round(depth_m / noise.depth_step_m) * noise.depth_step_m).astype(np.float32)

@@ -8,6 +8,7 @@ weights.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import torch
@@ -17,6 +18,7 @@ from torch.nn import functional
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.networks.averaged_training import AveragedTrainer
 from world2minecraft.networks.completion.augmentation import CROP
+from world2minecraft.networks.completion.export import restore_export
 from world2minecraft.networks.completion.network import CompletionNet, CompletionSize
 from world2minecraft.networks.completion.sample_pool import REFRESH_EVERY_STEPS, SamplePool
 from world2minecraft.networks.validation import autocast
@@ -26,6 +28,7 @@ CLASS_WEIGHTS = (0.6, 0.9, 0.8, 0.7, 1.8, 1.9, 1.2, 1.4, 1.6, 2.6, 0.9, 1.3)
 SEEN_WEIGHT = 2.0  # Observed surface is named in every room; what lies behind is a guess.
 ASKED = 0.5  # The share of cells that is drawn: neighbours say the same, and it halves the time.
 JACCARD, GEOMETRY = 1.0, 0.5
+START_SEED = 1 << 20  # Of the batch from which the norms of restored weights are set.
 Report = Callable[[int, dict[str, float], CompletionNet], None]
 
 
@@ -104,6 +107,17 @@ class Trainer(AveragedTrainer[CompletionNet]):
             self.network.parameters(), lr=run.rate, weight_decay=run.decay
         )
         self.step = 0
+
+    def start_from(self, path: Path) -> None:
+        """Begin with the weights of a network written by ``export_completion``.
+
+        Raises:
+            DamagedFileError: If the file does not have the weights of such a network.
+        """
+        rng = np.random.default_rng([self.run.seed, START_SEED])
+        cells, _, _ = self.pool.batch(rng, self.run.batch, self.run.crop)
+        restore_export(self.network, path, cells)
+        self.mean.load_state_dict(self.network.state_dict())
 
     def train(self, until: int, report: Report | None = None, every: int = 50) -> None:
         """Train up to a step.

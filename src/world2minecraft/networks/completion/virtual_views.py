@@ -5,20 +5,26 @@ is one image, as in data sets of depth frames. Walks and fews use the room axes,
 most singles use the axes of their camera, like the grids of NYUv2.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.types import Camera, FusedEvidence, View
+from world2minecraft.geometry.rotations import rotation_from_vector
 from world2minecraft.networks.completion.sensor_noise import (
     ScanNoise,
-    corrupt_labels,
     draw_lost_pixels,
+    store_depth,
 )
 from world2minecraft.procgen.rooms.room import Room
-from world2minecraft.procgen.sensors.depth_camera import jitter_pose, scale_factor, sense_depth
+from world2minecraft.procgen.sensors.depth_camera import (
+    bend_depth,
+    jitter_pose,
+    scale_factor,
+    sense_depth,
+)
 from world2minecraft.procgen.sensors.photo_rendering import PhotoScene, take_photo
 from world2minecraft.procgen.sensors.scan_frames import LUMINANCE
 from world2minecraft.reconstruction.fusion import EvidenceMap, FusionParameters
@@ -80,6 +86,20 @@ def _frame(pose: np.ndarray, by_camera: bool, rng: np.random.Generator) -> np.nd
     return frame
 
 
+def lean_scan(scan: VirtualScan, lean_deg: np.ndarray) -> VirtualScan:
+    """Return a scan whose frame leans about the floor below its cameras.
+
+    Args:
+        scan: The scan.
+        lean_deg: Rotation about x and y in degrees, float [2].
+    """
+    pivot_m = apply(scan.room_to_grid, scan.poses[:, :3, 3]).mean(axis=0) * [1, 1, 0]
+    lean = np.eye(4)
+    lean[:3, :3] = rotation_from_vector(np.radians([*lean_deg, 0.0]))
+    lean[:3, 3] = pivot_m - lean[:3, :3] @ pivot_m
+    return replace(scan, room_to_grid=lean @ scan.room_to_grid)
+
+
 def fuse_scan(
     room: Room, scene: PhotoScene, look: VirtualScan, noise: ScanNoise, rng: np.random.Generator
 ) -> FusedEvidence:
@@ -107,16 +127,14 @@ def _view(
     rng: np.random.Generator,
     kind: ScanKind,
 ) -> View:
-    """Render a view with sensor noise, in room coordinates."""
+    """Render a view with sensor noise and true labels, in room coordinates."""
     photo = take_photo(scene, camera, pose)
     luminance = photo.colour.astype(np.float32) @ LUMINANCE
     depth_m = sense_depth(noise.sensor, photo.depth_m, photo.cosine, luminance, camera.fx_px, rng)
     labels = room.labels.reshape(-1)[np.maximum(photo.voxel_index, 0)]
     depth_m[draw_lost_pixels(noise, labels, depth_m, rng)] = 0
     depth_m *= np.float32(scale_factor(noise.frame_scale, rng) * noise.scan_scale)
-    labels_seen = None
-    if noise.label_error is not None:
-        labels_seen = corrupt_labels(labels, noise.label_error, rng)
+    depth_m = store_depth(noise, bend_depth(depth_m, noise.bend_m, rng))
     # A single look has no tracker: where it stands is part of the scan's misfit.
     stated = pose if kind == "single" else jitter_pose(noise.sensor, pose, rng)
     return View(
@@ -126,5 +144,5 @@ def _view(
         colour_camera=camera,
         depth_m=depth_m,
         depth_camera=camera,
-        labels=labels_seen,
+        labels=labels,
     )

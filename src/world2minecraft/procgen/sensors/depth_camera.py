@@ -15,6 +15,7 @@ from world2minecraft.geometry.rotations import rotation_from_vector
 
 BASELINE_M = 0.075  # Between projector and camera, of the sensors that the model follows.
 NATIVE_WIDTH_PX = 640  # Disparity is counted in pixels of the sensor, whatever size is handed out.
+BEND_AT_M = 2.5  # Depth at which the smooth error of a depth camera is stated.
 EDGE_SHARE = 0.03  # A step between neighbours of over 3 % of the depth, and 3 cm, is an edge.
 
 
@@ -98,6 +99,23 @@ def quantize_disparity(model: Sensor, depth_m: np.ndarray, focal_px: float) -> n
     reach = np.float32(focal_px * BASELINE_M / model.disparity_step_px)
     steps = np.round(reach / np.maximum(depth_m, 1e-3))
     return reach / np.maximum(steps, 1)
+
+
+def bend_depth(depth_m: np.ndarray, bend_m: float, rng: np.random.Generator) -> np.ndarray:
+    """Return depth with the smooth error of an uncalibrated depth camera, float32 [H, W].
+
+    Args:
+        depth_m: Depth in metres, float32 [H, W]; 0 stays 0.
+        bend_m: Largest error at a depth of ``BEND_AT_M``. It grows with the square of the depth.
+        rng: Random generator for the shape of the error.
+    """
+    v, u = (np.linspace(-1, 1, side) for side in depth_m.shape)
+    v, u = v[:, None], u[None]
+    a, b, c, d, e = rng.normal(size=5)
+    bend = a * u**2 + b * v**2 + c * u * v + d * np.sin(2.5 * u) + e * np.sin(2.5 * v)
+    bend -= bend.mean()
+    bend *= bend_m / np.abs(bend).max()
+    return np.where(depth_m > 0, depth_m + bend * (depth_m / BEND_AT_M) ** 2, 0).astype(np.float32)
 
 
 def depth_edges(depth_m: np.ndarray) -> np.ndarray:
