@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_names
+from world2minecraft.core.vocabulary import nyu40_names
 from world2minecraft.networks.segmentation.frames import IGNORED, LabelledFrame, read_nyu_folder
 from world2minecraft.networks.segmentation.scores import (
     SegmentationScores,

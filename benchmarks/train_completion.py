@@ -111,7 +111,8 @@ def main() -> None:
     )
     if not trainer.resume(chosen.run) and chosen.start:
         trainer.start_from(chosen.start)
-    files = sorted(p for p in chosen.samples.glob("*.npz") if int(p.stem) < FIRST_SEED)
+    named = [path for path in chosen.samples.glob("*.npz") if path.stem.isdecimal()]
+    files = sorted(path for path in named if int(path.stem) < FIRST_SEED)
     held_out = [
         sample
         for path in files[:HELD_OUT_FILES]

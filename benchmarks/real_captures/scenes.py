@@ -245,7 +245,7 @@ def read_nyu_classes(path: Path) -> np.ndarray:
 
 def fold_nyu(stored: np.ndarray) -> np.ndarray:
     """Return the classes of stored labels, which are NYU40 ids minus 1, as uint8."""
-    from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes
+    from world2minecraft.core.vocabulary import nyu40_classes
 
     return np.where(stored == NYU_IGNORED, np.uint8(255), nyu40_classes()[stored.astype(int) + 1])
 

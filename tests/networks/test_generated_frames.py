@@ -5,8 +5,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes, nyu40_names
 from world2minecraft.core.errors import InputError
+from world2minecraft.core.vocabulary import nyu40_classes, nyu40_names
 from world2minecraft.networks.segmentation.frames import IGNORED
 from world2minecraft.networks.segmentation.generated import (
     FURNITURE,

@@ -7,7 +7,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, InputError
-from world2minecraft.reconstruction.occupancy.label_names import label_classes, read_table
+from world2minecraft.core.vocabulary import read_vocabulary
+from world2minecraft.reconstruction.occupancy.label_names import label_classes
+
+TABLE = read_vocabulary().label_table()
 
 
 def words(text: str) -> list[str]:
@@ -60,7 +63,7 @@ NYU40 = words(
 
 
 def class_of(name: str) -> str:
-    row = label_classes([name], read_table()).matrix[0]
+    row = label_classes([name], TABLE).matrix[0]
     return CLASS_NAMES[int(row.argmax())] if row.any() else "nothing"
 
 
@@ -68,7 +71,7 @@ def class_of(name: str) -> str:
     ("names", "count"), [(ADE20K, 150), (COCO_STUFF, 58), (SCANNET, 20), (NYU40, 40)]
 )
 def test_every_name_of_the_usual_sets_is_known(names, count):
-    found = label_classes([name.replace("_", " ") for name in names], read_table())
+    found = label_classes([name.replace("_", " ") for name in names], TABLE)
     assert len(names) == count and not found.unknown
 
 
@@ -98,14 +101,14 @@ def test_spellings_and_synonyms(name, expected):
 
 @given(st.permutations(ADE20K))
 def test_the_order_of_the_labels_plays_no_part(names):
-    plain, mixed = (label_classes(order, read_table()) for order in (ADE20K, names))
+    plain, mixed = (label_classes(order, TABLE) for order in (ADE20K, names))
     rows = dict(zip(ADE20K, plain.matrix, strict=True))
     assert all(np.array_equal(rows[n], row) for n, row in zip(names, mixed.matrix, strict=True))
     assert mixed.matrix.shape == (150, CLASS_COUNT) and not mixed.matrix[:, 0].any()
 
 
 def test_unknown_names_are_told():
-    assert label_classes(["wall", "gizmo ", "LABEL_7"], read_table()).unknown == (
+    assert label_classes(["wall", "gizmo ", "LABEL_7"], TABLE).unknown == (
         "gizmo",
         "LABEL_7",
     )
@@ -114,7 +117,7 @@ def test_unknown_names_are_told():
 def test_a_table_of_ones_own_comes_first(tmp_path):
     own = tmp_path / "names.yaml"
     own.write_text("objs: [sink]\nfurn: [gizmo]\nnothing: [mirror]\n")
-    table = read_table(own)
+    table = read_vocabulary(own).label_table()
     rows = label_classes(["sink", "gizmo", "mirror", "chair"], table).matrix
     assert rows[0, 11] == rows[1, 10] == rows[3, 5] == 1 and not rows[2].any()
 
@@ -123,7 +126,7 @@ def test_a_table_of_ones_own_is_read_again_when_it_was_edited(tmp_path):
     own = tmp_path / "mine.yaml"
     for kind in ("chair", "table"):
         own.write_text(f"{kind}: [gizmo]")
-        found = label_classes(["gizmo"], read_table(own))
+        found = label_classes(["gizmo"], read_vocabulary(own).label_table())
         assert CLASS_NAMES[int(found.matrix[0].argmax())] == kind
 
 
@@ -134,7 +137,7 @@ def test_a_table_of_ones_own_is_read_again_when_it_was_edited(tmp_path):
         ("chair: stool", "the entry 'chair' must be a list of label names"),
         ("[", "is not valid YAML"),
         ("chair: &a [stool]\nsofa: *a", "aliases .* are not supported"),
-        ("", "must map classes to label names, such as chair:"),
+        ("", "must map names or classes to labels, such as chair:"),
         ("empty: [air]", "no class is named 'empty'"),
     ],
 )
@@ -142,7 +145,7 @@ def test_a_wrong_table_is_refused_in_one_line(tmp_path, text, reason):
     own = tmp_path / "names.yaml"
     own.write_text(text)
     with pytest.raises(DamagedFileError, match=reason) as caught:
-        read_table(own)
+        read_vocabulary(own).label_table()
     assert "\n" not in str(caught.value)
     with pytest.raises(InputError, match="cannot be read"):
-        read_table(tmp_path / "missing.yaml")
+        read_vocabulary(tmp_path / "missing.yaml")

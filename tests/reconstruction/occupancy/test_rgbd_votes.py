@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.exact_room import CAMERA, BoxRoom
 
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes, nyu40_names
 from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.core.types import Scan, View
+from world2minecraft.core.vocabulary import nyu40_classes, nyu40_names
 from world2minecraft.reconstruction.occupancy import OccupancyParameters, predictor
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 from world2minecraft.reconstruction.occupancy.rgbd_votes import (

@@ -135,7 +135,7 @@ def test_unknown_names_are_told_once_with_the_file_to_edit(monkeypatch):
     list(used.predict(Scan([view(), view(name="w")], np.eye(4), np.ones(3), ("v", "w"))))
     assert notes_of(used) == (
         "1 of 3 labels of fake:halves have no class and do not vote: gizmo; "
-        "assign classes with --set occupy.label_names=FILE, see label_names.yaml",
+        "assign classes with --set occupy.label_names=FILE, see vocabulary.yaml",
     )
 
 

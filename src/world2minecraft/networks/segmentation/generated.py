@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_names
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
+from world2minecraft.core.vocabulary import nyu40_names
 from world2minecraft.networks.segmentation.frames import (
     IGNORED,
     NYU_CAMERA,

@@ -13,9 +13,9 @@ from PIL import Image
 from world2minecraft.capture.depth_images import DepthEncoding
 from world2minecraft.capture.images import read_raw
 from world2minecraft.capture.readers.datasets.intrinsics import matrix_camera
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_names
 from world2minecraft.capture.readers.datasets.text_tables import read_matrix
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.vocabulary import nyu40_names
 from world2minecraft.networks.segmentation.frames import (
     IGNORED,
     NYU_CAMERA,

@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from torch.nn import functional
 
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes
+from world2minecraft.core.vocabulary import nyu40_classes
 from world2minecraft.geometry.unprojection import pixel_rays
 from world2minecraft.networks.segmentation.frames import IGNORED, LabelledFrame
 from world2minecraft.networks.segmentation.network import CLASSES, SegmentationNet

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.types import View
+from world2minecraft.core.vocabulary import nyu40_classes
 from world2minecraft.reconstruction.recognition.segmentation import (
     NYU40_COUNT,
     SegmentationModel,

@@ -26,8 +26,9 @@ from world2minecraft.core.files import read_npz, write_npz
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import View
+from world2minecraft.core.vocabulary import VOCABULARY_FILE, read_vocabulary
 from world2minecraft.reconstruction.occupancy.depth_evidence import Voter
-from world2minecraft.reconstruction.occupancy.label_names import TABLE, label_classes, read_table
+from world2minecraft.reconstruction.occupancy.label_names import label_classes
 from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
 from world2minecraft.reconstruction.occupancy.parameters import (
     AUTO,
@@ -138,7 +139,7 @@ def segmenter(name: str) -> Segmenter:
 def voters_of(chosen: OccupancyParameters) -> tuple[Voter, ...]:
     """Create the requested voters.
 
-    Raises the exceptions of ``segmenter``, ``read_table`` and ``MonoPredictor``.
+    Raises the exceptions of ``segmenter``, ``read_vocabulary`` and ``MonoPredictor``.
     """
     voters: list[Voter] = []
     if chosen.semantics == AUTO and chosen.mono_votes:
@@ -160,7 +161,7 @@ class PixelVoter:
 
     def __init__(self, network: Segmenter, label_names: str = ""):
         self.network = network
-        self.classes = label_classes(network.labels, read_table(label_names))
+        self.classes = label_classes(network.labels, read_vocabulary(label_names).label_table())
         self.notes = _told_of(network, self.classes.unknown, label_names)
 
     def votes(
@@ -233,7 +234,7 @@ def _told_of(network: Segmenter, unknown: tuple[str, ...], own: str) -> tuple[st
     where = (
         f"edit {own}"
         if own
-        else f"assign classes with --set occupy.label_names=FILE, see {TABLE.name}"
+        else f"assign classes with --set occupy.label_names=FILE, see {VOCABULARY_FILE.name}"
     )
     return (
         f"{len(unknown)} of {len(network.labels)} labels of {network.name} have no class and do "

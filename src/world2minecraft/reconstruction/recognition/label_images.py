@@ -10,8 +10,8 @@ from typing import Protocol
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_names
 from world2minecraft.core.types import Camera, View
+from world2minecraft.core.vocabulary import nyu40_names
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.unprojection import project, unproject_depth
 from world2minecraft.reconstruction.recognition.segmentation import NYU40_COUNT, splat_depth

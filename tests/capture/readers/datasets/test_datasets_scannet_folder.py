@@ -70,7 +70,7 @@ def test_labels_of_the_benchmark_frames_are_nyu40_numbers(tmp_path, views):
 
 
 def test_all_forty_classes_are_mapped():
-    from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes
+    from world2minecraft.core.vocabulary import nyu40_classes
 
     classes = nyu40_classes()
     assert classes[0] == classes[41] == 255

@@ -1,13 +1,11 @@
 """Conversion of label images of data sets to World2Minecraft classes.
 
-Labels are NYU40 ids, or raw ScanNet ids that a table maps to NYU40. ``data/nyu40.json`` maps the
-40 NYU40 classes to the project's classes.
+Labels are NYU40 ids, or raw ScanNet ids that a table maps to NYU40.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
@@ -19,29 +17,13 @@ from world2minecraft.capture.images import (
     read_raw,
 )
 from world2minecraft.core.archives import AnyPath
-from world2minecraft.core.classes import UNKNOWN, class_id
+from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import CaptureError
-from world2minecraft.core.files import read_bytes, read_json
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.vocabulary import nyu40_classes
 
-CLASS_MAP = Path(__file__).parent / "data" / "nyu40.json"
 LABEL_TABLE = "scannetv2-labels.combined.tsv"
 MAX_TABLE_BYTES = 16 << 20  # The published one has 100 kB.
-
-
-@lru_cache(maxsize=1)
-def nyu40_classes() -> np.ndarray:
-    """Return the class id for each NYU40 label as uint8 [65536], 255 if unknown."""
-    classes = np.full(65536, UNKNOWN, np.uint8)
-    for number, (_, name) in read_json(CLASS_MAP)["classes"].items():
-        classes[int(number)] = class_id(name)
-    return classes
-
-
-@lru_cache(maxsize=1)
-def nyu40_names() -> dict[str, int]:
-    """Return the NYU40 id, 1 to 40, for each class name such as ``"night stand"``."""
-    listed = read_json(CLASS_MAP)["classes"].items()
-    return {name: int(number) for number, (name, _) in listed}
 
 
 def raw_id_classes(table: AnyPath) -> np.ndarray:

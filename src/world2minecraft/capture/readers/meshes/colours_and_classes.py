@@ -13,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.capture.readers.datasets.nyu40_labels import nyu40_classes
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import read_json
+from world2minecraft.core.vocabulary import nyu40_classes
 
 TABLE = Path(__file__).parent / "data" / "names.json"
 MAX_LABEL_ID = 65535

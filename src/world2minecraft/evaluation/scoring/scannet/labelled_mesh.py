@@ -15,7 +15,6 @@ import numpy as np
 from world2minecraft.capture.readers.datasets.nyu40_labels import (
     LABEL_TABLE,
     find_label_table,
-    nyu40_classes,
     raw_id_classes,
 )
 from world2minecraft.capture.readers.datasets.scannet_metadata import (
@@ -28,6 +27,7 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import LayoutObject
+from world2minecraft.core.vocabulary import nyu40_classes
 
 LABELLED = "_vh_clean_2.labels.ply"
 NYU40_NUMBERS = 40

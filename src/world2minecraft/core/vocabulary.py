@@ -1,0 +1,230 @@
+"""The vocabulary of fine names: toilet, bookcase, office chair and about 110 others.
+
+``data/vocabulary.yaml`` gives each name its class, its NYU40 id, the labels that segmentation
+networks and data sets use for it, and the furniture templates that can stand for it. Labels are
+found by their names, never by numbers: models that were trained on one data set number its labels
+differently.
+"""
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id
+from world2minecraft.core.errors import DamagedFileError, UnknownNameError
+from world2minecraft.core.files import load_plain_yaml, read_bytes, read_json
+
+VOCABULARY_FILE = Path(__file__).parent / "data" / "vocabulary.yaml"
+NYU40_FILE = Path(__file__).parent / "data" / "nyu40.json"
+NOTHING = "nothing"  # Instead of a name: outdoor things, which vote for none.
+MAX_BYTES = 1 << 20
+OTHER_NYU40 = 40  # Other prop.
+_ENDINGS = re.compile(r" (merged|stuff|other)$")
+_KEYS = {"class", "nyu40", "also", "templates", "title"}
+
+
+@dataclass(frozen=True)
+class ThingName:
+    """A name of the vocabulary.
+
+    Attributes:
+        name: The name, such as ``office chair``.
+        class_id: Its class, 1 to 11.
+        nyu40: The nearest NYU40 class, 1 to 40.
+        labels: Labels that mean it, in lower case.
+        templates: Furniture templates that can stand for it, the usual one first.
+        title: Text that people read.
+    """
+
+    name: str
+    class_id: int
+    nyu40: int
+    labels: tuple[str, ...] = ()
+    templates: tuple[str, ...] = ()
+    title: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Vocabulary:
+    """The names, and the meaning of labels.
+
+    Attributes:
+        names: All names by themselves.
+        classes: Class of each label that votes only for a class.
+        silent: Labels that vote for nothing.
+    """
+
+    names: Mapping[str, ThingName]
+    classes: Mapping[str, int]
+    silent: frozenset[str]
+
+    def __post_init__(self):
+        by_label: dict[str, ThingName] = {}
+        by_template: dict[str, ThingName] = {}
+        for entry in self.names.values():
+            by_label |= dict.fromkeys((entry.name, *entry.labels), entry)
+            by_template |= dict.fromkeys(entry.templates, entry)
+        for label in (*self.classes, *self.silent):
+            by_label.pop(label, None)
+        object.__setattr__(self, "_by_label", by_label)
+        object.__setattr__(self, "_by_template", by_template)
+
+    def find(self, label: str) -> ThingName | None:
+        """Return the name that a label means, or None.
+
+        Of a label with synonyms, such as ``windowpane, window``, the first known word counts.
+
+        Example:
+            >>> read_vocabulary().find("Refrigerator, icebox").name
+            'refrigerator'
+        """
+        known: dict[str, ThingName] = self._by_label  # type: ignore[attr-defined]
+        return next((known[key] for key in label_keys(label) if key in known), None)
+
+    def of_template(self, template: str) -> ThingName | None:
+        """Return the name of what a furniture template shows, or None.
+
+        Example:
+            >>> read_vocabulary().of_template("fridge_double").name
+            'refrigerator'
+        """
+        return self._by_template.get(template)  # type: ignore[attr-defined]
+
+    def of_nyu40(self, number: int) -> tuple[ThingName, ...]:
+        """Return the names of an NYU40 class, 1 to 40."""
+        return tuple(entry for entry in self.names.values() if entry.nyu40 == number)
+
+    def label_table(self) -> dict[str, int | None]:
+        """Return the class of each label, or None for labels that vote for nothing."""
+        by_label: dict[str, ThingName] = self._by_label  # type: ignore[attr-defined]
+        table: dict[str, int | None] = {key: one.class_id for key, one in by_label.items()}
+        return table | dict(self.classes) | dict.fromkeys(self.silent)
+
+
+def label_keys(label: str) -> list[str]:
+    """Return the keys under which a label is looked up: the whole label, then its synonyms.
+
+    Example:
+        >>> label_keys("Floor-Other-Merged"), label_keys("tv, monitor")
+        (['floor', 'floor'], ['tv, monitor', 'tv', 'monitor'])
+    """
+    return [_plain(label), *map(_plain, re.split(r"[,;]", label))]
+
+
+def _plain(label: str) -> str:
+    plain = " ".join(re.sub(r"[-_/\s]+", " ", label.lower()).split())
+    while plain != (shorter := _ENDINGS.sub("", plain)):
+        plain = shorter
+    return plain
+
+
+def read_vocabulary(own: str | Path = "") -> Vocabulary:
+    """Return the vocabulary, changed and extended by a file of the user.
+
+    Args:
+        own: Path of a YAML file in the form of ``data/vocabulary.yaml``.
+
+    Raises:
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is not a valid vocabulary.
+    """
+    return _read(Path(own), _shipped()) if own else _shipped()
+
+
+@cache
+def _shipped() -> Vocabulary:
+    return _read(VOCABULARY_FILE, Vocabulary({}, {}, frozenset()))
+
+
+def _read(path: Path, base: Vocabulary) -> Vocabulary:
+    try:
+        raw = load_plain_yaml(read_bytes(path, MAX_BYTES))
+    except ValueError as error:
+        raise DamagedFileError(path, f"is not valid YAML ({error})") from None
+    rows = raw if isinstance(raw, dict) else {}
+    if not rows:
+        raise DamagedFileError(
+            path, "must map names or classes to labels, such as chair: [stool, armchair]"
+        )
+    names, classes, silent = dict(base.names), dict(base.classes), set(base.silent)
+    for key, value in rows.items():
+        if isinstance(value, dict):
+            entry = _entry(path, str(key), value)
+            _claim((*entry.labels, entry.name), names, classes, silent)
+            names[entry.name] = entry
+            continue
+        if not isinstance(value, list):
+            raise DamagedFileError(path, f"the entry {key!r} must be a list of label names")
+        labels = tuple(_plain(str(label)) for label in value)
+        if key in names:
+            _claim(labels, names, classes, silent)
+            names[key] = replace(names[key], labels=(*names[key].labels, *labels))
+        elif key == NOTHING:
+            silent |= set(labels)
+        else:
+            _claim(labels, names, classes, silent)
+            classes |= dict.fromkeys(labels, _class_of(path, str(key)))
+    return Vocabulary(names, classes, frozenset(silent))
+
+
+def _claim(
+    labels: Iterable[str], names: dict[str, ThingName], classes: dict[str, int], silent: set[str]
+) -> None:
+    """Take labels away from what they meant before."""
+    wanted = set(labels)
+    silent -= wanted
+    for label in wanted & set(classes):
+        del classes[label]
+    for name, entry in names.items():
+        if wanted & set(entry.labels):
+            names[name] = replace(entry, labels=tuple(x for x in entry.labels if x not in wanted))
+
+
+def _entry(path: Path, key: str, value: Mapping[str, Any]) -> ThingName:
+    if unknown := set(value) - _KEYS:
+        error = UnknownNameError("setting", str(min(unknown, key=str)), sorted(_KEYS))
+        raise DamagedFileError(path, f"in the entry {key!r}, {error}")
+    nyu40 = value.get("nyu40", "")
+    if nyu40 and nyu40 not in nyu40_names():
+        error = UnknownNameError("NYU40 class", str(nyu40), nyu40_names())
+        raise DamagedFileError(path, f"in the entry {key!r}, {error}")
+    for name in ("also", "templates"):
+        if not isinstance(value.get(name, []), list):
+            raise DamagedFileError(path, f"in the entry {key!r}, {name} must be a list")
+    name = _plain(key)
+    return ThingName(
+        name=name,
+        class_id=_class_of(path, str(value.get("class", "objs"))),
+        nyu40=nyu40_names()[nyu40] if nyu40 else OTHER_NYU40,
+        labels=tuple(_plain(str(label)) for label in value.get("also", [])),
+        templates=tuple(str(template) for template in value.get("templates", [])),
+        title=str(value.get("title", name)),
+    )
+
+
+def _class_of(path: Path, name: str) -> int:
+    if name not in CLASS_NAMES[1:]:
+        error = UnknownNameError("class", name, (*CLASS_NAMES[1:], NOTHING))
+        raise DamagedFileError(path, str(error))
+    return class_id(name)
+
+
+@cache
+def nyu40_classes() -> np.ndarray:
+    """Return the class id for each NYU40 label as uint8 [65536], 255 if unknown."""
+    classes = np.full(65536, UNKNOWN, np.uint8)
+    for number, (_, name) in read_json(NYU40_FILE)["classes"].items():
+        classes[int(number)] = class_id(name)
+    return classes
+
+
+@cache
+def nyu40_names() -> dict[str, int]:
+    """Return the NYU40 id, 1 to 40, for each class name such as ``"night stand"``."""
+    listed = read_json(NYU40_FILE)["classes"].items()
+    return {name: int(number) for number, (name, _) in listed}
