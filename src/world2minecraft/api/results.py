@@ -290,7 +290,7 @@ def load(path: str | Path) -> "Run | GeneratedRoom | Dataset":
 
 
 def _name_of(instance: ObjectInstance) -> str:
-    return display_name(instance.class_id)
+    return instance.name or display_name(instance.class_id)
 
 
 def _metres(sides: np.ndarray) -> str:

@@ -49,7 +49,7 @@ def read_placements(path: str | Path) -> tuple[Placement, ...]:
 
 
 def _object_row(instance: ObjectInstance) -> dict[str, Any]:
-    return {
+    row = {
         "id": instance.id,
         "class": CLASS_NAMES[instance.class_id],
         "center_m": round_metres(instance.center_m),
@@ -57,6 +57,12 @@ def _object_row(instance: ObjectInstance) -> dict[str, Any]:
         "yaw_deg": round(float(instance.yaw_deg), 3),
         "confidence": round(float(instance.confidence), 4),
     }
+    if instance.name:
+        row |= {
+            "name": instance.name,
+            "name_confidence": round(float(instance.name_confidence), 4),
+        }
+    return row
 
 
 def _object_of(row: dict[str, Any], cells: np.ndarray) -> ObjectInstance:
@@ -68,6 +74,8 @@ def _object_of(row: dict[str, Any], cells: np.ndarray) -> ObjectInstance:
         yaw_deg=float(row["yaw_deg"]),
         cells=cells,
         confidence=float(row["confidence"]),
+        name=str(row.get("name", "")),
+        name_confidence=float(row.get("name_confidence", 0.0)),
     )
 
 

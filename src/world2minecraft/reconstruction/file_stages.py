@@ -7,6 +7,7 @@ parameters.
 
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,13 @@ from world2minecraft.construction import WORLD_NAME, build_volume, write_build
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, no_progress
-from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
+from world2minecraft.core.types import (
+    BlockEdit,
+    BlockVolume,
+    FusedEvidence,
+    ObjectInstance,
+    OccupancyGrid,
+)
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.journal import write_edits
 from world2minecraft.formats.layout import read_rooms, write_layouts
@@ -43,6 +50,13 @@ from world2minecraft.reconstruction.fusion import (
     remove_floaters,
 )
 from world2minecraft.reconstruction.instances import find_objects
+from world2minecraft.reconstruction.naming.name_votes import (
+    NAME_VOTES,
+    NYU40_COUNT,
+    read_name_votes,
+    votes_of_objects,
+)
+from world2minecraft.reconstruction.naming.object_traits import name_instances
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.retrieval import place_templates
 from world2minecraft.reconstruction.semantics import (
@@ -97,6 +111,8 @@ def find_stage(folder: Path, chosen: Parameters) -> None:
     """Run the find stage: ``room.npz`` -> instances, ``centers.npz`` and ``objects.json``."""
     grid, scan_to_room = read_room(folder / "room.npz")
     found = find_objects(grid, chosen.find, stated=_stated_cells(folder, grid))
+    if not chosen.find.paper_compat:
+        found = replace(found, instances=_named(folder, found.grid, found.instances))
     write_room(folder / "room.npz", found.grid, scan_to_room)
     centers = found.centers
     write_centers(folder / "centers.npz", centers.density, centers.candidates, centers.cluster)
@@ -116,6 +132,21 @@ def _stated_cells(folder: Path, grid: OccupancyGrid) -> np.ndarray | None:
     if votes.shape[:3] != grid.shape or not votes.any():
         return None
     return votes.any(axis=-1) & ~is_from_network(votes)
+
+
+def _named(
+    folder: Path, grid: OccupancyGrid, instances: tuple[ObjectInstance, ...]
+) -> tuple[ObjectInstance, ...]:
+    """Return the objects with fine names, from the votes of the segmentation network if any."""
+    path = folder / NAME_VOTES
+    votes = np.zeros((len(instances) + 1, NYU40_COUNT), np.float32)
+    if path.is_file():
+        votes = votes_of_objects(read_name_votes(path), grid, len(instances))
+    names = name_instances(instances, read_rooms(folder, grid), votes[1:])
+    return tuple(
+        replace(item, name=name, name_confidence=confidence)
+        for item, (name, confidence) in zip(instances, names, strict=True)
+    )
 
 
 def furnish_stage(folder: Path, chosen: Parameters) -> None:

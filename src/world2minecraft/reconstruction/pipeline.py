@@ -34,7 +34,13 @@ from world2minecraft.furniture.user_library import user_design_files, user_desig
 from world2minecraft.reconstruction.file_stages import FILE_STAGES, run_stage
 from world2minecraft.reconstruction.floorplans import add_plan_openings, add_plan_votes
 from world2minecraft.reconstruction.fusion import fuse_views
-from world2minecraft.reconstruction.occupancy import Predictor, notes_of, predictor
+from world2minecraft.reconstruction.naming.name_votes import NAME_VOTES, write_name_votes
+from world2minecraft.reconstruction.occupancy import (
+    Predictor,
+    name_votes_of,
+    notes_of,
+    predictor,
+)
 from world2minecraft.reconstruction.occupancy.saved_grid_evidence import SavedGridPredictor
 from world2minecraft.reconstruction.opening import prepare_and_open
 from world2minecraft.reconstruction.parameters import Parameters
@@ -137,6 +143,9 @@ def _fuse(
         notes = (*notes, *notes_of_plan)
     scan = replace(scan, notes=(*scan.notes, *notes))
     write_evidence(run.path("evidence.npz"), evidence)
+    run.path(NAME_VOTES).unlink(missing_ok=True)
+    if (votes := name_votes_of(network)) is not None:
+        write_name_votes(run.path(NAME_VOTES), votes)
     write_scan(run.path("scan.json"), scan, read_registration(run.path("scan.json")))
     return scan
 

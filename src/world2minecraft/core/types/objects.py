@@ -15,7 +15,9 @@ class ObjectInstance:
     """An object of the room. ``size_m`` is along its own axes: front to back, side to side, height.
 
     ``yaw_deg`` is counter-clockwise from above. At 0, the front faces room +x. ``center_m`` is the
-    centre of its bounding box in the room frame. ``cells`` are grid indices.
+    centre of its bounding box in the room frame. ``cells`` are grid indices. ``name`` is a name of
+    the vocabulary, such as ``office chair``, the display name of the class if that is all that is
+    known, or empty; ``name_confidence`` is its probability.
     """
 
     id: int
@@ -25,6 +27,8 @@ class ObjectInstance:
     yaw_deg: float
     cells: np.ndarray  # int32 [N, 3]
     confidence: float
+    name: str = ""
+    name_confidence: float = 0.0
 
     def __post_init__(self):
         put = object.__setattr__
@@ -36,7 +40,8 @@ class ObjectInstance:
         put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
         checks.floats("yaw_deg", [self.yaw_deg], (1,))
         put(self, "cells", checks.array("cells", self.cells, np.int32, (None, 3)))
-        put(self, "confidence", checks.fraction("confidence", self.confidence))
+        for name in ("confidence", "name_confidence"):
+            put(self, name, checks.fraction(name, getattr(self, name)))
 
 
 @dataclass(frozen=True)

@@ -183,8 +183,13 @@ def object_rows(scene: FinishedScene) -> list[dict[str, Any]]:
     rows = []
     for instance in scene.instances:
         mine = [p for p in scene.placements if p.object_id == instance.id]
+        named = {}
+        if instance.name:
+            confidence = round(float(instance.name_confidence), 3)
+            named = {"name": instance.name, "name_confidence": confidence}
         rows.append(
-            {
+            named
+            | {
                 "id": instance.id,
                 "class": CLASS_NAMES[instance.class_id],
                 "center_m": [round(float(v), 2) for v in instance.center_m],

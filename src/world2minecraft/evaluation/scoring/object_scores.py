@@ -14,13 +14,16 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply
-from world2minecraft.core.types import Layout, LayoutObject, OccupancyGrid
+from world2minecraft.core.types import Layout, LayoutObject, ObjectInstance, OccupancyGrid
+from world2minecraft.core.vocabulary import read_vocabulary
 from world2minecraft.evaluation.metrics.objects import ObjectCounts, count_objects, match_objects
 from world2minecraft.evaluation.scoring.observed_cells import Reached
 from world2minecraft.evaluation.scoring.truth_files import Truth, read_instances
 from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects_and_placements import read_placements
 from world2minecraft.furniture.layout_checks import category_integrity, collisions, out_of_rooms
+
+GENERIC_NAMES = ("object", "furniture")  # They say no more than the class.
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +70,46 @@ def object_counts(found: Sequence[Any], true: TrueObjects) -> ObjectCounts:
     expected = [item for n, item in enumerate(true.objects) if bool(true.seen[n]) or n in matched]
     counts = count_objects(found, expected)
     return counts if true.have_fronts else replace(counts, turns_asked=0, turns_right=0)
+
+
+def name_facts(found: Sequence[ObjectInstance], true: TrueObjects) -> dict[str, Any]:
+    """Return the scores of the fine names of objects; empty if the truth has none.
+
+    A true object is found if an object of its name lies within ``MATCH_DISTANCE_M``. True objects
+    whose name is not in the vocabulary, or that no ray met, do not count, and neither do objects
+    found at their place. An object named only by its class claims nothing: it lowers the recall.
+    """
+    vocabulary = read_vocabulary()
+    names = [vocabulary.find(item.name.replace("_", " ")) for item in true.objects]
+    if not any(names):
+        return {}
+    numbers = {name: number for number, name in enumerate(vocabulary.names)}
+    wanted, ignored = [], []
+    for item, entry, seen in zip(true.objects, names, true.seen, strict=True):
+        is_scored = entry is not None and bool(seen)
+        named = replace(item, class_id=numbers[entry.name] if entry is not None else 0)
+        (wanted if is_scored else ignored).append(named)
+    claimed = [
+        LayoutObject(numbers[item.name], item.center_m, item.size_m, 0.0)
+        for item in found
+        if item.name in numbers and item.name not in GENERIC_NAMES
+    ]
+    matched = match_objects(claimed, wanted)
+    used = {number for number, _ in matched}
+    spare = [replace(one, class_id=0) for n, one in enumerate(claimed) if n not in used]
+    excused = len(match_objects(spare, [replace(item, class_id=0) for item in ignored]))
+    told = len(claimed) - excused
+    precision = len(matched) / told if told else 0.0
+    recall = len(matched) / len(wanted) if wanted else 0.0
+    both = precision + recall
+    return {
+        "f1": 2 * precision * recall / both if both else 0.0,
+        "precision": precision,
+        "recall": recall,
+        "named": told,
+        "true": len(wanted),
+        "matched": len(matched),
+    }
 
 
 def object_facts(counts: ObjectCounts) -> dict[str, Any]:

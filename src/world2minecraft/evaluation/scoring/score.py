@@ -27,6 +27,7 @@ from world2minecraft.evaluation.scoring.object_scores import (
     TrueObjects,
     in_room,
     layout_facts,
+    name_facts,
     object_counts,
     object_facts,
     true_objects,
@@ -153,6 +154,8 @@ def score_run(out: Path, room: TrueRoom) -> dict[str, Any]:
     facts = cell_facts(grid, room)
     instances = read_objects(out / "objects.json", grid)
     facts["objects"] = object_facts(object_counts(instances, room.objects))
+    if names := name_facts(instances, room.objects):
+        facts["names"] = names
     facts["frame_error"] = frame_error(room.truth_to_room, room.truth.layouts)
     facts["poses"] = pose_facts(out, room.truth, room.frames)
     true_rooms = in_room(room.truth.layouts, room.truth_to_room)

@@ -11,6 +11,7 @@ from typing import Protocol
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import GridEvidence, PointEvidence, Scan
+from world2minecraft.reconstruction.naming.name_votes import NameVoteMap, NameVotes
 from world2minecraft.reconstruction.occupancy.parameters import (
     AUTO,
     WITHOUT_VOTES,
@@ -23,6 +24,7 @@ __all__ = [
     "OccupancyParameters",
     "PredictionParameters",
     "Predictor",
+    "name_votes_of",
     "notes_of",
     "predictor",
 ]
@@ -78,6 +80,15 @@ def predictor(name: str, parameters: OccupancyParameters | None = None) -> Predi
     from world2minecraft.reconstruction.occupancy.semantic_fusion import voters_of  # noqa: PLC0415  # Few runs have any.
 
     return make(voters=voters_of(chosen))
+
+
+def name_votes_of(used: Predictor) -> NameVotes | None:
+    """Return the votes for fine names of a predictor's voters, or None if it has none."""
+    base = getattr(used, "base", used)
+    for voter in getattr(base, "voters", ()):
+        if isinstance(found := getattr(voter, "names", None), NameVoteMap):
+            return found.votes()
+    return None
 
 
 def notes_of(used: Predictor) -> tuple[str, ...]:

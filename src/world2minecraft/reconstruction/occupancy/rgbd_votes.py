@@ -13,6 +13,7 @@ from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.types import View
 from world2minecraft.core.vocabulary import nyu40_classes
+from world2minecraft.reconstruction.naming.name_votes import NameVoteMap
 from world2minecraft.reconstruction.recognition.segmentation import (
     NYU40_COUNT,
     SegmentationModel,
@@ -39,7 +40,11 @@ def class_matrix() -> np.ndarray:
 
 
 class RgbdVoter:
-    """Votes by the built-in segmentation network at the pixel that shows a point."""
+    """Votes by the built-in segmentation network at the pixel that shows a point.
+
+    Attributes:
+        names: Votes for the NYU40 classes so far, for the fine names of objects.
+    """
 
     notes: tuple[str, ...] = ()
 
@@ -54,6 +59,7 @@ class RgbdVoter:
         self.model = SegmentationModel(weights)
         self.min_probability = min_probability
         self.matrix = class_matrix()
+        self.names = NameVoteMap()
         self._poses: list[np.ndarray] = []
 
     def votes(
@@ -82,6 +88,9 @@ class RgbdVoter:
             rows * shares.shape[0] // camera.height_px,
             columns * shares.shape[1] // camera.width_px,
         )
+        pixels = at[0] * shares.shape[1] + at[1]
+        in_room_m = apply(scan_to_room, points_m.astype(np.float64))
+        self.names.add(in_room_m, pixels, found.reshape(-1, NYU40_COUNT))
         return shares[at]
 
     def _is_new(self, pose: np.ndarray) -> bool:

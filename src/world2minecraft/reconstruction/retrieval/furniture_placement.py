@@ -11,7 +11,8 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Alternative, Layout, ObjectInstance, OccupancyGrid, Placement
-from world2minecraft.furniture import template, templates_of_class
+from world2minecraft.core.vocabulary import read_vocabulary
+from world2minecraft.furniture import Template, template, templates_of_class
 from world2minecraft.furniture.chair_fitting import direction_to_table, fit_seat, without_open_top
 from world2minecraft.furniture.front_estimation import (
     Surroundings,
@@ -271,11 +272,25 @@ def _match(
     chosen: RetrievalParameters,
     floor_m: float,
 ) -> Matched:
+    named = () if chosen.paper_compat else named_templates(instance)
     templates = templates_of_class(instance.class_id)
+    usual = {one.name for one in templates}
+    templates = (*templates, *(one for one in named if one.name not in usual))
     reach = reach_of(templates, grid.voxel_m)
     evidence = evidence_of(grid, cells, reach, chosen.paper_compat, floor_m)
-    matches = best_matches(templates, evidence, _bias(quarter_turns, grid, chosen), chosen)
+    bias = _bias(quarter_turns, grid, chosen)._replace(
+        named=frozenset(one.name for one in named),
+        name_bonus=chosen.name_weight * instance.name_confidence,
+    )
+    matches = best_matches(templates, evidence, bias, chosen)
     return Matched(evidence, quarter_turns, tuple(matches))
+
+
+def named_templates(instance: ObjectInstance) -> tuple[Template, ...]:
+    """Return the templates to match that show what an object is named."""
+    entry = read_vocabulary().names.get(instance.name)
+    every = [] if entry is None else [template(name) for name in entry.templates]
+    return tuple([one for one in every if one.matched] or every)
 
 
 def _bias(quarter_turns: int, grid: OccupancyGrid, chosen: RetrievalParameters) -> Bias:
@@ -316,6 +331,9 @@ def _choice(
         return Choice(placement, (), None)
     bias = _bias(found.quarter_turns, grid, chosen)
     offers = offers_of(found.evidence, found.matches[0], bias)
+    entry = read_vocabulary().names.get(instance.name)
+    if entry is not None and placement.template in entry.templates:
+        offers = tuple(offer for offer in offers if offer.template in entry.templates)
     return Choice(placement, offers, colour_of_cells(grid, found.evidence))
 
 

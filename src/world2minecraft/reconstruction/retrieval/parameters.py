@@ -29,6 +29,7 @@ class RetrievalParameters:
         neighbours.
     size_weight: Maximum IoU penalty for an unusual size or parameter.
     front_weight: Maximum IoU bonus for agreement with the detected front of the object.
+    name_weight: Bonus, times its probability, of templates that show the name of the object.
     beyond_weight: Maximum score penalty for a template in unseen space outside the object's box.
     seat_below: IoU below which a chair may be replaced by a chair of typical size that is rotated
         against the grid or mostly hidden.
@@ -101,6 +102,12 @@ class RetrievalParameters:
     )
     beyond_weight: float = parameter(
         0.1, unit="IoU", origin="does not outweigh a clear match", bounds=SHARE
+    )
+    name_weight: float = parameter(
+        0.2,
+        unit="IoU",
+        origin="decides between designs that fit about as well; docs/names.md",
+        bounds=SHARE,
     )
     seat_below: float = parameter(0.6, unit="IoU", origin="docs/furniture.md", bounds=SHARE)
     seat_met: float = parameter(0.5, unit="share", origin="docs/furniture.md", bounds=SHARE)

@@ -58,13 +58,25 @@ class Scored(NamedTuple):
 
 
 class Bias(NamedTuple):
-    """The tie-breaking terms of the score: the detected front, the cell size and the weights."""
+    """The terms of the score beside the IoU.
+
+    Attributes:
+        quarter_turns: Detected front.
+        voxel_m: Cell size in metres.
+        size_weight: Maximum penalty for an unusual size or parameter.
+        front_weight: Bonus for agreement with the front.
+        beyond_weight: Maximum penalty for a template in unseen space.
+        named: Names of the templates that show what the object is named.
+        name_bonus: Bonus for these.
+    """
 
     quarter_turns: int
     voxel_m: float
     size_weight: float
     front_weight: float
     beyond_weight: float
+    named: frozenset[str] = frozenset()
+    name_bonus: float = 0.0
 
 
 def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bias) -> Scored:
@@ -86,7 +98,7 @@ def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bia
 
 
 def tie_break(trial: Trial, bias: Bias) -> float:
-    """Return the contribution of typical size, typical parameters and the front to the score."""
+    """Return the contribution of typical size and parameters, front and name to the score."""
     spans, own = trial.template.size_m, trial.template.parameters
     size = sum(
         _strangeness(count * bias.voxel_m, *span)
@@ -95,7 +107,8 @@ def tie_break(trial: Trial, bias: Bias) -> float:
     values = sum(_strangeness(value, *own[name]) for name, value in trial.values)
     far = size / 3 + PARAMETER_SHARE * values / max(len(own), 1)
     looks = (trial.quarter_turns - bias.quarter_turns) % trial.template.turns == 0
-    return bias.front_weight * looks - bias.size_weight * far
+    told = bias.name_bonus if trial.template.name in bias.named else 0.0
+    return bias.front_weight * looks - bias.size_weight * far + told
 
 
 def _strangeness(value: float, minimum: float, typical: float, maximum: float) -> float:

@@ -1,0 +1,128 @@
+"""The model that gives objects fine names from votes, size, place and the other objects.
+
+``weights/object_names.npz`` holds a network with one hidden layer, trained by
+``benchmarks/train_names.py`` on the objects of generated rooms with noise. Its probabilities are
+calibrated; below ``MIN_CONFIDENCE`` an object keeps the display name of its class.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES
+from world2minecraft.core.files import read_npz
+
+WEIGHTS = Path(__file__).parents[2] / "weights" / "object_names.npz"
+MIN_CONFIDENCE = 0.5
+MAX_WALL_M, MAX_GAP_M = 1.0, 1.0
+SMALLEST_M = 0.04
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectTraits:
+    """What is known of an object.
+
+    Attributes:
+        class_id: Class, 5 to 11.
+        size_m: Front to back, side to side and height in metres.
+        bottom_m: Height of its lowest face above the floor.
+        wall_m: Horizontal distance to the nearest wall; large if there is none.
+        ceiling_m: Distance of its top to the ceiling; large if it was not seen.
+        votes: Shares of the NYU40 classes 1 to 40 in its votes, float [40]; zeros without votes.
+    """
+
+    class_id: int
+    size_m: tuple[float, float, float]
+    bottom_m: float
+    wall_m: float
+    ceiling_m: float
+    votes: np.ndarray
+
+
+def features_of(objects: Sequence[ObjectTraits]) -> np.ndarray:
+    """Return the inputs of the model for the objects of one room, float32 [N, 134]."""
+    count = len(objects)
+    if not count:
+        return np.zeros((0, FEATURES), np.float32)
+    votes = np.stack([item.votes for item in objects]).astype(np.float32)
+    rows = []
+    for number, item in enumerate(objects):
+        side, across = sorted(item.size_m[:2])
+        lengths = np.log(np.maximum([side, across, item.size_m[2]], SMALLEST_M))
+        place = [
+            item.bottom_m,
+            item.bottom_m + item.size_m[2],
+            min(item.wall_m, MAX_WALL_M),
+            min(item.ceiling_m, MAX_GAP_M),
+            float(votes[number].any()),
+        ]
+        kinds = [float(item.class_id == kind) for kind in OBJECT_CLASSES]
+        others = np.delete(votes, number, axis=0).max(axis=0, initial=0.0)
+        rows.append(np.concatenate([votes[number], others, lengths, place, kinds]))
+    return np.stack(rows).astype(np.float32)
+
+
+FEATURES = 40 + 40 + 3 + 5 + len(OBJECT_CLASSES)
+
+
+@dataclass(frozen=True, eq=False)
+class NameModel:
+    """The weights of the model.
+
+    Attributes:
+        names: Names that it can give, in the order of its outputs.
+        arrays: ``mean`` and ``scale`` of the inputs, and the weights ``w1``, ``b1``, ``w2`` and
+            ``b2``, as float32.
+    """
+
+    names: tuple[str, ...]
+    arrays: dict[str, np.ndarray]
+
+    def probabilities(self, features: np.ndarray) -> np.ndarray:
+        """Return the probability of each name, float32 [N, names].
+
+        Args:
+            features: Inputs from ``features_of``, float32 [N, FEATURES].
+        """
+        a = self.arrays
+        hidden = np.maximum((features - a["mean"]) / a["scale"] @ a["w1"] + a["b1"], 0)
+        logits = hidden @ a["w2"] + a["b2"]
+        shares = np.exp(logits - logits.max(axis=1, keepdims=True, initial=-np.inf))
+        return shares / shares.sum(axis=1, keepdims=True)
+
+
+ARRAYS = ("mean", "scale", "w1", "b1", "w2", "b2")
+
+
+@cache
+def read_name_model(path: Path = WEIGHTS) -> NameModel:
+    """Read the weights of a file.
+
+    Raises:
+        InputError: If the file does not exist.
+        DamagedFileError: If the file is damaged.
+    """
+    arrays = read_npz(path, (*ARRAYS, "names"))
+    names = tuple(str(name) for name in arrays.pop("names"))
+    return NameModel(names, arrays)
+
+
+def name_objects(
+    objects: Sequence[ObjectTraits], model: NameModel | None = None
+) -> list[tuple[str, float]]:
+    """Return the name of each object of a room, and its probability.
+
+    Below ``MIN_CONFIDENCE`` the name is that of the class, with the probability of the best name.
+    """
+    chosen = model or read_name_model()
+    chance = chosen.probabilities(features_of(objects))
+    result = []
+    for item, row in zip(objects, chance, strict=True):
+        best = int(row.argmax())
+        sure = row[best] >= MIN_CONFIDENCE
+        name = chosen.names[best] if sure else CLASS_DISPLAY_NAMES[item.class_id]
+        result.append((name, float(row[best])))
+    return result

@@ -1,0 +1,112 @@
+"""Votes of a segmentation network for the 40 NYU classes, by place in the room.
+
+The network votes for cells with twelve classes (``rgbd_votes``). Its 40 classes are kept beside
+that, summed over the points of small cubes, so that objects can get fine names after they have been
+found.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_npz, write_npz
+from world2minecraft.core.types import OccupancyGrid, checks
+
+NAME_VOTES = "names.npz"  # In the folder of a run.
+CUBE_M = 0.08  # Of votes, whatever the cells of the grid.
+NYU40_COUNT = 40
+
+
+@dataclass(frozen=True, eq=False)
+class NameVotes:
+    """Votes at places of a room.
+
+    Attributes:
+        cubes: Cubes of ``CUBE_M`` by their index from the room's origin, int32 [N, 3].
+        votes: Sums of the probabilities of the NYU40 classes 1 to 40, float32 [N, 40].
+    """
+
+    cubes: np.ndarray
+    votes: np.ndarray
+
+    def __post_init__(self):
+        cubes = checks.array("cubes", self.cubes, np.int32, (None, 3))
+        object.__setattr__(self, "cubes", cubes)
+        shape = (len(cubes), NYU40_COUNT)
+        object.__setattr__(self, "votes", checks.array("votes", self.votes, np.float32, shape))
+
+
+class NameVoteMap:
+    """Collects the votes of views."""
+
+    def __init__(self) -> None:
+        self._cubes: list[np.ndarray] = []
+        self._votes: list[np.ndarray] = []
+
+    def add(self, points_m: np.ndarray, pixels: np.ndarray, probabilities: np.ndarray) -> None:
+        """Add the votes of one view. Each pixel of the network votes at one of its points.
+
+        Args:
+            points_m: Points in the room in metres, float [N, 3].
+            pixels: Flat index of the network's pixel that shows each point, int [N].
+            probabilities: Probabilities of NYU40 classes 1 to 40 by pixel, float [P, 40].
+        """
+        shown, first = np.unique(pixels, return_index=True)
+        cubes = np.floor(points_m[first] / CUBE_M).astype(np.int32)
+        summed = _summed(cubes, probabilities[shown].astype(np.float32))
+        self._cubes.append(summed.cubes)
+        self._votes.append(summed.votes)
+
+    def votes(self) -> NameVotes:
+        """Return the sums over all views."""
+        if not self._cubes:
+            return NameVotes(np.zeros((0, 3), np.int32), np.zeros((0, NYU40_COUNT), np.float32))
+        return _summed(np.concatenate(self._cubes), np.concatenate(self._votes))
+
+
+def _summed(cubes: np.ndarray, votes: np.ndarray) -> NameVotes:
+    """Return the sums of votes in the same cube."""
+    if not len(cubes):
+        return NameVotes(cubes, votes)
+    kept, owner = np.unique(cubes, axis=0, return_inverse=True)
+    order = np.argsort(owner.reshape(-1), kind="stable")
+    starts = np.searchsorted(owner.reshape(-1)[order], np.arange(len(kept)))
+    return NameVotes(kept, np.add.reduceat(votes[order], starts, axis=0))
+
+
+def votes_of_objects(votes: NameVotes, grid: OccupancyGrid, count: int) -> np.ndarray:
+    """Return the votes in the cells of each object, float32 [count + 1, 40]; row 0 is no object.
+
+    Args:
+        votes: Votes in the room.
+        grid: Grid with the instance of each cell, 1 to ``count``.
+        count: Number of objects.
+    """
+    result = np.zeros((count + 1, NYU40_COUNT), np.float32)
+    middles_m = (votes.cubes + 0.5) * CUBE_M
+    cells = np.floor((middles_m - grid.origin_m) / grid.voxel_m).astype(np.int64)
+    inside = ((cells >= 0) & (cells < grid.shape)).all(axis=1)
+    owners = grid.instance[tuple(cells[inside].T)]
+    np.add.at(result, np.minimum(owners, count), votes.votes[inside])
+    return result
+
+
+def write_name_votes(path: Path, votes: NameVotes) -> None:
+    """Write votes to ``names.npz``."""
+    write_npz(path, {"cubes": votes.cubes, "votes": votes.votes.astype(np.float16)})
+
+
+def read_name_votes(path: Path) -> NameVotes:
+    """Read votes.
+
+    Raises:
+        InputError: If the file does not exist.
+        DamagedFileError: If the file does not contain votes.
+    """
+    arrays = read_npz(path, ("cubes", "votes"))
+    try:
+        return NameVotes(arrays["cubes"], arrays["votes"].astype(np.float32))
+    except (ValueError, TypeError) as error:
+        raise DamagedFileError(path, f"does not contain votes ({error})") from error
