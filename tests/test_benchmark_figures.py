@@ -79,16 +79,6 @@ def test_completion_is_told_by_scans_cells_and_who_answers():
     assert told["observed classes"]["wall"] == 100.0
 
 
-def test_the_bend_of_a_depth_image_grows_with_the_depth_squared():
-    depth_m = np.full((48, 64), 2.5, np.float32)
-    depth_m[:, 0] = 0
-    bend_m = check_single_frames.bent(depth_m, np.random.default_rng(1)) - depth_m
-    assert (bend_m[:, 0] == 0).all(), "holes stay holes"
-    assert 0.01 < np.abs(bend_m).max() <= 0.02 + 1e-6
-    far_m = check_single_frames.bent(2 * depth_m, np.random.default_rng(1)) - 2 * depth_m
-    assert far_m == pytest.approx(4 * bend_m, abs=1e-5)
-
-
 def test_a_view_without_its_floor_ends_above_it():
     camera = Camera(64, 48, 50.0, 50.0, 32.0, 24.0)
     pose = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 1.0], [0, 0, 0, 1]], np.float64)

@@ -6,6 +6,7 @@
 import io
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import onnx
@@ -88,14 +89,13 @@ def restore_export(network: CompletionNet, path: Path, cells: Tensor) -> None:
         hook.remove()
 
 
-def _keeping_scale(bias: Tensor) -> Callable[[nn.Module, tuple[Tensor, ...]], None]:
+def _keeping_scale(bias: Tensor) -> Callable[[Any, tuple[Tensor, ...]], None]:
     """Return a hook that sets a norm to the statistics of its input such that it adds a bias."""
 
-    def hook(norm: nn.Module, inputs: tuple[Tensor, ...]) -> None:
-        assert isinstance(norm, nn.BatchNorm3d)
+    def hook(norm: Any, inputs: tuple[Tensor, ...]) -> None:
         variance, mean = torch.var_mean(inputs[0], dim=(0, 2, 3, 4), unbiased=False)
-        norm.running_mean.copy_(mean)  # type: ignore[union-attr]
-        norm.running_var.copy_(variance)  # type: ignore[union-attr]
+        norm.running_mean.copy_(mean)
+        norm.running_var.copy_(variance)
         norm.weight.copy_((variance + norm.eps).sqrt())
         norm.bias.copy_(mean + bias)
 
