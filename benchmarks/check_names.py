@@ -64,12 +64,21 @@ def _figures(out: Path, capture: Path) -> dict[str, Any]:
         name = objects[found].name
         if entry is not None and name in vocabulary.names and name not in GENERIC_NAMES:
             sure.append([objects[found].name_confidence, float(name == entry.name)])
-    built = [
-        entry.name
-        for one in read_placements(out / "placements.json")
-        if (entry := vocabulary.of_template(one.template)) is not None
-    ]
-    return name_facts(objects, room.objects) | {"sure": sure, "built": built}
+    placed: dict[int, set[str]] = {}
+    for one in read_placements(out / "placements.json"):
+        if (entry := vocabulary.of_template(one.template)) is not None:
+            placed.setdefault(one.object_id, set()).add(entry.name)
+    asked = []
+    for found, wanted in match_objects(places, true_places):
+        entry = vocabulary.find(true_places[wanted].name.replace("_", " "))
+        if entry is not None and entry.templates:
+            asked.append(entry.name in placed.get(objects[found].id, ()))
+    return name_facts(objects, room.objects) | {
+        "sure": sure,
+        "built": sorted(set().union(*placed.values())),
+        "built_right": sum(asked),
+        "built_asked": len(asked),
+    }
 
 
 def main() -> None:
@@ -89,6 +98,8 @@ def main() -> None:
             print(f"{kind} {seed}: {figures}, {row['matched']} of {row['true']}", flush=True)
     for name in ("precision", "recall", "f1"):
         print(f"{name} {np.mean([row[name] for row in rows]):.3f}")
+    right, wanted = (sum(row[name] for row in rows) for name in ("built_right", "built_asked"))
+    print(f"furniture of the right name {right} of {wanted} ({right / max(wanted, 1):.3f})")
     sure = np.array([pair for row in rows for pair in row["sure"]]).reshape(-1, 2)
     if len(sure):
         print(f"calibration error {calibration_error(sure[:, 0], sure[:, 1] > 0):.3f}")

@@ -1,11 +1,12 @@
 """Train the completion network on the samples of ``make_completion_samples``.
 
 ``python -m benchmarks.train_completion --samples FOLDER --run FOLDER [--steps 4000]
-[--start OLD.onnx --rate 0.001] [--export completion.onnx]``
+[--start OLD.onnx --rate 0.001] [--export completion.onnx [--share 0.5]]``
 
 An interrupted run continues from its folder. ``--start`` continues from an exported network. Every
 100 steps the losses are printed, and at intervals IoU and mIoU on held-out rooms (seeds below
-10,000). ``--export`` writes the averaged weights as ONNX.
+10,000). ``--export`` writes the averaged weights as ONNX; with ``--share``, weights between those
+of ``--start`` and of this run, such as half of each.
 """
 
 import argparse
@@ -18,7 +19,7 @@ from safetensors.torch import load_file
 
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
 from world2minecraft.networks.completion.augmentation import crop_sample, prepare_evaluation
-from world2minecraft.networks.completion.export import export_completion
+from world2minecraft.networks.completion.export import average_exports, export_completion
 from world2minecraft.networks.completion.network import MULTIPLE, CompletionNet
 from world2minecraft.networks.completion.sample_pool import SamplePool
 from world2minecraft.networks.completion.samples import FIRST_SEED, Sample, read_samples
@@ -101,6 +102,7 @@ def main() -> None:
     parser.add_argument("--batch", type=int, default=4)
     parser.add_argument("--rate", type=float, default=CompletionRun.rate, help="learning rate")
     parser.add_argument("--start", type=Path, help="exported network to begin with")
+    parser.add_argument("--share", type=float, help="share of this run beside --start")
     parser.add_argument("--export", type=Path, help="write the trained network as ONNX")
     parser.add_argument("--threads", type=int, default=1)
     chosen = parser.parse_args()
@@ -133,6 +135,8 @@ def main() -> None:
     trainer.save(chosen.run)
     if chosen.export:
         write_onnx(chosen.run, chosen.export)
+        if chosen.start and chosen.share is not None:
+            average_exports(chosen.start, chosen.export, chosen.share, chosen.export)
 
 
 if __name__ == "__main__":

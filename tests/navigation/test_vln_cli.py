@@ -141,6 +141,18 @@ def test_a_class_names_a_thing_that_no_noun_does():
     assert find_named_landmark(scene, "Go to the table") is table
 
 
+def test_words_of_the_vocabulary_name_what_a_design_shows():
+    def landmark(noun, design):
+        box = (np.zeros(3), np.ones(3))
+        return Landmark(1, noun, noun, SemanticClass.CHAIR, "", *box, design)
+
+    easy, seat = landmark("easy chair", "armchair_wing"), landmark("chair", "chair")
+    scene = SimpleNamespace(landmarks=(easy, seat), scene_id="study")
+    assert find_named_landmark(scene, "Go to the armchair") is easy
+    assert find_named_landmark(scene, "Go to the recliner") is easy
+    assert find_named_landmark(scene, "Go to the chair") is seat
+
+
 def test_the_words_say_where_to_go(flat):
     for words in ("Walk past the red table to the PIANO.", "upright piano"):
         assert find_named_landmark(flat, words).name == "upright piano"

@@ -8,6 +8,7 @@ import torch
 
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.networks.completion.export import (
+    average_exports,
     export_completion,
     restore_export,
     to_half_precision,
@@ -164,6 +165,26 @@ def test_training_goes_on_from_an_exported_network(pool, tmp_path):
     losses = []
     other.train(10, lambda step, found, _: losses.append(sum(found.values())), every=10)
     assert losses[0] < first_loss(pool)
+
+
+def test_averaged_networks_have_weights_between_two(tmp_path):
+    paths = [tmp_path / f"{name}.onnx" for name in ("first", "second", "between")]
+    networks = []
+    for path in paths[:2]:
+        network = CompletionNet(TINY)
+        for weights in network.parameters():
+            torch.nn.init.normal_(weights)
+        export_completion(network, path, {"run": path.stem})
+        networks.append(to_half_precision(network))
+    average_exports(*paths[:2], 0.25, paths[2])
+    between = CompletionNet(TINY)
+    cells = torch.rand(2, CHANNELS, 16, 16, 16)
+    restore_export(between, paths[2], cells)
+    states = [network.state_dict()["last.1.weight"] for network in (*networks, between)]
+    assert torch.allclose(states[2], 0.75 * states[0] + 0.25 * states[1], atol=2e-3)
+    export_completion(CompletionNet(replace(TINY, half=16)), paths[1], {})
+    with pytest.raises(DamagedFileError, match="does not have the weights"):
+        average_exports(*paths[:2], 0.5, paths[2])
 
 
 def first_loss(pool):

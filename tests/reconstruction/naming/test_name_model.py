@@ -88,6 +88,18 @@ def test_without_a_hint_the_name_is_that_of_the_class():
     )
     (trait,) = traits_of([box(FURN, 2, 1, (1, 1, 1))], ROOM, np.zeros((1, 40)))
     assert name_objects([trait], uniform) == [("furniture", pytest.approx(1 / 3))]
+    (trait,) = traits_of([box(FURN, 2, 1, (1, 1, 1))], ROOM, votes_for("toilet"))
+    assert name_objects([trait], uniform) == [("toilet", pytest.approx(1))]
+
+
+def test_the_share_of_the_votes_is_the_probability():
+    votes = votes_for("toilet")
+    votes[0, nyu40_names()["wall"] - 1] = 3
+    ((name, chance),) = name_instances([box(OBJS, 2, 1, (0.7, 0.4, 0.8))], (ROOM,), votes)
+    assert (name, chance) == ("toilet", pytest.approx(0.5))
+    votes[0, nyu40_names()["wall"] - 1] = 4
+    ((name, _),) = name_instances([box(OBJS, 2, 1, (0.7, 0.4, 0.8))], (ROOM,), votes)
+    assert name == "object"
 
 
 @given(
@@ -101,7 +113,7 @@ def test_names_are_sure_or_of_the_class(class_id, size, bottom, vote):
     votes[0, :vote] = 1
     ((name, chance),) = name_instances([box(class_id, 2, 1, size, bottom)], (), votes)
     assert 0 <= chance <= 1
-    if chance < MIN_CONFIDENCE:
+    if chance < MIN_CONFIDENCE or not vote:
         assert name == CLASS_DISPLAY_NAMES[class_id]
     else:
         assert name in read_vocabulary().names

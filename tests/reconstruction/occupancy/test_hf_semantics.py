@@ -14,11 +14,12 @@ from world2minecraft.core.errors import (
     UnknownNameError,
     UsageError,
 )
-from world2minecraft.reconstruction.occupancy.label_names import label_classes, read_table
+from world2minecraft.core.vocabulary import read_vocabulary
+from world2minecraft.reconstruction.occupancy.label_names import label_classes
 from world2minecraft.reconstruction.occupancy.semantic_fusion import segmenter
 
 COLOUR = np.random.default_rng(3).integers(0, 256, (48, 64, 3), dtype=np.uint8)
-CLASSES = label_classes(NAMES, read_table()).matrix
+CLASSES = label_classes(NAMES, read_vocabulary().label_table()).matrix
 EACH = np.zeros((len(NAMES), CLASS_COUNT), np.float32)
 EACH[range(len(NAMES)), range(len(NAMES))] = 1  # Each label as a class of its own.
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass, display_name
 from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.vocabulary import read_vocabulary
 from world2minecraft.navigation.episodes import target_of
 from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.moves import wrap_yaw
@@ -123,7 +124,13 @@ def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
 
 
 def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
-    """Map phrases to landmarks: full names first, then nouns, their last words, and classes."""
+    """Map phrases to landmarks.
+
+    Full names come first, then nouns, their last words, classes, and the words of the vocabulary
+    for what a design shows, such as armchair and recliner.
+    """
+    vocabulary = read_vocabulary()
+    words_of: dict[str, list[Landmark]] = {}
     classes: dict[str, list[Landmark]] = {}
     names: dict[str, list[Landmark]] = {}
     nouns: dict[str, list[Landmark]] = {}
@@ -131,12 +138,15 @@ def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
     for one in landmarks:
         names.setdefault(one.name.lower(), []).append(one)
         nouns.setdefault(one.noun.lower(), []).append(one)
+        if (entry := vocabulary.of_template(one.design)) is not None:
+            for word in (entry.name, *entry.labels):
+                words_of.setdefault(word, []).append(one)
         if one.class_id in NAMED_CLASSES:
             classes.setdefault(display_name(one.class_id), []).append(one)
         words = one.noun.lower().split()
         for n in range(1, len(words)):
             ends.setdefault(" ".join(words[n:]), []).append(one)
-    return {**classes, **ends, **nouns, **names}
+    return {**words_of, **classes, **ends, **nouns, **names}
 
 
 def _default_start(scene: VlnScene) -> Stance:

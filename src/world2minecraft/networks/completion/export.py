@@ -46,6 +46,37 @@ def export_completion(network: CompletionNet, path: Path, about: dict[str, str])
     return parity(network, data)
 
 
+def average_exports(first: Path, second: Path, share: float, out: Path) -> None:
+    """Write an exported network whose weights lie between those of two others.
+
+    Weights between those of a network and of its continuation on other data often serve both kinds
+    of data (Wortsman et al., Robust fine-tuning of zero-shot models, CVPR 2022).
+
+    Args:
+        first: File of the network.
+        second: File of its continuation, of the same size.
+        share: Weight of the second, 0 to 1.
+        out: Output file, with the metadata of the second.
+
+    Raises:
+        DamagedFileError: If the files do not have the same weights.
+    """
+    models = [onnx.load_from_string(read_bytes(path, MAX_BYTES)) for path in (first, second)]
+    old, new = (
+        {entry.name.removesuffix("_half"): entry for entry in model.graph.initializer}
+        for model in models
+    )
+    for name, entry in new.items():
+        value = numpy_helper.to_array(entry)
+        other = numpy_helper.to_array(old[name]) if name in old else np.zeros(0)
+        if other.shape != value.shape:
+            raise DamagedFileError(first, f"does not have the weights {name} of {second}")
+        if value.dtype.kind == "f":
+            mixed = share * value.astype(np.float32) + (1 - share) * other.astype(np.float32)
+            entry.CopyFrom(numpy_helper.from_array(mixed.astype(value.dtype), entry.name))
+    write_bytes(out, models[1].SerializeToString())
+
+
 @torch.no_grad()
 def restore_export(network: CompletionNet, path: Path, cells: Tensor) -> None:
     """Load the weights of an exported network, to continue its training.

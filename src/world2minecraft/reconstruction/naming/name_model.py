@@ -1,8 +1,8 @@
 """The model that gives objects fine names from votes, size, place and the other objects.
 
 ``weights/object_names.npz`` holds a network with one hidden layer, trained by
-``benchmarks/train_names.py`` on the objects of generated rooms with noise. Its probabilities are
-calibrated; below ``MIN_CONFIDENCE`` an object keeps the display name of its class.
+``benchmarks/train_names.py`` on the objects of generated rooms with noise. It decides among the
+names of an NYU40 class, such as table, desk and coffee table; votes decide among these classes.
 """
 
 from collections.abc import Sequence
@@ -14,11 +14,12 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES
 from world2minecraft.core.files import read_npz
+from world2minecraft.core.vocabulary import read_vocabulary
 
 WEIGHTS = Path(__file__).parents[2] / "weights" / "object_names.npz"
 MIN_CONFIDENCE = 0.5
 MAX_WALL_M, MAX_GAP_M = 1.0, 1.0
-SMALLEST_M = 0.04
+SMALLEST_M, SMALLEST_CHANCE = 0.04, 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,14 +116,21 @@ def name_objects(
 ) -> list[tuple[str, float]]:
     """Return the name of each object of a room, and its probability.
 
-    Below ``MIN_CONFIDENCE`` the name is that of the class, with the probability of the best name.
+    The votes decide among the 40 NYU classes, and the model among the names of each class: the
+    segmentation network saw real rooms, and the model saw generated rooms only. Below
+    ``MIN_CONFIDENCE``, and without votes, the name is that of the class; the probability is still
+    that of the best name.
     """
     chosen = model or read_name_model()
     chance = chosen.probabilities(features_of(objects))
+    entries = read_vocabulary().names
+    nyu40 = np.array([entries[name].nyu40 - 1 for name in chosen.names])
     result = []
     for item, row in zip(objects, chance, strict=True):
-        best = int(row.argmax())
-        sure = row[best] >= MIN_CONFIDENCE
+        within = np.bincount(nyu40, row, len(item.votes))[nyu40]
+        shares = item.votes[nyu40] * row / np.maximum(within, SMALLEST_CHANCE)
+        best = int(shares.argmax()) if item.votes.any() else int(row.argmax())
+        sure = shares[best] >= MIN_CONFIDENCE
         name = chosen.names[best] if sure else CLASS_DISPLAY_NAMES[item.class_id]
-        result.append((name, float(row[best])))
+        result.append((name, float(shares[best] if item.votes.any() else row[best])))
     return result

@@ -19,6 +19,7 @@ from world2minecraft.furniture.front_estimation import (
     estimate_facing,
     read_surroundings,
 )
+from world2minecraft.reconstruction.naming.name_model import MIN_CONFIDENCE
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 from world2minecraft.reconstruction.retrieval.placement_settling import (
@@ -104,17 +105,31 @@ def _box(cells: np.ndarray) -> Box:
 
 
 class Matched(NamedTuple):
-    """Some cells of an object, their orientation, and their matches, best first."""
+    """Some cells of an object, their orientation, and their matches, best first.
+
+    Attributes:
+        evidence: Evidence of the cells.
+        quarter_turns: Direction of the front.
+        matches: Matches, best first.
+        named: Names of the templates that show what the object is named.
+        whole: Whether the first match is used regardless of its IoU.
+    """
 
     evidence: Evidence
     quarter_turns: int
     matches: tuple[Scored, ...]
-    whole: bool = False  # Whether the first match is used regardless of its IoU.
+    named: frozenset[str] = frozenset()
+    whole: bool = False
 
     @property
     def iou(self) -> float:
         """The IoU of the best match, or 0 if there is none."""
         return self.matches[0].iou if self.matches else 0.0
+
+    @property
+    def is_named(self) -> bool:
+        """Whether the best match shows what the object is named."""
+        return bool(self.matches) and self.matches[0].trial.template.name in self.named
 
     def unmatched(self) -> "Matched":
         """Return the object cells without any match, so that they are built as blocks."""
@@ -273,24 +288,27 @@ def _match(
     floor_m: float,
 ) -> Matched:
     named = () if chosen.paper_compat else named_templates(instance)
-    templates = templates_of_class(instance.class_id)
-    usual = {one.name for one in templates}
-    templates = (*templates, *(one for one in named if one.name not in usual))
-    reach = reach_of(templates, grid.voxel_m)
+    names = frozenset(one.name for one in named)
+    usual = tuple(one for one in templates_of_class(instance.class_id) if one.name not in names)
+    reach = reach_of((*usual, *named), grid.voxel_m)
     evidence = evidence_of(grid, cells, reach, chosen.paper_compat, floor_m)
-    bias = _bias(quarter_turns, grid, chosen)._replace(
-        named=frozenset(one.name for one in named),
-        name_bonus=chosen.name_weight * instance.name_confidence,
-    )
-    matches = best_matches(templates, evidence, bias, chosen)
-    return Matched(evidence, quarter_turns, tuple(matches))
+    bonus = chosen.name_weight * instance.name_confidence
+    bias = _bias(quarter_turns, grid, chosen)._replace(named=names, name_bonus=bonus)
+    matches = best_matches(usual, evidence, bias, chosen)
+    if named:
+        # A name counts only if the shape does not contradict it.
+        told = best_matches(named, evidence, bias, chosen)
+        told = [one for one in told if one.iou >= chosen.name_min_iou]
+        matches = sorted([*told, *matches], key=lambda one: -one.score)
+    return Matched(evidence, quarter_turns, tuple(matches), names)
 
 
 def named_templates(instance: ObjectInstance) -> tuple[Template, ...]:
-    """Return the templates to match that show what an object is named."""
+    """Return the templates that show what an object is named, if its name is sure enough."""
     entry = read_vocabulary().names.get(instance.name)
-    every = [] if entry is None else [template(name) for name in entry.templates]
-    return tuple([one for one in every if one.matched] or every)
+    if entry is None or instance.name_confidence < MIN_CONFIDENCE:
+        return ()
+    return tuple(map(template, entry.templates))
 
 
 def _bias(quarter_turns: int, grid: OccupancyGrid, chosen: RetrievalParameters) -> Bias:
@@ -341,7 +359,7 @@ def _placement(
     grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: RetrievalParameters
 ) -> Placement:
     least = 0.0 if chosen.paper_compat else chosen.min_iou
-    explained = bool(found.matches) and (found.whole or found.iou >= least)
+    explained = bool(found.matches) and (found.whole or found.is_named or found.iou >= least)
     explained &= not _is_uncertain(instance, chosen)
     low, counts, turns = _own_box(found)
     if explained:
