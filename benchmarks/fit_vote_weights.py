@@ -59,6 +59,7 @@ TRIED = (
     *(Weights(structure, 0.05, 0.0, 0.2) for structure in (0.1, 0.2, 0.3)),
     *(Weights(0.1, 0.05, on_wall, 0.2) for on_wall in (0.3, 0.4)),
     *(Weights(0.1, 0.05, 0.4, network) for network in (0.4, 0.6, 0.8)),
+    *(Weights(structure, 0.05, 0.6, 0.6) for structure in (0.2, 0.3)),
 )
 
 

@@ -171,5 +171,5 @@ def test_build_at_another_scale_and_from_a_bare_array(out, tmp_path):
 
 def test_the_report_stands_alone(out):
     page = (out / "report.html").read_text()
-    assert page.count("data:image/") == 14 and "http" not in page.split("</style>")[1]
+    assert page.count("data:image/") == 14 and "://" not in page.split("</style>")[1]
     assert "Photos and built world" in page and "Comparison with ground truth" in page

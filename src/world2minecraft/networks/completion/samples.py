@@ -148,7 +148,8 @@ def make_sample(
         crop_input(sight_of(grid, evidence, hint), start, shape), bottom_m=low[2] * voxel_m
     )
     seen, other = mask_rooms(room, truth_to_grid, low, voxel_m, sight.log_odds)
-    near = ndimage.distance_transform_edt(~seen) <= OUTSIDE_CELLS if seen.any() else seen
+    away = np.asarray(ndimage.distance_transform_edt(~seen))
+    near = (away <= OUTSIDE_CELLS) & seen.any()
     empty = near & ~seen & ~other & ((truth == 0) | (truth == UNKNOWN))
     truth[~seen] = UNKNOWN
     truth[empty] = 0

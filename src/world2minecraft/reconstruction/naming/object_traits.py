@@ -34,10 +34,10 @@ def name_instances(
         layouts: Layouts of its rooms.
         votes: Votes for NYU40 classes 1 to 40, float [N, 40].
     """
-    rooms = np.array([layout_of(item, layouts) for item in instances], np.int64)
+    rooms = [layout_of(item, layouts) for item in instances]
     result: list[tuple[str, float]] = [("", 0.0)] * len(instances)
-    for room in np.unique(rooms):
-        mine = np.flatnonzero(rooms == room)
+    for room in sorted(set(rooms)):
+        mine = [number for number, own in enumerate(rooms) if own == room]
         layout = None if room < 0 else layouts[room]
         traits = traits_of([instances[n] for n in mine], layout, votes[mine])
         for number, named in zip(mine, name_objects(traits), strict=True):
