@@ -128,7 +128,7 @@ def frame_logits(
 
 
 def sampled_labels(frame: LabelledFrame, every_px: int) -> np.ndarray:
-    """Return the labels of every so many pixels of a frame, uint8 [H, W]."""
+    """Return the labels of every n-th pixel of a frame, uint8 [H, W]."""
     return frame.labels[every_px // 2 :: every_px, every_px // 2 :: every_px]
 
 

@@ -44,7 +44,7 @@ class ObjectTraits:
 
 
 def features_of(objects: Sequence[ObjectTraits]) -> np.ndarray:
-    """Return the inputs of the model for the objects of one room, float32 [N, 134]."""
+    """Return the inputs of the model for the objects of one room, float32 [N, FEATURES]."""
     count = len(objects)
     if not count:
         return np.zeros((0, FEATURES), np.float32)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.core.types import Layout, LayoutObject, ObjectInstance
+from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.reconstruction.naming.name_model import ObjectTraits, name_objects
 
 FAR_M = 9.0  # Of walls and ceilings where there is no layout.
@@ -19,7 +20,7 @@ def layout_of(item: ObjectInstance | LayoutObject, layouts: Sequence[Layout]) ->
     for layout in layouts:
         height_m = item.center_m[2] - layout.floor_z_m
         off_m = max(-height_m, height_m - layout.wall_height_m, 0.0)
-        inside = _is_inside(item.center_m[:2], layout.floor_polygon_m)
+        inside = inside_polygon(item.center_m[None, :2], layout.floor_polygon_m, 0.0)[0]
         distances.append(off_m + (0 if inside else _wall_distance_m(item, layout)))
     return int(np.argmin(distances)) if distances else -1
 
@@ -84,13 +85,3 @@ def _wall_distance_m(item: ObjectInstance | LayoutObject, layout: Layout) -> flo
     offsets = points[:, None] - starts
     share = np.clip((offsets * along).sum(axis=2) / lengths, 0, 1)
     return float(np.linalg.norm(offsets - share[..., None] * along, axis=2).min())
-
-
-def _is_inside(point: np.ndarray, corners: np.ndarray) -> bool:
-    """Return whether a point is inside a polygon [K, 2], by the even-odd rule."""
-    x, y = point
-    following = np.roll(corners, -1, axis=0)
-    between = (corners[:, 1] > y) != (following[:, 1] > y)
-    rise = np.where(between, following[:, 1] - corners[:, 1], 1.0)
-    cross = corners[:, 0] + (y - corners[:, 1]) / rise * (following[:, 0] - corners[:, 0])
-    return bool((between & (x < cross)).sum() % 2)
