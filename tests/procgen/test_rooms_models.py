@@ -7,6 +7,7 @@ from world2minecraft.procgen.houses.plan import railing_model
 from world2minecraft.procgen.rooms import bathroom_fittings as washing
 from world2minecraft.procgen.rooms import children_and_hall_furniture as playing
 from world2minecraft.procgen.rooms import decor
+from world2minecraft.procgen.rooms import household_models as household
 from world2minecraft.procgen.rooms import seats_beds_tables as seating
 from world2minecraft.procgen.rooms import storage_furniture as storage
 from world2minecraft.procgen.rooms.clutter_models import IRREGULAR, ON_BEDS, ON_FLOORS, ON_TABLES
@@ -68,9 +69,31 @@ MODELS = [
     playing.bench(WOOD),
     playing.whiteboard(),
     playing.printer(),
+    household.radiator(1.33),
+    household.towel_radiator(CLOTH),
+    household.wall_shelf(0.93, WOOD, rng()),
+    household.standing_mirror(WOOD),
+    household.dryer(),
+    household.dishwasher(CLOTH, WOOD),
+    household.blanket_chest(WOOD),
+    household.display_cabinet(WOOD, rng()),
+    household.piano(WOOD),
+    household.piano_stool(CLOTH),
+    household.fireplace(),
+    household.ottoman(CLOTH),
+    household.shoe_rack(WOOD, rng()),
+    household.utility_shelf(rng()),
+    household.single_bed(WOOD, CLOTH),
+    household.bunk_bed(WOOD, CLOTH, CLOTH),
+    household.shower_curtain(1.7, CLOTH),
+    household.candles(),
     railing_model(1.77, WOOD),
 ]
-MAKERS = sorted({*IRREGULAR, *ON_BEDS, *ON_FLOORS, *ON_TABLES}, key=lambda maker: maker.__name__)
+ROUND = {household.laundry_basket, household.drying_rack, household.coat_stand,
+         household.umbrella_stand}  # fmt: skip
+MAKERS = sorted(
+    {*IRREGULAR, *ON_BEDS, *ON_FLOORS, *ON_TABLES, *ROUND}, key=lambda maker: maker.__name__
+)
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)

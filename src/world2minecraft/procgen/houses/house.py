@@ -16,6 +16,7 @@ from world2minecraft.procgen.houses.plan import (
 from world2minecraft.procgen.houses.room_furnishing import furnish_cells
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style, choose_style
 from world2minecraft.procgen.rooms.floor_shapes import dilate_mask
+from world2minecraft.procgen.rooms.full_furnishing import check_furnishing
 from world2minecraft.procgen.rooms.furniture_model import shade
 from world2minecraft.procgen.rooms.openings import Hole
 from world2minecraft.procgen.rooms.placement import Item, Rug
@@ -126,7 +127,14 @@ def _grown_slices(a: slice, b: slice, c: slice, across: int) -> tuple[slice, sli
     return sides[0], sides[1], slice(c.start, c.stop + 3)
 
 
-def generate_house(seed: int, *, rooms: int = 5, storeys: int = 1, clutter: float = 0.0) -> Room:
+def generate_house(
+    seed: int,
+    *,
+    rooms: int = 5,
+    storeys: int = 1,
+    clutter: float = 0.0,
+    furnishing: str = "basic",
+) -> Room:
     """Generate a house from a seed. The same arguments always give the same bytes.
 
     Args:
@@ -134,16 +142,20 @@ def generate_house(seed: int, *, rooms: int = 5, storeys: int = 1, clutter: floa
         rooms: Number of rooms, 3 to 14, including one hall per storey.
         storeys: Number of storeys, 1 or 2. Two storeys need at least 4 rooms.
         clutter: Amount of loose objects and displaced chairs, from 0 (tidy) to 1.
+        furnishing: ``basic`` for the main furniture, or ``full`` for all that people expect.
 
     Raises:
+        UnknownNameError: If the furnishing is unknown.
         ValueError: If an argument is out of range.
     """
     check_house(seed, rooms, storeys, clutter)
+    check_furnishing(furnishing)
     rng = np.random.default_rng([seed, rooms, storeys])
     plan = plan_house(rooms, storeys, rng)
     gaps = house_gaps(plan, rng)
     styles = [choose_style(rng) for _ in plan.cells]
-    items, rugs = furnish_cells(plan, gaps, styles, clutter, (seed, rooms, storeys, 1))
+    full = furnishing == "full"
+    items, rugs = furnish_cells(plan, gaps, styles, clutter, (seed, rooms, storeys, 1), full=full)
     canvas = paint_house(plan, gaps, styles, items, rugs, rng)
     return Room(
         kind="house",

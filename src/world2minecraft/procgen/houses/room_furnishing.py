@@ -18,6 +18,7 @@ from world2minecraft.procgen.rooms.clutter import WIDE_BODY_M, scatter
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
 from world2minecraft.procgen.rooms.decor import door
 from world2minecraft.procgen.rooms.floor_shapes import Ground
+from world2minecraft.procgen.rooms.full_furnishing import Completion, furnish_fully
 from world2minecraft.procgen.rooms.furniture_model import Model
 from world2minecraft.procgen.rooms.openings import Hole, door_item, hang_curtains, reserve_before
 from world2minecraft.procgen.rooms.placement import (
@@ -173,7 +174,7 @@ class RoomFrame:
         """Transform a rug from the local frame to the frame of the house."""
         ax, ay = self.to_house(rug[0], rug[1])
         bx, by = self.to_house(rug[2], rug[3])
-        return min(ax, bx), min(ay, by), max(ax, bx), max(ay, by), rug[4]
+        return Rug(min(ax, bx), min(ay, by), max(ax, bx), max(ay, by), rug.colour, rug.turn_deg)
 
 
 def furnish_cells(
@@ -183,10 +184,13 @@ def furnish_cells(
     clutter: float,
     seed: tuple[int, ...],
     left_out: Collection[int] = (),
+    *,
+    full: bool = False,
 ) -> tuple[list[list[Item]], list[tuple[Rug, ...]]]:
     """Generate the items and rugs of each room, in the frame of the house.
 
     Rooms whose number is in ``left_out`` stay empty. This does not change the other rooms.
+    ``full`` adds what people expect in each room beyond the main furniture.
     """
     items, rugs = [], []
     for number, cell in enumerate(plan.cells):
@@ -198,7 +202,9 @@ def furnish_cells(
         leaves = [len(gap.cells) == 2 and gap.cells[0] == number for gap, _ in own]
         leaves = [leaf and gap.kind == "door" for leaf, (gap, _) in zip(leaves, own, strict=True)]
         holes = [hole for _, hole in own]
-        held, flat = _furnish(plan, cell, holes, leaves, styles[number], clutter, (*seed, number))
+        held, flat = _furnish(
+            plan, cell, holes, leaves, styles[number], clutter, (*seed, number), full=full
+        )
         front = [hole for gap, hole in own if gap.kind == "door" and len(gap.cells) == 1]
         bare = RoomFrame(cell, 0)
         held += [
@@ -218,12 +224,14 @@ def _furnish(
     style: Style,
     clutter: float,
     seed: tuple[int, ...],
+    *,
+    full: bool,
 ) -> tuple[list[Item], tuple[Rug, ...]]:
     """Return the items and rugs of a room, or a nearly empty room if all attempts fail."""
     floor_z = cell.storey * plan.pitch_m
     for attempt in range(ATTEMPTS):
         rng = np.random.default_rng([*seed, attempt])
-        tried = _try_cell(plan, cell, holes, leaves, style, clutter, rng)
+        tried = _try_cell(plan, cell, holes, leaves, style, clutter, rng, full=full)
         if tried is not None:
             frame, room, rugs = tried
             held = [frame.item(item, floor_z) for item in room.items]
@@ -240,6 +248,8 @@ def _try_cell(
     style: Style,
     clutter: float,
     rng: np.random.Generator,
+    *,
+    full: bool,
 ) -> tuple[RoomFrame, Plan, tuple[Rug, ...]] | None:
     """Try to furnish a room, and return None if the recipe does not fit or blocks a path."""
     frame, room = _prepare_room(plan, cell, holes, leaves, style, rng)
@@ -249,6 +259,9 @@ def _try_cell(
     steps = [_step_in(room, hole) for hole in inner if hole.kind != "window"]
     if rugs is None or not paths_are_clear(room, *steps, body_m=WIDE_BODY_M):
         return None
+    if full:
+        completion = Completion(room, style, rng, steps, WIDE_BODY_M)
+        return frame, room, furnish_fully(completion, cell.kind, tuple(inner), rugs, clutter)
     hang_curtains(room, tuple(inner), style.curtain)
     scatter(room, clutter, rng, steps)
     return frame, room, rugs

@@ -8,6 +8,7 @@ the yaw of furniture with its back to the wall, in quarter turns: 0 is at x = 0,
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,7 +21,17 @@ from world2minecraft.procgen.rooms.furniture_model import STEP_M, Colour, Model,
 
 TRIES = 40
 SQUARE_M = 0.1
-Rug = tuple[float, float, float, float, Colour]  # x0, y0, x1, y1 and the colour.
+
+
+class Rug(NamedTuple):
+    """A flat rug, as a rectangle that is turned about its middle."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+    colour: Colour
+    turn_deg: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -306,7 +317,7 @@ def rug_around(item: Item, front_m: float, aside_m: float, colour: Colour) -> Ru
     """Return a rug that extends beyond an item."""
     x0, y0, _, x1, y1, _ = item.box_m
     grow_x, grow_y = (front_m, aside_m) if round(item.yaw_deg) % 180 == 0 else (aside_m, front_m)
-    return (
+    return Rug(
         round_to_step(x0 - grow_x),
         round_to_step(y0 - grow_y),
         round_to_step(x1 + grow_x),

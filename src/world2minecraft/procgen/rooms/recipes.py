@@ -13,6 +13,7 @@ import numpy as np
 from world2minecraft.procgen.rooms import bathroom_fittings as washing
 from world2minecraft.procgen.rooms import children_and_hall_furniture as playing
 from world2minecraft.procgen.rooms import decor
+from world2minecraft.procgen.rooms import household_models as household
 from world2minecraft.procgen.rooms import seats_beds_tables as seating
 from world2minecraft.procgen.rooms import storage_furniture as storage
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
@@ -244,7 +245,7 @@ def furnish_study(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
         plan.add_upon(decor.crate((0.3, 0.36, 0.26), (184, 146, 102)), crate, 0.0, 0.02)
     pictures_over(plan, desk, 1.4, count=1)
     centre = (plan.size_m[0] / 2, plan.size_m[1] / 2)
-    return ((centre[0] - 0.8, centre[1] - 0.6, centre[0] + 0.8, centre[1] + 0.6, style.cloth),)
+    return (Rug(centre[0] - 0.8, centre[1] - 0.6, centre[0] + 0.8, centre[1] + 0.6, style.cloth),)
 
 
 def shuffled_walls(plan: Plan) -> tuple[int, ...]:
@@ -304,7 +305,7 @@ def furnish_hall(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     middle = plan.ground.walls[1].point(plan.size_m[0] / 2, plan.size_m[1] / 2)
     if plan.ground.blocks:
         return ()
-    return ((middle[0] - 0.8, middle[1] - 0.4, middle[0] + 0.8, middle[1] + 0.4, style.cloth),)
+    return (Rug(middle[0] - 0.8, middle[1] - 0.4, middle[0] + 0.8, middle[1] + 0.4, style.cloth),)
 
 
 def _gap_m(plan: Plan, item: Item, wall: int) -> float:
@@ -328,7 +329,7 @@ def furnish_office(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     places = []
     for wall in walls:
         if len(places) < 2:
-            place = _work_place(plan, style, wall)
+            place = place_desk(plan, style, wall)
             places += [place] if place else []
     if not places:
         return None
@@ -349,8 +350,8 @@ def furnish_office(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     return ()
 
 
-def _work_place(plan: Plan, style: Style, wall: int) -> Item | None:
-    """Place a desk with its chair, monitor and keyboard at a wall."""
+def place_desk(plan: Plan, style: Style, wall: int) -> Item | None:
+    """Place a desk with its chair, monitor and keyboard at a wall, if the desk fits."""
     model = seating.desk(plan.rng.uniform(1.4, 1.6), style.wood, WHITE)
     desk = plan.add_at_walls(model, (wall,), along=(0.5, 0.3, 0.7), clear_m=0.9)
     if desk is None:
@@ -394,7 +395,36 @@ def furnish_children(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
         chairs_around(plan, low, playing.stool(playing.bright_colour(rng)), ends=False)
     pictures_over(plan, bed, 1.3, count=1)
     x, y = plan.size_m[0] / 2, plan.size_m[1] / 2
-    return ((x - 0.9, y - 0.7, x + 0.9, y + 0.7, style.second_cloth),)
+    return (Rug(x - 0.9, y - 0.7, x + 0.9, y + 0.7, style.second_cloth),)
+
+
+def furnish_laundry(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
+    """Furnish a laundry with a washing machine beside a dryer, a sink, a shelf and racks.
+
+    Returns None if the machines or the sink do not fit.
+    """
+    rng = plan.rng
+    walls = shuffled_walls(plan)
+    washer, dryer = washing.washing_machine(), household.dryer()
+    first = plan.add_at_walls(washer, walls, along=(0.3, 0.0, 1.0), clear_m=0.6)
+    if first is None:
+        return None
+    aside = (washer.size_m[1] + dryer.size_m[1]) / 2
+    spots = [first.point(0.0, side * aside) for side in (1, -1)]
+    second = any(plan.add(snap_to_voxels(Item(dryer, x, y, 0.0, first.yaw_deg))) for x, y in spots)
+    sink = storage.counter(0.8, style.front, style.worktop, sink=True)
+    basin = plan.add_at_walls(sink, walls, along=(0.0, 1.0, 0.5), clear_m=0.6)
+    if not second or basin is None:
+        return None
+    plan.add_at_walls(household.utility_shelf(rng), walls, along=(0.0, 1.0), clear_m=0.3)
+    tall = storage.cabinet("cupboard", (0.4, 0.6, 1.9), 1, 2, WHITE, WHITE)
+    plan.add_at_walls(tall, walls, along=(0.0, 1.0), clear_m=0.3)
+    plan.add_at_walls(household.drying_rack(rng), walls, along=(0.5, 0.3, 0.7))
+    if plan.add_at_walls(household.ironing_board(style.cloth), walls, along=(0.5, 0.7)) is None:
+        plan.add_at_walls(household.folded_ironing_board(style.cloth), walls)
+    plan.add_in_corner(household.laundry_basket(rng))
+    plan.add_in_corner(decor.waste_bin((200, 202, 204)))
+    return ()
 
 
 @dataclass(frozen=True)
@@ -417,6 +447,7 @@ KINDS: dict[str, Kind] = {
     "hall": Kind((1.6, 2.1), (3.2, 4.8), "tiles", furnish_hall),
     "office": Kind((3.2, 4.0), (4.0, 5.2), "planks", furnish_office),
     "children": Kind((2.8, 3.4), (3.4, 4.4), "planks", furnish_children),
+    "laundry": Kind((2.3, 2.9), (3.1, 4.0), "tiles", furnish_laundry),
 }
 
 

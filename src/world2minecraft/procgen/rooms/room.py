@@ -8,8 +8,13 @@ from world2minecraft.core.errors import UnknownNameError, World2MinecraftError
 from world2minecraft.core.types import Layout, LayoutObject
 from world2minecraft.procgen.rooms import voxelization as voxels
 from world2minecraft.procgen.rooms.clutter import NARROW_BODY_M, WIDE_BODY_M, scatter
-from world2minecraft.procgen.rooms.colour_scheme import WHITE, choose_style
+from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style, choose_style
 from world2minecraft.procgen.rooms.floor_shapes import SHAPES, draw_shape, open_walls, shaped_ground
+from world2minecraft.procgen.rooms.full_furnishing import (
+    Completion,
+    check_furnishing,
+    furnish_fully,
+)
 from world2minecraft.procgen.rooms.openings import (
     Hole,
     choose_openings,
@@ -17,7 +22,7 @@ from world2minecraft.procgen.rooms.openings import (
     door_step_m,
     hang_curtains,
 )
-from world2minecraft.procgen.rooms.placement import Item, Plan, paths_are_clear
+from world2minecraft.procgen.rooms.placement import Item, Plan, Rug, paths_are_clear
 from world2minecraft.procgen.rooms.recipes import BASE_KINDS, KINDS, random_size
 
 ATTEMPTS = 80  # A recipe fits on its first tries as a rule; the worst of 500 seeds is far below.
@@ -75,7 +80,12 @@ class Room:
 
 
 def generate_room(
-    seed: int, *, kind: str | None = None, clutter: float = 0.0, shape: str | None = "box"
+    seed: int,
+    *,
+    kind: str | None = None,
+    clutter: float = 0.0,
+    shape: str | None = "box",
+    furnishing: str = "basic",
 ) -> Room:
     """Generate a room from a seed. The same arguments always give the same bytes.
 
@@ -84,9 +94,11 @@ def generate_room(
         kind: One of ``KINDS``. The default is a random kind from ``BASE_KINDS``.
         clutter: Amount of loose objects and displaced chairs, from 0 (tidy) to 1.
         shape: One of ``SHAPES``, or None for a random shape.
+        furnishing: ``basic`` for the main furniture, or ``full`` for all that people expect in a
+            room of its kind. Clutter in full rooms also sets furniture askew and hides parts of it.
 
     Raises:
-        UnknownNameError: If the kind or the shape is unknown.
+        UnknownNameError: If the kind, the shape or the furnishing is unknown.
         ValueError: If the seed or the clutter is out of range.
         World2MinecraftError: If no room can be furnished with this seed.
     """
@@ -100,11 +112,23 @@ def generate_room(
     shape = draw_shape(seed) if shape is None else shape
     if shape not in SHAPES:
         raise UnknownNameError("room shape", shape, SHAPES)
-    for attempt in range(ATTEMPTS):
-        room = _try_room(seed, kind, shape, clutter, np.random.default_rng([seed, attempt]))
-        if room is not None:
-            return room
-    raise World2MinecraftError(f"cannot generate a {kind} room from seed {seed}; try another seed")
+    check_furnishing(furnishing)
+    made = furnish_plan(seed, kind, shape, clutter, full=furnishing == "full")
+    if made is None:
+        raise World2MinecraftError(
+            f"cannot generate a {kind} room from seed {seed}; try another seed"
+        )
+    canvas = _paint(made)
+    return Room(
+        kind=kind,
+        seed=seed,
+        layouts=(made.layout(),),
+        labels=canvas.labels,
+        instance=canvas.instance,
+        colour=canvas.colour,
+        voxel_m=voxels.VOXEL_M,
+        origin_m=canvas.origin_m,
+    )
 
 
 def draw_kind(seed: int) -> str:
@@ -112,9 +136,40 @@ def draw_kind(seed: int) -> str:
     return sorted(BASE_KINDS)[int(np.random.default_rng(seed).integers(len(BASE_KINDS)))]
 
 
-def _try_room(
-    seed: int, kind: str, shape: str, clutter: float, rng: np.random.Generator
-) -> Room | None:
+@dataclass(frozen=True)
+class FurnishedPlan:
+    """A furnished room that is not yet voxelized, with its openings, rugs and items."""
+
+    kind: str
+    plan: Plan
+    style: Style
+    holes: tuple[Hole, ...]
+    rugs: tuple[Rug, ...]
+    items: list[Item]
+
+    def layout(self) -> Layout:
+        """Return the room as a layout."""
+        return room_layout(self.plan, self.holes, self.items, self.kind)
+
+
+def furnish_plan(
+    seed: int, kind: str, shape: str, clutter: float, *, full: bool
+) -> FurnishedPlan | None:
+    """Furnish a room without voxelizing it, with the arguments of ``generate_room``.
+
+    Returns None if all attempts fail.
+    """
+    for attempt in range(ATTEMPTS):
+        rng = np.random.default_rng([seed, attempt])
+        made = _try_plan(seed, kind, shape, clutter, rng, full=full)
+        if made is not None:
+            return made
+    return None
+
+
+def _try_plan(
+    seed: int, kind: str, shape: str, clutter: float, rng: np.random.Generator, *, full: bool
+) -> FurnishedPlan | None:
     recipe = KINDS[kind]
     plan = Plan(shaped_ground(shape, random_size(recipe, rng), rng), rng)
     style = choose_style(rng)
@@ -122,30 +177,32 @@ def _try_room(
     rugs = recipe.furnish(plan, style)
     # Box rooms keep the narrower way that old seeds were drawn with.
     body_m = NARROW_BODY_M if shape == "box" and kind in BASE_KINDS else WIDE_BODY_M
-    if rugs is None or not paths_are_clear(plan, door_step_m(plan, holes[0]), body_m=body_m):
+    doors = [door_step_m(plan, holes[0])]
+    if rugs is None or not paths_are_clear(plan, *doors, body_m=body_m):
         return None
-    hang_curtains(plan, holes, style.curtain)
-    scatter(plan, clutter, np.random.default_rng([seed, 1 << 21]), [door_step_m(plan, holes[0])])
+    if full:
+        room = Completion(plan, style, np.random.default_rng([seed, 1 << 22]), doors, body_m)
+        rugs = furnish_fully(room, kind, holes, rugs, clutter)
+    else:
+        hang_curtains(plan, holes, style.curtain)
+        scatter(plan, clutter, np.random.default_rng([seed, 1 << 21]), doors)
     items = [*plan.items, door_item(plan, holes[0], WHITE)]
+    return FurnishedPlan(kind, plan, style, holes, rugs, items)
+
+
+def _paint(made: FurnishedPlan) -> voxels.Canvas:
+    """Voxelize a furnished room."""
+    plan = made.plan
     canvas = voxels.Canvas(plan.size_m)
-    voxels.paint_shell(canvas, style, recipe.floor, rng)
-    voxels.paint_built(canvas, plan.ground, style)
-    for hole in holes:
+    voxels.paint_shell(canvas, made.style, KINDS[made.kind].floor, plan.rng)
+    voxels.paint_built(canvas, plan.ground, made.style)
+    for hole in made.holes:
         voxels.paint_hole(canvas, hole, plan.ground.walls[hole.wall])
-    for rug in rugs:
+    for rug in made.rugs:
         voxels.paint_rug(canvas, rug, (0.0, 0.0, *plan.size_m[:2]))
-    for number, item in enumerate(items, start=1):
-        voxels.paint_item(canvas, item, number, rng)
-    return Room(
-        kind=kind,
-        seed=seed,
-        layouts=(room_layout(plan, holes, items, kind),),
-        labels=canvas.labels,
-        instance=canvas.instance,
-        colour=canvas.colour,
-        voxel_m=voxels.VOXEL_M,
-        origin_m=canvas.origin_m,
-    )
+    for number, item in enumerate(made.items, start=1):
+        voxels.paint_item(canvas, item, number, plan.rng)
+    return canvas
 
 
 def room_layout(plan: Plan, holes: tuple[Hole, ...], items: list[Item], name: str = "") -> Layout:

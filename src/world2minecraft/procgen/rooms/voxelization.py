@@ -141,7 +141,10 @@ def paint_rug(canvas: Canvas, rug: Rug, within: Rect, floor_z_m: float = 0.0) ->
 
     The voxels keep the class floor.
     """
-    x0, y0, x1, y1, colour = rug
+    x0, y0, x1, y1, colour, turn_deg = rug
+    if turn_deg:
+        _paint_turned_rug(canvas, rug, within, floor_z_m)
+        return
     low = (max(x0, within[0] + 0.1), max(y0, within[1] + 0.1))
     high = (min(x1, within[2] - 0.1), min(y1, within[3] - 0.1))
     a, b, c = canvas.cells((*low, floor_z_m - VOXEL_M, *high, floor_z_m))
@@ -149,6 +152,22 @@ def paint_rug(canvas: Canvas, rug: Rug, within: Rect, floor_z_m: float = 0.0) ->
     canvas.colour[a, b, c] = colour
     canvas.colour[a.start + 4 : a.stop - 4, b.start + 4 : b.stop - 4, c] = light
     canvas.colour[a.start + 6 : a.stop - 6, b.start + 6 : b.stop - 6, c] = shade(colour, 1.05)
+
+
+def _paint_turned_rug(canvas: Canvas, rug: Rug, within: Rect, floor_z_m: float) -> None:
+    """Colour the floor under a rug that is not parallel to the walls."""
+    x, y = canvas.middles_m()
+    angle = np.radians(rug.turn_deg)
+    dx, dy = x - (rug.x0 + rug.x1) / 2, y - (rug.y0 + rug.y1) / 2
+    along = np.abs(dx * np.cos(angle) + dy * np.sin(angle))
+    across = np.abs(dy * np.cos(angle) - dx * np.sin(angle))
+    inside = np.minimum((rug.x1 - rug.x0) / 2 - along, (rug.y1 - rug.y0) / 2 - across)
+    held = (x > within[0] + 0.1) & (x < within[2] - 0.1)
+    held = held & (y > within[1] + 0.1) & (y < within[3] - 0.1)
+    level = round(floor_z_m / VOXEL_M) + SHELL - 1
+    held &= canvas.labels[:, :, level] == int(SemanticClass.FLOOR)
+    for rim_m, factor in ((0.0, 1.0), (0.08, 1.25), (0.12, 1.05)):
+        canvas.colour[held & (inside > rim_m), level] = shade(rug.colour, factor)
 
 
 def paint_item(canvas: Canvas, item: Item, instance: int, rng: np.random.Generator) -> None:
