@@ -21,6 +21,7 @@ def generate_room(
     seed: int = 0,
     shape: str | None = "box",
     clutter: float = 0.0,
+    furnishing: str = "basic",
     out: str | Path | None = None,
 ) -> "GeneratedRoom":
     """Generate a furnished room with exact ground truth. The same seed gives the same room.
@@ -32,6 +33,8 @@ def generate_room(
         shape: Floor shape: ``box``, ``ell``, ``cut``, ``sloped`` or ``columns``. None selects a
             random shape.
         clutter: Amount of clutter from 0 (tidy) to 1.
+        furnishing: ``basic`` for the main furniture, or ``full`` for all that people expect in a
+            room of its kind, such as radiators, lamps, mirrors and shelves.
         out: Folder to write ``layout.json``, ``truth.npz`` and ``preview.png`` to. None writes no
             files.
 
@@ -52,7 +55,7 @@ def generate_room(
     from world2minecraft.procgen import generate_room as generate
 
     try:
-        made = generate(seed, kind=kind, clutter=clutter, shape=shape)
+        made = generate(seed, kind=kind, clutter=clutter, shape=shape, furnishing=furnishing)
     except ValueError as error:
         raise UsageError(str(error)) from error
     return made if out is None else save_room(made, out)
@@ -64,6 +67,7 @@ def generate_house(
     rooms: int = 5,
     storeys: int = 1,
     clutter: float = 0.0,
+    furnishing: str = "basic",
     out: str | Path | None = None,
 ) -> "GeneratedRoom":
     """Generate a house of several furnished rooms. The same seed gives the same house.
@@ -73,6 +77,8 @@ def generate_house(
         rooms: Number of rooms including halls, 3 to 14.
         storeys: Number of storeys, 1 or 2.
         clutter: Amount of clutter from 0 (tidy) to 1.
+        furnishing: ``basic`` for the main furniture, or ``full`` for all that people expect in its
+            rooms, such as radiators, lamps, mirrors and shelves.
         out: Folder to write the house to. None writes no files.
 
     Raises:
@@ -87,7 +93,7 @@ def generate_house(
     from world2minecraft.procgen import generate_house as generate
 
     try:
-        made = generate(seed, rooms=rooms, storeys=storeys, clutter=clutter)
+        made = generate(seed, rooms=rooms, storeys=storeys, clutter=clutter, furnishing=furnishing)
     except ValueError as error:
         raise UsageError(str(error)) from error
     return made if out is None else save_room(made, out)

@@ -1,7 +1,7 @@
 """Generate a furnished room, a house, or houses as worlds: ``w2m rooms generate``."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,6 +14,7 @@ EXAMPLES = """\
 w2m rooms generate --seed 7 -o my_room                   a room
 w2m rooms generate --seed 7 --kind bathroom --shape ell  an L-shaped bathroom
 w2m rooms generate --seed 7 --clutter 0.8                an untidy room
+w2m rooms generate --kind laundry --furnishing full      a room with all that belongs to it
 w2m rooms generate --house --rooms 12 --storeys 2        a house with stairs
 w2m rooms generate --houses 40 --seed 1 --worlds WORLDS  40 houses as Minecraft worlds
 """
@@ -53,6 +54,9 @@ def run(
     clutter: Annotated[
         float, typer.Option("--clutter", help="Amount of clutter, 0 (tidy) to 1.")
     ] = 0.0,
+    furnishing: Annotated[
+        str, typer.Option("--furnishing", help="basic, or full: all that people expect in a room.")
+    ] = "basic",
     out: Annotated[Path, typer.Option("--out", "-o", help="Output folder.")] = Path("my_room"),
     houses: Annotated[
         int | None, typer.Option("--houses", help="Generate this many houses as Minecraft worlds.")
@@ -77,22 +81,24 @@ def run(
             raise UsageError(
                 "--houses cannot be combined with --kind, --shape, --house, --rooms or --storeys"
             )
+        if furnishing != "basic":
+            raise UsageError("--houses cannot be combined with --furnishing; omit it")
         _write_worlds(houses, seed, worlds, style)
         return
     if house and (kind is not None or shape != "box"):
         raise UsageError("--kind and --shape apply to a single room; omit them or --house")
     if not house and (rooms is not None or storeys is not None):
         raise UsageError("--rooms and --storeys apply to a house; add --house")
-    _write_room(out, seed, kind, shape, (rooms, storeys) if house else None, clutter)
+    look = {"seed": seed, "clutter": clutter, "furnishing": furnishing}
+    _write_room(out, kind, shape, (rooms, storeys) if house else None, look)
 
 
 def _write_room(
     out: Path,
-    seed: int,
     kind: str | None,
     shape: str,
     house: tuple[int | None, int | None] | None,
-    clutter: float,
+    look: dict[str, Any],
 ) -> None:
     from world2minecraft.api import generate_house, generate_room
     from world2minecraft.api.generation import save_room
@@ -104,14 +110,13 @@ def _write_room(
         progress("room", 0, 1)
         if house is None:
             drawn = None if shape == "any" else shape
-            made = generate_room(kind, seed=seed, shape=drawn, clutter=clutter)
+            made = generate_room(kind, shape=drawn, **look)
         else:
             rooms, storeys = house
             made = generate_house(
-                seed=seed,
                 rooms=DEFAULT_ROOMS if rooms is None else rooms,
                 storeys=DEFAULT_STOREYS if storeys is None else storeys,
-                clutter=clutter,
+                **look,
             )
         progress("room", 1, 1, f"{len(made.layouts)} rooms, {len(made.objects)} objects")
         save_room(made, out, progress)
