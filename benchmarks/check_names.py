@@ -1,6 +1,7 @@
 """Fine names of the objects of generated rooms of eight kinds, scanned with noise.
 
-``python -m benchmarks.check_names --keep DIR [--seeds 2] [--kinds bathroom ...] [--json FILE]``
+``python -m benchmarks.check_names --keep DIR [--seeds 2] [--kinds bathroom ...]
+[--furnishing full] [--json FILE]``
 
 Each room is scanned without label images and reconstructed with the votes of the segmentation
 network. Printed are, for each room, precision, recall and F1 of the names;
@@ -26,6 +27,7 @@ from world2minecraft.evaluation.scoring.used_frames import truth_of_run, used_fr
 from world2minecraft.formats.objects_and_placements import read_objects, read_placements
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.procgen import generate_room, scan_room
+from world2minecraft.procgen.rooms.full_furnishing import FURNISHINGS
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
 
@@ -37,11 +39,11 @@ FITTINGS = {
 }
 
 
-def scored(folder: Path, kind: str, seed: int) -> dict[str, Any]:
+def scored(folder: Path, kind: str, seed: int, furnishing: str) -> dict[str, Any]:
     """Scan and reconstruct a room if that was not done before, and return its figures."""
     capture, out, facts = folder / "capture", folder / "run", folder / "facts.json"
     if not (capture / "truth.json").is_file():
-        room = generate_room(seed, kind=kind, clutter=0.4)
+        room = generate_room(seed, kind=kind, clutter=0.4, furnishing=furnishing)
         scan_room(room, capture, seed=seed)
     if not facts.is_file():
         reconstruct(capture, out, Parameters())
@@ -87,12 +89,15 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, required=True, metavar="DIR")
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--kinds", nargs="+", default=list(ROOMS), choices=ROOMS)
+    parser.add_argument("--furnishing", default="basic", choices=FURNISHINGS)
     parser.add_argument("--json", type=Path)
     chosen = parser.parse_args()
     rows = []
     for kind in chosen.kinds:
         for seed in range(FIRST_SEED, FIRST_SEED + chosen.seeds):
-            row = scored(chosen.keep / f"{kind}-{seed}", kind, seed)
+            mark = "" if chosen.furnishing == "basic" else f"-{chosen.furnishing}"
+            folder = chosen.keep / f"{kind}-{seed}{mark}"
+            row = scored(folder, kind, seed, chosen.furnishing)
             rows.append(row)
             figures = " ".join(f"{row[name]:.3f}" for name in ("precision", "recall", "f1"))
             print(f"{kind} {seed}: {figures}, {row['matched']} of {row['true']}", flush=True)

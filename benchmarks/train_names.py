@@ -1,6 +1,7 @@
 """Train the model that gives objects fine names, on the objects of generated rooms.
 
-``python -m benchmarks.train_names --out object_names.npz [--rooms 400] [--steps 3000]``
+``python -m benchmarks.train_names --out object_names.npz [--rooms 400] [--steps 3000]
+[--furnishing basic full]``
 
 Boxes get the errors of scans: cells, hidden backs, wrong classes. Votes are those of a segmentation
 network with errors: mostly for the true NYU40 class, else for similar ones, or missing. Printed are
@@ -9,6 +10,7 @@ votes.
 """
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,7 +24,8 @@ from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import LayoutObject
 from world2minecraft.core.vocabulary import ThingName, nyu40_classes, nyu40_names, read_vocabulary
 from world2minecraft.procgen import generate_room
-from world2minecraft.procgen.rooms.recipes import KINDS
+from world2minecraft.procgen.rooms.full_furnishing import FURNISHINGS
+from world2minecraft.procgen.rooms.recipes import KINDS, TRAINING_KINDS
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.reconstruction.naming.name_model import FEATURES, features_of
 from world2minecraft.reconstruction.naming.object_traits import traits_of
@@ -88,15 +91,21 @@ def examples(room: Room, rng: np.random.Generator) -> tuple[np.ndarray, list[str
     return np.concatenate(rows), names
 
 
-def make_set(first: int, count: int, copies: int) -> tuple[np.ndarray, list[str]]:
-    """Return the examples of rooms of all kinds."""
-    kinds = list(KINDS)
+def make_set(
+    first: int, count: int, copies: int, furnishings: Sequence[str] = ("basic",)
+) -> tuple[np.ndarray, list[str]]:
+    """Return the examples of rooms of all kinds, with the furnishings in turn."""
+    kinds = tuple(KINDS) if "full" in furnishings else TRAINING_KINDS
     rows, names = [], []
     for seed in range(first, first + count):
         rng = np.random.default_rng([seed, 21])
         try:
             room = generate_room(
-                seed, kind=kinds[seed % len(kinds)], clutter=float(rng.random()), shape=None
+                seed,
+                kind=kinds[seed % len(kinds)],
+                clutter=float(rng.random()),
+                shape=None,
+                furnishing=furnishings[seed // len(kinds) % len(furnishings)],
             )
         except World2MinecraftError:
             continue
@@ -160,13 +169,14 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--rooms", type=int, default=400)
     parser.add_argument("--steps", type=int, default=3000)
+    parser.add_argument("--furnishing", nargs="+", default=["basic"], choices=FURNISHINGS)
     chosen = parser.parse_args()
     torch.set_num_threads(1)
-    rows, names = make_set(FIRST_SEED, chosen.rooms, COPIES)
+    rows, names = make_set(FIRST_SEED, chosen.rooms, COPIES, chosen.furnishing)
     known = sorted(set(names))
     targets = np.array([known.index(name) for name in names])
     arrays, network = train(rows, targets, len(known), chosen.steps)
-    held, held_names = make_set(HELD_OUT_SEED, HELD_OUT, 2)
+    held, held_names = make_set(HELD_OUT_SEED, HELD_OUT, 2, chosen.furnishing)
     with torch.no_grad():
         inputs = torch.from_numpy((held - arrays["mean"]) / arrays["scale"])
         chance = network(inputs).softmax(dim=1).numpy()

@@ -31,6 +31,7 @@ def test_a_room_is_written_and_can_be_read_back(tmp_path, capsys):
         (["--house", "--rooms", "2"], "rooms must be from 3 to 14 on 1 storey, got 2"),
         (["--house", "--storeys", "0"], "storeys must be 1 or 2, got 0"),
         (["--seed", "-1"], "seed must be 0 or more, got -1"),
+        (["--furnishing", "fll"], "no furnishing is named 'fll'; did you mean 'full'?"),
         (["--clutter", "2"], "clutter must be from 0 to 1, got 2.0"),
     ],
 )
@@ -55,6 +56,7 @@ def test_houses_become_worlds(tmp_path, capsys):
     ("words", "message"),
     [
         (["--houses", "2"], "--houses N and --worlds DIR must be used together"),
+        (["--houses", "1", "--worlds", "W", "--furnishing", "full"], "--furnishing; omit it"),
         (["--houses", "0", "--worlds", "W"], "houses must be 1 or more, got 0"),
         (
             ["--houses", "1", "--worlds", "W", "--rooms", "5"],

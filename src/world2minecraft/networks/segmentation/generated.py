@@ -21,7 +21,7 @@ from world2minecraft.networks.segmentation.frames import (
     LabelledFrame,
     labelled_frame,
 )
-from world2minecraft.procgen.rooms.recipes import KINDS
+from world2minecraft.procgen.rooms.recipes import TRAINING_KINDS
 from world2minecraft.procgen.rooms.room import Room, generate_room
 from world2minecraft.procgen.sensors.photo_rendering import (
     Photo,
@@ -125,7 +125,7 @@ def generate_frames(
         seeds: Seed of each room. The same seed gives the same frames.
         per_room: Number of frames of each room.
     """
-    kinds = list(KINDS)
+    kinds = TRAINING_KINDS
     camera = NYU_CAMERA.scaled_to(*SIZE_PX)
     for seed in seeds:
         rng = np.random.default_rng([seed, 40])
