@@ -17,7 +17,12 @@ RUG_RUN = (
     25  # Voxels: boards are 7 wide and tiles 20, so what is of one colour for longer is a rug.
 )
 TALL_M = 0.9  # The grain of a cupboard runs upwards, that of a table lengthwise.
-CLOTH_NAMES = frozenset(("curtain", "coats", "armchair", "sofa", "bed", "office_chair", "chair"))
+CLOTH_NAMES = frozenset(
+    (
+        "curtain", "coats", "armchair", "sofa", "bed", "office_chair", "chair", "ottoman",
+        "single_bed", "bunk_bed", "shower_curtain", "coat_stand",
+    )
+)  # fmt: skip
 TEXT_NAMES = frozenset(("books", "bookshelf", "box", "monitor", "microwave", "toy_shelf"))
 STONE_NAMES = frozenset(("counter", "sink_counter", "washstand"))
 
@@ -104,9 +109,11 @@ def _rugs(room: Room) -> np.ndarray:
         same = (low == ndimage.maximum_filter1d(tone, RUG_RUN, axis=1, mode="constant")) & (low > 0)
         same = ndimage.maximum_filter1d(same, RUG_RUN, axis=1, mode="constant")
         parts, _ = label_components(same, corners=False)
-        for box in ndimage.find_objects(parts):
+        for number, box in enumerate(ndimage.find_objects(parts), start=1):
             if box[0].stop - box[0].start >= RUG_RUN:
-                rugs[:, :, z][box] = floor[:, :, z][box]
+                # A turned rug does not fill its box.
+                own = np.isin(tone[box], np.unique(tone[box][parts[box] == number]))
+                rugs[:, :, z][box] |= floor[:, :, z][box] & own
     return rugs
 
 
