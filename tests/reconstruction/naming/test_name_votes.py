@@ -10,6 +10,7 @@ from tests.reconstruction.instances.test_instances import grid_of
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_npz
+from world2minecraft.core.vocabulary import label_id_of
 from world2minecraft.reconstruction.naming.name_votes import (
     CUBE_M,
     NameVoteMap,
@@ -46,6 +47,17 @@ def test_each_pixel_votes_once_in_the_cube_of_its_point(seed, count):
     assert {tuple(cube) for cube in found.cubes.tolist()} == set(wanted)
     for cube, row in zip(found.cubes.tolist(), found.votes, strict=True):
         assert np.allclose(row, wanted[tuple(cube)], atol=1e-5)
+
+
+def test_labels_vote_beside_a_network():
+    votes, toilet = NameVoteMap(), label_id_of("toilet")
+    points = np.array([[0.01, 0.01, 0.01], [0.02, 0.01, 0.01], [0.5, 0.5, 0.5]])
+    votes.add(points, np.array([0, 1, 2]), np.eye(40)[[3, 3, 3]])
+    votes.add_labels(points, np.array([0, 0, 1]), np.array([toilet, 0], np.uint16))
+    found = votes.votes()
+    row = found.votes[(found.cubes == 0).all(axis=1)][0]
+    assert row[3] == 2 and row[toilet - 1] == 1 and row.sum() == 3
+    assert found.votes.sum() == 4, "label 0 does not vote"
 
 
 def test_no_view_is_no_vote():
