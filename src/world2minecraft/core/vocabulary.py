@@ -250,6 +250,13 @@ def label_id_classes() -> np.ndarray:
     return classes
 
 
+@cache
+def label_id_nyu40() -> np.ndarray:
+    """Return the NYU40 class of each label id from 1, 1 to 40, as int64 [N]."""
+    names = [entry.nyu40 for entry in read_vocabulary().names.values()]
+    return np.array([*range(1, FIRST_NAME_ID), *names])
+
+
 def label_id_of(label: str, vocabulary: Vocabulary | None = None) -> int | None:
     """Return the label id of a text, 0 if it votes for nothing, or None if it is unknown.
 

@@ -19,7 +19,6 @@ from world2minecraft.reconstruction.naming.name_model import (
     FEATURES,
     MIN_CONFIDENCE,
     NameModel,
-    ObjectTraits,
     features_of,
     name_objects,
     read_name_model,
@@ -159,11 +158,3 @@ def test_votes_for_names_decide_among_them():
     votes[1, label_id_of("oven") - 1] = 9
     (first, sure), (second, _) = name_instances(items, (ROOM,), votes)
     assert (first, second) == ("washing machine", "oven") and sure == pytest.approx(1)
-
-
-def test_votes_for_a_name_support_its_class():
-    votes = np.zeros(len(label_id_names()) - 1)
-    votes[label_id_of("armchair") - 1], votes[nyu40_names()["bed"] - 1] = 0.7, 0.3
-    traits = ObjectTraits(CHAIR, (0.8, 0.8, 0.9), 0, 1, 1, votes)
-    assert traits.class_votes[nyu40_names()["chair"] - 1] == pytest.approx(0.7)
-    assert traits.class_votes.sum() == pytest.approx(1)

@@ -15,7 +15,8 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES
 from world2minecraft.core.files import read_npz
-from world2minecraft.core.vocabulary import OTHER_NYU40, read_vocabulary
+from world2minecraft.core.vocabulary import label_id_nyu40, read_vocabulary
+from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT, class_votes
 
 WEIGHTS = Path(__file__).parents[2] / "weights" / "object_names.npz"
 MIN_CONFIDENCE = 0.5
@@ -37,14 +38,6 @@ class ObjectTraits:
             float [K] with all names after them; zeros without votes.
     """
 
-    @property
-    def class_votes(self) -> np.ndarray:
-        """Shares of the NYU40 classes, with the votes for names added to their classes."""
-        classes = self.votes[:OTHER_NYU40].copy()
-        if len(self.votes) > OTHER_NYU40:
-            np.add.at(classes, name_nyu40() - 1, self.votes[OTHER_NYU40:])
-        return classes
-
     class_id: int
     size_m: tuple[float, float, float]
     bottom_m: float
@@ -58,7 +51,7 @@ def features_of(objects: Sequence[ObjectTraits]) -> np.ndarray:
     count = len(objects)
     if not count:
         return np.zeros((0, FEATURES), np.float32)
-    votes = np.stack([item.class_votes for item in objects]).astype(np.float32)
+    votes = np.stack([class_votes(item.votes) for item in objects]).astype(np.float32)
     rows = []
     for number, item in enumerate(objects):
         side, across = sorted(item.size_m[:2])
@@ -133,24 +126,18 @@ def name_objects(
     that of the best name.
     """
     chosen = model or read_name_model()
-    names, nyu40 = tuple(read_vocabulary().names), name_nyu40() - 1
+    names, nyu40 = tuple(read_vocabulary().names), label_id_nyu40()[NYU40_COUNT:] - 1
     order = [names.index(name) for name in chosen.names]
     chance = np.zeros((len(objects), len(names)), np.float32)
     chance[:, order] = chosen.probabilities(features_of(objects))
     result = []
     for item, row in zip(objects, chance, strict=True):
-        within = np.bincount(nyu40, row, OTHER_NYU40)[nyu40]
+        within = np.bincount(nyu40, row, NYU40_COUNT)[nyu40]
         shares = item.votes[nyu40] * row / np.maximum(within, SMALLEST_CHANCE)
-        if len(item.votes) > OTHER_NYU40:
-            shares += item.votes[OTHER_NYU40:]
+        if len(item.votes) > NYU40_COUNT:
+            shares += item.votes[NYU40_COUNT:]
         best = int(shares.argmax()) if item.votes.any() else int(row.argmax())
         sure = shares[best] >= MIN_CONFIDENCE
         name = names[best] if sure else CLASS_DISPLAY_NAMES[item.class_id]
         result.append((name, float(shares[best] if item.votes.any() else row[best])))
     return result
-
-
-@cache
-def name_nyu40() -> np.ndarray:
-    """Return the NYU40 class of each name of the vocabulary, 1 to 40, int64 [names]."""
-    return np.array([entry.nyu40 for entry in read_vocabulary().names.values()])

@@ -14,7 +14,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_npz, write_npz
 from world2minecraft.core.types import OccupancyGrid, checks
-from world2minecraft.core.vocabulary import label_id_names
+from world2minecraft.core.vocabulary import label_id_names, label_id_nyu40
 
 NAME_VOTES = "names.npz"  # In the folder of a run.
 CUBE_M = 0.08  # Of votes, whatever the cells of the grid.
@@ -120,12 +120,28 @@ def votes_of_objects(votes: NameVotes, grid: OccupancyGrid, count: int) -> np.nd
         count: Number of objects.
     """
     result = np.zeros((count + 1, votes.votes.shape[1]), np.float32)
+    cells, rows = votes_of_cells(votes, grid)
+    np.add.at(result, np.minimum(grid.instance[tuple(cells.T)], count), rows)
+    return result
+
+
+def votes_of_cells(votes: NameVotes, grid: OccupancyGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells of a grid at which there are votes, int64 [N, 3], and the votes [N, K]."""
     middles_m = (votes.cubes + 0.5) * CUBE_M
     cells = np.floor((middles_m - grid.origin_m) / grid.voxel_m).astype(np.int64)
     inside = ((cells >= 0) & (cells < grid.shape)).all(axis=1)
-    owners = grid.instance[tuple(cells[inside].T)]
-    np.add.at(result, np.minimum(owners, count), votes.votes[inside])
-    return result
+    return cells[inside], votes.votes[inside]
+
+
+def class_votes(votes: np.ndarray) -> np.ndarray:
+    """Return votes for the label ids from 1, float [..., K], as votes for NYU40 classes [..., 40].
+
+    Votes for a name count for its class.
+    """
+    classes = votes[..., :NYU40_COUNT].copy()
+    for number, nyu40 in enumerate(label_id_nyu40()[NYU40_COUNT : votes.shape[-1]], NYU40_COUNT):
+        classes[..., nyu40 - 1] += votes[..., number]
+    return classes
 
 
 def write_name_votes(path: Path, votes: NameVotes) -> None:
