@@ -1,6 +1,7 @@
 """Folders of label images: the classes that ``labels.json`` states."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, View
+from world2minecraft.core.vocabulary import label_id_names, label_id_of
 
 IDS = np.array([[0, 1, 2, 5], [14, 22, 32, 40]], np.uint8).repeat(24, 0).repeat(16, 1)
 
@@ -53,5 +55,61 @@ def test_without_a_statement_ids_are_classes(capture):
 @pytest.mark.parametrize("stated", [{"classes": "ade20k"}, ["nyu40"], {"classes": [1]}])
 def test_unknown_classes_are_refused(stated, capture):
     (capture / "labels" / "labels.json").write_text(json.dumps(stated))
-    with pytest.raises(CaptureError, match='must state the "classes" nyu12 or nyu40, got'):
+    with pytest.raises(
+        CaptureError, match='must state the "classes" nyu12 or nyu40, or the name of each id'
+    ):
+        labels_of(capture)
+
+
+def view_of(folder, labels=True):
+    judged = validate_capture(folder / "cap", ScanOptions(), folder / "labels" if labels else None)
+    return read_view(judged.frames[0], judged.encoding)
+
+
+NAMED = {"0": "sky", "1": "wall", "2": "floor", "5": "armchair", "14": "desk", "22": "gizmo",
+         "32": "toilet", "300": "lamp"}  # fmt: skip
+
+
+def test_named_ids_become_classes_and_names(capture):
+    (capture / "labels" / "labels.json").write_text(json.dumps({"classes": NAMED}))
+    ids = IDS.astype(np.uint16)
+    ids[ids == 40] = 300
+    Image.fromarray(ids).save(capture / "labels" / "0.png")
+    found = view_of(capture)
+    assert found.labels is not None and found.label_ids is not None
+    names = [[label_id_names()[n] for n in row] for row in found.label_ids[::24, ::16]]
+    assert names == [["", "wall", "floor", "armchair"], ["desk", "", "toilet", "lamp"]]
+    assert found.labels[::24, ::16].tolist() == [[255, 3, 2, 5], [8, 255, 11, 11]]
+
+
+def test_labels_in_the_capture_are_named_too(capture):
+    shutil.copytree(capture / "labels", capture / "cap" / "labels")
+    facts = capture / "cap" / "labels" / "labels.json"
+    facts.write_text(json.dumps({"classes": NAMED}))
+    found = view_of(capture, labels=False)
+    assert found.label_ids is not None and "toilet" in label_id_names()[found.label_ids.max()]
+
+
+def test_written_label_ids_come_back(tmp_path):
+    camera = Camera(64, 48, 50.0, 50.0, 32.0, 24.0)
+    ids = np.full((48, 64), label_id_of("washing machine"), np.uint16)
+    ids[:, :9] = 0
+    image = np.zeros((48, 64, 3), np.uint8)
+    write_plain(tmp_path / "cap", [View("0", np.eye(4), image, camera, label_ids=ids)])
+    found = view_of(tmp_path, labels=False)
+    assert found.label_ids is not None and (found.label_ids == ids).all()
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        ({"a": "wall"}, "ids from 0 to 65535 as keys, got 'a'"),
+        ({"70000": "wall"}, "ids from 0 to 65535 as keys, got '70000'"),
+        ({"1": 3}, "must state a name for the id 1, got '3'"),
+        ({"1": "gizmo", "2": "sky"}, "names no label that is known"),
+    ],
+)
+def test_wrong_names_of_ids_are_refused(names, said, capture):
+    (capture / "labels" / "labels.json").write_text(json.dumps({"classes": names}))
+    with pytest.raises(CaptureError, match=said):
         labels_of(capture)

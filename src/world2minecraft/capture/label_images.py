@@ -1,7 +1,8 @@
-"""Label images in a separate folder: ``FOLDER/NAME.png`` with one 8-bit class id per pixel.
+"""Label images in a folder: ``FOLDER/NAME.png`` with one id per pixel.
 
-A file ``labels.json`` in the folder can state that the values are NYU40 ids, as
-``{"classes": "nyu40"}``. ``w2m segment`` writes such folders.
+The ids are those of the twelve classes. A file ``labels.json`` in the folder can state other ids:
+NYU40, as ``{"classes": "nyu40"}``, which ``w2m segment`` writes, or ids of one's own with their
+names, as ``{"classes": {"1": "wall", "65": "toilet"}}``, which may have 16 bits.
 """
 
 from collections.abc import Sequence
@@ -11,14 +12,17 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.capture.images import ImagePlace, read_header, read_raw
-from world2minecraft.capture.readers.datasets.nyu40_labels import MappedLabels
+from world2minecraft.capture.readers.datasets.nyu40_labels import (
+    FACTS_FILE,
+    NYU40,
+    Reading,
+    label_reading,
+)
 from world2minecraft.capture.source_types import FrameFiles
+from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import CaptureError
-from world2minecraft.core.files import read_json, write_json
-
-FACTS_FILE = "labels.json"
-NYU12, NYU40 = "nyu12", "nyu40"
-MAX_FACTS_BYTES = 1 << 20
+from world2minecraft.core.files import write_json
+from world2minecraft.core.vocabulary import label_id_classes
 
 
 def attach_labels(frames: Sequence[FrameFiles], folder: Path) -> tuple[FrameFiles, ...]:
@@ -32,9 +36,9 @@ def attach_labels(frames: Sequence[FrameFiles], folder: Path) -> tuple[FrameFile
         raise CaptureError(
             folder, "is not a folder of label images; give a folder with NAME.png for each frame"
         )
-    nyu40 = _holds_nyu40(folder)
+    reading = label_reading(folder)
     labelled = tuple(
-        replace(frame, labels_path=_label_of(frame, folder, nyu40)) for frame in frames
+        replace(frame, labels_path=_label_of(frame, folder, reading)) for frame in frames
     )
     if not any(frame.labels_path for frame in labelled):
         raise CaptureError(
@@ -43,13 +47,11 @@ def attach_labels(frames: Sequence[FrameFiles], folder: Path) -> tuple[FrameFile
     return labelled
 
 
-def _label_of(frame: FrameFiles, folder: Path, nyu40: bool) -> ImagePlace | None:
+def _label_of(frame: FrameFiles, folder: Path, reading: Reading) -> ImagePlace | None:
     names = [frame.name] if frame.colour_path is None else [frame.name, frame.colour_path.stem]
     found = (folder / f"{name}.png" for name in names)
     path = next((path for path in found if path.is_file()), None)
-    if path is None:
-        return frame.labels_path
-    return MappedLabels(path, None) if nyu40 else path
+    return frame.labels_path if path is None else reading(path)
 
 
 def write_label_facts(folder: Path, network: str) -> None:
@@ -63,25 +65,6 @@ def write_label_facts(folder: Path, network: str) -> None:
         OutputError: If the file cannot be written.
     """
     write_json(folder / FACTS_FILE, {"classes": NYU40, "network": network, "unknown": 0})
-
-
-def _holds_nyu40(folder: Path) -> bool:
-    """Return whether the label images of a folder contain NYU40 ids.
-
-    Raises:
-        CaptureError: If ``labels.json`` states unknown classes.
-        InputError: If ``labels.json`` is not a JSON file.
-    """
-    path = folder / FACTS_FILE
-    if not path.is_file():
-        return False
-    stated = read_json(path, MAX_FACTS_BYTES)
-    classes = stated.get("classes", NYU12) if isinstance(stated, dict) else None
-    if classes not in (NYU12, NYU40):
-        raise CaptureError(
-            path, f'must state the "classes" {NYU12} or {NYU40}, got {str(classes)[:40]!r}'
-        )
-    return classes == NYU40
 
 
 def check_labels(frames: Sequence[FrameFiles]) -> None:
@@ -102,12 +85,14 @@ def check_labels(frames: Sequence[FrameFiles]) -> None:
                 frame.labels_path, f"label image does not match the colour image: {error}"
             ) from error
         labels = read_raw(frame.labels_path)
+        if getattr(frame.labels_path, "holds_label_ids", False):
+            labels = label_id_classes()[labels]
         if labels.dtype != np.uint8 or labels.ndim != 2:
             given = f"{labels.dtype} {labels.shape}"
             raise CaptureError(
                 frame.labels_path, f"must be a single-channel image of 8-bit class ids, got {given}"
             )
-        wrong = labels[(labels > 11) & (labels != 255)]
+        wrong = labels[(labels > 11) & (labels != UNKNOWN)]
         if len(wrong):
             raise CaptureError(
                 frame.labels_path,

@@ -10,6 +10,7 @@ from world2minecraft.capture.images import read_colour, read_raw
 from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Scan, View
+from world2minecraft.core.vocabulary import label_id_classes
 
 
 @dataclass(eq=False, repr=False)
@@ -85,6 +86,7 @@ def read_view(frame: FrameFiles, encoding: DepthEncoding, full_trust: float = 25
     trust = _read_trust(frame, depth, full_trust)
     if depth is not None and trust is not None:
         depth = np.where(trust > 0, depth, np.float32(0))
+    labels, label_ids = _read_labels(frame, colour)
     try:
         return View(
             frame.name,
@@ -94,25 +96,31 @@ def read_view(frame: FrameFiles, encoding: DepthEncoding, full_trust: float = 25
             depth,
             frame.depth_camera,
             frame.depth_to_colour,
-            _read_labels(frame, colour),
+            labels,
             trust,
+            label_ids,
         )
     except ValueError as error:
         path = frame.colour_path or frame.depth_path or frame.name
         raise DamagedFileError(path, str(error)) from error
 
 
-def _read_labels(frame: FrameFiles, colour: np.ndarray | None) -> np.ndarray | None:
-    """Return the label image of a frame, resampled to the colour image by nearest neighbour."""
+def _read_labels(
+    frame: FrameFiles, colour: np.ndarray | None
+) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Return the classes and the label ids of a frame, resampled to the colour image."""
     if frame.labels_path is None or colour is None:
-        return None
+        return None, None
     labels = read_raw(frame.labels_path)
+    if getattr(frame.labels_path, "holds_label_ids", False):
+        label_ids = _resize_nearest(labels, colour.shape[:2])
+        return label_id_classes()[label_ids], label_ids
     if labels.dtype != np.uint8 or labels.ndim != 2:
         given = f"{labels.dtype} {labels.shape}"
         raise DamagedFileError(
             frame.labels_path, f"must be a single-channel image of 8-bit class ids, got {given}"
         )
-    return _resize_nearest(labels, colour.shape[:2])
+    return _resize_nearest(labels, colour.shape[:2]), None
 
 
 def _read_trust(frame: FrameFiles, depth: np.ndarray | None, full: float) -> np.ndarray | None:

@@ -228,3 +228,53 @@ def nyu40_names() -> dict[str, int]:
     """Return the NYU40 id, 1 to 40, for each class name such as ``"night stand"``."""
     listed = read_json(NYU40_FILE)["classes"].items()
     return {name: int(number) for number, (name, _) in listed}
+
+
+# Label ids: 1 to 40 are the NYU40 classes, the numbers after them the names of the vocabulary.
+FIRST_NAME_ID = OTHER_NYU40 + 1
+_CLASS_NYU40 = {"furn": "other furniture", "objs": "other prop", "tvs": "television"}
+
+
+@cache
+def label_id_names() -> tuple[str, ...]:
+    """Return the text of each label id: none for 0, NYU40 classes 1 to 40, then all names."""
+    return ("", *sorted(nyu40_names(), key=nyu40_names().__getitem__), *read_vocabulary().names)
+
+
+@cache
+def label_id_classes() -> np.ndarray:
+    """Return the class of each label id as uint8 [N], 255 for 0."""
+    names = [entry.class_id for entry in read_vocabulary().names.values()]
+    classes = np.concatenate([nyu40_classes()[:FIRST_NAME_ID], np.array(names, np.uint8)])
+    classes[0] = UNKNOWN
+    return classes
+
+
+@cache
+def label_id_nyu40() -> np.ndarray:
+    """Return the NYU40 class of each label id from 1, 1 to 40, as int64 [N]."""
+    names = [entry.nyu40 for entry in read_vocabulary().names.values()]
+    return np.array([*range(1, FIRST_NAME_ID), *names])
+
+
+def label_id_of(label: str, vocabulary: Vocabulary | None = None) -> int | None:
+    """Return the label id of a text, 0 if it votes for nothing, or None if it is unknown.
+
+    Names that only ``vocabulary`` has, which defaults to the shipped one, have no id.
+
+    Example:
+        >>> label_id_names()[label_id_of("toilet")], label_id_of("sky"), label_id_of("gizmo")
+        ('toilet', 0, None)
+    """
+    vocabulary = vocabulary or read_vocabulary()
+    if (entry := vocabulary.find(label)) is not None and entry.name in read_vocabulary().names:
+        return label_id_names().index(entry.name, FIRST_NAME_ID)
+    for key in label_keys(label):
+        if key in vocabulary.silent:
+            return 0
+        if key in nyu40_names():
+            return nyu40_names()[key]
+        if key in vocabulary.classes:
+            name = CLASS_NAMES[vocabulary.classes[key]]
+            return nyu40_names()[_CLASS_NYU40.get(name, name)]
+    return None

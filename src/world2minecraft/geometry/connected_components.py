@@ -37,3 +37,35 @@ def label_face_components(mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     sizes = np.bincount(labels.ravel(), minlength=1)
     sizes[0] = 0
     return labels, sizes
+
+
+HALF_OF_26 = [
+    (dx, dy, dz)
+    for dx in (-1, 0, 1)
+    for dy in (-1, 0, 1)
+    for dz in (-1, 0, 1)
+    if (dx, dy, dz) > (0, 0, 0)
+]
+
+
+def touching_pairs(owners: np.ndarray, labels: np.ndarray | None = None) -> list[tuple[int, int]]:
+    """Return the pairs of numbered parts that touch at a face, an edge or a corner, sorted.
+
+    Args:
+        owners: Number of the part of each cell, int [X, Y, Z], 0 for none.
+        labels: Only cells with the same label count, uint8 [X, Y, Z].
+    """
+    pairs: set[tuple[int, int]] = set()
+    for shift in HALF_OF_26:
+        near = tuple(
+            slice(max(0, -s), n - max(0, s)) for s, n in zip(shift, owners.shape, strict=True)
+        )
+        far = tuple(
+            slice(max(0, s), n - max(0, -s)) for s, n in zip(shift, owners.shape, strict=True)
+        )
+        meets = (owners[near] != owners[far]) & (owners[near] > 0) & (owners[far] > 0)
+        if labels is not None:
+            meets &= labels[near] == labels[far]
+        both = np.stack([owners[near][meets], owners[far][meets]], axis=1)
+        pairs |= {(int(a), int(b)) for a, b in np.unique(np.sort(both, axis=1), axis=0)}
+    return sorted(pairs)

@@ -40,6 +40,7 @@ def scan_room(
     coverage: float = 1.0,
     width: int = 640,
     height: int = 480,
+    label_names: bool = False,
     progress: Progress = no_progress,
 ) -> None:
     """Scan a room or a house virtually, and write the capture and its ground truth.
@@ -60,6 +61,8 @@ def scan_room(
             first 60 % of the frames are recorded, so that some corners remain unseen.
         width: Width of the images in pixels.
         height: Height of the images in pixels.
+        label_names: Whether the label images have the names of things, with a ``labels.json``,
+            instead of the twelve classes.
         progress: Callback after each frame, with the stage ``capture``.
 
     Raises:
@@ -69,7 +72,16 @@ def scan_room(
         MissingExtraError: If ``av``, which is required for videos, is not installed.
     """
     how = ScanSettings(
-        sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
+        sensor,
+        frames,
+        seed,
+        with_labels,
+        label_error,
+        depth_scale_sigma,
+        coverage,
+        width,
+        height,
+        label_names,
     )
     truths: list[FrameTruth] = []
     views = _views(_shots(room, how), truths, how.taken, progress)
@@ -94,13 +106,23 @@ def room_views(
     coverage: float = 1.0,
     width: int = 640,
     height: int = 480,
+    label_names: bool = False,
 ) -> Iterator[View]:
     """Yield the views of a virtual scan one at a time.
 
     The arguments are those of ``scan_room``.
     """
     how = ScanSettings(
-        sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
+        sensor,
+        frames,
+        seed,
+        with_labels,
+        label_error,
+        depth_scale_sigma,
+        coverage,
+        width,
+        height,
+        label_names,
     )
     return (shot.view for shot in _shots(room, how))
 

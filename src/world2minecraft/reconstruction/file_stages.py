@@ -53,7 +53,10 @@ from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.naming.name_votes import (
     NAME_VOTES,
     NYU40_COUNT,
+    NameVotes,
+    class_votes,
     read_name_votes,
+    votes_of_cells,
     votes_of_objects,
 )
 from world2minecraft.reconstruction.naming.object_traits import name_instances
@@ -110,9 +113,12 @@ def label_grid(
 def find_stage(folder: Path, chosen: Parameters) -> None:
     """Run the find stage: ``room.npz`` -> instances, ``centers.npz`` and ``objects.json``."""
     grid, scan_to_room = read_room(folder / "room.npz")
-    found = find_objects(grid, chosen.find, stated=_stated_cells(folder, grid))
+    votes = _name_votes(folder)
+    found = find_objects(
+        grid, chosen.find, stated=_stated_cells(folder, grid), votes=_class_votes(votes, grid)
+    )
     if not chosen.find.paper_compat:
-        found = replace(found, instances=_named(folder, found.grid, found.instances))
+        found = replace(found, instances=_named(folder, found.grid, found.instances, votes))
     write_room(folder / "room.npz", found.grid, scan_to_room)
     centers = found.centers
     write_centers(folder / "centers.npz", centers.density, centers.candidates, centers.cluster)
@@ -134,15 +140,32 @@ def _stated_cells(folder: Path, grid: OccupancyGrid) -> np.ndarray | None:
     return votes.any(axis=-1) & ~is_from_network(votes)
 
 
-def _named(
-    folder: Path, grid: OccupancyGrid, instances: tuple[ObjectInstance, ...]
-) -> tuple[ObjectInstance, ...]:
-    """Return the objects with fine names, from the votes of the segmentation network if any."""
+def _name_votes(folder: Path) -> NameVotes | None:
     path = folder / NAME_VOTES
-    votes = np.zeros((len(instances) + 1, NYU40_COUNT), np.float32)
-    if path.is_file():
-        votes = votes_of_objects(read_name_votes(path), grid, len(instances))
-    names = name_instances(instances, read_rooms(folder, grid), votes[1:])
+    return read_name_votes(path) if path.is_file() else None
+
+
+def _class_votes(
+    votes: NameVotes | None, grid: OccupancyGrid
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the cells with votes and their votes for NYU40 classes, or None without votes."""
+    if votes is None:
+        return None
+    cells, rows = votes_of_cells(votes, grid)
+    return cells, class_votes(rows)
+
+
+def _named(
+    folder: Path,
+    grid: OccupancyGrid,
+    instances: tuple[ObjectInstance, ...],
+    votes: NameVotes | None,
+) -> tuple[ObjectInstance, ...]:
+    """Return the objects with fine names, from votes if there are any."""
+    given = np.zeros((len(instances) + 1, NYU40_COUNT), np.float32)
+    if votes is not None:
+        given = votes_of_objects(votes, grid, len(instances))
+    names = name_instances(instances, read_rooms(folder, grid), given[1:])
     return tuple(
         replace(item, name=name, name_confidence=confidence)
         for item, (name, confidence) in zip(instances, names, strict=True)

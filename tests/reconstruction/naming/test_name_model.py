@@ -9,7 +9,12 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import Layout, LayoutObject
-from world2minecraft.core.vocabulary import nyu40_names, read_vocabulary
+from world2minecraft.core.vocabulary import (
+    label_id_names,
+    label_id_of,
+    nyu40_names,
+    read_vocabulary,
+)
 from world2minecraft.reconstruction.naming.name_model import (
     FEATURES,
     MIN_CONFIDENCE,
@@ -144,3 +149,12 @@ def test_the_distance_to_the_wall_is_that_of_the_nearest_face():
     assert trait.wall_m == pytest.approx(0.3)
     assert trait.ceiling_m == pytest.approx(1.6)
     assert trait.bottom_m == pytest.approx(0)
+
+
+def test_votes_for_names_decide_among_them():
+    items = [box(FURN, 0.4, 1, (0.6, 0.6, 0.85)), box(FURN, 0.4, 2, (0.6, 0.6, 0.85))]
+    votes = np.zeros((2, len(label_id_names()) - 1))
+    votes[0, label_id_of("washing machine") - 1] = 9
+    votes[1, label_id_of("oven") - 1] = 9
+    (first, sure), (second, _) = name_instances(items, (ROOM,), votes)
+    assert (first, second) == ("washing machine", "oven") and sure == pytest.approx(1)

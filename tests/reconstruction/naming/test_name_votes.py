@@ -10,10 +10,12 @@ from tests.reconstruction.instances.test_instances import grid_of
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_npz
+from world2minecraft.core.vocabulary import label_id_names, label_id_of, nyu40_names
 from world2minecraft.reconstruction.naming.name_votes import (
     CUBE_M,
     NameVoteMap,
     NameVotes,
+    class_votes,
     read_name_votes,
     votes_of_objects,
     write_name_votes,
@@ -48,6 +50,17 @@ def test_each_pixel_votes_once_in_the_cube_of_its_point(seed, count):
         assert np.allclose(row, wanted[tuple(cube)], atol=1e-5)
 
 
+def test_labels_vote_beside_a_network():
+    votes, toilet = NameVoteMap(), label_id_of("toilet")
+    points = np.array([[0.01, 0.01, 0.01], [0.02, 0.01, 0.01], [0.5, 0.5, 0.5]])
+    votes.add(points, np.array([0, 1, 2]), np.eye(40)[[3, 3, 3]])
+    votes.add_labels(points, np.array([0, 0, 1]), np.array([toilet, 0], np.uint16))
+    found = votes.votes()
+    row = found.votes[(found.cubes == 0).all(axis=1)][0]
+    assert row[3] == 2 and row[toilet - 1] == 1 and row.sum() == 3
+    assert found.votes.sum() == 4, "label 0 does not vote"
+
+
 def test_no_view_is_no_vote():
     found = NameVoteMap().votes()
     assert found.cubes.shape == (0, 3)
@@ -77,3 +90,11 @@ def test_votes_are_read_as_written(tmp_path):
     write_npz(tmp_path / "names.npz", {"cubes": votes.cubes, "votes": votes.votes[:, :7]})
     with pytest.raises(DamagedFileError, match="does not contain votes"):
         read_name_votes(tmp_path / "names.npz")
+
+
+def test_votes_for_a_name_support_its_class():
+    votes = np.zeros((1, len(label_id_names()) - 1))
+    votes[0, label_id_of("armchair") - 1], votes[0, nyu40_names()["bed"] - 1] = 0.7, 0.3
+    found = class_votes(votes)[0]
+    assert found[nyu40_names()["chair"] - 1] == 0.7 and found[nyu40_names()["bed"] - 1] == 0.3
+    assert found.sum() == 1

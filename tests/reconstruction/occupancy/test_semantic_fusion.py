@@ -10,6 +10,7 @@ from tests.reconstruction.occupancy.tiny_network import sized, write_network
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera, Scan, View
+from world2minecraft.core.vocabulary import label_id_names
 from world2minecraft.geometry.unprojection import project
 from world2minecraft.reconstruction.fusion import EvidenceMap
 from world2minecraft.reconstruction.occupancy import OccupancyParameters, notes_of, predictor
@@ -62,6 +63,23 @@ def test_each_point_has_the_votes_of_the_pixel_that_shows_it():
     np.testing.assert_allclose(found.votes[right].sum(axis=1), 0.875, atol=2 / 255)
 
 
+def test_labels_vote_for_their_fine_names():
+    voter = PixelVoter(Halves())
+    DepthPredictor(voters=[voter]).lift(view())
+    votes = voter.names.votes().votes.sum(axis=0)
+    named = {label_id_names()[number + 1] for number in np.flatnonzero(votes)}
+    assert named == {"chair", "sofa"}
+    _, label_ids = voter.prediction(view().colour)
+    assert label_id_names()[label_ids[0, 0]] == "chair"
+
+
+def test_a_divided_label_names_nothing():
+    network = Halves()
+    network.labels = ("gizmo", "stool", "sofa")
+    _, label_ids = PixelVoter(network).prediction(view().colour)
+    assert label_id_names()[label_ids[0, -1]] == "stool" and not label_ids[:, :70].any()
+
+
 def test_a_depth_camera_in_another_place_is_heeded():
     """Depth of a camera of another size, 10 cm aside: its points still meet their pixels."""
     aside = np.eye(4)
@@ -78,16 +96,16 @@ def test_a_depth_camera_in_another_place_is_heeded():
 
 def test_a_second_run_costs_nothing():
     network = Halves()
-    first = PixelVoter(network).shares(view().colour)
-    again = PixelVoter(network).shares(view().colour)
+    first = PixelVoter(network).prediction(view().colour)[0]
+    again = PixelVoter(network).prediction(view().colour)[0]
     assert network.asked == 1 and first.tobytes() == again.tobytes()
     other = view().colour.copy()
     other[0, 0] ^= 1
-    PixelVoter(network).shares(other)
+    PixelVoter(network).prediction(other)
     assert network.asked == 2
     newer = Halves()
     newer.identity = "2"
-    PixelVoter(newer).shares(view().colour)
+    PixelVoter(newer).prediction(view().colour)[0]
     assert newer.asked == 1
 
 
@@ -95,7 +113,9 @@ def test_what_labels_mean_decides_what_is_kept(tmp_path):
     own = tmp_path / "names.yaml"
     own.write_text("table: [chair]\n")
     network = Halves()
-    plain, changed = (PixelVoter(network, names).shares(view().colour) for names in ("", str(own)))
+    plain, changed = (
+        PixelVoter(network, names).prediction(view().colour)[0] for names in ("", str(own))
+    )
     assert network.asked == 2
     assert np.array_equal(plain[..., 5], changed[..., 8]) and not changed[..., 5].any()
 

@@ -55,6 +55,11 @@ class RotatedImage:
         """The name of the original image."""
         return self.image.name
 
+    @property
+    def holds_label_ids(self) -> bool:
+        """Whether the values are label ids."""
+        return getattr(self.image, "holds_label_ids", False)
+
     def header(self) -> ImageHeader:
         """Return the size of the rotated image and its mode."""
         header = read_header(self.image)

@@ -15,11 +15,13 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.capture.images import SUFFIXES
+from world2minecraft.capture.readers.datasets.nyu40_labels import FACTS_FILE, label_reading
 from world2minecraft.capture.source_types import Capture, FrameFiles, as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, UnknownNameError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.core.types import Camera, View, checks
+from world2minecraft.core.vocabulary import label_id_names
 
 FORMAT = "world2minecraft-capture"
 VERSION = 1
@@ -82,9 +84,9 @@ class PlainSource:
         )
 
 
-def _files_by_stem(folder: AnyPath) -> dict[str, dict[str, AnyPath]]:
+def _files_by_stem(folder: AnyPath) -> dict[str, dict[str, Any]]:
     """Return the image files of each subfolder by file stem."""
-    return {
+    files: dict[str, dict[str, Any]] = {
         kind: {
             found.stem: found
             for found in sorted((folder / kind).glob("*"))
@@ -92,13 +94,15 @@ def _files_by_stem(folder: AnyPath) -> dict[str, dict[str, AnyPath]]:
         }
         for kind in ("colour", "depth", "labels", "trust")
     }
+    reading = label_reading(folder / "labels")
+    return files | {"labels": {name: reading(path) for name, path in files["labels"].items()}}
 
 
 def _frame(
     path: AnyPath,
     stated: dict[str, Any],
     entry: Any,
-    files: dict[str, dict[str, AnyPath]],
+    files: dict[str, dict[str, Any]],
     posed: bool,
 ) -> FrameFiles:
     """Return a frame; if no frame is ``posed``, its intrinsics may be missing too."""
@@ -262,6 +266,7 @@ def write_plain(
     more, stated = stated or {}, {"format": FORMAT, "version": VERSION, "depth_unit": depth_unit}
     stated |= more
     entries = []
+    with_ids = False
     for view in views:
         _write_images(root, view, unit_m, jpeg)
         entry: dict[str, Any] = {"name": view.name, "camera_to_world": view.camera_to_scan.tolist()}
@@ -269,6 +274,10 @@ def write_plain(
             if stated.setdefault(key, value) != value:
                 entry[key] = value
         entries.append(entry)
+        with_ids |= view.label_ids is not None
+    if with_ids:
+        names = {str(number): name for number, name in enumerate(label_id_names()) if name}
+        write_json(root / "labels" / FACTS_FILE, {"classes": names})
     stated["frames"] = entries
     if extra:
         stated["extra"] = dict(extra)
@@ -304,7 +313,9 @@ def _write_images(root: Path, view: View, unit_m: float | None, jpeg: bool) -> N
         _write_jpeg(root / "colour" / f"{view.name}.jpg", view.colour)
     elif view.colour is not None:
         _write_png(root / "colour" / f"{view.name}.png", view.colour)
-    if view.labels is not None:
+    if view.label_ids is not None:
+        _write_png(root / "labels" / f"{view.name}.png", view.label_ids)
+    elif view.labels is not None:
         _write_png(root / "labels" / f"{view.name}.png", view.labels)
     if view.trust is not None:
         _write_png(root / "trust" / f"{view.name}.png", view.trust)

@@ -77,7 +77,8 @@ class View:
 
     ``depth_m`` is the z-depth in metres, or 0 without a measurement. ``camera_to_scan`` is the pose
     of the colour camera, or of the depth camera if there is no colour. ``trust`` uint8 [h, w] is
-    the reliability of each depth pixel, up to 255.
+    the reliability of each depth pixel, up to 255. ``label_ids`` uint16 [h, w] are finer than
+    ``labels``: NYU40 classes and names, see ``core.vocabulary.label_id_names``; 0 is unknown.
     """
 
     name: str
@@ -89,6 +90,7 @@ class View:
     depth_to_colour: np.ndarray = field(default_factory=lambda: IDENTITY)
     labels: np.ndarray | None = None
     trust: np.ndarray | None = None
+    label_ids: np.ndarray | None = None
 
     def __post_init__(self):
         put = object.__setattr__
@@ -104,7 +106,10 @@ class View:
             put(self, "colour", checks.array("colour", self.colour, np.uint8, (*shape, 3)))
             if self.labels is not None:
                 put(self, "labels", checks.labels("labels", self.labels, shape))
-        elif self.labels is not None:
+            if self.label_ids is not None:
+                ids = checks.array("label_ids", self.label_ids, np.uint16, shape)
+                put(self, "label_ids", ids)
+        elif self.labels is not None or self.label_ids is not None:
             raise ValueError("labels require a colour image")
         if self.depth_camera is not None:
             shape = (self.depth_camera.height_px, self.depth_camera.width_px)

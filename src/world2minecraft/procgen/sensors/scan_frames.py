@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, SemanticClass
 from world2minecraft.core.types import Camera, View
+from world2minecraft.core.vocabulary import OTHER_NYU40, label_id_classes, label_id_of
 from world2minecraft.geometry.rotations import rotation_from_vector
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.depth_camera import (
@@ -56,6 +57,7 @@ class ScanSettings:
     coverage: float = 1.0
     width: int = 640
     height: int = 480
+    label_names: bool = False
 
     def __post_init__(self):
         find_sensor(self.sensor)
@@ -71,6 +73,8 @@ class ScanSettings:
             raise ValueError(f"coverage must be above 0 and at most 1, got {self.coverage}")
         if self.phone and (self.with_labels or self.label_error):
             raise ValueError(f"labels require the sensor rgbd or clean, got {self.sensor}")
+        if self.label_names and not self.with_labels:
+            raise ValueError("label_names requires label images")
         if self.sensor == "video" and (self.width % 2 or self.height % 2):
             raise ValueError(f"video width and height must be even, got {self.width}x{self.height}")
         if self.phone and self.depth_scale_sigma:
@@ -157,14 +161,22 @@ def _shot(
     luminance = photo.colour.astype(np.float32) @ LUMINANCE
     depth_m = sense_depth(model, photo.depth_m, photo.cosine, luminance, camera.fx_px, rng)
     stated = jitter_pose(model, camera_to_room, rng)
+    colour = _noisy(photo.colour, model, rng)
+    labels, label_ids = None, None
+    if how.label_names:
+        label_ids = _label_ids(room, photo, how.label_error, rng)
+        labels = label_id_classes()[label_ids]
+    elif how.with_labels:
+        labels = _labels(room, photo, how.label_error, rng)
     view = View(
         name=f"frame-{number:06d}",
         camera_to_scan=to_scan @ stated,
-        colour=_noisy(photo.colour, model, rng),
+        colour=colour,
         colour_camera=camera,
         depth_m=depth_m * np.float32(scale),
         depth_camera=camera,
-        labels=_labels(room, photo, how.label_error, rng) if how.with_labels else None,
+        labels=labels,
+        label_ids=label_ids,
     )
     return Shot(view, FrameTruth(view.name, camera_to_room, scale))
 
@@ -182,14 +194,41 @@ def _labels(room: Room, photo: Photo, error: float, rng: np.random.Generator) ->
     labels = room.labels.reshape(-1)[np.maximum(photo.voxel_index, 0)]
     labels[photo.voxel_index < 0] = 255
     if error:
-        height, width = labels.shape
-        shape = (height // PATCH_PX + 1, width // PATCH_PX + 1)
-        wrong = rng.random(shape) < error
-        shift = rng.integers(1, CLASS_COUNT - 1, shape)
-        wrong, shift = (
-            values.repeat(PATCH_PX, axis=0).repeat(PATCH_PX, axis=1)[:height, :width]
-            for values in (wrong, shift)
-        )
+        wrong, shift = _wrong_patches(labels.shape, error, CLASS_COUNT - 1, rng)
         other = (labels - 1 + shift) % (CLASS_COUNT - 1) + 1
         labels = np.where(wrong & (labels != 255), other, labels)
     return labels.astype(np.uint8)
+
+
+def _label_ids(room: Room, photo: Photo, error: float, rng: np.random.Generator) -> np.ndarray:
+    """Return the names of what a photo shows as label ids, uint16 [H, W].
+
+    A share of the patches has another name that occurs in the room.
+    """
+    names = [label_id_of(item.name.replace("_", " ")) or OTHER_NYU40 for item in room.objects]
+    structure = [0, *(label_id_of(name) or 0 for name in CLASS_NAMES[1 : SemanticClass.CHAIR])]
+    voxels = np.maximum(photo.voxel_index, 0)
+    labels, instance = room.labels.reshape(-1)[voxels], room.instance.reshape(-1)[voxels]
+    of_instance = np.array([0, *names], np.uint16)
+    generic = np.array([*structure, *[OTHER_NYU40] * (CLASS_COUNT - len(structure))], np.uint16)
+    ids = np.where(instance > 0, of_instance[instance], generic[np.minimum(labels, 11)])
+    ids[photo.voxel_index < 0] = 0
+    if error:
+        used = np.unique(np.concatenate([of_instance[1:], generic[1 : SemanticClass.CHAIR]]))
+        wrong, shift = _wrong_patches(ids.shape, error, len(used), rng)
+        other = used[(np.searchsorted(used, ids) + shift) % len(used)]
+        ids = np.where(wrong & (ids > 0), other, ids)
+    return ids.astype(np.uint16)
+
+
+def _wrong_patches(
+    shape: tuple[int, ...], error: float, count: int, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which pixels are in wrong patches, and how far their label of ``count`` is moved."""
+    height, width = shape
+    patches = (height // PATCH_PX + 1, width // PATCH_PX + 1)
+    wrong, shift = rng.random(patches) < error, rng.integers(1, max(count, 2), patches)
+    return tuple(
+        values.repeat(PATCH_PX, axis=0).repeat(PATCH_PX, axis=1)[:height, :width]
+        for values in (wrong, shift)
+    )  # type: ignore[return-value]

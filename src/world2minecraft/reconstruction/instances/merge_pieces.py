@@ -12,7 +12,7 @@ from scipy.spatial import KDTree
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
-from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.geometry.connected_components import label_components, touching_pairs
 from world2minecraft.reconstruction.instances.density_clustering import object_cells
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
 from world2minecraft.reconstruction.instances.parameters import InstanceParameters
@@ -39,13 +39,6 @@ MIN_COVERED = 0.4
 SAME_COLOUR = 0.03  # Oklab distance of medians, with reduced weight of lightness.
 COLOUR_WEIGHTS = np.sqrt([0.4, 1.0, 1.0])
 NEIGHBOURHOOD = np.ones((3, 3, 3), np.bool_)
-HALF_OF_26 = [
-    (dx, dy, dz)
-    for dx in (-1, 0, 1)
-    for dy in (-1, 0, 1)
-    for dz in (-1, 0, 1)
-    if (dx, dy, dz) > (0, 0, 0)
-]
 STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
 STANDING_FACTOR = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.
 
@@ -104,7 +97,7 @@ def merge_stacked(
     touching parts of the same class are merged if at least half of the smaller part's plan overlaps
     the other.
     """
-    pairs = _touching_pairs(owners, grid.labels)
+    pairs = touching_pairs(owners, grid.labels)
     parent = list(range(int(owners.max(initial=0)) + 1))
     plans = _columns(owners, {number for pair in pairs for number in pair})
     for first, second in pairs:
@@ -114,22 +107,6 @@ def merge_stacked(
             parent[b] = a
     roots = np.array([_root(parent, number) for number in range(len(parent))], np.int32)
     return roots[owners]
-
-
-def _touching_pairs(owners: np.ndarray, labels: np.ndarray) -> list[tuple[int, int]]:
-    pairs: set[tuple[int, int]] = set()
-    for shift in HALF_OF_26:
-        near = tuple(
-            slice(max(0, -s), n - max(0, s)) for s, n in zip(shift, owners.shape, strict=True)
-        )
-        far = tuple(
-            slice(max(0, s), n - max(0, -s)) for s, n in zip(shift, owners.shape, strict=True)
-        )
-        meets = (owners[near] != owners[far]) & (owners[near] > 0) & (owners[far] > 0)
-        meets &= labels[near] == labels[far]
-        both = np.stack([owners[near][meets], owners[far][meets]], axis=1)
-        pairs |= {(int(a), int(b)) for a, b in np.unique(np.sort(both, axis=1), axis=0)}
-    return sorted(pairs)
 
 
 def _columns(owners: np.ndarray, numbers: set[int]) -> dict[int, set[tuple[int, int]]]:

@@ -28,6 +28,7 @@ from world2minecraft.reconstruction.instances.density_clustering import (
     density_map,
     object_cells,
 )
+from world2minecraft.reconstruction.instances.merge_named import merge_same_names
 from world2minecraft.reconstruction.instances.merge_pieces import (
     merge_flush_pieces,
     merge_lamp_parts,
@@ -93,19 +94,21 @@ def find_objects(
     parameters: InstanceParameters | None = None,
     *,
     stated: np.ndarray | None = None,
+    votes: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> FoundObjects:
     """Find the objects of a room.
 
     Objects are sorted by class, then by the centre of their cells (x, y, z), and numbered from 1.
     Lumps on walls become part of the wall. Pieces that touch an object of the same colour become
-    part of that object. Other labels are not changed, even those of specks that are assigned to
-    another object.
+    part of that object, and pieces of one recognised thing become one object. Other labels are not
+    changed, even those of specks that are assigned to another object.
 
     Args:
         grid: Grid with labels and colours.
         parameters: Parameters of the detection.
         stated: Cells whose class label images state, bool [X, Y, Z]. Objects of which they are the
             most stay as they are.
+        votes: Cells int [N, 3], and their votes for the NYU40 classes from 1, float [N, 40].
 
     Raises:
         UsageError: If there are more objects than ids, so that ``min_cells`` must be increased.
@@ -127,8 +130,12 @@ def find_objects(
         lumps = find_wall_lumps(owners, grid) & ~np.isin(owners, fixed)
         owners = np.where(lumps, 0, owners)
         binary &= ~lumps
+        before = owners
+        if votes is not None:
+            owners, labels = merge_same_names(owners, grid, _votes_of(owners, *votes))
+            grid = replace(grid, labels=labels)
         merged, labels = merge_flush_pieces(owners, grid, fixed)
-        changed = merged != owners
+        changed = merged != before
         owners = merged
         labels[lumps] = SemanticClass.WALL
         given = replace(given, labels=np.where(changed | lumps, labels, given.labels))
@@ -140,6 +147,14 @@ def find_objects(
     leftover = int(np.count_nonzero(binary & (marked == 0)))
     centers = CenterMap(density, candidates, cluster)
     return FoundObjects(replace(given, instance=marked), instances, centers, leftover)
+
+
+def _votes_of(owners: np.ndarray, cells: np.ndarray, votes: np.ndarray) -> np.ndarray:
+    """Return the votes for each object, float32 [count + 1, 40]; those for no object are 0."""
+    result = np.zeros((int(owners.max(initial=0)) + 1, votes.shape[1]), np.float32)
+    np.add.at(result, owners[tuple(cells.T)], votes)
+    result[0] = 0
+    return result
 
 
 def _mostly(owners: np.ndarray, mask: np.ndarray) -> np.ndarray:

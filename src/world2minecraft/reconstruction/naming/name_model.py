@@ -3,6 +3,7 @@
 ``weights/object_names.npz`` holds a network with one hidden layer, trained by
 ``benchmarks/train_names.py`` on the objects of generated rooms with noise. It decides among the
 names of an NYU40 class, such as table, desk and coffee table; votes decide among these classes.
+Votes of label images for names, not for classes, decide among names too.
 """
 
 from collections.abc import Sequence
@@ -14,7 +15,8 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES
 from world2minecraft.core.files import read_npz
-from world2minecraft.core.vocabulary import read_vocabulary
+from world2minecraft.core.vocabulary import label_id_nyu40, read_vocabulary
+from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT, class_votes
 
 WEIGHTS = Path(__file__).parents[2] / "weights" / "object_names.npz"
 MIN_CONFIDENCE = 0.5
@@ -32,7 +34,8 @@ class ObjectTraits:
         bottom_m: Height of its lowest face above the floor.
         wall_m: Horizontal distance to the nearest wall; large if there is none.
         ceiling_m: Distance of its top to the ceiling; large if it was not seen.
-        votes: Shares of the NYU40 classes 1 to 40 in its votes, float [40]; zeros without votes.
+        votes: Shares of the label ids from 1 in its votes, float [40] for the NYU40 classes or
+            float [K] with all names after them; zeros without votes.
     """
 
     class_id: int
@@ -48,7 +51,7 @@ def features_of(objects: Sequence[ObjectTraits]) -> np.ndarray:
     count = len(objects)
     if not count:
         return np.zeros((0, FEATURES), np.float32)
-    votes = np.stack([item.votes for item in objects]).astype(np.float32)
+    votes = np.stack([class_votes(item.votes) for item in objects]).astype(np.float32)
     rows = []
     for number, item in enumerate(objects):
         side, across = sorted(item.size_m[:2])
@@ -117,20 +120,24 @@ def name_objects(
     """Return the name of each object of a room, and its probability.
 
     The votes decide among the 40 NYU classes, and the model among the names of each class: the
-    segmentation network saw real rooms, and the model saw generated rooms only. Below
+    segmentation network saw real rooms, and the model saw generated rooms only. Votes for names
+    count as such. Below
     ``MIN_CONFIDENCE``, and without votes, the name is that of the class; the probability is still
     that of the best name.
     """
     chosen = model or read_name_model()
-    chance = chosen.probabilities(features_of(objects))
-    entries = read_vocabulary().names
-    nyu40 = np.array([entries[name].nyu40 - 1 for name in chosen.names])
+    names, nyu40 = tuple(read_vocabulary().names), label_id_nyu40()[NYU40_COUNT:] - 1
+    order = [names.index(name) for name in chosen.names]
+    chance = np.zeros((len(objects), len(names)), np.float32)
+    chance[:, order] = chosen.probabilities(features_of(objects))
     result = []
     for item, row in zip(objects, chance, strict=True):
-        within = np.bincount(nyu40, row, len(item.votes))[nyu40]
+        within = np.bincount(nyu40, row, NYU40_COUNT)[nyu40]
         shares = item.votes[nyu40] * row / np.maximum(within, SMALLEST_CHANCE)
+        if len(item.votes) > NYU40_COUNT:
+            shares += item.votes[NYU40_COUNT:]
         best = int(shares.argmax()) if item.votes.any() else int(row.argmax())
         sure = shares[best] >= MIN_CONFIDENCE
-        name = chosen.names[best] if sure else CLASS_DISPLAY_NAMES[item.class_id]
+        name = names[best] if sure else CLASS_DISPLAY_NAMES[item.class_id]
         result.append((name, float(shares[best] if item.votes.any() else row[best])))
     return result

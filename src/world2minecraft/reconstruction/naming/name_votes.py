@@ -1,10 +1,11 @@
-"""Votes of a segmentation network for the 40 NYU classes, by place in the room.
+"""Votes for the 40 NYU classes and for fine names, by place in the room.
 
-The network votes for cells with twelve classes (``rgbd_votes``). Its 40 classes are kept beside
-that, summed over the points of small cubes, so that objects can get fine names after they have been
-found.
+Segmentation networks and label images vote for cells with twelve classes (``semantic_fusion``).
+Their finer labels are kept beside that, summed over the points of small cubes, so that objects can
+get fine names after they have been found.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +14,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_npz, write_npz
 from world2minecraft.core.types import OccupancyGrid, checks
+from world2minecraft.core.vocabulary import label_id_names, label_id_nyu40
 
 NAME_VOTES = "names.npz"  # In the folder of a run.
 CUBE_M = 0.08  # Of votes, whatever the cells of the grid.
@@ -25,7 +27,9 @@ class NameVotes:
 
     Attributes:
         cubes: Cubes of ``CUBE_M`` by their index from the room's origin, int32 [N, 3].
-        votes: Sums of the probabilities of the NYU40 classes 1 to 40, float32 [N, 40].
+        votes: Sums of the probabilities of the label ids from 1 (``core.vocabulary.
+            label_id_names``), float32 [N, K]: 40 NYU classes, and then all names if labels state
+            some.
     """
 
     cubes: np.ndarray
@@ -34,8 +38,10 @@ class NameVotes:
     def __post_init__(self):
         cubes = checks.array("cubes", self.cubes, np.int32, (None, 3))
         object.__setattr__(self, "cubes", cubes)
-        shape = (len(cubes), NYU40_COUNT)
-        object.__setattr__(self, "votes", checks.array("votes", self.votes, np.float32, shape))
+        votes = checks.array("votes", self.votes, np.float32, (len(cubes), None))
+        if votes.shape[1] not in (NYU40_COUNT, len(label_id_names()) - 1):
+            raise ValueError(f"votes must be for {NYU40_COUNT} classes or for all label ids")
+        object.__setattr__(self, "votes", votes)
 
 
 class NameVoteMap:
@@ -44,6 +50,15 @@ class NameVoteMap:
     def __init__(self) -> None:
         self._cubes: list[np.ndarray] = []
         self._votes: list[np.ndarray] = []
+
+    @classmethod
+    def joined(cls, maps: Sequence["NameVoteMap"]) -> "NameVoteMap":
+        """Return a map with the votes of several maps."""
+        result = cls()
+        for one in maps:
+            result._cubes += one._cubes
+            result._votes += one._votes
+        return result
 
     def add(self, points_m: np.ndarray, pixels: np.ndarray, probabilities: np.ndarray) -> None:
         """Add the votes of one view. Each pixel of the network votes at one of its points.
@@ -59,11 +74,31 @@ class NameVoteMap:
         self._cubes.append(summed.cubes)
         self._votes.append(summed.votes)
 
+    def add_labels(self, points_m: np.ndarray, pixels: np.ndarray, label_ids: np.ndarray) -> None:
+        """Add the labels of one view. Each pixel of its label image votes at one of its points.
+
+        Args:
+            points_m: Points in the room in metres, float [N, 3].
+            pixels: Flat index of the pixel of the label image that shows each point, int [N].
+            label_ids: Label ids by pixel, uint16 [P]; 0 does not vote.
+        """
+        shown, first = np.unique(pixels, return_index=True)
+        voting = label_ids[shown] > 0
+        cubes = np.floor(points_m[first[voting]] / CUBE_M).astype(np.int32)
+        kept, owner = np.unique(cubes, axis=0, return_inverse=True)
+        votes = np.zeros((len(kept), len(label_id_names()) - 1), np.float32)
+        np.add.at(votes, (owner.reshape(-1), label_ids[shown[voting]].astype(np.int64) - 1), 1)
+        if len(kept):
+            self._cubes.append(kept)
+            self._votes.append(votes)
+
     def votes(self) -> NameVotes:
         """Return the sums over all views."""
         if not self._cubes:
             return NameVotes(np.zeros((0, 3), np.int32), np.zeros((0, NYU40_COUNT), np.float32))
-        return _summed(np.concatenate(self._cubes), np.concatenate(self._votes))
+        width = max(votes.shape[1] for votes in self._votes)
+        votes = [np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in self._votes]
+        return _summed(np.concatenate(self._cubes), np.concatenate(votes))
 
 
 def _summed(cubes: np.ndarray, votes: np.ndarray) -> NameVotes:
@@ -77,20 +112,36 @@ def _summed(cubes: np.ndarray, votes: np.ndarray) -> NameVotes:
 
 
 def votes_of_objects(votes: NameVotes, grid: OccupancyGrid, count: int) -> np.ndarray:
-    """Return the votes in the cells of each object, float32 [count + 1, 40]; row 0 is no object.
+    """Return the votes in the cells of each object, float32 [count + 1, K]; row 0 is no object.
 
     Args:
         votes: Votes in the room.
         grid: Grid with the instance of each cell, 1 to ``count``.
         count: Number of objects.
     """
-    result = np.zeros((count + 1, NYU40_COUNT), np.float32)
+    result = np.zeros((count + 1, votes.votes.shape[1]), np.float32)
+    cells, rows = votes_of_cells(votes, grid)
+    np.add.at(result, np.minimum(grid.instance[tuple(cells.T)], count), rows)
+    return result
+
+
+def votes_of_cells(votes: NameVotes, grid: OccupancyGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells of a grid at which there are votes, int64 [N, 3], and the votes [N, K]."""
     middles_m = (votes.cubes + 0.5) * CUBE_M
     cells = np.floor((middles_m - grid.origin_m) / grid.voxel_m).astype(np.int64)
     inside = ((cells >= 0) & (cells < grid.shape)).all(axis=1)
-    owners = grid.instance[tuple(cells[inside].T)]
-    np.add.at(result, np.minimum(owners, count), votes.votes[inside])
-    return result
+    return cells[inside], votes.votes[inside]
+
+
+def class_votes(votes: np.ndarray) -> np.ndarray:
+    """Return votes for the label ids from 1, float [..., K], as votes for NYU40 classes [..., 40].
+
+    Votes for a name count for its class.
+    """
+    classes = votes[..., :NYU40_COUNT].copy()
+    for number, nyu40 in enumerate(label_id_nyu40()[NYU40_COUNT : votes.shape[-1]], NYU40_COUNT):
+        classes[..., nyu40 - 1] += votes[..., number]
+    return classes
 
 
 def write_name_votes(path: Path, votes: NameVotes) -> None:

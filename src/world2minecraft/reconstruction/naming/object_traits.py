@@ -33,7 +33,7 @@ def name_instances(
     Args:
         instances: Objects of a run.
         layouts: Layouts of its rooms.
-        votes: Votes for NYU40 classes 1 to 40, float [N, 40].
+        votes: Votes for the label ids from 1, float [N, 40] or [N, K].
     """
     rooms = [layout_of(item, layouts) for item in instances]
     result: list[tuple[str, float]] = [("", 0.0)] * len(instances)
@@ -54,7 +54,7 @@ def traits_of(
     Args:
         items: Objects in the frame of the room.
         layout: Layout of the room, or None if it is unknown.
-        votes: Votes for NYU40 classes 1 to 40, float [N, 40].
+        votes: Votes for the label ids from 1, float [N, 40] or [N, K].
     """
     shares = votes / np.maximum(votes.sum(axis=1, keepdims=True), 1e-6)
     result = []

@@ -83,12 +83,12 @@ def predictor(name: str, parameters: OccupancyParameters | None = None) -> Predi
 
 
 def name_votes_of(used: Predictor) -> NameVotes | None:
-    """Return the votes for fine names of a predictor's voters, or None if it has none."""
+    """Return the votes for fine names of a predictor and its voters, or None if it has none."""
     base = getattr(used, "base", used)
-    for voter in getattr(base, "voters", ()):
-        if isinstance(found := getattr(voter, "names", None), NameVoteMap):
-            return found.votes()
-    return None
+    maps = [getattr(one, "names", None) for one in (base, *getattr(base, "voters", ()))]
+    found = [one for one in maps if isinstance(one, NameVoteMap)]
+    votes = NameVoteMap.joined(found).votes()
+    return votes if len(votes.cubes) else None
 
 
 def notes_of(used: Predictor) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera, PointEvidence, Scan, View
 from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
+from world2minecraft.reconstruction.naming.name_votes import NameVoteMap
 
 SQUARES_WIDE = 160  # 4 px at 640: the mean of 16 pixels, and 16 px from side to side.
 REACH = 2  # Squares to either side.
@@ -158,11 +159,15 @@ class DepthPredictor:
         max_depth_m: Depth in metres beyond which points are ignored; None for 6 m, or 10 m if a
             sensor's scan has only one view.
         voters: Objects that vote for the classes of points.
+
+    Attributes:
+        names: Votes of label images for fine names so far.
     """
 
     def __init__(self, max_depth_m: float | None = None, *, voters: Sequence[Voter] = ()):
         self.max_depth_m = max_depth_m
         self.voters = tuple(voters)
+        self.names = NameVoteMap()
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -204,6 +209,9 @@ class DepthPredictor:
         depths = near_m.reshape(-1)[pixels]
         colour_px = _colour_pixels(view, points_m, pixels)
         colour, labels = _look_up(view, colour_px)
+        if view.label_ids is not None and colour_px is not None and scan_to_room is not None:
+            in_room_m = apply(scan_to_room, points_m.astype(np.float64))
+            self.names.add_labels(in_room_m, colour_px, view.label_ids.reshape(-1))
         return PointEvidence(
             view=view.name,
             camera_m=camera_to_scan[:3, 3],

@@ -26,7 +26,8 @@ from world2minecraft.core.files import read_npz, write_npz
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import View
-from world2minecraft.core.vocabulary import VOCABULARY_FILE, read_vocabulary
+from world2minecraft.core.vocabulary import VOCABULARY_FILE, label_id_of, read_vocabulary
+from world2minecraft.reconstruction.naming.name_votes import NameVoteMap
 from world2minecraft.reconstruction.occupancy.depth_evidence import Voter
 from world2minecraft.reconstruction.occupancy.label_names import label_classes
 from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
@@ -42,7 +43,7 @@ from world2minecraft.reconstruction.recognition.segmentation import GENERATED_WE
 
 FOLDER = "semantics"
 MAX_BYTES = 1 << 30  # Some 5,000 pictures.
-VERSION = b"1"  # Of what is kept: another makes all that is there unknown.
+VERSION = b"2"  # Of what is kept: another makes all that is there unknown.
 
 SEGMENTERS = Registry(
     "segmenter",
@@ -51,6 +52,7 @@ SEGMENTERS = Registry(
 
 SHOWN_NAMES = 12  # Of those that no table holds.
 FULL = 255  # A whole vote, as it is kept.
+HALF = 0.5
 
 
 def key_of(colour: np.ndarray, *states: bytes) -> str:
@@ -64,7 +66,7 @@ def key_of(colour: np.ndarray, *states: bytes) -> str:
 def cached_prediction(
     key: str, ask: Callable[[], np.ndarray], folder: Path | None = None
 ) -> np.ndarray:
-    """Return the prediction uint8 [h, w, 12] cached under a key, or compute and cache it.
+    """Return the prediction uint8 [h, w, K] cached under a key, or compute and cache it.
 
     An unreadable or unwritable cache is ignored.
     """
@@ -106,12 +108,12 @@ class Segmenter(Protocol):
     labels: tuple[str, ...]
 
     def predict(self, colour: np.ndarray, classes: np.ndarray) -> np.ndarray:
-        """Predict class probabilities, float32 [h, w, 12], at the output size of the network.
+        """Predict probabilities of classes, float32 [h, w, K], at the output size of the network.
 
         Args:
             colour: Image, uint8 [H, W, 3]; the rows and columns of the result cover the whole
                 image.
-            classes: Matrix that converts its C labels to classes, float32 [C, 12].
+            classes: Matrix that converts its C labels to K classes, float32 [C, K].
         """
         ...
 
@@ -155,14 +157,25 @@ def voters_of(chosen: OccupancyParameters) -> tuple[Voter, ...]:
 
 
 class PixelVoter:
-    """Votes by the prediction of a segmentation network at the pixel that shows a point."""
+    """Votes by the prediction of a segmentation network at the pixel that shows a point.
+
+    Attributes:
+        names: Votes of the labels for fine names so far.
+    """
 
     photos_only = False
 
     def __init__(self, network: Segmenter, label_names: str = ""):
+        vocabulary = read_vocabulary(label_names)
         self.network = network
-        self.classes = label_classes(network.labels, read_vocabulary(label_names).label_table())
+        self.classes = label_classes(network.labels, vocabulary.label_table())
         self.notes = _told_of(network, self.classes.unknown, label_names)
+        self.names = NameVoteMap()
+        ids = np.array([label_id_of(label, vocabulary) or 0 for label in network.labels], np.uint8)
+        self.label_ids = np.unique(ids)
+        self.matrix = np.hstack(
+            [self.classes.matrix, (ids[:, None] == self.label_ids).astype(np.float32)]
+        )
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
@@ -170,20 +183,34 @@ class PixelVoter:
         """Return the votes of N points, float32 [N, 12]; see ``Voter``."""
         if view.colour is None:
             return np.zeros((len(points_m), CLASS_COUNT), np.float32)
-        shares = self.shares(view.colour).reshape(-1, CLASS_COUNT)[colour_px]
-        return shares.astype(np.float32) / np.float32(FULL)
+        shares, label_ids = self.prediction(view.colour)
+        in_room_m = apply(scan_to_room, points_m.astype(np.float64))
+        self.names.add_labels(in_room_m, colour_px, label_ids.reshape(-1))
+        return shares.reshape(-1, CLASS_COUNT)[colour_px].astype(np.float32) / np.float32(FULL)
 
-    def shares(self, colour: np.ndarray) -> np.ndarray:
-        """Return the share of each class at the pixels of an image, as uint8 [H, W, 12] of 255."""
-        network, matrix = self.network, self.classes.matrix
+    def prediction(self, colour: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the prediction for an image.
+
+        Returns:
+            The share of each class at the pixels, uint8 [H, W, 12] of 255, and the label id that
+            has more than half, uint8 [H, W], or 0.
+        """
+        network = self.network
 
         def ask() -> np.ndarray:
-            found = np.clip(network.predict(colour, matrix), 0, 1)
-            return np.floor(found * FULL + np.float32(0.5)).astype(np.uint8)
+            found = np.clip(network.predict(colour, self.matrix), 0, 1)
+            shares = np.floor(found[..., :CLASS_COUNT] * FULL + np.float32(0.5)).astype(np.uint8)
+            fine = found[..., CLASS_COUNT:]
+            best = np.where(fine.max(axis=2) > HALF, self.label_ids[fine.argmax(axis=2)], 0)
+            return np.dstack([shares, best.astype(np.uint8)])
 
-        states = (network.name.encode(), network.identity.encode(), matrix.tobytes())
-        return spread(
-            cached_prediction(key_of(colour, *states), ask), colour.shape[1], colour.shape[0]
+        states = (network.name.encode(), network.identity.encode(), self.matrix.tobytes())
+        kept = cached_prediction(key_of(colour, *states, self.label_ids.tobytes()), ask)
+        height, width = colour.shape[:2]
+        label_ids = Image.fromarray(np.ascontiguousarray(kept[..., CLASS_COUNT]))
+        return (
+            spread(kept[..., :CLASS_COUNT], width, height),
+            np.asarray(label_ids.resize((width, height), Image.Resampling.NEAREST)),
         )
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.images import SUFFIXES, read_header
+from world2minecraft.capture.readers.datasets.nyu40_labels import label_reading
 from world2minecraft.capture.readers.panoramas import (
     is_panorama_size,
     panorama_frames,
@@ -28,6 +29,7 @@ from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Camera
 
 PANORAMA = "EQUIRECTANGULAR"
+LABEL_FOLDER = "labels"
 _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "PERSPECTIVE", "SIMPLE_RADIAL", "RADIAL")
 
 
@@ -62,6 +64,10 @@ class NerfstudioSource:
         if scale <= 0:
             raise CaptureError(path, f'"applied_scale" must be above 0, got {scale}')
         frames = [one for entry in entries for one in _frames(path, stated, entry, scale)]
+        reading = label_reading(folder / LABEL_FOLDER)
+        frames = [
+            replace(one, labels_path=one.labels_path and reading(one.labels_path)) for one in frames
+        ]
         notes = [] if scale == 1 else [f"camera positions are divided by applied_scale, {scale:g}"]
         panoramas = len({frame.rig.place for frame in frames if frame.rig is not None})
         notes += [panorama_note(panoramas)] if panoramas else []
@@ -127,7 +133,7 @@ def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> F
     colour = _file_in_folder(path, entry["file_path"])
     depth_path = _existing_file(path, _depth_name(entry))
     trust_path = _existing_file(path, entry.get("mask_path")) if depth_path else None
-    labels = path.parent / "labels" / f"{colour.stem}.png"
+    labels = path.parent / LABEL_FOLDER / f"{colour.stem}.png"
     pose = _pose(path, entry, scale)
     try:
         camera = _camera(path, {**stated, **entry}, colour)

@@ -15,7 +15,7 @@ import numpy as np
 from world2minecraft.capture.readers.datasets.nyu40_labels import (
     LABEL_TABLE,
     find_label_table,
-    raw_id_classes,
+    raw_id_labels,
 )
 from world2minecraft.capture.readers.datasets.scannet_metadata import (
     axis_alignment,
@@ -27,7 +27,7 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import LayoutObject
-from world2minecraft.core.vocabulary import nyu40_classes
+from world2minecraft.core.vocabulary import label_id_classes, nyu40_classes
 
 LABELLED = "_vh_clean_2.labels.ply"
 NYU40_NUMBERS = 40
@@ -130,7 +130,7 @@ def _classes(path: Path, scene: Path, columns: dict[str, np.ndarray]) -> np.ndar
             f"labels up to {most} are raw ScanNet IDs: put {LABEL_TABLE} beside the scene "
             "to map them",
         )
-    return raw_id_classes(table)[numbers]
+    return label_id_classes()[raw_id_labels(table)[numbers]]
 
 
 def _alignment(path: Path) -> np.ndarray:
