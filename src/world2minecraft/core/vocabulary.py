@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id, display_name
 from world2minecraft.core.errors import DamagedFileError, UnknownNameError
 from world2minecraft.core.files import load_plain_yaml, read_bytes, read_json
 
@@ -104,6 +104,19 @@ class Vocabulary:
         by_label: dict[str, ThingName] = self._by_label  # type: ignore[attr-defined]
         table: dict[str, int | None] = {key: one.class_id for key, one in by_label.items()}
         return table | dict(self.classes) | dict.fromkeys(self.silent)
+
+
+def object_title(name: str, class_id: int) -> str:
+    """Return the text that people read for an object: the title of its name, or its class.
+
+    Example:
+        >>> object_title("toilet", 11), object_title("", 9), object_title("toy robot", 11)
+        ('toilet', 'television', 'toy robot')
+    """
+    if not name or name == display_name(class_id):
+        return display_name(class_id)
+    entry = read_vocabulary().names.get(name)
+    return entry.title if entry else name
 
 
 def label_keys(label: str) -> list[str]:
