@@ -119,6 +119,17 @@ def object_title(name: str, class_id: int) -> str:
     return entry.title if entry else name
 
 
+def nyu40_of(name: str, class_id: int) -> int:
+    """Return the NYU40 id of an object's name, or of its class if the name is unknown.
+
+    Example:
+        >>> nyu40_of("toilet", 11), nyu40_of("", 5)
+        (33, 5)
+    """
+    names = read_vocabulary().names
+    return (names.get(name) or names[display_name(class_id)]).nyu40
+
+
 def label_keys(label: str) -> list[str]:
     """Return the keys under which a label is looked up: the whole label, then its synonyms.
 

@@ -26,6 +26,7 @@ from world2minecraft.core.types import (
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.journal import write_edits
 from world2minecraft.formats.layout import read_rooms, write_layouts
+from world2minecraft.formats.object_names import read_run_names
 from world2minecraft.formats.objects_and_placements import (
     read_objects,
     read_placements,
@@ -38,7 +39,7 @@ from world2minecraft.formats.run_arrays import read_evidence, read_room, write_c
 from world2minecraft.formats.scan_record import read_depth_kind, read_room_size, read_scene_name
 from world2minecraft.formats.volume_formats import (
     format_by_name,
-    read_run_templates,
+    run_details,
     write_volume_formats,
 )
 from world2minecraft.minecraft.file_format import WriteOptions
@@ -161,7 +162,8 @@ def build_stage(folder: Path, chosen: Parameters) -> None:
     """Run the build stage: ``room.npz`` and ``placements.json`` -> the files in ``build``."""
     volume, edits = _build_and_repair(folder, chosen)
     name = scene_name(folder) or WORLD_NAME
-    write_build(folder / "build", volume, mc_version=chosen.mc_version, name=name)
+    names = read_run_names(folder)
+    write_build(folder / "build", volume, mc_version=chosen.mc_version, name=name, objects=names)
     write_edits(folder / "build", edits)
     write_further_forms(folder, volume, chosen)
 
@@ -174,9 +176,7 @@ def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -
     _remove_old_forms(folder / "build", chosen.format_names)
     if not chosen.format_names:
         return
-    options = WriteOptions(
-        mc_version=chosen.mc_version, other={"templates": read_run_templates(folder)}
-    )
+    options = WriteOptions(mc_version=chosen.mc_version, other=run_details(folder))
     lost = write_volume_formats(folder / "build", volume, chosen.format_names, options)
     rows = {
         name: {"file": f"room{format_by_name(name).suffix}", "lost": dict(losses)}

@@ -22,8 +22,8 @@ from world2minecraft.sceneforge.queries import QUERIES
 
 TARGET = Path(__file__).parent / "web" / "src" / "commands.ts"
 HEAD = """\
-// Made from core.classes, the vocabulary, the commands of editing.scene and the queries of sceneforge by
-// `python -m world2minecraft.sceneforge.typescript`; do not edit.
+// Made from core.classes, core.vocabulary, the commands of editing.scene and the queries of
+// sceneforge by `python -m world2minecraft.sceneforge.typescript`; do not edit.
 """
 PLAIN = {"integer": "number", "number": "number", "string": "string", "boolean": "boolean"}
 WIDTH = 100

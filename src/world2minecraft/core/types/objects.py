@@ -40,6 +40,7 @@ class ObjectInstance:
         put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
         checks.floats("yaw_deg", [self.yaw_deg], (1,))
         put(self, "cells", checks.array("cells", self.cells, np.int32, (None, 3)))
+        checks.object_name(self.name)
         for name in ("confidence", "name_confidence"):
             put(self, name, checks.fraction(name, getattr(self, name)))
 

@@ -1,5 +1,5 @@
-// Made from core.classes, the vocabulary, the commands of editing.scene and the queries of sceneforge by
-// `python -m world2minecraft.sceneforge.typescript`; do not edit.
+// Made from core.classes, core.vocabulary, the commands of editing.scene and the queries of
+// sceneforge by `python -m world2minecraft.sceneforge.typescript`; do not edit.
 
 /** Display name of each class, by id. */
 export const CLASS_DISPLAY_NAMES: readonly string[] = [
