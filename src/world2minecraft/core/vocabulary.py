@@ -24,6 +24,7 @@ NYU40_FILE = Path(__file__).parent / "data" / "nyu40.json"
 NOTHING = "nothing"  # Instead of a name: outdoor things, which vote for none.
 MAX_BYTES = 1 << 20
 OTHER_NYU40 = 40  # Other prop.
+MIN_NAME_CONFIDENCE = 0.5  # Below it, an object has the display name of its class.
 _ENDINGS = re.compile(r" (merged|stuff|other)$")
 _KEYS = {"class", "nyu40", "also", "templates", "title"}
 

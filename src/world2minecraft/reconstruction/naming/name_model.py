@@ -14,10 +14,10 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES
 from world2minecraft.core.files import read_npz
-from world2minecraft.core.vocabulary import read_vocabulary
+from world2minecraft.core.vocabulary import MIN_NAME_CONFIDENCE, read_vocabulary
 
 WEIGHTS = Path(__file__).parents[2] / "weights" / "object_names.npz"
-MIN_CONFIDENCE = 0.5
+MIN_CONFIDENCE = MIN_NAME_CONFIDENCE
 MAX_WALL_M, MAX_GAP_M = 1.0, 1.0
 SMALLEST_M, SMALLEST_CHANCE = 0.04, 1e-9
 
