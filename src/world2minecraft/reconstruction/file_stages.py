@@ -51,6 +51,7 @@ from world2minecraft.reconstruction.fusion import (
     remove_floaters,
 )
 from world2minecraft.reconstruction.instances import find_objects
+from world2minecraft.reconstruction.instances.supports import with_supports
 from world2minecraft.reconstruction.naming.name_votes import (
     NAME_VOTES,
     NYU40_COUNT,
@@ -113,7 +114,8 @@ def find_stage(folder: Path, chosen: Parameters) -> None:
     grid, scan_to_room = read_room(folder / "room.npz")
     found = find_objects(grid, chosen.find, stated=_stated_cells(folder, grid))
     if not chosen.find.paper_compat:
-        found = replace(found, instances=_named(folder, found.grid, found.instances))
+        named = _named(folder, found.grid, found.instances)
+        found = replace(found, instances=with_supports(named, found.grid))
     write_room(folder / "room.npz", found.grid, scan_to_room)
     centers = found.centers
     write_centers(folder / "centers.npz", centers.density, centers.candidates, centers.cluster)
@@ -155,7 +157,8 @@ def furnish_stage(folder: Path, chosen: Parameters) -> None:
     grid, _ = read_room(folder / "room.npz")
     instances = read_objects(folder / "objects.json", grid)
     placed = place_templates(grid, instances, chosen.furnish, read_rooms(folder, grid))
-    write_placements(folder / "placements.json", placed)
+    named = not chosen.furnish.paper_compat
+    write_placements(folder / "placements.json", placed, named=named)
 
 
 def build_stage(folder: Path, chosen: Parameters) -> None:
