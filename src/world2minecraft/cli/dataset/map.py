@@ -92,7 +92,7 @@ def lines_of(rules: "BlockMap") -> list[str]:
             shown = display_name(class_id(name))
             to = "" if shown == name else f" ({name})"
         else:
-            shown, to = name, f" -> {', '.join(classes)}"
+            shown, to = name, f" -> {', '.join(display_name(class_id(one)) for one in classes)}"
         lines.append(f"  {shown}{to}: {', '.join(blocks[:MAX_SHOWN])}{more}")
     lines.append(
         f"  and {word_count(rules)} words for mod blocks; --json FILE writes the whole map"
