@@ -166,7 +166,8 @@ def assign_unique_names(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
     """Assign unique names to landmarks, from the noun, colour and neighbour, or a number."""
     nouns = Counter(one.noun for one in landmarks)
     coloured = Counter((one.colour, one.noun) for one in landmarks)
-    anchors = [one for one in landmarks if nouns[one.noun] == 1]
+    specific = [one for one in landmarks if one.noun not in _UNSPECIFIC_NOUNS]
+    anchors = [one for one in specific if nouns[one.noun] == 1]
     phrases = [_phrase(one, nouns, coloured, anchors) for one in landmarks]
     total, seen, result = Counter(phrases), Counter[str](), []
     for one, phrase in zip(landmarks, phrases, strict=True):
