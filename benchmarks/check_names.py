@@ -99,7 +99,8 @@ def main() -> None:
     rows = []
     for kind in chosen.kinds:
         for seed in range(FIRST_SEED, FIRST_SEED + chosen.seeds):
-            folder = chosen.keep / f"{kind}-{seed}"
+            mark = "" if chosen.furnishing == "basic" else f"-{chosen.furnishing}"
+            folder = chosen.keep / f"{kind}-{seed}{mark}"
             row = scored(folder, kind, seed, chosen.furnishing, chosen.labels)
             rows.append(row)
             figures = " ".join(f"{row[name]:.3f}" for name in ("precision", "recall", "f1"))

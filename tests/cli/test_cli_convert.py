@@ -246,6 +246,8 @@ def test_a_run_keeps_what_its_blocks_are(run_folder, tmp_path, capsys):
     assert tree["nodes"][1]["extras"] == {
         "class": 5,
         "class_name": "chair",
+        "name": "chair",
+        "nyu40": 5,
         "instance": 7,
         "size_m": [0.25, 0.25, 0.25],
         "template": "chair",

@@ -79,7 +79,7 @@ def furnished(**held) -> BlockVolume:
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
     path = tmp_path_factory.mktemp("glb") / "room.glb"
-    write_gltf(furnished(), path, templates={7: "chair"})
+    write_gltf(furnished(), path, templates={7: "chair"}, names={7: "bar stool"})
     return trimesh.load(path)
 
 
@@ -93,7 +93,7 @@ def placed(scene, name):
 
 def test_each_object_is_one_mesh(scene):
     assert sorted(scene.graph.nodes_geometry) == [
-        "blocks", "chair_7", "floor", "table_9", "wall", "window",
+        "bar_stool_7", "blocks", "floor", "table_9", "wall", "window",
     ]  # fmt: skip
     assert len(scene.geometry) == 6
 
@@ -103,28 +103,32 @@ def test_nodes_say_what_they_are(scene):
         name: scene.graph.transforms.edge_data["world", name]["metadata"]
         for name in scene.graph.nodes_geometry
     }
-    assert metadata["chair_7"] == {
+    assert metadata["bar_stool_7"] == {
         "class": 5,
         "class_name": "chair",
+        "name": "bar stool",
+        "nyu40": 5,
         "instance": 7,
         "size_m": [0.25, 0.25, 0.25],
         "template": "chair",
     }
-    assert metadata["wall"]["class_name"] == "wall"
+    assert metadata["wall"]["class_name"] == metadata["wall"]["name"] == "wall"
+    assert metadata["wall"]["nyu40"] == 1 and "nyu40" not in metadata["blocks"]
+    assert metadata["table_9"]["name"] == "table"
     assert metadata["table_9"]["size_m"] == [0.5, 0.25, 0.5]
     assert metadata["blocks"]["class_name"] == "unknown"
 
 
 def test_metres_with_y_up_from_the_rooms_origin(scene):
     """Cell (1, 1, 1) is block (0, 64, -1): room x 0 to 0.25, y 1.75 to 1.5, z 0 to 0.25."""
-    low, high = placed(scene, "chair_7").bounds
+    low, high = placed(scene, "bar_stool_7").bounds
     np.testing.assert_allclose(low, [0.0, 0.0, -1.75], atol=1e-6)
     np.testing.assert_allclose(high, [0.25, 0.25, -1.5], atol=1e-6)
 
 
 def test_a_room_is_not_mirrored(scene):
     """The stairs rise to the east, which is +x."""
-    chair = placed(scene, "chair_7")
+    chair = placed(scene, "bar_stool_7")
     top = chair.triangles[np.isclose(chair.triangles[:, :, 1], 0.25).all(axis=1)]
     assert top[..., 0].min() == pytest.approx(0.125)
 
@@ -133,9 +137,9 @@ def test_bodies_are_closed_and_have_the_volume_of_their_boxes(scene):
     volume = furnished()
     boxes = {
         name: visual_boxes(state)
-        for name, state in (("chair_7", PALETTE[3]), ("table_9", PALETTE[2]))
+        for name, state in (("bar_stool_7", PALETTE[3]), ("table_9", PALETTE[2]))
     }
-    for name, count in (("chair_7", 1), ("table_9", 4)):
+    for name, count in (("bar_stool_7", 1), ("table_9", 4)):
         sides = boxes[name][:, 3:] - boxes[name][:, :3]
         wanted = count * float(sides.prod(axis=1).sum()) / volume.blocks_per_metre**3
         assert placed(scene, name).volume == pytest.approx(wanted, rel=1e-5)
@@ -296,7 +300,7 @@ def test_a_colour_that_no_face_shows_makes_no_body():
     labels = np.full((3, 3, 3), 10, np.uint8)
     volume = BlockVolume(inside, PALETTE, labels, inside * 0 + 4, (0, 0, 0), np.eye(4))
     bodies, looks = volume_meshes(volume)
-    assert [body.name for body in bodies] == ["furn_4"]
+    assert [body.name for body in bodies] == ["furniture_4"]
     assert len(bodies[0].looks) == 6
     assert len(looks) == 2
 
@@ -357,6 +361,16 @@ def test_the_semantic_json_has_the_boxes_of_the_room(tmp_path):
     assert held["id_to_label"][7] == 5 and held["id_to_label"][1] == -1
     assert {"id": 5, "name": "chair"} in held["classes"]
     assert all(row["class_id"] == held["id_to_label"][row["id"]] for row in held["objects"])
+
+
+def test_habitat_names_objects(tmp_path):
+    write_habitat(furnished(), tmp_path / "r", names={7: 'my "best", chair', 9: "desk"})
+    stages = tmp_path / "r" / "stages"
+    lines = (stages / "room.semantic.txt").read_text().splitlines()
+    assert [line.split(",", 2)[2] for line in lines[1:3]] == ['"my best chair",0', '"desk",0']
+    held = json.loads((stages / "info_semantic.json").read_text())["objects"]
+    desk = next(row for row in held if row["id"] == 9)
+    assert (desk["name"], desk["class_name"], desk["nyu40"]) == ("desk", "table", 14)
 
 
 def test_ids_have_colours_of_their_own():

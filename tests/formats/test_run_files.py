@@ -208,3 +208,28 @@ def test_rows_that_are_no_objects(tmp_path, text):
         read_objects(tmp_path / "o.json", some_grid())
     with pytest.raises(DamagedFileError):
         read_placements(tmp_path / "o.json")
+
+
+@pytest.mark.parametrize("by", ["floor", "ceiling", 2, ""])
+def test_objects_keep_their_supports(tmp_path, by):
+    grid = some_grid()
+    write_objects(tmp_path / "o.json", (replace(some_object(grid), supported_by=by),))
+    assert read_objects(tmp_path / "o.json", grid)[0].supported_by == by
+
+
+@pytest.mark.parametrize("by", ["sky", 1, 0, True, 1.5, []])
+def test_supports_are_other_objects_or_structure(by):
+    with pytest.raises(ValueError, match="supported_by must be another object's id or floor"):
+        replace(some_object(some_grid()), supported_by=by)
+
+
+def test_placements_say_what_their_templates_show(tmp_path):
+    box = ([0.0, 0.0, 0.0], [1.0, 1.0, 1.0], 0, 0.5)
+    placed = tuple(Placement(1, 10, name, *box) for name in ("fridge_double", "cells", "own_thing"))
+    for named, names in ((True, ["refrigerator", None, None]), (False, [None] * 3)):
+        write_placements(tmp_path / "p.json", placed, named=named)
+        rows = json.loads((tmp_path / "p.json").read_text())
+        assert [row.get("name") for row in rows] == names
+        assert [one.template for one in read_placements(tmp_path / "p.json")] == [
+            one.template for one in placed
+        ]

@@ -18,7 +18,8 @@ from house_of_blocks import cottage
 from PIL import Image
 
 from world2minecraft import cli
-from world2minecraft.core.errors import ConflictError, OutputError, UsageError
+from world2minecraft.core.classes import display_name
+from world2minecraft.core.errors import ConflictError, OutputError, UnknownNameError, UsageError
 from world2minecraft.core.locks import Lock
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.minecraftocc.building import build as build_module
@@ -96,8 +97,10 @@ def test_the_folder_holds_what_the_docs_say(made):
         "dataset.json",
         "index.parquet",
         "scenes/first.json",
+        "scenes/first.objects.json",
         "scenes/first.poses.jsonl",
         "scenes/second.json",
+        "scenes/second.objects.json",
         "scenes/second.poses.jsonl",
         "shards/test/first-000.tar",
         "shards/train/second-000.tar",
@@ -130,6 +133,22 @@ def test_a_sample_is_what_the_renderer_and_the_labeller_say(made, worlds):
     names = [voxels.fine_classes[n] for n in occ.fine.flat]
     assert names == [sample.fine_classes[n] for n in sample.occ.fine.flat]
     assert len(np.unique(occ.labels)) > 3
+
+
+def test_objects_of_scenes_are_listed_by_instance(made):
+    store = open_store(made[0])
+    with pytest.raises(UnknownNameError, match="no scene is named .third."):
+        store.objects("third")
+    for scene_id in ("first", "second"):
+        mine = [one for one in store.samples(pictures=False) if one.scene_id == scene_id]
+        objects = store.objects(scene_id)
+        seen = {number for one in mine for number in np.unique(one.occ.instance).tolist()} - {0}
+        assert seen and seen <= objects.keys()
+        for occ in (one.occ for one in mine):
+            for number in np.unique(occ.instance[occ.instance > 0]).tolist():
+                labels = occ.labels[occ.instance == number]
+                assert objects[number].class_id == np.bincount(labels).argmax()
+                assert objects[number].name == display_name(objects[number].class_id)
 
 
 def test_one_world_in_both_splits_is_refused(plan):

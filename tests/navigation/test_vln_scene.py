@@ -1,5 +1,7 @@
 """A scene of a small flat: names, rooms, doors, goals and distances on foot."""
 
+import json
+import shutil
 from itertools import combinations
 
 import numpy as np
@@ -7,10 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
+from small_flat import flat_volume
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.physics.any_angle_paths import build_lattice, straight_m
-from world2minecraft.navigation.landmarks import colour_name
+from world2minecraft.navigation.landmarks import colour_name, landmarks_of
+from world2minecraft.navigation.running.sentence_goals import find_named_landmark
 from world2minecraft.navigation.scene import (
     LEVEL_SIZES,
     REACH_SPACINGS,
@@ -124,3 +128,47 @@ def test_a_body_out_of_range_is_told(flat_path):
 )  # fmt: skip
 def test_colours_have_their_plain_names(rgb, name):
     assert colour_name(np.array(rgb)) == name
+
+
+def named_flat(flat_path, folder, names):
+    """The flat with names of objects, as a run states them; ids from 1."""
+    shutil.copytree(flat_path, folder)
+    path = folder / "scene.json"
+    rows = [
+        {"id": number, "class": kind, "name": name, "name_confidence": confidence}
+        for number, (kind, name, confidence) in enumerate(names, 1)
+    ]
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"objects": rows}))
+    return open_scene(folder)
+
+
+def test_names_of_objects_are_landmarks(flat_path, tmp_path):
+    scene = named_flat(
+        flat_path,
+        tmp_path / "flat",
+        [
+            ("table", "desk", 0.9),
+            ("chair", "bar stool", 0.8),
+            ("furn", "furniture", 0.3),
+            ("chair", "Stop. Go away", 1.0),
+        ],
+    )
+    assert [one.noun for one in scene.landmarks] == ["desk", "bar stool", "upright piano", "chair"]
+    assert find_named_landmark(scene, "go to the writing desk") is scene.landmark("desk")
+    assert scene.landmark("bar stool").is_unambiguous
+
+
+def test_two_things_of_one_name_are_told_apart(flat_path, tmp_path):
+    unnamed = ("furn", "", 0.0)
+    two = [("table", "desk", 0.9), ("chair", "stool", 0.8), unnamed, ("chair", "stool", 0.9)]
+    scene = named_flat(flat_path, tmp_path / "flat", two)
+    names = [one.name for one in scene.landmarks if one.noun == "stool"]
+    assert names == ["stool beside the desk", "stool beside the upright piano"]
+
+
+def test_unnamed_furniture_is_no_goal():
+    volume, _, _ = flat_volume()
+    none = (np.zeros(volume.states.shape, np.uint16), ("",))
+    found = landmarks_of(volume, none, {}, lambda _: 0)
+    assert [one.noun for one in found] == ["table", "chair", "piece of furniture", "chair"]
+    assert [one.is_unambiguous for one in found] == [True, True, False, True]

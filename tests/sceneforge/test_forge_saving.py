@@ -186,3 +186,24 @@ def test_occ_json_opens_with_the_centres_beside_it(tmp_path):
     again = Editor.open(tmp_path / "occ.json")
     assert again.notes == [] and again.saved_rev == again.rev
     again.close()
+
+
+def test_names_of_objects_are_kept_and_changed(run):
+    rows = json.loads((run / "objects.json").read_text())
+    rows[0] |= {"name": "desk", "name_confidence": 0.75}
+    (run / "objects.json").write_text(json.dumps(rows))
+    editor = Editor.open(run, clock=Clock())
+    number = rows[0]["id"]
+    assert editor.draft.objects[number].name == "desk"
+    edit(editor, 0)
+    editor.save()
+    assert _named(run) == ("desk", 0.75)
+    editor.do("rename_objects", ids=[number], name="workbench")
+    editor.save()
+    editor.close()
+    assert _named(run) == ("workbench", 1.0)
+
+
+def _named(run) -> tuple[str, float]:
+    row = json.loads((run / "objects.json").read_text())[0]
+    return row["name"], row["name_confidence"]

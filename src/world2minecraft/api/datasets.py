@@ -11,6 +11,7 @@ from world2minecraft.core.progress import Progress, no_progress
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import Camera
+    from world2minecraft.formats.object_names import NamedObject
     from world2minecraft.minecraftocc.building import BuildReport
     from world2minecraft.minecraftocc.exporters import ExportReport
     from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
@@ -54,6 +55,18 @@ class Dataset:
     def keys(self, split: str | None = None) -> list[str]:
         """Return the sample keys in a split such as ``train``. Defaults to all splits."""
         return self.store.keys(split)
+
+    def objects(self, scene_id: str) -> "dict[int, NamedObject]":
+        """Return the class and the name of each object of a scene by its number in ``instance``.
+
+        Data sets of former versions and of other programs have none.
+
+        Raises:
+            UnknownNameError: If there is no such scene.
+        """
+        from world2minecraft.minecraftocc.store import OccStore
+
+        return self.store.objects(scene_id) if isinstance(self.store, OccStore) else {}
 
     def describe(self) -> str:
         """Return the format and the number of samples, such as ``store, 3 samples (3 train)``."""

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN, display_name
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid
+from world2minecraft.core.vocabulary import object_title
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -290,7 +291,7 @@ def load(path: str | Path) -> "Run | GeneratedRoom | Dataset":
 
 
 def _name_of(instance: ObjectInstance) -> str:
-    return instance.name or display_name(instance.class_id)
+    return object_title(instance.name, instance.class_id)
 
 
 def _metres(sides: np.ndarray) -> str:

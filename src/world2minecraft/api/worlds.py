@@ -87,7 +87,7 @@ def convert(
         >>> w2m.convert(run, tmp / "room.glb").path.name
         'room.glb'
     """
-    from world2minecraft.formats.volume_formats import read_run_templates, write_volume
+    from world2minecraft.formats.volume_formats import world_details, write_volume
     from world2minecraft.minecraft.block_renames import count_mod_blocks
     from world2minecraft.minecraft.commands.datapack import to_namespace
     from world2minecraft.minecraft.file_format import Losses, WriteOptions
@@ -98,7 +98,7 @@ def convert(
         mc_version=mc_version,
         schem_version=schem_version,
         name=name or goal.stem,
-        other={"templates": read_run_templates(place)},
+        other=world_details(place),
     )
     unread, unwritten = Losses(), Losses()
     volume = _with_scale(_read_part(place, box, unread), blocks_per_metre)

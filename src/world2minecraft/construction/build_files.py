@@ -4,6 +4,7 @@ from pathlib import Path
 
 from world2minecraft.construction.spawn import find_spawn
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.formats.object_names import NamedObject
 from world2minecraft.formats.world_labels import scene_from_volume, write_scene
 from world2minecraft.minecraft.commands.datapack import has_packs, write_datapack
 from world2minecraft.minecraft.entities import check_displays
@@ -20,6 +21,7 @@ def write_build(
     *,
     mc_version: str = DEFAULT_VERSION,
     name: str = WORLD_NAME,
+    objects: tuple[NamedObject, ...] = (),
 ) -> None:
     """Write ``world/``, ``room.schem``, ``datapack.zip``, ``scene.json`` and ``scene.npz``.
 
@@ -30,6 +32,7 @@ def write_build(
         volume: The blocks of the room.
         mc_version: Minecraft version to write for, such as ``1.20.1``.
         name: Name of the world in the game's list.
+        objects: Names of the objects.
 
     Raises:
         UnknownNameError: If the Minecraft version is unknown.
@@ -59,5 +62,6 @@ def write_build(
         data_version=version.data_version,
         spawn=spawn.position,
         spawn_yaw_deg=spawn.yaw_deg,
+        objects=objects,
     )
     write_scene(target, scene)

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id, display_name
 from world2minecraft.core.errors import DamagedFileError, UnknownNameError
 from world2minecraft.core.files import load_plain_yaml, read_bytes, read_json
 
@@ -24,6 +24,7 @@ NYU40_FILE = Path(__file__).parent / "data" / "nyu40.json"
 NOTHING = "nothing"  # Instead of a name: outdoor things, which vote for none.
 MAX_BYTES = 1 << 20
 OTHER_NYU40 = 40  # Other prop.
+MIN_NAME_CONFIDENCE = 0.5  # Below it, an object has the display name of its class.
 _ENDINGS = re.compile(r" (merged|stuff|other)$")
 _KEYS = {"class", "nyu40", "also", "templates", "title"}
 
@@ -104,6 +105,30 @@ class Vocabulary:
         by_label: dict[str, ThingName] = self._by_label  # type: ignore[attr-defined]
         table: dict[str, int | None] = {key: one.class_id for key, one in by_label.items()}
         return table | dict(self.classes) | dict.fromkeys(self.silent)
+
+
+def object_title(name: str, class_id: int) -> str:
+    """Return the text that people read for an object: the title of its name, or its class.
+
+    Example:
+        >>> object_title("toilet", 11), object_title("", 9), object_title("toy robot", 11)
+        ('toilet', 'television', 'toy robot')
+    """
+    if not name or name == display_name(class_id):
+        return display_name(class_id)
+    entry = read_vocabulary().names.get(name)
+    return entry.title if entry else name
+
+
+def nyu40_of(name: str, class_id: int) -> int:
+    """Return the NYU40 id of an object's name, or of its class if the name is unknown.
+
+    Example:
+        >>> nyu40_of("toilet", 11), nyu40_of("", 5)
+        (33, 5)
+    """
+    names = read_vocabulary().names
+    return (names.get(name) or names[display_name(class_id)]).nyu40
 
 
 def label_keys(label: str) -> list[str]:

@@ -10,7 +10,8 @@ they do not overlap. Owners do not hide each other's faces: each has a closed me
 can be moved. A transparent material hides only other transparent materials.
 """
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK, apply
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.core.vocabulary import object_title
 from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.collision_shapes import FULL_CUBE
 from world2minecraft.minecraft.commands.fill_boxes import cover_with_boxes
@@ -231,11 +233,19 @@ class BlockMesh:
     corners: np.ndarray  # float64 [F, 4, 3]
     normals: np.ndarray  # float64 [F, 3]
     looks: np.ndarray  # int32 [F], indices into the looks of the volume
+    object_name: str = ""  # such as "office chair"; empty if unknown
+
+    @property
+    def title(self) -> str:
+        """The text that people read: the object's name, or that of its class."""
+        if not self.class_id:
+            return "unknown"
+        return object_title(self.object_name, self.class_id)
 
     @property
     def name(self) -> str:
-        """A name that is unique among the meshes of the volume."""
-        kind = CLASS_NAMES[self.class_id] if self.class_id else "blocks"
+        """A name that is unique among the meshes of the volume, such as ``office_chair_7``."""
+        kind = re.sub(r"\W+", "_", self.title).strip("_") if self.class_id else "blocks"
         return f"{kind}_{self.instance}" if self.instance else kind
 
     @property
@@ -244,8 +254,14 @@ class BlockMesh:
         return self.corners.min(axis=(0, 1)), self.corners.max(axis=(0, 1))
 
 
-def volume_meshes(volume: BlockVolume) -> tuple[list[BlockMesh], list[Look]]:
-    """Return the meshes of a volume, structure first, then objects by id, and their looks."""
+def volume_meshes(
+    volume: BlockVolume, names: Mapping[int, str] | None = None
+) -> tuple[list[BlockMesh], list[Look]]:
+    """Return the meshes of a volume, structure first, then objects by id, and their looks.
+
+    ``names`` contains the names of objects by id, if known.
+    """
+    named = names or {}
     looks = _Looks()
     owners = _owners(volume)
     parts = [_block_faces(volume, owners, looks), *_display_faces(volume, looks)]
@@ -263,7 +279,8 @@ def volume_meshes(volume: BlockVolume) -> tuple[list[BlockMesh], list[Look]]:
         rows = owner == number
         instance = number if number < _CLASSES else 0
         class_id = class_of.get(number, 0) if instance else number - _CLASSES
-        meshes.append(BlockMesh(class_id, instance, corners[rows], normals[rows], kinds[rows]))
+        faces = (corners[rows], normals[rows], kinds[rows])
+        meshes.append(BlockMesh(class_id, instance, *faces, named.get(instance, "")))
     return meshes, looks.held
 
 

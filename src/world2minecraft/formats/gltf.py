@@ -1,8 +1,9 @@
 """glTF export of volumes to binary ``.glb`` files with one mesh per object.
 
 Meshes are in metres with y up, from the room's origin: room (x, y, z) becomes (x, z, -y). Each
-object is a node whose origin is the centre of its underside, with ``extras``: ``class`` (the id),
-``class_name``, ``instance`` and ``size_m`` along x, y and z. Colours are texels of one small
+object is a node such as ``toilet_3``, whose origin is the centre of its underside, with
+``extras``: ``class`` (the id), ``class_name``, ``name``, ``nyu40`` (the id), ``instance`` and
+``size_m`` along x, y and z. Colours are texels of one small
 texture, which all viewers, engines and editors support. A second texture contains glowing colours.
 
 A ``.glb`` file consists of a JSON chunk and a chunk of little-endian numbers. Each buffer view
@@ -27,6 +28,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.core.vocabulary import nyu40_of
 from world2minecraft.formats.block_meshes import BlockMesh, Look, volume_meshes
 from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, read_nbt, unpack, write_nbt
 
@@ -244,6 +246,7 @@ def write_gltf(
     path: str | Path,
     *,
     templates: Mapping[int, str] | None = None,
+    names: Mapping[int, str] | None = None,
     keep_blocks: bool = True,
 ) -> None:
     """Write a volume as a ``.glb`` file.
@@ -252,19 +255,22 @@ def write_gltf(
         volume: Blocks to write. If they have labels, each object becomes a mesh.
         path: Output file.
         templates: Furniture template of each object by id, which is written to the extras.
+        names: Name of each object by id, such as ``office chair``. Others have that of their class.
         keep_blocks: Whether to store the blocks in the file so that it can be read again.
 
     Raises:
         UsageError: If the volume contains no visible blocks.
         OutputError: If the file cannot be written.
     """
-    write_bytes(path, gltf_bytes(volume, templates=templates, keep_blocks=keep_blocks))
+    details = {"templates": templates, "names": names}
+    write_bytes(path, gltf_bytes(volume, **details, keep_blocks=keep_blocks))
 
 
 def gltf_bytes(
     volume: BlockVolume,
     *,
     templates: Mapping[int, str] | None = None,
+    names: Mapping[int, str] | None = None,
     keep_blocks: bool = True,
 ) -> bytes:
     """Return the contents of the file that ``write_gltf`` writes.
@@ -272,7 +278,7 @@ def gltf_bytes(
     Raises:
         UsageError: If the volume contains no visible blocks.
     """
-    meshes, looks = volume_meshes(volume)
+    meshes, looks = volume_meshes(volume, names)
     if not meshes:
         raise UsageError("the volume contains no visible blocks, which glTF requires for a mesh")
     writer = GlbWriter(f"World2Minecraft {__version__}")
@@ -308,14 +314,17 @@ def read_gltf(path: str | Path) -> BlockVolume:
 
 
 def body_extras(mesh: BlockMesh, template: str | None = None) -> dict[str, Any]:
-    """Return the properties of a mesh: ``class``, ``class_name``, ``instance`` and ``size_m``."""
+    """Return the properties of a mesh, which become the ``extras`` of its node."""
     low, high = mesh.bounds
     extras: dict[str, Any] = {
         "class": mesh.class_id,
         "class_name": CLASS_NAMES[mesh.class_id] if mesh.class_id else "unknown",
+        "name": mesh.title,
         "instance": mesh.instance,
         "size_m": np.round(high - low, 6).tolist(),
     }
+    if mesh.class_id:
+        extras["nyu40"] = nyu40_of(mesh.object_name, mesh.class_id)
     return extras | ({"template": template} if template else {})
 
 

@@ -7,7 +7,7 @@
     stages/NAME.stage_config.json       the files of the stage
     stages/NAME.glb                     meshes for rendering
     stages/NAME.semantic.glb            the same meshes with a unique colour per object
-    stages/NAME.semantic.txt            colour, id and class of each object, in HM3D's format
+    stages/NAME.semantic.txt            colour, id and name of each object, in HM3D's format
     stages/info_semantic.json           classes, objects and their boxes, in Replica's format
 
 The id of an object is its ``instance``. Walls, floor and other structure have the ids after the
@@ -16,18 +16,20 @@ as Habitat expects for Replica.
 """
 
 import colorsys
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from world2minecraft import __version__
-from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_DISPLAY_NAMES
 from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes, write_json, write_text
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.core.vocabulary import nyu40_of
 from world2minecraft.formats.block_meshes import BlockMesh, volume_meshes
 from world2minecraft.formats.gltf import (
     GlbWriter,
@@ -45,13 +47,20 @@ MAX_ID = 10_000  # Habitat's own limit.
 _TURN = 0.618034  # Of the colour circle from one object to the next: neighbours differ most.
 
 
-def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room") -> None:
+def write_habitat(
+    volume: BlockVolume,
+    folder: str | Path,
+    *,
+    name: str = "room",
+    names: Mapping[int, str] | None = None,
+) -> None:
     """Write a volume as a Habitat scene dataset with one scene.
 
     Args:
         volume: Blocks to write. If they have labels, each object becomes a mesh.
         folder: Output folder, which is created if necessary.
         name: Name of the scene.
+        names: Name of each object by id, such as ``office chair``. Others have that of their class.
 
     Raises:
         UsageError: If the volume contains no visible blocks or more than 10,000 objects, or if the
@@ -60,8 +69,8 @@ def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room"
     """
     if not name or not all(letter.isalnum() or letter in "_-" for letter in name):
         raise UsageError(f"scene name must consist of letters, digits, _ and -, got {name!r}")
-    target, render = Path(folder), gltf_bytes(volume, keep_blocks=False)
-    meshes, _ = volume_meshes(volume)
+    target, render = Path(folder), gltf_bytes(volume, names=names, keep_blocks=False)
+    meshes, _ = volume_meshes(volume, names)
     ids = semantic_ids(meshes)
     stages = target / "stages"
     write_bytes(stages / f"{name}.glb", render)
@@ -112,9 +121,9 @@ def semantic_colour(number: int) -> tuple[int, int, int]:
 
 
 def semantic_text(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> str:
-    """Return the object list in HM3D's format: a header, then id, colour, class and region."""
+    """Return the object list in HM3D's format: a header, then id, colour, name and region."""
     rows = [
-        f'{number},{"".join(f"{part:02X}" for part in semantic_colour(number))},"{_kind(mesh)}",0'
+        f'{number},{"".join(f"{part:02X}" for part in semantic_colour(number))},"{_plain(mesh)}",0'
         for number, mesh in sorted(zip(ids, meshes, strict=True), key=lambda pair: pair[0])
     ]
     return "\n".join([HEADER, *rows]) + "\n"
@@ -123,6 +132,7 @@ def semantic_text(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> str:
 def semantic_json(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> dict[str, Any]:
     """Return Replica's ``info_semantic.json``: classes, objects with boxes, and classes of ids.
 
+    Objects have a ``name`` and a ``nyu40`` id beside their class of the paper's twelve.
     ``id_to_label`` contains the class of each id from 0, or -1 for ids without an object.
     """
     pairs = sorted(zip(ids, meshes, strict=True), key=lambda pair: pair[0])
@@ -130,7 +140,7 @@ def semantic_json(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> dict[str, 
     for number, mesh in pairs:
         labels[number] = mesh.class_id
     classes = [{"id": 0, "name": "unknown"}]
-    classes += [{"id": n, "name": name} for n, name in enumerate(CLASS_NAMES) if n]
+    classes += [{"id": n, "name": name} for n, name in enumerate(CLASS_DISPLAY_NAMES) if n]
     return {
         "classes": classes,
         "objects": [_object(number, mesh) for number, mesh in pairs],
@@ -145,7 +155,9 @@ def _object(number: int, mesh: BlockMesh) -> dict[str, Any]:
     return {
         "id": number,
         "class_id": mesh.class_id,
-        "class_name": _kind(mesh),
+        "class_name": CLASS_DISPLAY_NAMES[mesh.class_id] if mesh.class_id else "unknown",
+        "name": mesh.title,
+        "nyu40": nyu40_of(mesh.object_name, mesh.class_id) if mesh.class_id else 0,
         "instance": mesh.instance,
         "oriented_bbox": {
             "abb": {"center": np.round(center, 6).tolist(), "sizes": np.round(sizes, 6).tolist()},
@@ -154,8 +166,9 @@ def _object(number: int, mesh: BlockMesh) -> dict[str, Any]:
     }
 
 
-def _kind(mesh: BlockMesh) -> str:
-    return CLASS_NAMES[mesh.class_id] if mesh.class_id else "unknown"
+def _plain(mesh: BlockMesh) -> str:
+    """Return the name of a mesh without the marks that separate the fields of a line."""
+    return " ".join(re.split(r'[",\s]+', mesh.title)).strip() or "unknown"
 
 
 def _stage(name: str) -> dict[str, Any]:

@@ -1,8 +1,10 @@
 """``objects.json`` and ``placements.json``: detected objects and their furniture templates.
 
-``objects.json`` is a list of ``{id, class, center_m, size_m, yaw_deg, confidence}``. The cells of
-an object are those in ``room.npz`` whose ``instance`` is its id. ``placements.json`` is a list of
-``{object_id, class, template, parameters, center_m, size_m, quarter_turns, iou, alternatives}``.
+``objects.json`` is a list of ``{id, class, center_m, size_m, yaw_deg, confidence}``, and if known
+``name``, ``name_confidence`` and ``supported_by`` (an object id, floor, wall or ceiling). The cells
+of an object are those in ``room.npz`` whose ``instance`` is its id. ``placements.json`` is a list
+of ``{object_id, class, template, parameters, center_m, size_m, quarter_turns, iou, alternatives}``
+and, for templates of named things, ``name``, which tells what the template shows.
 """
 
 from pathlib import Path
@@ -14,6 +16,7 @@ from world2minecraft.core.classes import CLASS_NAMES, class_id
 from world2minecraft.core.errors import DamagedFileError, World2MinecraftError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import Alternative, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.core.vocabulary import read_vocabulary
 
 
 def write_objects(path: str | Path, instances: tuple[ObjectInstance, ...]) -> None:
@@ -33,9 +36,11 @@ def read_objects(path: str | Path, grid: OccupancyGrid) -> tuple[ObjectInstance,
     return tuple(_rows(path, lambda row: _object_of(row, at[owners == int(row["id"])])))
 
 
-def write_placements(path: str | Path, placements: tuple[Placement, ...]) -> None:
-    """Write placements in the given order."""
-    write_json(path, [_placement_row(placement) for placement in placements])
+def write_placements(
+    path: str | Path, placements: tuple[Placement, ...], *, named: bool = True
+) -> None:
+    """Write placements in the given order, with the names of what templates show if ``named``."""
+    write_json(path, [_placement_row(placement, named) for placement in placements])
 
 
 def read_placements(path: str | Path) -> tuple[Placement, ...]:
@@ -62,6 +67,8 @@ def _object_row(instance: ObjectInstance) -> dict[str, Any]:
             "name": instance.name,
             "name_confidence": round(float(instance.name_confidence), 4),
         }
+    if instance.supported_by:
+        row["supported_by"] = instance.supported_by
     return row
 
 
@@ -76,11 +83,13 @@ def _object_of(row: dict[str, Any], cells: np.ndarray) -> ObjectInstance:
         confidence=float(row["confidence"]),
         name=str(row.get("name", "")),
         name_confidence=float(row.get("name_confidence", 0.0)),
+        supported_by=row.get("supported_by", ""),
     )
 
 
-def _placement_row(placement: Placement) -> dict[str, Any]:
-    return {
+def _placement_row(placement: Placement, named: bool) -> dict[str, Any]:
+    shown = read_vocabulary().of_template(placement.template) if named else None
+    return ({"name": shown.name} if shown else {}) | {
         "object_id": placement.object_id,
         "class": CLASS_NAMES[placement.class_id],
         "template": placement.template,

@@ -15,6 +15,7 @@ import numpy as np
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.formats.object_names import name_table, read_run_names, read_world_names
 from world2minecraft.formats.world_labels import Scene, read_scene
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 from world2minecraft.minecraft.formats import (
@@ -124,7 +125,8 @@ class GltfFormat(FileFormat):
         """Write meshes, and store the blocks in the same file."""
         from world2minecraft.formats.gltf import write_gltf  # noqa: PLC0415  # It needs numba.
 
-        write_gltf(volume, path, templates=options.other.get("templates"))
+        details = {key: options.other.get(key) for key in ("templates", "names")}
+        write_gltf(volume, path, **details)
 
 
 class HabitatFormat:
@@ -148,7 +150,7 @@ class HabitatFormat:
         from world2minecraft.formats.habitat import write_habitat  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.entities import BLOCK_DISPLAY  # noqa: PLC0415
 
-        write_habitat(volume, path, name=path.stem)
+        write_habitat(volume, path, name=path.stem, names=options.other.get("names"))
         losses.add("block states (the scene contains only meshes)", int((volume.states > 0).sum()))
         losses.add("block entities", len(volume.block_entities))
         undrawn = sum(entity.id != BLOCK_DISPLAY for entity in volume.entities)
@@ -306,3 +308,21 @@ def read_run_templates(folder: str | Path) -> Mapping[int, str]:
     from world2minecraft.formats.objects_and_placements import read_placements  # noqa: PLC0415
 
     return {placement.object_id: placement.template for placement in read_placements(path)}
+
+
+def run_details(folder: str | Path) -> dict[str, Mapping[int, str]]:
+    """Return the furniture template and the name of each object of a run, for ``WriteOptions``.
+
+    Raises:
+        DamagedFileError: If a file of the run exists and cannot be read.
+    """
+    return {"templates": read_run_templates(folder), "names": name_table(read_run_names(folder))}
+
+
+def world_details(folder: str | Path) -> dict[str, Mapping[int, str]]:
+    """Return what ``run_details`` returns, with the names of a world that was built before.
+
+    Raises:
+        DamagedFileError: If a file exists and cannot be read.
+    """
+    return {"templates": read_run_templates(folder), "names": name_table(read_world_names(folder))}

@@ -1,10 +1,11 @@
 """``scene.json`` and ``scene.npz``: labels and scale of every world written by this program.
 
 ``scene.json`` contains ``block_to_room`` [4][4], ``metres_per_block``, ``corner`` [3], ``size``
-[3], ``data_version``, ``mc_version``, ``spawn`` {position [3], yaw_deg}, and for generated houses
-``light`` {hour 0 to 24, lamps}. ``scene.npz`` contains ``semantic`` uint8 and ``instance`` uint16,
-both [X, Y, Z] in block axes, with cell (0, 0, 0) at ``corner``. If known, it also contains
-``design`` uint16, an index into the names in ``designs.json``, whose first entry means none.
+[3], ``data_version``, ``mc_version``, ``spawn`` {position [3], yaw_deg}, for generated houses
+``light`` {hour 0 to 24, lamps}, and if known ``objects``, the names of the objects. ``scene.npz``
+contains ``semantic`` uint8 and ``instance`` uint16, both [X, Y, Z] in block axes, with cell
+(0, 0, 0) at ``corner``. If known, it also contains ``design`` uint16, an index into the names in
+``designs.json``, whose first entry means none.
 """
 
 from collections.abc import Mapping
@@ -17,6 +18,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import npz_array_names, read_json, read_npz, write_json, write_npz
 from world2minecraft.core.types import BlockVolume, checks
+from world2minecraft.formats.object_names import NamedObject, names_of_rows, rows_of_names
 
 DESIGNS = "designs.json"
 
@@ -36,6 +38,7 @@ class Scene:
     design: np.ndarray | None = None  # uint16 [X, Y, Z], into ``designs``; None where unknown
     designs: tuple[str, ...] = ("",)  # furniture of the library; the first is none
     light: Mapping[str, Any] = field(default_factory=dict)  # hour 0 to 24, lamps
+    objects: tuple[NamedObject, ...] = ()
 
     def __post_init__(self):
         put = object.__setattr__
@@ -67,6 +70,7 @@ def scene_from_volume(
     design: np.ndarray | None = None,
     designs: tuple[str, ...] = ("",),
     light: Mapping[str, Any] | None = None,
+    objects: tuple[NamedObject, ...] = (),
 ) -> Scene:
     """Return the scene of a volume that is written for a game version."""
     return Scene(
@@ -81,6 +85,7 @@ def scene_from_volume(
         design,
         designs,
         dict(light or {}),
+        objects,
     )
 
 
@@ -107,6 +112,7 @@ def write_scene(folder: str | Path, scene: Scene) -> None:
             "data_version": scene.data_version,
             "spawn": {"position": list(scene.spawn), "yaw_deg": scene.spawn_yaw_deg},
             **({"light": dict(scene.light)} if scene.light else {}),
+            **({"objects": rows_of_names(scene.objects)} if scene.objects else {}),
         },
     )
 
@@ -140,6 +146,7 @@ def read_scene(folder: str | Path) -> Scene:
             arrays.get("design"),
             tuple(map(str, read_json(source / DESIGNS))) if "design" in arrays else ("",),
             dict(raw.get("light", {})),
+            names_of_rows(raw.get("objects", []), source / "scene.json"),
         )
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFileError(source / "scene.json", f"is not a valid scene ({error})") from error

@@ -26,6 +26,7 @@ from world2minecraft.formats.build_reader import (
     level_spawn,
     read_build,
 )
+from world2minecraft.formats.object_names import NamedObject, read_world_names
 from world2minecraft.formats.volume_crop import Box
 from world2minecraft.formats.volume_formats import overlapping_cells, read_run_templates
 from world2minecraft.formats.world_labels import read_scene
@@ -276,6 +277,15 @@ class SceneSource:
             source = self._read()
             self._cache["designs"] = read_designs(source.folder, source.volume)
         return self._cache["designs"]
+
+    def names(self) -> tuple[NamedObject, ...]:
+        """Return the names of the objects, if the scene or its run states them.
+
+        Raises:
+            DamagedFileError: If the names are stored but cannot be read.
+        """
+        folder = self._read().folder
+        return () if folder is None else read_world_names(folder)
 
     def start(self) -> tuple[float, float, float] | None:
         """Return the player's start position (feet, in block coordinates), or None if unknown."""

@@ -4,31 +4,24 @@ The names are unique. Objects of the same kind are distinguished by colour, then
 object, and by a number only as a last resort.
 """
 
+import re
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, SemanticClass, display_name
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.core.vocabulary import MIN_NAME_CONFIDENCE
+from world2minecraft.formats.object_names import NamedObject
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
 
 BESIDE_M = 1.5  # What stands nearer than this is "beside".
 MIN_SIZE_M = 0.15  # What is smaller in its two longer sides is nothing to speak of.
 
-# What people call a class where nothing better is known of a thing.
-NOUNS = {
-    int(SemanticClass.CHAIR): "chair",
-    int(SemanticClass.BED): "bed",
-    int(SemanticClass.SOFA): "sofa",
-    int(SemanticClass.TABLE): "table",
-    int(SemanticClass.TVS): "screen",
-    int(SemanticClass.FURN): "cupboard",
-    int(SemanticClass.OBJS): "object",
-}
 # Blocks of the game that are a thing by themselves; of others only the class is a name.
 _BLOCK_NOUNS = {
     "bookshelf": "bookcase",
@@ -52,7 +45,9 @@ _BLOCK_NOUNS = {
     "loom": "loom",
     "brewing_stand": "brewing stand",
 }
-_UNSPECIFIC_NOUN = NOUNS[int(SemanticClass.OBJS)]  # Says nothing, whatever else is said of it.
+_FURNITURE = "piece of furniture"  # Of the class, which has no singular.
+_UNSPECIFIC_NOUNS = (_FURNITURE, "object")  # They say nothing, whatever else is said of a thing.
+_NAME = re.compile(r"[^\W_][\w' -]*")  # Names that a sentence can contain: no marks, no lines.
 _COLOURS = {
     "white": (235, 235, 235),
     "grey": (130, 130, 130),
@@ -85,7 +80,7 @@ class Landmark:
         design: The furniture design, or "" if unknown.
         room: The index of the room, or -1.
         is_unambiguous: Whether a person can identify the object by its name. Names that end in a
-            number, and "object", are ambiguous.
+            number, "object" and "piece of furniture" are ambiguous.
     """
 
     number: int  # its instance in the volume
@@ -120,6 +115,8 @@ def landmarks_of(
     designs: tuple[np.ndarray, Sequence[str]],
     titles: Mapping[str, str],
     room_of: Callable[[np.ndarray], int],
+    *,
+    names: Mapping[int, str] | None = None,
 ) -> tuple[Landmark, ...]:
     """Return the named objects of a volume, sorted by instance ID.
 
@@ -129,8 +126,10 @@ def landmarks_of(
             first.
         titles: The common name of each design.
         room_of: A function from a position in metres, float64 [3], to the index of its room.
+        names: The noun of each named object by instance ID. It precedes that of the design.
     """
-    codes, names = designs
+    codes, design_names = designs
+    named = names or {}
     owned = np.flatnonzero((volume.instance.reshape(-1) > 0) & (volume.states.reshape(-1) > 0))
     order = owned[np.argsort(volume.instance.reshape(-1)[owned], kind="stable")]
     numbers, firsts = np.unique(volume.instance.reshape(-1)[order], return_index=True)
@@ -139,23 +138,43 @@ def landmarks_of(
         class_id = _mode(volume.semantic.reshape(-1)[cells])
         if class_id not in OBJECT_CLASSES:
             continue
-        design = names[_mode(codes.reshape(-1)[cells])]
-        landmark = _measure_landmark(volume, int(number), cells, class_id, design, titles)
+        design = design_names[_mode(codes.reshape(-1)[cells])]
+        noun = named.get(int(number), titles.get(design, ""))
+        landmark = _measure_landmark(volume, int(number), cells, class_id, design, noun)
         if np.sort(landmark.size_m)[1] >= MIN_SIZE_M:
             found.append(replace(landmark, room=room_of(landmark.center_m)))
     return assign_unique_names(found)
+
+
+def nouns_of_names(objects: Iterable[NamedObject]) -> dict[int, str]:
+    """Return the noun of each object by instance ID, for names that are sure enough.
+
+    Names with marks that would end a sentence are left out.
+
+    Example:
+        >>> nouns_of_names([NamedObject(3, 11, "piano", 0.8), NamedObject(4, 11, "object", 0.2)])
+        {3: 'piano'}
+    """
+    return {
+        one.id: one.title
+        for one in objects
+        if one.name_confidence >= MIN_NAME_CONFIDENCE and _NAME.fullmatch(one.title)
+    }
 
 
 def assign_unique_names(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
     """Assign unique names to landmarks, from the noun, colour and neighbour, or a number."""
     nouns = Counter(one.noun for one in landmarks)
     coloured = Counter((one.colour, one.noun) for one in landmarks)
-    anchors = [one for one in landmarks if nouns[one.noun] == 1]
+    specific = [one for one in landmarks if one.noun not in _UNSPECIFIC_NOUNS]
+    anchors = [one for one in specific if nouns[one.noun] == 1]
     phrases = [_phrase(one, nouns, coloured, anchors) for one in landmarks]
     total, seen, result = Counter(phrases), Counter[str](), []
     for one, phrase in zip(landmarks, phrases, strict=True):
         if total[phrase] == 1:
-            result.append(replace(one, name=phrase, is_unambiguous=one.noun != _UNSPECIFIC_NOUN))
+            result.append(
+                replace(one, name=phrase, is_unambiguous=one.noun not in _UNSPECIFIC_NOUNS)
+            )
             continue
         seen[phrase] += 1
         result.append(replace(one, name=f"{phrase} {seen[phrase]}", is_unambiguous=False))
@@ -180,14 +199,14 @@ def _measure_landmark(
     cells: np.ndarray,
     class_id: int,
     design: str,
-    titles: Mapping[str, str],
+    title: str,
 ) -> Landmark:
     at = np.stack(np.unravel_index(cells, volume.states.shape), axis=1) + np.array(volume.corner)
     ends = apply(volume.block_to_room, np.array([at.min(axis=0), at.max(axis=0) + 1], float))
     low, high = ends.min(axis=0), ends.max(axis=0)
     states = [volume.palette[row] for row in volume.states.reshape(-1)[cells]]
     colour = colour_name(colours_of(states).astype(float).mean(axis=0).round())
-    noun = _noun(states, class_id, titles.get(design, ""))
+    noun = _noun(states, class_id, title)
     return Landmark(number, noun, noun, class_id, colour, (low + high) / 2, high - low, design)
 
 
@@ -195,7 +214,8 @@ def _noun(states: Sequence[str], class_id: int, title: str) -> str:
     if title:
         return title[0].lower() + title[1:] if title[1:2].islower() else title
     block = Counter(state.partition("[")[0].split(":")[-1] for state in states).most_common(1)[0][0]
-    return _BLOCK_NOUNS.get(block, NOUNS[class_id])
+    known = _FURNITURE if class_id == SemanticClass.FURN else display_name(class_id)
+    return _BLOCK_NOUNS.get(block, known)
 
 
 def _phrase(one: Landmark, nouns: Counter, coloured: Counter, anchors: Sequence[Landmark]) -> str:

@@ -40,7 +40,7 @@ from world2minecraft.minecraft.physics.walk_graph import (
 from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_source
 from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms
 from world2minecraft.minecraftocc.tours.types import TourRule
-from world2minecraft.navigation.landmarks import Landmark, landmarks_of
+from world2minecraft.navigation.landmarks import Landmark, landmarks_of, nouns_of_names
 from world2minecraft.navigation.rooms_and_doors import SceneRoom, rooms_of_places, scene_rooms
 from world2minecraft.navigation.types import Stance
 from world2minecraft.rendering.light import LightSettings
@@ -230,7 +230,10 @@ class VlnScene:
     def landmarks(self) -> tuple[Landmark, ...]:
         """The landmarks of the scene, with unique names."""
         designs = self.source.designs()
-        return landmarks_of(self.volume, designs, _titles(designs[1]), self._room_of_point)
+        names = nouns_of_names(self.source.names())
+        return landmarks_of(
+            self.volume, designs, _titles(designs[1]), self._room_of_point, names=names
+        )
 
     @cached_property
     def main_places(self) -> np.ndarray:

@@ -26,6 +26,7 @@ from world2minecraft.core.types import (
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.journal import write_edits
 from world2minecraft.formats.layout import read_rooms, write_layouts
+from world2minecraft.formats.object_names import read_run_names
 from world2minecraft.formats.objects_and_placements import (
     read_objects,
     read_placements,
@@ -38,7 +39,7 @@ from world2minecraft.formats.run_arrays import read_evidence, read_room, write_c
 from world2minecraft.formats.scan_record import read_depth_kind, read_room_size, read_scene_name
 from world2minecraft.formats.volume_formats import (
     format_by_name,
-    read_run_templates,
+    run_details,
     write_volume_formats,
 )
 from world2minecraft.minecraft.file_format import WriteOptions
@@ -50,6 +51,7 @@ from world2minecraft.reconstruction.fusion import (
     remove_floaters,
 )
 from world2minecraft.reconstruction.instances import find_objects
+from world2minecraft.reconstruction.instances.supports import with_supports
 from world2minecraft.reconstruction.naming.name_votes import (
     NAME_VOTES,
     NYU40_COUNT,
@@ -118,7 +120,8 @@ def find_stage(folder: Path, chosen: Parameters) -> None:
         grid, chosen.find, stated=_stated_cells(folder, grid), votes=_class_votes(votes, grid)
     )
     if not chosen.find.paper_compat:
-        found = replace(found, instances=_named(folder, found.grid, found.instances, votes))
+        named = _named(folder, found.grid, found.instances, votes)
+        found = replace(found, instances=with_supports(named, found.grid))
     write_room(folder / "room.npz", found.grid, scan_to_room)
     centers = found.centers
     write_centers(folder / "centers.npz", centers.density, centers.candidates, centers.cluster)
@@ -177,14 +180,16 @@ def furnish_stage(folder: Path, chosen: Parameters) -> None:
     grid, _ = read_room(folder / "room.npz")
     instances = read_objects(folder / "objects.json", grid)
     placed = place_templates(grid, instances, chosen.furnish, read_rooms(folder, grid))
-    write_placements(folder / "placements.json", placed)
+    named = not chosen.furnish.paper_compat
+    write_placements(folder / "placements.json", placed, named=named)
 
 
 def build_stage(folder: Path, chosen: Parameters) -> None:
     """Run the build stage: ``room.npz`` and ``placements.json`` -> the files in ``build``."""
     volume, edits = _build_and_repair(folder, chosen)
     name = scene_name(folder) or WORLD_NAME
-    write_build(folder / "build", volume, mc_version=chosen.mc_version, name=name)
+    names = read_run_names(folder)
+    write_build(folder / "build", volume, mc_version=chosen.mc_version, name=name, objects=names)
     write_edits(folder / "build", edits)
     write_further_forms(folder, volume, chosen)
 
@@ -197,9 +202,7 @@ def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -
     _remove_old_forms(folder / "build", chosen.format_names)
     if not chosen.format_names:
         return
-    options = WriteOptions(
-        mc_version=chosen.mc_version, other={"templates": read_run_templates(folder)}
-    )
+    options = WriteOptions(mc_version=chosen.mc_version, other=run_details(folder))
     lost = write_volume_formats(folder / "build", volume, chosen.format_names, options)
     rows = {
         name: {"file": f"room{format_by_name(name).suffix}", "lost": dict(losses)}

@@ -24,6 +24,7 @@ from world2minecraft.formats.paper_json import write_centers_json, write_occ_jso
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.formats.volume_formats import writable_format_names
 from world2minecraft.minecraft.worlds.launchers import Game, find_games
+from world2minecraft.reconstruction.instances.supports import with_supports
 from world2minecraft.sceneforge.editor import Editor
 
 DATA_FILES = {
@@ -75,7 +76,7 @@ def write_snapshot(editor: Editor, folder: Path) -> None:
     """
     grid, objects = editor.read(lambda: (editor.draft.grid(), tuple(editor.draft.objects.values())))
     folder.mkdir(parents=True, exist_ok=True)
-    instances = instances_of(objects, grid.instance)
+    instances = with_supports(instances_of(objects, grid.instance), grid)
     write_room(folder / "room.npz", grid, editor.opened.scan_to_room)
     write_objects(folder / "objects.json", instances)
     write_placements(folder / "placements.json", placements_of(objects))
@@ -92,7 +93,7 @@ def write_data(editor: Editor, form: str, folder: Path) -> Path:
     """
     path = folder / DATA_FILES[form]
     grid, objects = editor.read(lambda: (editor.draft.grid(), tuple(editor.draft.objects.values())))
-    instances = instances_of(objects, grid.instance)
+    instances = with_supports(instances_of(objects, grid.instance), grid)
     if form == "npz":
         write_room(path, grid, editor.opened.scan_to_room)
     elif form == "occ":

@@ -12,9 +12,10 @@ from typing import Annotated, Any, Protocol
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
-from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, display_name
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.progress import Progress
+from world2minecraft.core.vocabulary import object_title
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.cell_patch import runs_of_cells
 from world2minecraft.editing.scene.command_registry import first_error
@@ -311,11 +312,13 @@ class Doubtful(Query):
 def _clash_doubts(scene: QueriedScene) -> Iterator[Diagnostic]:
     for clash in _clashes(scene):
         number = clash["ids"][-1]
-        name = display_name(scene.draft.objects[number].class_id)
+        one = scene.draft.objects[number]
+        name = object_title(one.name, one.class_id)
         doubt, why = 1.0, f"{name}: extends beyond the room"
         if clash["kind"] == "collision":
             other = scene.draft.objects[clash["ids"][0]]
-            doubt, why = 0.95, f"{name}: collides with {display_name(other.class_id)} {other.id}"
+            title = object_title(other.name, other.class_id)
+            doubt, why = 0.95, f"{name}: collides with {title} {other.id}"
         yield Diagnostic(clash["kind"], why, doubt, np.array(clash["at_m"]), number)
 
 

@@ -1,4 +1,4 @@
-"""The generator of ``web/src/commands.ts``, from the Python commands, queries and class names.
+"""The generator of ``web/src/commands.ts``, from the Python commands, queries and names.
 
 ``python -m world2minecraft.sceneforge.typescript`` writes the file. With ``--check`` it only
 reports whether the file is up to date.
@@ -16,13 +16,14 @@ from pydantic import BaseModel
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES
 from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.core.files import write_text
+from world2minecraft.core.vocabulary import read_vocabulary
 from world2minecraft.editing.scene import COMMANDS
 from world2minecraft.sceneforge.queries import QUERIES
 
 TARGET = Path(__file__).parent / "web" / "src" / "commands.ts"
 HEAD = """\
-// Made from core.classes, the commands of editing.scene and the queries of sceneforge by
-// `python -m world2minecraft.sceneforge.typescript`; do not edit.
+// Made from core.classes, core.vocabulary, the commands of editing.scene and the queries of
+// sceneforge by `python -m world2minecraft.sceneforge.typescript`; do not edit.
 """
 PLAIN = {"integer": "number", "number": "number", "string": "string", "boolean": "boolean"}
 WIDTH = 100
@@ -39,7 +40,7 @@ def main(words: Sequence[str]) -> int:
 
 def typescript() -> str:
     """Return the contents of ``commands.ts``."""
-    parts = [HEAD, _display_names()]
+    parts = [HEAD, _display_names(), _thing_names()]
     shared: dict[str, Any] = {}
     for models in (COMMANDS, QUERIES):
         for model in models.values():
@@ -56,6 +57,19 @@ def _display_names() -> str:
     lines = "".join(f"  {json.dumps(name)},\n" for name in CLASS_DISPLAY_NAMES)
     comment = "/** Display name of each class, by id. */"
     return f"{comment}\nexport const CLASS_DISPLAY_NAMES: readonly string[] = [\n{lines}];\n"
+
+
+def _thing_names() -> str:
+    rows = [
+        {"name": one.name, "title": one.title, "class_id": one.class_id, "labels": one.labels}
+        for one in read_vocabulary().names.values()
+    ]
+    lines = "".join(f"  {json.dumps(row)},\n" for row in rows)
+    fields = "{ name: string; title: string; class_id: number; labels: readonly string[] }"
+    return (
+        "/** The names of objects, with their synonyms. */\n"
+        f"export const THING_NAMES: readonly {fields}[] = [\n{lines}];\n"
+    )
 
 
 def _name(model: type[BaseModel]) -> str:

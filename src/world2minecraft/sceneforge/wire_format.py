@@ -7,6 +7,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_COUNT, CLASS_NAMES
 from world2minecraft.core.types import Placement, SceneObject
+from world2minecraft.core.vocabulary import object_title
 
 PROTOCOL = 1
 
@@ -30,6 +31,9 @@ def object_json(one: SceneObject, cells: int) -> dict[str, Any]:
     return {
         "id": one.id,
         "class_id": one.class_id,
+        "name": one.name,
+        "name_confidence": float(one.name_confidence),
+        "title": object_title(one.name, one.class_id),
         "center_m": _metres(one.center_m),
         "size_m": _metres(one.size_m),
         "yaw_deg": float(one.yaw_deg),

@@ -175,3 +175,24 @@ def test_two_tabs_stay_in_step_and_saving_writes_the_files(forge, open_tab, tmp_
     assert forge.page.locator(".saved").inner_text() == "Saved"
     assert (tmp_path / "room.npz").is_file() and (tmp_path / "centers.json").is_file()
     assert other.mistakes == []
+
+
+def test_objects_are_renamed_and_found_by_name(objects, shot):
+    forge, page = objects, objects.page
+    chosen(forge)
+    field = page.locator("input[data-field=name]")
+    assert field.input_value() == forge.state(f"s.objects.get({SOFA}).title")
+    field.fill("couch")
+    field.press("Enter")
+    forge.until(f"s.objects.get({SOFA}).name", "sofa")
+    field.fill("Grandma's seat")
+    field.press("Enter")
+    forge.until(f"s.objects.get({SOFA}).title", "Grandma's seat")
+    search, leaves = page.locator("input.tree-search"), page.locator(".tree-leaf .tree-word")
+    search.fill("grandma")
+    assert leaves.all_inner_texts() == [f"Grandma's seat {SOFA}"]
+    shot(forge, "names")
+    search.fill("nothing of this name")
+    assert leaves.count() == 0
+    search.fill("")
+    assert leaves.count() == forge.state("s.objects.size")

@@ -78,7 +78,7 @@ def word_count(rules: "BlockMap") -> int:
 def lines_of(rules: "BlockMap") -> list[str]:
     """Return the name of a map, the blocks of each class, and the classes of block kinds."""
     from world2minecraft.api.dataset_contents import blocks_by_meaning
-    from world2minecraft.core.classes import CLASS_NAMES
+    from world2minecraft.core.classes import CLASS_NAMES, class_id, display_name
 
     held = blocks_by_meaning(rules)
     lines = [f"{rules.name}: {' '.join(rules.about.split())}"]
@@ -88,8 +88,12 @@ def lines_of(rules: "BlockMap") -> list[str]:
             continue
         more = f" and {len(blocks) - MAX_SHOWN} more" if len(blocks) > MAX_SHOWN else ""
         classes = dict.fromkeys(rule.class_name for rule in rules.rules_of(name))
-        to = "" if name in CLASS_NAMES else f" -> {', '.join(classes)}"
-        lines.append(f"  {name}{to}: {', '.join(blocks[:MAX_SHOWN])}{more}")
+        if name in CLASS_NAMES:
+            shown = display_name(class_id(name))
+            to = "" if shown == name else f" ({name})"
+        else:
+            shown, to = name, f" -> {', '.join(display_name(class_id(one)) for one in classes)}"
+        lines.append(f"  {shown}{to}: {', '.join(blocks[:MAX_SHOWN])}{more}")
     lines.append(
         f"  and {word_count(rules)} words for mod blocks; --json FILE writes the whole map"
     )

@@ -93,3 +93,10 @@ def origin(value: Any, voxel_m: float) -> np.ndarray:
     if np.abs(cells - np.round(cells)).max() > 1e-6:
         raise ValueError(f"origin_m must be a multiple of {voxel_m} m, got {result.tolist()}")
     return result
+
+
+def object_name(value: str) -> str:
+    """Return an object's name if it is at most 200 printable characters; it may be empty."""
+    if not isinstance(value, str) or len(value) > 200 or not value.isprintable():
+        raise ValueError("name must be at most 200 printable characters")
+    return value

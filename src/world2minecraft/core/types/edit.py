@@ -56,13 +56,15 @@ class SceneObject:
     yaw_deg: float
     confidence: float
     placements: tuple[Placement, ...] = ()
+    name: str = ""
+    name_confidence: float = 0.0
 
     def __post_init__(self):
         put = object.__setattr__
         no_cells = np.zeros((0, 3), np.int32)
         fields = (self.center_m, self.size_m, self.yaw_deg, no_cells, self.confidence)
-        checked = ObjectInstance(self.id, self.class_id, *fields)
-        for name in ("center_m", "size_m", "confidence"):
+        checked = ObjectInstance(self.id, self.class_id, *fields, self.name, self.name_confidence)
+        for name in ("center_m", "size_m", "confidence", "name_confidence"):
             put(self, name, getattr(checked, name))
         put(self, "placements", tuple(self.placements))
         for placed in self.placements:

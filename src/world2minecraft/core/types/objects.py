@@ -9,6 +9,8 @@ import numpy as np
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.types import checks
 
+SUPPORTS = ("floor", "wall", "ceiling")
+
 
 @dataclass(frozen=True, eq=False)
 class ObjectInstance:
@@ -17,7 +19,8 @@ class ObjectInstance:
     ``yaw_deg`` is counter-clockwise from above. At 0, the front faces room +x. ``center_m`` is the
     centre of its bounding box in the room frame. ``cells`` are grid indices. ``name`` is a name of
     the vocabulary, such as ``office chair``, the display name of the class if that is all that is
-    known, or empty; ``name_confidence`` is its probability.
+    known, or empty; ``name_confidence`` is its probability. ``supported_by`` is the id of the
+    object that it stands on, ``floor``, ``wall`` or ``ceiling``, or empty if unknown.
     """
 
     id: int
@@ -29,6 +32,7 @@ class ObjectInstance:
     confidence: float
     name: str = ""
     name_confidence: float = 0.0
+    supported_by: int | str = ""
 
     def __post_init__(self):
         put = object.__setattr__
@@ -40,8 +44,18 @@ class ObjectInstance:
         put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
         checks.floats("yaw_deg", [self.yaw_deg], (1,))
         put(self, "cells", checks.array("cells", self.cells, np.int32, (None, 3)))
+        checks.object_name(self.name)
+        self._check_support()
         for name in ("confidence", "name_confidence"):
             put(self, name, checks.fraction(name, getattr(self, name)))
+
+    def _check_support(self) -> None:
+        by = self.supported_by
+        if by in ("", *SUPPORTS) or (type(by) is int and 1 <= by <= 65535 and by != self.id):
+            return
+        raise ValueError(
+            f"supported_by must be another object's id or {', '.join(SUPPORTS)}, got {by!r}"
+        )
 
 
 @dataclass(frozen=True)

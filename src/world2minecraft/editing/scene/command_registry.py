@@ -14,6 +14,7 @@ from world2minecraft.editing.scene.object_grouping import (
     SplitObject,
     SplitObjects,
 )
+from world2minecraft.editing.scene.object_naming import RenameObjects
 from world2minecraft.editing.scene.object_placement import SnapObject
 from world2minecraft.editing.scene.object_transforms import (
     DeleteObjects,
@@ -51,6 +52,7 @@ COMMANDS: dict[str, type[Command]] = {
         Recluster,
         RelabelObjects,
         Rematch,
+        RenameObjects,
         SetTemplate,
         SnapObject,
         SplitObject,

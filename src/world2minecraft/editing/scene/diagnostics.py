@@ -15,6 +15,7 @@ import numpy as np
 from world2minecraft.core.classes import OBJECT_CLASSES, display_name
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import COMPLETED, Placement, SceneObject
+from world2minecraft.core.vocabulary import object_title
 from world2minecraft.editing.scene.repair import find_floaters
 from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.geometry.connected_components import label_components
@@ -70,7 +71,7 @@ def rank_diagnostics(found: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 def _of_objects(draft: SceneDraft) -> Iterator[Diagnostic]:
     for one in draft.objects.values():
-        name = display_name(one.class_id)
+        name = object_title(one.name, one.class_id)
         sure = round(100 * one.confidence)
         if sure < 100:
             why = f"{name}: cell confidence {sure}%"
@@ -81,7 +82,7 @@ def _of_objects(draft: SceneDraft) -> Iterator[Diagnostic]:
 
 
 def _of_furniture(one: SceneObject, placed: Placement) -> Iterator[Diagnostic]:
-    name, at_m = display_name(one.class_id), placed.center_m
+    name, at_m = object_title(one.name, one.class_id), placed.center_m
     if placed.template == "cells":
         why = f"{name}: no furniture template fits, built from its voxels"
         yield Diagnostic("no_template", why, NO_TEMPLATE, at_m, one.id)
@@ -118,7 +119,7 @@ def _check_support(draft: SceneDraft, one: SceneObject) -> Iterator[Diagnostic]:
     lowest = cells[cells[:, 2] == cells[:, 2].min()]
     under = draft.labels[lowest[:, 0], lowest[:, 1], lowest[:, 2] - 1]
     if (under == 0).all():
-        why = f"{display_name(one.class_id)}: no support, only observed air below"
+        why = f"{object_title(one.name, one.class_id)}: no support, only observed air below"
         yield Diagnostic("unsupported", why, UNSUPPORTED, one.center_m, one.id)
 
 

@@ -8,6 +8,7 @@ from pydantic import Field
 from world2minecraft.core.classes import display_name
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation, Placement, SceneObject
+from world2minecraft.core.vocabulary import read_vocabulary
 from world2minecraft.editing.scene.cell_patch import Patch
 from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.object_boxes import (
@@ -18,6 +19,7 @@ from world2minecraft.editing.scene.object_boxes import (
     with_placement,
 )
 from world2minecraft.editing.scene.object_conversion import instance_of, object_of
+from world2minecraft.editing.scene.object_naming import with_name_of
 from world2minecraft.editing.scene.object_placement import standing_box
 from world2minecraft.editing.scene.object_transforms import Id, Ids, Point, QuarterTurns, is_free
 from world2minecraft.editing.scene.scene_draft import SceneDraft
@@ -58,7 +60,10 @@ class AddObject(Command):
         iou = round(len(cells) / len(solid), 4)
         box = (np.round(middle, 9), size_m, turns, iou, chosen.complete())
         placed = Placement(number, self.class_id, chosen.name, *box)
-        one = SceneObject(number, self.class_id, placed.center_m, size_m, 90.0 * turns, 1.0)
+        shown = read_vocabulary().of_template(chosen.name)
+        named = (shown.name, 1.0) if shown else ("", 0.0)
+        box = (placed.center_m, size_m, 90.0 * turns)
+        one = SceneObject(number, self.class_id, *box, 1.0, (), *named)
         patch = Patch(draft)
         patch.fill(cells, self.class_id, number)
         details = {"counts_as": "add", "class_id": self.class_id}
@@ -112,7 +117,7 @@ class Rematch(Command):
             cells = draft.cells_of(one.id)
             if not len(cells):
                 raise UsageError(f"object {one.id} has no cells to match; choose a template for it")
-            found = tools.measure(grid, one.id, one.class_id, cells)
+            found = with_name_of(one, tools.measure(grid, one.id, one.class_id, cells))
             objects.append(object_of(found, tools.match(grid, found)))
         return Patch(draft).plan_operation("rematch", objects=objects)
 

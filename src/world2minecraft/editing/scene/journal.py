@@ -149,6 +149,7 @@ def _pack_objects(objects: Iterable[SceneObject]) -> list[dict[str, Any]]:
             "confidence": float(one.confidence),
             "placements": [_pack_placement(placed) for placed in one.placements],
         }
+        | ({"name": one.name, "name_confidence": float(one.name_confidence)} if one.name else {})
         for one in objects
     ]
 
@@ -172,7 +173,9 @@ def _unpack_object(held: Mapping[str, Any]) -> SceneObject:
     box = _as_floats(held["box"], 7)
     placed = tuple(_unpack_placement(number, class_id, one) for one in held["placements"])
     confidence = float(held["confidence"])
-    return SceneObject(number, class_id, box[:3], box[3:6], float(box[6]), confidence, placed)
+    named = (str(held.get("name", "")), float(held.get("name_confidence", 0.0)))
+    fields = (box[:3], box[3:6], float(box[6]), confidence, placed)
+    return SceneObject(number, class_id, *fields, *named)
 
 
 def _unpack_placement(number: int, class_id: int, held: Mapping[str, Any]) -> Placement:

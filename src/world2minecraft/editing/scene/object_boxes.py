@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.core.classes import display_name
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Placement, SceneObject
+from world2minecraft.core.vocabulary import object_title
 from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 OWN_CELLS = "cells"  # The template of what is built from its object's own cells.
@@ -43,7 +43,7 @@ def objects_by_ids(draft: SceneDraft, ids: Iterable[int]) -> list[SceneObject]:
 
 def describe_object(one: SceneObject) -> str:
     """Return the description of an object for messages, such as ``object 3 (chair)``."""
-    return f"object {one.id} ({display_name(one.class_id)})"
+    return f"object {one.id} ({object_title(one.name, one.class_id)})"
 
 
 def free_object_id(draft: SceneDraft, taken: Iterable[int] = ()) -> int:

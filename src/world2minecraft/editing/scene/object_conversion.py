@@ -67,13 +67,15 @@ def objects_of(
 def object_of(instance: ObjectInstance, placements: Iterable[Placement] = ()) -> SceneObject:
     """Return a scene object from an instance and its placements."""
     fields = (instance.center_m, instance.size_m, instance.yaw_deg, instance.confidence)
-    return SceneObject(instance.id, instance.class_id, *fields, tuple(placements))
+    named = (instance.name, instance.name_confidence)
+    return SceneObject(instance.id, instance.class_id, *fields, tuple(placements), *named)
 
 
 def instance_of(one: SceneObject, cells: np.ndarray) -> ObjectInstance:
     """Return an object as an ``ObjectInstance`` with its cells int32 [N, 3]."""
     box = (one.center_m, one.size_m, one.yaw_deg)
-    return ObjectInstance(one.id, one.class_id, *box, cells, one.confidence)
+    named = (one.name, one.name_confidence)
+    return ObjectInstance(one.id, one.class_id, *box, cells, one.confidence, *named)
 
 
 def instances_of(
@@ -95,7 +97,7 @@ def placements_of(objects: Iterable[SceneObject]) -> tuple[Placement, ...]:
 
 
 def same_object(one: SceneObject, other: SceneObject) -> bool:
-    """Return whether two objects have equal class, box, rotation, confidence and placements."""
+    """Return whether two objects have equal class, box, name, confidence and placements."""
     return object_key(one) == object_key(other)
 
 
@@ -114,4 +116,5 @@ def object_key(one: SceneObject) -> tuple:
         )
         for p in one.placements
     )
-    return (one.id, one.class_id, box, one.confidence, placed)
+    named = (one.name, one.name_confidence)
+    return (one.id, one.class_id, box, one.confidence, placed, named)

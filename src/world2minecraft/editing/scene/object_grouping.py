@@ -20,6 +20,7 @@ from world2minecraft.editing.scene.object_boxes import (
     objects_by_ids,
 )
 from world2minecraft.editing.scene.object_conversion import instance_of, object_of
+from world2minecraft.editing.scene.object_naming import with_class, with_name_of
 from world2minecraft.editing.scene.object_transforms import (
     Id,
     Ids,
@@ -55,7 +56,7 @@ class RelabelObjects(Command):
         for one in ones:
             cells = draft.cells_of(one.id)
             patch.relabel(cells, self.class_id)
-            named = replace(one, class_id=self.class_id, confidence=1.0, placements=())
+            named = with_class(one, self.class_id)
             placed = tools.match(grid, instance_of(named, cells))
             objects.append(replace(named, placements=placed))
         details = {"counts_as": "relabel", "class_id": self.class_id}
@@ -65,8 +66,8 @@ class RelabelObjects(Command):
 class SplitObject(Command):
     """Split an object into several parts by the positions of its cells, or in two by a plane.
 
-    The largest part keeps the id. The others become new objects of the same class. All parts are
-    measured and matched with furniture again.
+    The largest part keeps the id. The others become new objects of the same class and name. All
+    parts are measured and matched with furniture again.
     """
 
     op: Literal["split_object"] = "split_object"
@@ -97,7 +98,10 @@ class SplitObject(Command):
         for number, group in zip(numbers[1:], groups[1:], strict=True):
             patch.give(group, number)
         pairs = zip(numbers, groups, strict=True)
-        objects = [measure_object(grid, tools, n, one.class_id, group) for n, group in pairs]
+        objects = [
+            measure_object(grid, tools, replace(one, id=n, placements=()), group)
+            for n, group in pairs
+        ]
         return patch.plan_operation("split_object", objects=objects, class_id=one.class_id)
 
     def _sides(self, draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
@@ -130,7 +134,8 @@ class SplitObjects(Command):
             for number, group in _numbered_parts(draft, one.id, cells, self.parts, taken):
                 if number != one.id:
                     patch.give(group, number)
-                objects.append(measure_object(grid, tools, number, one.class_id, group))
+                part = replace(one, id=number, placements=())
+                objects.append(measure_object(grid, tools, part, group))
         if not objects:
             raise UsageError(f"none of these objects has at least {self.parts} cells to split")
         classes = {one.class_id for one in objects}
@@ -139,7 +144,7 @@ class SplitObjects(Command):
 
 
 class MergeObjects(Command):
-    """Merge objects into one with the id and the class of the first object in the list."""
+    """Merge objects into one with the id, class and name of the first object listed."""
 
     op: Literal["merge_objects"] = "merge_objects"
     ids: Annotated[tuple[Id, ...], Field(min_length=2, max_length=65535)]
@@ -158,7 +163,7 @@ class MergeObjects(Command):
         if not len(cells):
             raise UsageError("none of these objects has cells; delete all but one instead")
         cells = cells[np.lexsort(cells.T[::-1])]
-        merged = measure_object(draft.grid(), tools, first.id, first.class_id, cells)
+        merged = measure_object(draft.grid(), tools, first, cells)
         gone = [one.id for one in others]
         return patch.plan_operation(
             "merge_objects", objects=[merged], gone=gone, class_id=first.class_id
@@ -192,7 +197,9 @@ class Recluster(Command):
         for number, one, cells in zip(numbers, chosen, groups, strict=True):
             if len(cells):
                 patch.give(cells, number)
-                named = replace(one, id=number, cells=cells)
+                named = with_name_of(
+                    draft.objects.get(number), replace(one, id=number, cells=cells)
+                )
                 objects.append(object_of(named, tools.match(grid, named)))
         gone = {one.id for one in old} - {one.id for one in objects}
         details = {"gone": gone, "class_id": self.class_id}
@@ -200,10 +207,13 @@ class Recluster(Command):
 
 
 def measure_object(
-    grid: OccupancyGrid, tools: Tools, number: int, class_id: int, cells: np.ndarray
+    grid: OccupancyGrid, tools: Tools, one: SceneObject, cells: np.ndarray
 ) -> SceneObject:
-    """Return the object made up of cells int32 [N, 3], measured and matched with furniture."""
-    found = tools.measure(grid, number, class_id, cells)
+    """Return an object with other cells, int32 [N, 3], measured and matched with furniture.
+
+    It keeps its id, class and name.
+    """
+    found = with_name_of(one, tools.measure(grid, one.id, one.class_id, cells))
     return object_of(found, tools.match(grid, found))
 
 

@@ -29,6 +29,7 @@ from world2minecraft.editing.scene.object_conversion import (
     instance_of,
     shift_cells,
 )
+from world2minecraft.editing.scene.object_naming import with_class
 from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 MAX_IDS = 1 << 16
@@ -364,7 +365,7 @@ class RelabelClass(CellCommand):
         found = []
         for one in draft.objects.values():
             if one.class_id == self.from_id:
-                bare = replace(one, class_id=self.to_id, placements=())
+                bare = replace(with_class(one, self.to_id), confidence=one.confidence)
                 cells = draft.cells_of(one.id)
                 furniture = tools.match(grid, instance_of(bare, cells)) if len(cells) else ()
                 found.append(replace(bare, placements=furniture))

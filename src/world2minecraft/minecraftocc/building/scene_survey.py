@@ -20,9 +20,10 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraftocc.building.process_registry import registered_task
 from world2minecraft.minecraftocc.building.recorded_views import load_given_views
 from world2minecraft.minecraftocc.labels.fine_classes import map_fine_classes
+from world2minecraft.minecraftocc.object_table import object_rows
 from world2minecraft.minecraftocc.plan import Recipe, SceneSpec
 from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_source
-from world2minecraft.minecraftocc.store.folder import SCENES
+from world2minecraft.minecraftocc.store.folder import SCENES, objects_path
 from world2minecraft.minecraftocc.tours import TourRule, find_layouts, plan_views, write_views
 from world2minecraft.minecraftocc.types import FineClass
 from world2minecraft.procgen.worlds import house_of, write_house
@@ -199,6 +200,8 @@ def _make_survey(
         metres_per_block=1 / volume.blocks_per_metre,
         notes=tuple(source.notes()),
     )
+    rows = object_rows(volume, source.designs(), source.names())
+    write_json(objects_path(folder, spec.scene_id), rows)
     _write_facts(folder, facts)
     return facts
 

@@ -7,7 +7,7 @@
       classes.json      the 12 classes and the numbered fine classes
       index.parquet     one row per sample: position, checksums and cells of each class
       README.md         data set card for Hugging Face, which assigns shards to splits
-      scenes/           SCENE.json (survey result) and SCENE.poses.jsonl (views)
+      scenes/           SCENE.json (survey result), SCENE.poses.jsonl (views), SCENE.objects.json
       shards/SPLIT/     WebDataset tar files such as SCENE-000.tar
       worlds/           houses that were generated for the data set
 """
@@ -75,6 +75,11 @@ def read_meta(folder: Path, finished: bool = True) -> dict[str, Any]:
             folder, "the data set is not complete; run the same w2m dataset build again"
         )
     return meta
+
+
+def objects_path(folder: Path, scene_id: str) -> Path:
+    """Return the path of the object table of a scene."""
+    return folder / SCENES / f"{scene_id}.objects.json"
 
 
 def write_classes(folder: Path, table: FineTable) -> None:

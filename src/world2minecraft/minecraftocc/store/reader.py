@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError, UsageError
-from world2minecraft.minecraftocc.store.folder import INDEX, read_classes, read_meta
+from world2minecraft.formats.object_names import NamedObject
+from world2minecraft.minecraftocc.object_table import read_object_table
+from world2minecraft.minecraftocc.store.folder import INDEX, objects_path, read_classes, read_meta
 from world2minecraft.minecraftocc.store.index import read_index
 from world2minecraft.minecraftocc.store.sample_files import (
     FACTS,
@@ -91,6 +93,21 @@ class OccStore:
         """
         for number in self._numbers(split):
             yield self._read(number, pictures)
+
+    def objects(self, scene_id: str) -> dict[int, NamedObject]:
+        """Return the class and the name of each object of a scene by its number in ``instance``.
+
+        Data sets of former versions have none.
+
+        Raises:
+            UnknownNameError: If there is no such scene.
+            DamagedFileError: If the file of the objects is not valid.
+        """
+        listed = self.meta.get("scenes", [])
+        scenes = [str(one.get("scene_id")) for one in listed if isinstance(one, dict)]
+        if scene_id not in scenes or "/" in scene_id or "\\" in scene_id:
+            raise UnknownNameError("scene", scene_id, scenes)
+        return read_object_table(objects_path(self.folder, scene_id))
 
     def members(self, key: str) -> dict[str, bytes]:
         """Return the raw files of a sample by kind, such as ``json``.

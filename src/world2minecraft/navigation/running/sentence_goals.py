@@ -138,7 +138,8 @@ def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
     for one in landmarks:
         names.setdefault(one.name.lower(), []).append(one)
         nouns.setdefault(one.noun.lower(), []).append(one)
-        if (entry := vocabulary.of_template(one.design)) is not None:
+        entry = vocabulary.find(one.noun) or vocabulary.of_template(one.design)
+        if entry is not None:
             for word in (entry.name, *entry.labels):
                 words_of.setdefault(word, []).append(one)
         if one.class_id in NAMED_CLASSES:

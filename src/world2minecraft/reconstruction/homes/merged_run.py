@@ -243,7 +243,10 @@ def _objects(
                 continue
             retained.add(one.id)
             start, end = np.searchsorted(owners, [number, number + 1])
-            instances.append(replace(one, id=number, cells=cells[start:end]))
+            support = one.supported_by
+            by = support + offset if isinstance(support, int) else support
+            moved = replace(one, id=number, cells=cells[start:end], supported_by=by)
+            instances.append(moved)
         placements += [
             replace(one, object_id=one.object_id + offset)
             for one in run.placements

@@ -15,11 +15,15 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES
 from world2minecraft.core.files import read_npz
-from world2minecraft.core.vocabulary import label_id_nyu40, read_vocabulary
+from world2minecraft.core.vocabulary import (
+    MIN_NAME_CONFIDENCE,
+    label_id_nyu40,
+    read_vocabulary,
+)
 from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT, class_votes
 
 WEIGHTS = Path(__file__).parents[2] / "weights" / "object_names.npz"
-MIN_CONFIDENCE = 0.5
+MIN_CONFIDENCE = MIN_NAME_CONFIDENCE
 MAX_WALL_M, MAX_GAP_M = 1.0, 1.0
 SMALLEST_M, SMALLEST_CHANCE = 0.04, 1e-9
 

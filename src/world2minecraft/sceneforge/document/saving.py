@@ -19,6 +19,7 @@ from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.formats.objects_and_placements import write_objects, write_placements
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import write_room
+from world2minecraft.reconstruction.instances.supports import with_supports
 from world2minecraft.sceneforge.document.snapshots import State
 
 SAVED_FILE, STAGED = "saved.json", "saving"
@@ -32,7 +33,7 @@ def write_scene_files(folder: Path, state: State) -> None:
     Raises:
         OutputError: If a file cannot be written.
     """
-    instances = instances_of(state.objects, state.grid.instance)
+    instances = with_supports(instances_of(state.objects, state.grid.instance), state.grid)
     write_room(folder / "room.npz", state.grid, state.scan_to_room)
     write_objects(folder / "objects.json", instances)
     write_placements(folder / "placements.json", placements_of(state.objects))

@@ -17,7 +17,8 @@ from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.editing.build_into_world import affected_mask, build_into_world
 from world2minecraft.editing.volume_relocation import place_volume
-from world2minecraft.formats.volume_formats import format_by_name, read_run_templates, write_volume
+from world2minecraft.formats.object_names import read_run_names
+from world2minecraft.formats.volume_formats import format_by_name, run_details, write_volume
 from world2minecraft.minecraft.commands.player_scale import size_pack
 from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.server.rcon import RconClient, build_note_path, parse_address
@@ -72,12 +73,13 @@ def _written(
         return target / "room.png"
     if form == WORLD:
         name = scene_name(folder) or WORLD_NAME
-        write_build(target / "build", volume, mc_version=chosen.mc_version, name=name)
+        names = read_run_names(folder)
+        write_build(
+            target / "build", volume, mc_version=chosen.mc_version, name=name, objects=names
+        )
         return _zipped(target / "build" / "world", target / "room_world.zip")
     path = target / f"room{format_by_name(form).suffix}"
-    options = WriteOptions(
-        mc_version=chosen.mc_version, other={"templates": read_run_templates(folder)}
-    )
+    options = WriteOptions(mc_version=chosen.mc_version, other=run_details(folder))
     write_volume(volume, path, options, losses)
     return _zipped(path, target / f"room_{form}.zip") if path.is_dir() else path
 

@@ -155,7 +155,7 @@ export const TEXT = {
     unseen: "not observed",
     cell: (at: string): string => `cell ${at}`,
     metres: (at: string): string => `${at} m`,
-    object: (id: number): string => `object ${id}`,
+    object: (id: number, title = "object"): string => `${title} ${id}`,
     frame: (ms: number): string => `${ms.toFixed(0)} ms per frame`,
   },
   panels: {
@@ -205,6 +205,8 @@ export const TEXT = {
   objects: {
     title: "Objects by class",
     none: "No objects. Press N to add one, or detect objects again.",
+    search: "Find by name, synonym or class",
+    notFound: "No object has this name.",
     name: (word: string, id: number): string => `${word} ${id}`,
     count: (count: number): string => `${count} ${count === 1 ? "object" : "objects"}`,
     fit: (iou: number): string => `IoU ${Math.round(iou * 100)}%`,
@@ -214,6 +216,9 @@ export const TEXT = {
     none: "Select an object in the scene or in the list.",
     several: (count: number): string => `${count} objects`,
     mixed: "Several classes",
+    name: "Name",
+    nameOf: (share: number): string =>
+      `${share ? `Name confidence ${Math.round(share * 100)}%. ` : ""}Choose a name or type your own; empty restores the class`,
     class: "Class",
     templates: "Furniture templates (IoU, best first)",
     noTemplate: "No template fits. The object is built from its voxels.",

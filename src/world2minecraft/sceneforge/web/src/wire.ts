@@ -33,6 +33,9 @@ export interface Placed {
 export interface SceneObject {
   id: number;
   class_id: number;
+  name: string; // of the vocabulary, a person's own, or empty
+  name_confidence: number;
+  title: string; // what people read: of the name, else of the class
   center_m: Vec3;
   size_m: Vec3; // along its own axes
   yaw_deg: number;

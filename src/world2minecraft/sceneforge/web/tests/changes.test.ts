@@ -6,7 +6,7 @@ import { parseVolume } from "../src/volume";
 import type { Change, Scene, SceneObject } from "../src/wire";
 
 function object(id: number): SceneObject {
-  return { id, class_id: 7, center_m: [0, 0, 0], size_m: [1, 1, 1], yaw_deg: 0, confidence: 1, cells: 1, placements: [] };
+  return { id, class_id: 7, name: "", name_confidence: 0, title: "sofa", center_m: [0, 0, 0], size_m: [1, 1, 1], yaw_deg: 0, confidence: 1, cells: 1, placements: [] };
 }
 
 function change(fields: Partial<Change>): Change {

@@ -1,5 +1,6 @@
 // Build: the scene as blocks of the game. A click tells what a block is and selects its object.
 
+import { nameOf } from "../names";
 import { TEXT } from "../text";
 import { fill, h } from "../ui/dom";
 import { check, segment } from "../ui/fields";
@@ -94,7 +95,7 @@ function mountBlock(host: HTMLElement, app: App): void {
       h("strong", { data: { build: "name" } }, name),
       h("code", { class: "block-id" }, id),
       rows.length > 0 && h("dl", { class: "block-facts" }, ...rows),
-      h("p", { data: { build: "object" } }, TEXT.build.partOf(one && TEXT.objects.name(TEXT.classes[one.class_id] ?? "", one.id))),
+      h("p", { data: { build: "object" } }, TEXT.build.partOf(one && nameOf(one))),
       one?.placements[0] && h("p", { class: "note" }, TEXT.templateName(one.placements[0].template)),
       one && h("div", { class: "row is-even" }, actions.button("object.turnBack", { icon: "turnBack" }), actions.button("object.turn", { icon: "turn" })),
       one && h("div", { class: "row is-even" }, actions.button("object.templateBack", { label: TEXT.inspector.previous }), actions.button("object.template", { label: TEXT.inspector.next })),

@@ -32,7 +32,7 @@ function placeMenu(app: App, at: Press): MenuItem[] {
   const nothing = hit ? "" : TEXT.why.noPlace;
   const select = (): void => void (one && store.set({ selectedObjects: new Set([one.id]) }));
   return [
-    ...(one ? [{ label: TEXT.context.select(TEXT.classes[one.class_id] ?? "", one.id), run: select }] : []),
+    ...(one ? [{ label: TEXT.context.select(one.title, one.id), run: select }] : []),
     { label: TEXT.context.focus, hint: "F", why: nothing, run: () => hit && focusCells(app, [hit.flat]) },
     { label: TEXT.context.hide(word), hint: "\\", why: nothing, run: () => toggleSeen(app, label, false) },
     { label: TEXT.context.take(word), hint: "I", why: nothing, run: () => store.setOptions({ classId: label }) },

@@ -1,6 +1,7 @@
 // The selected object: class, furniture among the best five, turn, size, place, what can be done.
 
 import type { Alternative, SceneObject } from "../wire";
+import { nameOf, offeredNames } from "../names";
 import { TEXT } from "../text";
 import { cannotEdit } from "./blocked";
 import { fill, h, setWhy } from "./dom";
@@ -45,11 +46,12 @@ function oneParts(app: App, one: SceneObject, list: HTMLElement): HTMLElement[] 
     "div",
     { class: "object-title" },
     h("span", { class: "swatch", vars: { "--swatch": colourOf(app, one.class_id) } }),
-    h("strong", {}, TEXT.objects.name(TEXT.classes[one.class_id] ?? "", one.id)),
+    h("strong", {}, nameOf(one)),
     h("span", { class: "muted" }, TEXT.inspector.confidence(one.confidence)),
   );
   return [
     title,
+    nameField(app, [one]),
     classField(app, [one]),
     h("h3", { class: "sub" }, TEXT.inspector.templates),
     list,
@@ -66,10 +68,28 @@ function severalParts(app: App, those: SceneObject[]): HTMLElement[] {
   const { actions } = app;
   return [
     h("strong", {}, TEXT.inspector.several(those.length)),
+    nameField(app, those),
     classField(app, those),
     h("div", { class: "row is-even" }, actions.button("object.turn", { icon: "turn", label: TEXT.inspector.turnRight }), actions.button("object.merge", { icon: "merge", label: TEXT.inspector.merge })),
     h("div", { class: "row is-even" }, actions.button("object.rematch", { icon: "template", label: TEXT.inspector.rematch }), actions.button("delete", { icon: "trash", label: TEXT.inspector.remove, class: "button is-danger" })),
   ];
+}
+
+function nameField(app: App, those: SceneObject[]): HTMLElement {
+  const [first] = those;
+  const held = those.every((one) => one.title === first?.title) ? (first?.title ?? "") : "";
+  const names = h("datalist", { id: "object-names" }, ...offeredNames(first?.class_id ?? 0).map((value) => h("option", { value })));
+  const input = h("input", { type: "text", maxlength: 60, value: held, list: names.id, data: { field: "name" }, "aria-label": TEXT.inspector.name });
+  const blocked = cannotEdit(app.store);
+  setWhy(input, blocked, first ? TEXT.inspector.nameOf(first.name_confidence) : "");
+  input.disabled = blocked !== "";
+  input.addEventListener("change", () => {
+    if (input.value.trim() === held) return;
+    void app
+      .do({ op: "rename_objects", ids: those.map((one) => one.id), name: input.value })
+      .then((rev) => rev === null && (input.value = held));
+  });
+  return h("label", { class: "field is-plain" }, h("span", {}, TEXT.inspector.name), input, names);
 }
 
 function classField(app: App, those: SceneObject[]): HTMLElement {

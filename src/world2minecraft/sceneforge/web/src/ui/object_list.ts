@@ -3,6 +3,7 @@
 import type { SceneObject } from "../wire";
 import { combineOf } from "../tools/selection";
 import { boxOf } from "../tools/objects_at";
+import { isFound, nameOf } from "../names";
 import { TEXT } from "../text";
 import { fill, h } from "./dom";
 import { icon } from "./icons";
@@ -13,16 +14,27 @@ export function mountObjectList(host: HTMLElement, app: App): void {
   const tree = h("ul", { class: "tree", role: "tree", "aria-label": TEXT.objects.title });
   tree.setAttribute("aria-multiselectable", "true");
   const folded = new Set<number>();
-  host.append(tree);
+  const search = h("input", {
+    type: "search",
+    class: "tree-search",
+    placeholder: TEXT.objects.search,
+    "aria-label": TEXT.objects.search,
+    autocomplete: "off",
+    spellcheck: "false",
+  });
+  host.append(search, tree);
   const draw = (): void => {
     const held = tree.contains(document.activeElement)
       ? (document.activeElement as HTMLElement).dataset.key
       : undefined;
-    fill(tree, ...branches(app, folded));
-    if (!tree.children.length) tree.append(h("li", { class: "note" }, TEXT.objects.none));
+    const typed = search.value.trim();
+    fill(tree, ...branches(app, typed ? new Set() : folded, typed));
+    const none = store.get().objects.size ? TEXT.objects.notFound : TEXT.objects.none;
+    if (!tree.children.length) tree.append(h("li", { class: "note" }, none));
     setStop(tree, held);
   };
   store.watch(["objects", "selectedObjects"], draw);
+  search.addEventListener("input", draw);
   tree.addEventListener("click", (event) => {
     const item = (event.target as HTMLElement).closest<HTMLElement>("[role=treeitem]");
     if (!item) return;
@@ -37,10 +49,11 @@ export function mountObjectList(host: HTMLElement, app: App): void {
   tree.addEventListener("focusin", (event) => setStop(tree, (event.target as HTMLElement).dataset.key));
 }
 
-function branches({ store }: App, folded: ReadonlySet<number>): HTMLElement[] {
+function branches({ store }: App, folded: ReadonlySet<number>, typed: string): HTMLElement[] {
   const { objects, scene, selectedObjects } = store.get();
   const byClass = new Map<number, SceneObject[]>();
   for (const one of objects.values()) {
+    if (typed && !isFound(one, typed)) continue;
     byClass.set(one.class_id, [...(byClass.get(one.class_id) ?? []), one]);
   }
   return (scene?.classes ?? [])
@@ -79,7 +92,7 @@ function leaf(one: SceneObject, selected: boolean): HTMLElement {
       "aria-selected": String(selected),
       data: { object: String(one.id), key: `o${one.id}` },
     },
-    h("span", { class: "tree-word" }, TEXT.objects.name(TEXT.classes[one.class_id] ?? "", one.id)),
+    h("span", { class: "tree-word" }, nameOf(one)),
     h("span", { class: "legend-count", title: TEXT.objects.iou }, best ? TEXT.objects.fit(best.iou) : "–"),
   );
 }

@@ -44,7 +44,7 @@ function showSpeed(node: HTMLElement, app: App): void {
 }
 
 function words(store: Store, { cell, flat }: Under): string[] {
-  const { scene, labels, instance } = store.get();
+  const { scene, labels, instance, objects } = store.get();
   if (!cell || !scene) return [TEXT.status.none, "", "", ""];
   const metres = cell.map((at, axis) => ((scene.origin_m[axis] ?? 0) + (at + 0.5) * scene.voxel_m).toFixed(2));
   const owner = instance[flat] ?? 0;
@@ -52,6 +52,6 @@ function words(store: Store, { cell, flat }: Under): string[] {
     TEXT.status.cell(cell.join(", ")),
     TEXT.status.metres(metres.join(", ")),
     TEXT.classes[labels[flat] ?? 255] ?? TEXT.status.unseen,
-    owner ? TEXT.status.object(owner) : "",
+    owner ? TEXT.status.object(owner, objects.get(owner)?.title) : "",
   ];
 }

@@ -6,6 +6,7 @@ import { describe } from "../build/words";
 import { Packet } from "../build/packet";
 import { Color } from "three";
 import type { Mode } from "../store";
+import { nameOf } from "../names";
 import { TEXT } from "../text";
 import { fill, h } from "../ui/dom";
 import { segment } from "../ui/fields";
@@ -136,7 +137,7 @@ export class Walking {
     const met = builderOf(this.app).ahead(pose.position, pose.forward);
     if (!met) return "";
     const one = this.app.store.get().objects.get(met.object);
-    return TEXT.walk.ahead(describe(met.state).name, one && TEXT.objects.name(TEXT.classes[one.class_id] ?? "", one.id));
+    return TEXT.walk.ahead(describe(met.state).name, one && nameOf(one));
   }
 
   private tell(): void {
