@@ -30,7 +30,7 @@ from world2minecraft.reconstruction.verification.photo_samples import PhotoSampl
 from world2minecraft.rendering.scene import prepare_scene
 
 RESAMPLES = 500
-NAMES_LISTED = 3
+NAMES_LISTED, MIN_SHARE = 3, 0.01  # Of what photos show at an object.
 MIN_PIXELS = 20  # Of an object, over all samples, for its scores to mean something.
 
 
@@ -218,8 +218,9 @@ def _mean(views: Sequence[ViewAgreement], masks: Sequence[np.ndarray], name: str
 
 def _seen_names(counts: np.ndarray) -> tuple[tuple[str, float], ...]:
     """Return the most frequent NYU40 classes, counted by number, in words and with their shares."""
-    order = [int(n) for n in np.argsort(-counts, kind="stable")[:NAMES_LISTED] if counts[n]]
-    named = [(read_vocabulary().of_nyu40(n), counts[n] / counts.sum()) for n in order]
+    shares = counts / counts.sum()
+    order = [int(n) for n in np.argsort(-shares, kind="stable")[:NAMES_LISTED]]
+    named = [(read_vocabulary().of_nyu40(n), shares[n]) for n in order if shares[n] >= MIN_SHARE]
     return tuple((entries[0].title, float(share)) for entries, share in named if entries)
 
 
