@@ -75,7 +75,7 @@ def _stands_for(instance: ObjectInstance, placement: Placement) -> bool:
         return True
     own = read_vocabulary().names.get(instance.name)
     shown = read_vocabulary().of_template(placement.template)
-    sure = own is not None and instance.name not in VAGUE
-    if sure and instance.name_confidence >= MIN_CONFIDENCE and shown is not None:
+    sure = instance.name not in VAGUE and instance.name_confidence >= MIN_CONFIDENCE
+    if own is not None and shown is not None and sure:
         return shown.name == own.name or shown.nyu40 in alike_nyu40(own.nyu40)
     return template(placement.template).class_id == instance.class_id

@@ -156,7 +156,7 @@ def _smooth_labs(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the CIELAB colours of both images, smoothed, the photo's at the world's brightness."""
     light, light_built = (
-        uniform_filter(srgb_to_linear(image), (SMOOTH_PX, SMOOTH_PX, 0)) for image in (photo, built)
+        uniform_filter(srgb_to_linear(image), SMOOTH_PX, axes=(0, 1)) for image in (photo, built)
     )
     if there.any():
         middle, middle_built = (
