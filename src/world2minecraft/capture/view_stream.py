@@ -1,6 +1,6 @@
 """The views of a capture as a stream, decoded on each access."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -9,7 +9,7 @@ from world2minecraft.capture.depth_images import DepthEncoding, read_depth
 from world2minecraft.capture.images import read_colour, read_raw
 from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.core.errors import DamagedFileError, InputError
-from world2minecraft.core.types import Scan, View
+from world2minecraft.core.types import Scan, View, ViewStream
 from world2minecraft.core.vocabulary import label_id_classes
 
 
@@ -41,6 +41,10 @@ class CaptureViews:
         """Read the views that have depth, without decoding colour and labels."""
         return self.read(without_colour(self.frames))
 
+    def named(self, names: Collection[str]) -> Iterator[View]:
+        """Read the views of the given names, without decoding the others."""
+        return self.read([frame for frame in self.frames if frame.name in names])
+
     def read(self, frames: Sequence[FrameFiles]) -> Iterator[View]:
         """Read the views of frames; frames that cannot be decoded are skipped and recorded."""
         for frame in frames:
@@ -50,6 +54,14 @@ class CaptureViews:
                 self.damaged[frame.name] = str(error)
                 continue
             yield view
+
+
+def views_named(views: ViewStream, names: Collection[str]) -> Iterator[View]:
+    """Read the views of the given names. Streams with a method ``named`` decode only these."""
+    named = getattr(views, "named", None)
+    if named is not None:
+        return named(names)
+    return (view for view in views if view.name in names)
 
 
 def without_colour(frames: Sequence[FrameFiles]) -> list[FrameFiles]:

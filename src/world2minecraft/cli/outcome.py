@@ -53,6 +53,13 @@ def print_outcome(out: Path, facts: dict[str, Any]) -> None:
         f"\nRoom {size} m from {used} frames ({skipped} skipped), {len(facts['objects'])} objects,"
     )
     print(f"{facts['blocks']:,} blocks; {explained:.0%} of the observed surface is within a block.")
+    photos = facts["photo_agreement"]
+    if photos["headline"] is not None:
+        spread = photos["standard_error"]
+        error = "" if spread is None else f" (standard error {spread:.0%})"
+        print(
+            f"{photos['headline']:.0%} of what the photos show has its place, look and name{error}."
+        )
     for note in facts["scan"]["notes"]:
         print(f"note: {note}")
     print(f"\n  look   open {out / 'report.html'} in a browser, or {out / 'preview.png'}")

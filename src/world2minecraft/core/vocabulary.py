@@ -25,6 +25,9 @@ NOTHING = "nothing"  # Instead of a name: outdoor things, which vote for none.
 MAX_BYTES = 1 << 20
 OTHER_NYU40 = 40  # Other prop.
 MIN_NAME_CONFIDENCE = 0.5  # Below it, an object has the display name of its class.
+# NYU40 classes that annotators use for the same things: cabinet, counter, dresser, night stand;
+# table, desk; bookshelf, shelves; floor, floor mat; blinds, curtain, shower curtain.
+ALIKE_NYU40 = ((3, 12, 17, 32), (7, 14), (10, 15), (2, 20), (13, 16, 28))
 _ENDINGS = re.compile(r" (merged|stuff|other)$")
 _KEYS = {"class", "nyu40", "also", "templates", "title"}
 
@@ -246,6 +249,22 @@ def nyu40_classes() -> np.ndarray:
     for number, (_, name) in read_json(NYU40_FILE)["classes"].items():
         classes[int(number)] = class_id(name)
     return classes
+
+
+@cache
+def alike_nyu40(number: int) -> frozenset[int]:
+    """Return the NYU40 classes whose things pass for those of an NYU40 class.
+
+    Classes that the segmentation network never sees, such as other prop, pass for all classes
+    with the same one of the program's twelve classes.
+
+    Example:
+        >>> sorted(alike_nyu40(7)), sorted(alike_nyu40(5))
+        ([7, 14], [5])
+    """
+    if number in (38, 39, OTHER_NYU40):
+        return frozenset(np.flatnonzero(nyu40_classes() == nyu40_classes()[number]).tolist())
+    return next((frozenset(group) for group in ALIKE_NYU40 if number in group), frozenset({number}))
 
 
 @cache

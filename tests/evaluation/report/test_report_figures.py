@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from world2minecraft.construction import build_volume
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.types import (
@@ -19,6 +20,7 @@ from world2minecraft.core.types import (
 from world2minecraft.evaluation.report.finished_run import FinishedScene, read_built
 from world2minecraft.evaluation.report.measures import (
     in_solid_block,
+    layout_facts,
     scene_facts,
     surface_explained,
 )
@@ -144,7 +146,43 @@ def test_rooms_confidence_and_integrity_are_told():
     assert facts["confidence"]["mean"] == 1.0 and facts["confidence"]["below_half"] == 0.0
     assert set(facts["confidence"]["by_class"]) == {"empty", "floor", "table"}
     integrity = facts["layout"]["semantic_integrity"]
-    assert integrity == {"categories": 1.0, "objects": 0.0, "lost": [1]}, "no block has its number"
+    assert integrity == {"categories": 0.0, "objects": 0.0, "lost": [1]}, "no block has its number"
     named = replace(scene.volume, instance=(scene.volume.semantic == 8).astype(np.uint16))
     kept = scene_facts(replace(scene, volume=named))["layout"]["semantic_integrity"]
     assert kept == {"categories": 1.0, "objects": 1.0, "lost": []}
+
+
+def bathroom(templates: dict[str, str]) -> FinishedScene:
+    """A toilet and a washbasin that are built from the given templates."""
+    scene = floor_and_table()
+    labels, instance = scene.grid.labels.copy(), scene.grid.instance.copy()
+    labels[labels == 8], instance[:] = 0, 0
+    instances, placements = [], []
+    for number, (name, class_id, low) in enumerate(
+        [("toilet", 11, (3, 3)), ("washbasin", 10, (12, 3))], start=1
+    ):
+        box = (slice(low[0], low[0] + 6), slice(low[1], low[1] + 6), slice(1, 9))
+        labels[box], instance[box] = class_id, number
+        cells = np.argwhere(instance == number).astype(np.int32)
+        center_m = (cells.mean(axis=0) + 0.5) * VOXEL_M + scene.grid.origin_m
+        size_m = [6 * VOXEL_M, 6 * VOXEL_M, 8 * VOXEL_M]
+        instances.append(
+            ObjectInstance(number, class_id, center_m, size_m, 0.0, cells, 0.9, name, 0.9)
+        )
+        placements.append(Placement(number, class_id, templates[name], center_m, size_m, 0, 0.7))
+    labels[labels == 255] = 0
+    grid = replace(scene.grid, labels=labels, instance=instance, source=np.ones_like(labels))
+    volume = build_volume(grid, placements, instances)
+    return replace(
+        scene, grid=grid, instances=tuple(instances), placements=tuple(placements), volume=volume
+    )
+
+
+def test_a_bathroom_of_armchairs_has_no_integrity():
+    facts = layout_facts(bathroom({"toilet": "armchair", "washbasin": "armchair"}))
+    assert facts["semantic_integrity"] == {"categories": 0.0, "objects": 0.0, "lost": [1, 2]}
+
+
+def test_a_bathroom_of_bathroom_furniture_has_integrity():
+    facts = layout_facts(bathroom({"toilet": "toilet", "washbasin": "vanity"}))
+    assert facts["semantic_integrity"] == {"categories": 1.0, "objects": 1.0, "lost": []}

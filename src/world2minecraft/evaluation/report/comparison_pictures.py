@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
-from world2minecraft.core.types import BlockVolume, Camera, Scan, View
+from world2minecraft.capture.view_stream import views_named
+from world2minecraft.core.types import Camera, Scan, View
+from world2minecraft.reconstruction.verification.photo_samples import evenly_spread
 from world2minecraft.rendering.picture import render_volume
-from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.shading_parameters import NEUTRAL
 
 PAIRS = 6
@@ -37,16 +39,13 @@ class Pair:
     depth_agrees: float | None  # share of pixels within AGREES_M
 
 
-def make_pairs(scan: Scan, volume: BlockVolume) -> list[Pair]:
+def make_pairs(scan: Scan, scene: BlockScene) -> list[Pair]:
     """Return up to six pairs, spread evenly over the frames used."""
-    used = [name for name in scan.frames_used]
-    count = min(PAIRS, len(used))
-    chosen = {used[int((n + 0.5) * len(used) / count)] for n in range(count)}
-    scene = prepare_scene(volume)
-    return [_pair(view, scan, scene) for view in scan.views if view.name in chosen]
+    chosen = evenly_spread(scan.frames_used, PAIRS)
+    return [_pair(view, scan, scene) for view in views_named(scan.views, chosen)]
 
 
-def _pair(view: View, scan: Scan, scene) -> Pair:
+def _pair(view: View, scan: Scan, scene: BlockScene) -> Pair:
     camera = view.colour_camera or view.depth_camera
     if camera is None:
         raise ValueError(f"view {view.name} has neither a colour nor a depth image")
@@ -63,7 +62,7 @@ def _pair(view: View, scan: Scan, scene) -> Pair:
     return Pair(view.name, photo, picture.colour, error_m, agrees)
 
 
-def _depth_apart(view: View, scan: Scan, scene) -> tuple[float | None, float | None]:
+def _depth_apart(view: View, scan: Scan, scene: BlockScene) -> tuple[float | None, float | None]:
     """Return the median depth difference and the share of agreeing pixels, on a coarse raster."""
     if view.depth_m is None or view.depth_camera is None:
         return None, None

@@ -20,6 +20,7 @@ from world2minecraft.core.types import BlockVolume, Camera, Scan, View
 from world2minecraft.evaluation.report.comparison_pictures import make_pairs
 from world2minecraft.rendering.preview import plan_view, preview
 from world2minecraft.rendering.ray_caster.picture_kernel import draw_rows
+from world2minecraft.rendering.scene import prepare_scene
 
 # Cached last, when all that it calls is compiled.
 LAST = f"{draw_rows.__module__.rpartition('.')[2]}.{draw_rows.__name__}"
@@ -51,7 +52,7 @@ def compile_pictures_meanwhile() -> Iterator[None]:
 def draw_box() -> None:
     """Render a box of blocks with all functions that the report uses for a room."""
     volume = _box()
-    make_pairs(_look_at_it(), volume)
+    make_pairs(_look_at_it(), prepare_scene(volume))
     plan_view(volume, px_per_block=2)
     preview(volume, width_px=64, height_px=48)
 

@@ -21,6 +21,7 @@ from world2minecraft.furniture.layout_checks import (
     overlapping_boxes,
 )
 from world2minecraft.geometry.level_planes import HorizontalPlane, find_horizontal_planes
+from world2minecraft.reconstruction.verification.built_names import stands_for
 
 NEIGHBOURS = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 
@@ -29,12 +30,12 @@ def layout_facts(scene: FinishedScene) -> dict[str, Any]:
     """Return the layout measures that ``furniture.layout_checks`` defines.
 
     ``floaters`` counts parts of the built blocks, and ``floaters_seen`` parts of the room's cells.
-    ``semantic_integrity`` compares the world with the detected objects: the preserved
-    ``categories``, and the share of ``objects`` whose blocks still show them.
+    ``semantic_integrity`` compares the world with the detected objects: the share of ``objects``
+    that are preserved, and of ``categories`` of which at least one object is preserved.
     """
     placed = scene.placements
     outside = out_of_rooms(placed, scene.rooms)
-    surviving = kept_objects(scene.volume, scene.instances, scene.grid)
+    surviving = preserved_objects(scene)
     lost = sorted(set(range(len(scene.instances))) - set(surviving))
     found = {one.class_id for one in scene.instances}
     return {
@@ -54,9 +55,19 @@ def layout_facts(scene: FinishedScene) -> dict[str, Any]:
     }
 
 
+def preserved_objects(scene: FinishedScene) -> list[int]:
+    """Return the indices of the objects whose place has blocks that can stand for them.
+
+    Blocks of the object must be in its place (``kept_objects``), and the furniture must show the
+    name of the object, or be of its class: a bathroom of armchairs preserves nothing.
+    """
+    kept = kept_objects(scene.volume, scene.instances, scene.grid)
+    return [index for index in kept if stands_for(scene.instances[index], scene.placements)]
+
+
 def built_categories(scene: FinishedScene) -> set[int]:
-    """Return the object classes that occur in the built world."""
-    return set(np.unique(scene.volume.semantic).tolist()) & set(OBJECT_CLASSES)
+    """Return the classes of the objects that are preserved in the built world."""
+    return {scene.instances[index].class_id for index in preserved_objects(scene)}
 
 
 def room_rows(scene: FinishedScene) -> list[dict[str, Any]]:

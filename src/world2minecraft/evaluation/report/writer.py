@@ -27,6 +27,13 @@ from world2minecraft.evaluation.report.comparison_pictures import (
 )
 from world2minecraft.evaluation.report.finished_run import read_built, read_finished
 from world2minecraft.evaluation.report.measures import built_categories, scene_facts
+from world2minecraft.evaluation.report.photo_section import (
+    Crop,
+    agreement_facts,
+    compare_with_photos,
+    crop_objects,
+    worst_first,
+)
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
 from world2minecraft.evaluation.scoring.truth_files import read_truth
 from world2minecraft.formats.layout import read_layouts
@@ -34,6 +41,7 @@ from world2minecraft.formats.objects_and_placements import read_placements
 from world2minecraft.formats.scan_record import read_registration
 from world2minecraft.furniture.layout_checks import category_integrity
 from world2minecraft.rendering.preview import plan_view, preview
+from world2minecraft.rendering.scene import prepare_scene
 
 PLAN_PX = 720
 NAMES = dict(zip(CLASS_NAMES, CLASS_DISPLAY_NAMES, strict=True)) | {"unknown": "unknown"}
@@ -119,7 +127,7 @@ def write_report(
 
     Args:
         folder: The folder of the run.
-        scan: The scan of the run, of which six views are shown.
+        scan: The scan of the run. Up to twelve views are compared with the world, and six shown.
         truth: The folder of a capture with ``truth.npz`` to score against. None skips the scores.
         progress: Called at each step.
 
@@ -138,7 +146,11 @@ def write_report(
             4,
         )
     progress("report", 1, 3, "images")
-    pairs = make_pairs(scan, scene.volume)
+    drawn = prepare_scene(scene.volume)
+    pairs = make_pairs(scan, drawn)
+    agreement, samples = compare_with_photos(scene, scan)
+    facts = {"photo_agreement": agreement_facts(agreement, samples)} | facts
+    crops = [] if agreement is None else crop_objects(agreement, samples, drawn)
     facts["views"] = [
         {"view": p.name, "depth_error_m": p.depth_error_m, "depth_agrees": p.depth_agrees}
         for p in pairs
@@ -149,7 +161,7 @@ def write_report(
     progress("report", 2, 3, "page")
     write_bytes(folder / "preview.png", as_png(outside))
     write_json(folder / "report.json", facts)
-    write_text(folder / "report.html", _page(facts, pairs, as_data_uri(outside), plan))
+    write_text(folder / "report.html", _page(facts, pairs, crops, as_data_uri(outside), plan))
     progress("report", 3, 3)
     return facts
 
@@ -167,7 +179,9 @@ def _scan_facts(scan: Scan, folder: Path) -> dict[str, Any]:
     }
 
 
-def _page(facts: dict[str, Any], pairs: list[Pair], outside: str, plan: Any) -> str:
+def _page(
+    facts: dict[str, Any], pairs: list[Pair], crops: list[Crop], outside: str, plan: Any
+) -> str:
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     source = (
         files("world2minecraft.evaluation.report").joinpath("page.html.jinja").read_text("utf-8")
@@ -178,16 +192,23 @@ def _page(facts: dict[str, Any], pairs: list[Pair], outside: str, plan: Any) -> 
         version=__version__,
         outside=outside,
         plan=as_data_uri(plan, lossless=True),
+        agreeing=[pair.depth_agrees for pair in pairs if pair.depth_agrees is not None],
         pairs=[
             {
                 "name": pair.name,
-                "photo": None if pair.photo is None else as_data_uri(pair.photo),
+                "photo": as_data_uri(pair.photo),
                 "built": as_data_uri(pair.built),
                 "error_m": pair.depth_error_m,
                 "agrees": pair.depth_agrees,
             }
             for pair in pairs
+            if pair.photo is not None
         ],
+        compared=worst_first(facts["photo_agreement"].get("objects", ())),
+        crops={
+            crop.object_id: (as_data_uri(crop.photo), as_data_uri(crop.built)) for crop in crops
+        },
+        called={row["id"]: row.get("name") or NAMES[row["class"]] for row in facts["objects"]},
         colours={
             name: "#{:02x}{:02x}{:02x}".format(*colour)
             for name, colour in zip(CLASS_NAMES, CLASS_COLOURS, strict=True)

@@ -20,8 +20,9 @@ from world2minecraft.evaluation.metrics.objects import ObjectCounts, count_objec
 from world2minecraft.evaluation.scoring.observed_cells import Reached
 from world2minecraft.evaluation.scoring.truth_files import Truth, read_instances
 from world2minecraft.formats.layout import read_rooms
-from world2minecraft.formats.objects_and_placements import read_placements
+from world2minecraft.formats.objects_and_placements import read_objects, read_placements
 from world2minecraft.furniture.layout_checks import category_integrity, collisions, out_of_rooms
+from world2minecraft.reconstruction.verification.built_names import stands_for
 
 GENERIC_NAMES = ("object", "furniture")  # They say no more than the class.
 
@@ -145,7 +146,7 @@ def layout_facts(
 
     ``out_of_bounds`` uses the rooms found by the run, and ``out_of_true_rooms`` the true rooms. An
     object may be in any of several rooms. ``semantic_integrity`` is the share of the seen true
-    object classes that were placed.
+    object classes of which furniture was placed that can stand for an object of the class.
 
     Args:
         out: The folder of the run.
@@ -156,6 +157,7 @@ def layout_facts(
     if not (out / "placements.json").is_file():
         return {}
     placements = read_placements(out / "placements.json")
+    found = read_objects(out / "objects.json", grid)
     pairs = zip(objects.objects, objects.seen, strict=True)
     judged = {"out_of_true_rooms": _outside(placements, true_rooms)} if true_rooms else {}
     return judged | {
@@ -163,7 +165,8 @@ def layout_facts(
         "collisions": len(collisions(placements, grid=grid)),
         "out_of_bounds": _outside(placements, read_rooms(out, grid)),
         "semantic_integrity": category_integrity(
-            {item.class_id for item in placements}, {item.class_id for item, seen in pairs if seen}
+            {item.class_id for item in found if stands_for(item, placements)},
+            {item.class_id for item, seen in pairs if seen},
         ),
     }
 

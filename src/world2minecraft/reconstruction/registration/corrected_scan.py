@@ -1,11 +1,12 @@
 """A scan whose views are corrected when they are read."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from world2minecraft.capture.view_stream import views_named
 from world2minecraft.core.types import Corrections, Scan, View, ViewStream
 
 
@@ -23,6 +24,11 @@ class CorrectedViews:
     def __iter__(self) -> Iterator[View]:
         """Read the views from the first."""
         for view in self.views:
+            yield correct_view(view, self.changes)
+
+    def named(self, names: Collection[str]) -> Iterator[View]:
+        """Read the views of the given names."""
+        for view in views_named(self.views, names):
             yield correct_view(view, self.changes)
 
     @property

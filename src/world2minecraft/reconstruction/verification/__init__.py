@@ -1,0 +1,1 @@
+"""Comparison of the built world with the photos of its capture."""
