@@ -144,12 +144,13 @@ def test_from_tells_the_settings_of_the_stages_that_it_keeps(out, capture, tmp_p
 def test_a_run_that_was_cut_off_goes_on(out, capture, monkeypatch, tmp_path):
     from world2minecraft.reconstruction import file_stages as steps
 
+    shutil.copytree(out, tmp_path / "cut")
     words = ["reconstruct", str(capture), "--out", str(tmp_path / "cut")]
     real = steps.FILE_STAGES["furnish"]
     monkeypatch.setitem(
         steps.FILE_STAGES, "furnish", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt)
     )
-    assert w2m(words) == 130
+    assert w2m([*words, "--from", "label"]) == 130
     assert json.loads((tmp_path / "cut/manifest.json").read_text())["finished"][-1] == "find"
     stamp = (tmp_path / "cut/evidence.npz").stat().st_mtime_ns
     monkeypatch.setitem(steps.FILE_STAGES, "furnish", real)
