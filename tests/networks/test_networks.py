@@ -2,7 +2,7 @@
 
 import pytest
 import torch
-from room_frames import COARSE, SHAPE, VOXEL_M, room_batch
+from room_frames import SHAPE, VOXEL_M, room_batch
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.networks.losses import LossWeights, occupancy_losses
@@ -16,8 +16,8 @@ WEIGHTS = LossWeights(classes=(0.3, *([1.0] * 11)))
 EACH = pytest.mark.parametrize("name", NETWORKS.names())
 
 
-def tiny(name, seed=0, grid=(SHAPE, VOXEL_M)):
-    return make_network(name, "tiny", grid_shape=grid[0], voxel_m=grid[1], seed=seed)
+def tiny(name, seed=0, **words):
+    return make_network(name, "tiny", grid_shape=SHAPE, voxel_m=VOXEL_M, seed=seed, **words)
 
 
 def overlap(said, labels):
@@ -28,8 +28,8 @@ def overlap(said, labels):
 
 @EACH
 def test_it_overfits_two_frames(name):
-    inputs, target = room_batch(*COARSE)
-    network = tiny(name, grid=COARSE)
+    inputs, target = room_batch()
+    network = tiny(name)
     steps, rate = OWN.get(name, (STEPS, RATE))
     learner = torch.optim.AdamW(network.parameters(), lr=rate)
     pace = torch.optim.lr_scheduler.OneCycleLR(learner, rate, total_steps=steps, pct_start=0.2)
