@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.reconstruction.parameters import Parameters, with_method
 from world2minecraft.reconstruction.pipeline import reconstruct
 
@@ -37,12 +36,9 @@ ALIGNMENT = {
 
 
 @pytest.fixture(scope="module")
-def out(tmp_path_factory) -> Path:
+def out(dining_scan, tmp_path_factory) -> Path:
     """The paper's method on a dining room in 16 small frames with label images."""
-    folder = tmp_path_factory.mktemp("paper")
-    capture, out = folder / "scan", folder / "OUT"
-    room = generate_room(3, kind="dining")
-    scan_room(room, capture, frames=16, seed=3, width=320, height=240, with_labels=True)
+    capture, out = dining_scan, tmp_path_factory.mktemp("paper") / "OUT"
     paper = with_method(Parameters(), "paper")
     reconstruct(capture, out, paper, until="register")
     aligned = out / "scan.json"

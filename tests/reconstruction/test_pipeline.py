@@ -16,7 +16,6 @@ from world2minecraft.formats.objects_and_placements import read_objects, read_pl
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.minecraft.schematics.sponge import read_schem
 from world2minecraft.minecraft.worlds.world_writer import read_world
-from world2minecraft.procgen import generate_room, scan_room
 
 FILES = {
     "manifest.json", "run.json", "scan.json", "evidence.npz", "room.npz", "centers.npz",
@@ -27,12 +26,8 @@ FILES = {
 
 
 @pytest.fixture(scope="module")
-def capture(tmp_path_factory) -> Path:
-    """A dining room in 16 small frames with label images, its truth beside it."""
-    folder = tmp_path_factory.mktemp("capture")
-    room = generate_room(3, kind="dining")
-    scan_room(room, folder, frames=16, seed=3, width=320, height=240, with_labels=True)
-    return folder
+def capture(dining_scan) -> Path:
+    return dining_scan
 
 
 @pytest.fixture(scope="module")
@@ -144,12 +139,13 @@ def test_from_tells_the_settings_of_the_stages_that_it_keeps(out, capture, tmp_p
 def test_a_run_that_was_cut_off_goes_on(out, capture, monkeypatch, tmp_path):
     from world2minecraft.reconstruction import file_stages as steps
 
+    shutil.copytree(out, tmp_path / "cut")
     words = ["reconstruct", str(capture), "--out", str(tmp_path / "cut")]
     real = steps.FILE_STAGES["furnish"]
     monkeypatch.setitem(
         steps.FILE_STAGES, "furnish", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt)
     )
-    assert w2m(words) == 130
+    assert w2m([*words, "--from", "label"]) == 130
     assert json.loads((tmp_path / "cut/manifest.json").read_text())["finished"][-1] == "find"
     stamp = (tmp_path / "cut/evidence.npz").stat().st_mtime_ns
     monkeypatch.setitem(steps.FILE_STAGES, "furnish", real)

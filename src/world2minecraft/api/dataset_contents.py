@@ -48,9 +48,7 @@ def dataset_statistics(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
-        >>> found = w2m.dataset_statistics(tmp / "DATA", jobs=1)
+        >>> found = w2m.dataset_statistics(data.folder, jobs=1)
         >>> found.pictures, len(found.scenes), found.voxels > 0
         (2, 2, True)
     """
@@ -146,9 +144,7 @@ def dataset_quality(
 
     Example:
         >>> from world2minecraft.api.dataset_contents import dataset_quality
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
-        >>> report = dataset_quality(tmp / "DATA", sample=1, resize=None, variants=["own"])
+        >>> report = dataset_quality(data.folder, sample=1, resize=None, variants=["own"])
         >>> report.rows[0].pictures, report.found
         (1, 2)
     """
@@ -218,8 +214,6 @@ def draw_sample(
 
     Example:
         >>> from world2minecraft.api.dataset_contents import draw_sample
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
         >>> draw_sample(data, out=tmp / "sample.png").depth_in_cells > 0.9
         True
     """
@@ -271,9 +265,7 @@ def dataset_sheet(
 
     Example:
         >>> from world2minecraft.api.dataset_contents import dataset_sheet
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
-        >>> dataset_sheet(tmp / "DATA", width_px=64).width
+        >>> dataset_sheet(data.folder, width_px=64).width
         146
     """
     from PIL import Image

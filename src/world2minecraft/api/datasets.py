@@ -102,11 +102,9 @@ def open_dataset(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> made = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
-        >>> data = w2m.open_dataset(tmp / "DATA")
-        >>> sample = data[0]
-        >>> len(data), sample.colour.shape, sample.occ.labels.shape
+        >>> again = w2m.open_dataset(data.folder)
+        >>> sample = again[0]
+        >>> len(again), sample.colour.shape, sample.occ.labels.shape
         (2, (48, 64, 3), (60, 60, 36))
     """
     from world2minecraft.minecraftocc.importers import open_occupancy
@@ -309,9 +307,7 @@ def verify_dataset(folder: str | Path, *, progress: Progress = no_progress) -> "
 
     Example:
         >>> import world2minecraft as w2m
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
-        >>> report = w2m.verify_dataset(tmp / "DATA")
+        >>> report = w2m.verify_dataset(data.folder)
         >>> report.samples, report.faults
         (2, ())
     """
@@ -353,8 +349,6 @@ def import_dataset(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
         >>> report = w2m.export_dataset(data, tmp / "NPZ", "npz")
         >>> w2m.import_dataset(tmp / "NPZ", tmp / "AGAIN").keys() == data.keys()
         True
@@ -432,8 +426,6 @@ def export_dataset(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
         >>> w2m.export_dataset(data, tmp / "NYU", "nyu").written
         2
     """

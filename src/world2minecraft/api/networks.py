@@ -124,8 +124,6 @@ def train_network(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
         >>> trained = w2m.train_network(
         ...     "monoscene", data, tmp / "RUN", preset="smoke", image=(32, 24), steps=1, batch=1,
         ...     val_share=0, device="cpu", cache="off"
@@ -207,8 +205,6 @@ def export_network(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
         >>> trained = w2m.train_network(
         ...     "monoscene", data, tmp / "RUN", preset="smoke", image=(32, 24), steps=1, batch=1,
         ...     val_share=0, device="cpu", cache="off"
@@ -294,10 +290,8 @@ def evaluate_network(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> from world2minecraft.api.datasets import build_photo_dataset
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
         >>> report = w2m.export_dataset(data, tmp / "NPZ", "npz")  # The truth, as predictions.
-        >>> scores = w2m.evaluate_network(tmp / "NPZ" / "test", tmp / "DATA")
+        >>> scores = w2m.evaluate_network(tmp / "NPZ" / "test", data.folder)
         >>> scores["protocols"]["monoscene"]["micro"]["iou"]
         1.0
     """
@@ -352,12 +346,10 @@ def evaluate_frame(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> from world2minecraft.api.datasets import build_photo_dataset
         >>> from world2minecraft.api.networks import evaluate_frame
-        >>> data = build_photo_dataset(tmp / "DATA", rooms=2, images=2, size=(64, 48))
         >>> report = w2m.export_dataset(data, tmp / "NPZ", "npz")  # The truth, as predictions.
         >>> frame = sorted((tmp / "NPZ").glob("*/*.npz"))[0]
-        >>> evaluate_frame(frame, tmp / "DATA")["completion"]["iou"]
+        >>> evaluate_frame(frame, data.folder)["completion"]["iou"]
         1.0
     """
     from world2minecraft.minecraftocc.importers import open_occupancy

@@ -68,15 +68,20 @@ def scan_of(views, kind="network") -> Scan:
     return Scan(views, np.eye(4), np.array(ROOM.size_m), names, depth_kind=kind)
 
 
-def cells_of(scan: Scan) -> tuple[np.ndarray, np.ndarray]:
+def cells_of(scan: Scan) -> np.ndarray:
     fused = fuse_views(predictor("depth").predict(scan), scan, FusionParameters().suited("network"))
     low = np.round(fused.origin_m / fused.voxel_m).astype(int)
-    return np.argwhere(extract_grid(fused).occupied) + low, low
+    return np.argwhere(extract_grid(fused).occupied) + low
 
 
-def within_one_voxel(scan: Scan, true: Scan) -> tuple[float, float]:
+@pytest.fixture(scope="module")
+def true_cells(views) -> np.ndarray:
+    return cells_of(scan_of(views))
+
+
+def within_one_voxel(scan: Scan, wanted: np.ndarray) -> tuple[float, float]:
     """The share of found cells that lie within one voxel of a true one, and of true ones found."""
-    (found, _), (wanted, _) = cells_of(scan), cells_of(true)
+    found = cells_of(scan)
     low = np.minimum(found.min(axis=0), wanted.min(axis=0)) - 1
     shape = np.maximum(found.max(axis=0), wanted.max(axis=0)) - low + 2
     grids = []
@@ -95,31 +100,30 @@ def registered(scan: Scan) -> Scan:
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_without_points_registration_evens_the_scales_out(views, seed):
+def test_without_points_registration_evens_the_scales_out(views, true_cells, seed):
     """No sparse point: the frames alone tell each other how far each is off."""
     network = Jittery(views, seed=seed)
     jittered = [
         replace(v, depth_m=v.depth_m * np.float32(network.factor[v.name])) for v in views
     ]  # fmt: skip
-    true = scan_of(views)
-    without = within_one_voxel(scan_of(jittered), true)
-    evened = within_one_voxel(registered(scan_of(jittered)), true)
+    without = within_one_voxel(scan_of(jittered), true_cells)
+    evened = within_one_voxel(registered(scan_of(jittered)), true_cells)
     assert min(evened) > 0.99, f"{without} -> {evened}"
     assert without[0] < 0.9, "else the jitter is no trial"
 
 
 @pytest.mark.parametrize("kind", ["metric", "inverse"])
-def test_each_map_is_fitted_to_the_points_of_its_photo(views, kind):
+def test_each_map_is_fitted_to_the_points_of_its_photo(views, true_cells, kind):
     network = Jittery(views, kind)
     maps = list(network_maps(photos_of(views), scene_of(views), network))
     for view, made in zip(views, maps, strict=True):
         assert made.name == view.name and (made.trust[made.depth_m > 0] > 128).all()
         off = made.depth_m / view.depth_m - 1
         assert abs(np.median(off)) < 0.005 and np.percentile(np.abs(off), 90) < 0.03
-    assert min(within_one_voxel(scan_of(as_views(views, maps)), scan_of(views))) > 0.97
+    assert min(within_one_voxel(scan_of(as_views(views, maps)), true_cells)) > 0.97
 
 
-def test_a_photo_without_points_takes_the_median_factor(views):
+def test_a_photo_without_points_takes_the_median_factor(views, true_cells):
     """Half of the photos have no point at all; nothing of the room's size is lost."""
     network = Jittery(views)
     scene = scene_of(views)
@@ -134,7 +138,7 @@ def test_a_photo_without_points_takes_the_median_factor(views):
     laid = scan_of(as_views(views, maps))
     off = [np.median(m.depth_m / v.depth_m) - 1 for v, m in zip(views, maps, strict=True)]
     assert np.abs(off[::2]).max() < 0.005 < np.abs(off[1::2]).max() < 0.08
-    before, after = (within_one_voxel(s, scan_of(views)) for s in (laid, registered(laid)))
+    before, after = (within_one_voxel(s, true_cells) for s in (laid, registered(laid)))
     assert min(after) > 0.97 > before[0], f"{before} -> {after}"
 
 

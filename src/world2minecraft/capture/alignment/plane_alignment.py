@@ -168,17 +168,13 @@ def fit_plane(surface: OrientedPoints, face: PlanarFace) -> PlaneFit | None:
     plane, centre = np.array([0.0, 0.0, face.position_m]), np.zeros(2)
     weight = base
     for limit_m in LIMITS_M:
-        off = along - (uv - centre) @ plane[:2] - plane[2]
-        weight = base * np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0.0)
+        off = _off_plane(uv, along, plane, centre)
+        weight = base * _tukey(off, limit_m)
         if np.count_nonzero(weight) < MIN_FACE_PATCHES:
             return None
-        centre = np.average(uv, axis=0, weights=weight)
-        columns = np.column_stack([uv - centre, np.ones(len(uv))])
-        moment = columns.T @ (columns * weight[:, None])
-        moment[[0, 1], [0, 1]] += weight.sum() * MIN_EXTENT_M**2
-        plane = np.linalg.solve(moment, columns.T @ (weight * along))
+        plane, centre = _weighted_plane(uv, along, weight)
     total = weight.sum()
-    off = along - (uv - centre) @ plane[:2] - plane[2]
+    off = _off_plane(uv, along, plane, centre)
     return PlaneFit(
         face,
         plane[:2],
@@ -186,6 +182,27 @@ def fit_plane(surface: OrientedPoints, face: PlanarFace) -> PlaneFit | None:
         float(np.sum(weight * distance_m**4) / total),
         _bend_sums(uv, off, weight, distance_m),
     )
+
+
+def _off_plane(
+    uv: np.ndarray, along: np.ndarray, plane: np.ndarray, centre: np.ndarray
+) -> np.ndarray:
+    return along - (uv - centre) @ plane[:2] - plane[2]
+
+
+def _tukey(off: np.ndarray, limit: float) -> np.ndarray:
+    return np.where(np.abs(off) < limit, (1 - (off / limit) ** 2) ** 2, 0.0)
+
+
+def _weighted_plane(
+    uv: np.ndarray, along: np.ndarray, weight: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the plane (two slopes and a position) by least squares, and the centre of ``uv``."""
+    centre = np.average(uv, axis=0, weights=weight)
+    columns = np.column_stack([uv - centre, np.ones(len(uv))])
+    moment = columns.T @ (columns * weight[:, None])
+    moment[[0, 1], [0, 1]] += weight.sum() * MIN_EXTENT_M**2
+    return np.linalg.solve(moment, columns.T @ (weight * along)), centre
 
 
 def _bend_sums(
@@ -262,8 +279,15 @@ def _solve(observed: list[Observations]) -> tuple[np.ndarray, np.ndarray]:
     variances = np.concatenate([one.variances for one in observed])
     turn, moment = np.zeros(3), np.eye(3) / PRIOR_RAD**2
     for _ in range(ROBUST_STEPS):
-        off = rows @ turn - values
-        weight = 1 / (variances + off**2)
-        moment = rows.T @ (rows * weight[:, None]) + np.eye(3) / PRIOR_RAD**2
-        turn = np.linalg.solve(moment, rows.T @ (weight * values))
+        turn, moment = _robust_step(rows, values, variances, turn)
     return turn, np.degrees(np.sqrt(np.diag(np.linalg.inv(moment))))
+
+
+def _robust_step(
+    rows: np.ndarray, values: np.ndarray, variances: np.ndarray, turn: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the turn weighed by what an earlier one leaves over, and its normal matrix."""
+    off = rows @ turn - values
+    weight = 1 / (variances + off**2)
+    moment = rows.T @ (rows * weight[:, None]) + np.eye(3) / PRIOR_RAD**2
+    return np.linalg.solve(moment, rows.T @ (weight * values)), moment

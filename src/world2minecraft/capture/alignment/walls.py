@@ -47,13 +47,17 @@ def find_yaw(surface: OrientedPoints) -> float:
     votes = sum(np.roll(votes, shift) * (3 - abs(shift)) for shift in (-2, -1, 0, 1, 2))
     yaw = float(np.argmax(votes)) + 0.5
     for within_deg in (8.0, 4.0, 3.0):
-        off = (angles - yaw + 45) % 90 - 45
-        near = np.abs(off) < within_deg
-        if near.sum() > 20:
-            yaw += float(np.mean(off[near]))
+        yaw += _mean_offset_deg(angles, yaw, within_deg)
     for _ in range(2):
         yaw += _wall_slope(surface.transformed(rotation_about_z(-yaw)))
     return (yaw + 45) % 90 - 45
+
+
+def _mean_offset_deg(angles: np.ndarray, yaw: float, within_deg: float) -> float:
+    """Return by how much the angles near a yaw, modulo 90 degrees, differ from it on average."""
+    off = (angles - yaw + 45) % 90 - 45
+    near = np.abs(off) < within_deg
+    return float(np.mean(off[near])) if near.sum() > 20 else 0.0
 
 
 def _wall_slope(surface: OrientedPoints) -> float:
@@ -73,20 +77,33 @@ def _wall_slope(surface: OrientedPoints) -> float:
 def _line_slope(points: np.ndarray, axis: int, place_m: float) -> tuple[float, float]:
     """Fit ``p[axis] = place + slope * p[other]`` near a position (Tukey), and return its weight."""
     along, across = points[:, 1 - axis], points[:, axis]
-    slope, level, middle = 0.0, place_m, 0.0
-    weight = np.zeros(0)
+    line, spread = (0.0, place_m, 0.0), 0.0
     for limit_m in (0.10, 0.06, 0.04, 0.04):
-        off = across - level - slope * (along - middle)
-        weight = np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0.0)
-        if weight.sum() < 20:
+        line, spread = _refit_line(along, across, line, limit_m)
+        if spread == 0:
             return 0.0, 0.0
-        middle = float(np.average(along, weights=weight))
-        level = float(np.average(across, weights=weight))
-        spread = float(np.sum(weight * (along - middle) ** 2))
-        if spread < 1e-6:
-            return 0.0, 0.0
-        slope = float(np.sum(weight * (along - middle) * (across - level)) / spread)
-    return slope, float(np.sum(weight * (along - middle) ** 2))
+    return line[0], spread
+
+
+def _refit_line(
+    along: np.ndarray, across: np.ndarray, line: tuple[float, float, float], limit_m: float
+) -> tuple[tuple[float, float, float], float]:
+    """Fit a line (slope, level, middle) to the points near one, and return the points' spread.
+
+    The spread is 0 where there are too few points.
+    """
+    slope, level, middle = line
+    off = across - level - slope * (along - middle)
+    weight = np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0.0)
+    if weight.sum() < 20:
+        return line, 0.0
+    middle = float(np.average(along, weights=weight))
+    level = float(np.average(across, weights=weight))
+    spread = float(np.sum(weight * (along - middle) ** 2))
+    if spread < 1e-6:
+        return line, 0.0
+    slope = float(np.sum(weight * (along - middle) * (across - level)) / spread)
+    return (slope, level, middle), spread
 
 
 def find_room_box(surface: OrientedPoints) -> RoomBox:
