@@ -19,11 +19,12 @@ LOW, HIGH, HEAD = 13, 25, 25  # The leaf along its wall and its height, in cells
 OUTWARD = {"east": (1, 0), "west": (-1, 0), "north": (0, 1), "south": (0, -1)}
 
 
-def room_with_leaf(side: str, colour=WOOD) -> tuple[Sketch, Layout]:
-    """A room with a closed leaf of one wall, one cell behind the wall's face."""
+def room_with_leaf(side: str, colour=WOOD, deep: int = 1) -> tuple[Sketch, Layout]:
+    """A room with a closed leaf in one wall, which reaches from the wall's face to its back."""
     sketch = Sketch(SIZE)
     x, y, _ = SIZE
-    across = {"east": (x, x + 1), "west": (-1, 0), "north": (y, y + 1), "south": (-1, 0)}[side]
+    low = (-deep, 0)
+    across = {"east": (x, x + deep), "west": low, "north": (y, y + deep), "south": low}[side]
     face = {"east": x, "west": 0, "north": y, "south": 0}[side] * VOXEL_M
     spans = [across, (LOW, HIGH)] if side in ("east", "west") else [(LOW, HIGH), across]
     sketch.put(*spans, (0, HEAD), OBJS, colour, 7)
@@ -79,6 +80,12 @@ def test_player_walks_through_opened_door(side: str, scale: float) -> None:
     assert walks_through(volume, side)
     assert not walks_through(volume, side, opens=False)
     assert find_unstable(volume) == []
+
+
+@pytest.mark.parametrize("scale", [1.0, 4.0])
+def test_edge_of_the_room_does_not_close_the_way(scale: float) -> None:
+    sketch, room = room_with_leaf("south", deep=2)
+    assert walks_through(built(sketch, room, scale), "south")
 
 
 def test_door_has_two_halves_and_outer_hinges() -> None:

@@ -2,8 +2,8 @@
 
 A door of the game is one block wide and two high, and so is a player at every scale. Where a leaf
 is larger, one or two doors stand at the bottom in its middle, and upright trapdoors of the same
-wood fill the rest in the same plane. The way through the doors is cleared, and leads to a doorstep where
-nothing was seen behind the wall.
+wood fill the rest in the same plane. The way through the doors is cleared, and leads to a doorstep
+where nothing was seen behind the wall.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.construction.canvas import BARRIER, Canvas
+from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.door_leaves import FoundLeaves, Leaf
 from world2minecraft.core.classes import SemanticClass
@@ -37,10 +37,19 @@ class Place(NamedTuple):
     rows: range
 
 
-def put_doors(canvas: Canvas, found: FoundLeaves, source: BuildSource) -> None:
+def put_doors(
+    canvas: Canvas, footprints: Sequence[np.ndarray], found: FoundLeaves, source: BuildSource
+) -> None:
     """Set the doors of a room with a finished shell and finished objects.
 
     Leaves in walls too low for a door, and all leaves if the palette has no door, are left out.
+
+    Args:
+        canvas: Canvas with the shell and the objects.
+        footprints: Bool [X, Y] mask of the columns within the rooms, for each storey. The ways
+            through the doors are added in place.
+        found: The leaves.
+        source: The grid with the leaves, its colours and the allowed blocks.
     """
     woods = [wood for wood in WOODS if source.palette.allows(f"minecraft:{wood}_door")]
     if not woods:
@@ -54,7 +63,8 @@ def put_doors(canvas: Canvas, found: FoundLeaves, source: BuildSource) -> None:
         wood = _nearest_wood(leaf, found, source, woods)
         view.fill_frame(place)
         view.put_leaf(place, wood, source.palette.allows(f"minecraft:{wood}_trapdoor"))
-        view.clear_way(place, floor, with_edge=source.parameters.edge == "barrier")
+        storey = canvas.lattice.grounds.index(view.ground)
+        view.clear_way(place, floor, footprints[storey])
 
 
 def _floor_block(canvas: Canvas, source: BuildSource) -> str:
@@ -172,13 +182,13 @@ class _View:
         lower, higher = ("left", "right") if lower_is_left else ("right", "left")
         return {middle - 1: lower, middle: higher}
 
-    def clear_way(self, place: Place, floor: str, *, with_edge: bool) -> None:
+    def clear_way(self, place: Place, floor: str, footprint: np.ndarray) -> None:
         """Clear the wall before and behind the doors, and add a doorstep if there is no floor.
 
         Args:
             place: Where the leaf was built.
             floor: Block of a doorstep.
-            with_edge: Whether to keep players from falling off a doorstep.
+            footprint: Bool [X, Y] mask of the columns of the storey, to which the way is added.
         """
         doors = self._doors(place)
         columns = slice(min(doors), max(doors) + 1)
@@ -195,8 +205,7 @@ class _View:
         missing = ground == 0
         ground[missing] = self.canvas.id_of(floor)
         self.semantic[place.layer : beyond + 1, columns, self.ground - 1][missing] = FLOOR
-        if with_edge and missing[-1].any():
-            self._fence(beyond, columns)
+        self._turned(footprint)[place.layer : beyond + 1, columns] = True
 
     def _clear(self, layer: int, columns: slice) -> bool:
         """Remove the wall and the leaf from the way in a layer; return whether there were any."""
@@ -206,15 +215,3 @@ class _View:
         for array in (self.states, self.semantic, self.instance):
             array[body][blocked] = 0
         return bool(blocked.any())
-
-    def _fence(self, layer: int, columns: slice) -> None:
-        """Place invisible barriers around a doorstep."""
-        rows = slice(self.ground, self.ground + PLAYER_BLOCKS)
-        wide = slice(max(columns.start - 1, 0), columns.stop + 1)
-        for at in (
-            (slice(layer + 1, layer + 2), wide, rows),
-            (slice(layer, layer + 1), slice(wide.start, columns.start), rows),
-            (slice(layer, layer + 1), slice(columns.stop, wide.stop), rows),
-        ):
-            states = self.states[at]
-            states[states == 0] = self.canvas.id_of(BARRIER)

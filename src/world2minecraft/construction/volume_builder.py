@@ -117,7 +117,7 @@ def _put_room(
     object_source = source._replace(grid=grid, colours=painted)
     if parameters.style == "display":
         DisplayBuilder(canvas, object_source, instances).put_all(placements)
-        put_doors(canvas, found, source)
+        put_doors(canvas, shell.footprints, found, source)
         return shell.footprints
     builder = ObjectBuilder(canvas, object_source, shell.footprints, instances)
     remaining = place_mod_furniture(
@@ -126,7 +126,7 @@ def _put_room(
     builder.put_all(remaining)
     support_floaters(canvas)
     close_gaps(canvas)
-    put_doors(canvas, found, source)
+    put_doors(canvas, shell.footprints, found, source)
     return shell.footprints
 
 

@@ -3,8 +3,8 @@
 The file is a list of ``{name, floor_polygon_m, floor_z_m, wall_height_m, openings}``. An opening is
 ``{kind, start_m, end_m, sill_m, head_m}``. A door also has ``hinge``, ``left`` or ``right`` as seen
 from inside the room, and ``open``, whether its leaf stands open; files of former versions have
-neither. Polygons are counter-clockwise seen from above. Sills, heads and wall heights are relative to the
-floor of the room. Objects are in ``objects.json``.
+neither. Polygons are counter-clockwise seen from above. Sills, heads and wall heights are relative
+to the floor of the room. Objects are in ``objects.json``.
 """
 
 from dataclasses import replace
