@@ -19,7 +19,7 @@ from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.evaluation.scoring.opening_scores import opening_facts
-from world2minecraft.evaluation.scoring.score import see_truth
+from world2minecraft.evaluation.scoring.score import TrueRoom, see_truth
 from world2minecraft.evaluation.scoring.used_frames import truth_of_run, used_frames
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.run_arrays import read_room
@@ -35,16 +35,28 @@ KINDS = ("bed", "study", "living", "kitchen", "dining", "children", "hall", "bat
 INSIDE_M = 1.0  # How far inside the room a walk begins.
 
 
-def checked(folder: Path, kind: str, seed: int, scales: list[float]) -> dict[str, Any]:
-    """Scan and reconstruct a room if that was not done before, and return its figures."""
+def room_of(number: int) -> tuple[str, int]:
+    """Return the kind and the seed of a room."""
+    return KINDS[number % len(KINDS)], FIRST_SEED + number
+
+
+def reconstructed(keep: Path, number: int) -> tuple[Path, TrueRoom]:
+    """Scan and reconstruct a room if that was not done before; return the run and its truth."""
+    kind, seed = room_of(number)
+    folder = keep / f"{kind}-{seed}"
     capture, out = folder / "capture", folder / "run"
     if not (out / "placements.json").is_file():
-        room = generate_room(seed, kind=kind)
-        scan_room(room, capture, frames=FRAMES, seed=seed)
+        scan_room(generate_room(seed, kind=kind), capture, frames=FRAMES, seed=seed)
         reconstruct(capture, out, Parameters(), until="furnish")
     grid, scan_to_room = read_room(out / "room.npz")
     known = truth_of_run(out, capture)
-    truth = see_truth(known, used_frames(out, known), scan_to_room, grid.voxel_m)
+    return out, see_truth(known, used_frames(out, known), scan_to_room, grid.voxel_m)
+
+
+def checked(keep: Path, number: int, scales: list[float]) -> dict[str, Any]:
+    """Return the figures of a room."""
+    kind, seed = room_of(number)
+    out, truth = reconstructed(keep, number)
     found = read_layouts(out / "layout.json")
     facts = opening_facts(found, truth.truth.layouts, truth.truth_to_room, truth.reached)
     doors = facts["by_kind"].get("door", {"true": 0, "found": 0, "matched": 0})
@@ -100,8 +112,7 @@ def main() -> None:
     chosen = parser.parse_args()
     rows = []
     for number in range(chosen.rooms):
-        kind, seed = KINDS[number % len(KINDS)], FIRST_SEED + number
-        rows.append(checked(chosen.keep / f"{kind}-{seed}", kind, seed, chosen.scales))
+        rows.append(checked(chosen.keep, number, chosen.scales))
         print(*(f"{key} {value}" for key, value in rows[-1].items()), sep=", ", flush=True)
     for key in [key for key in rows[0] if key not in ("kind", "seed")]:
         print(f"{key}: {sum(row[key] for row in rows)}")

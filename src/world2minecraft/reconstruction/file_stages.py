@@ -229,7 +229,7 @@ def _build_and_repair(
         blocks_per_metre=chosen.blocks_per_metre,
         parameters=chosen.build,
         name=scene_name(folder),
-        rooms=() if chosen.furnish.paper_compat else read_rooms(folder, grid),
+        rooms=() if chosen.build.paper_compat else read_rooms(folder, grid),
     )
     return repair_volume(volume) if chosen.mend else (volume, ())
 
