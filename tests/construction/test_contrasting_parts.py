@@ -76,6 +76,21 @@ def test_shade_on_a_floor_is_no_rug():
     assert (find_contrasting_parts(mask, shaded.reshape(-1, 3), 0.25, RUG) > 0).sum() == 72
 
 
+@pytest.mark.parametrize("rug", [(225, 190, 80), (205, 185, 150), (215, 190, 140)])
+def test_light_rug_on_wood_is_found_but_sunlight_is_not(rug):
+    mask = np.ones((20, 20, 1), bool)
+    noise = np.random.default_rng(5).normal(1, 0.03, 400)
+    colours = lit((162, 131, 79), noise).reshape(20, 20, 3)
+    sunny = colours.copy()
+    sunny[5:14, 6:15] = lit((162, 131, 79), [1.7])
+    assert not find_contrasting_parts(mask, sunny.reshape(-1, 3), 0.25, RUG).any()
+    colours[5:14, 6:15] = srgb_to_oklab(np.array(rug, np.uint8))
+    parts = find_contrasting_parts(mask, colours.reshape(-1, 3), 0.25, RUG).reshape(20, 20)
+    found = np.zeros((20, 20), bool)
+    found[5:14, 6:15] = True
+    assert np.array_equal(parts > 0, found)
+
+
 @pytest.mark.parametrize("shape", [(0, 0, 0), (1, 1, 1), (1, 1, 30), (3, 1, 3), (4, 4, 4)])
 def test_what_is_no_flat_surface_has_no_parts(shape):
     mask = np.ones(shape, bool)

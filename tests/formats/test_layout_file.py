@@ -1,6 +1,7 @@
 """``layout.json``: rooms there and back, and what is refused."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -49,3 +50,30 @@ def test_what_is_no_layout_is_refused(tmp_path, rows, words):
 def test_a_missing_file_is_told(tmp_path):
     with pytest.raises(InputError):
         read_layouts(tmp_path / "layout.json")
+
+
+def test_doors_keep_their_hinge_and_whether_they_are_open(tmp_path):
+    path = tmp_path / "layout.json"
+    ends = np.array([0.5, 0]), np.array([1.4, 0])
+    doors = (Opening("door", *ends, 0, 2, "right", True), Opening("door", *ends, 0, 2))
+    write_layouts(path, (replace(ROOM, openings=doors),))
+    rows = json.loads(path.read_text())[0]["openings"]
+    assert (rows[0]["hinge"], rows[0]["open"]) == ("right", True)
+    assert not {"hinge", "open"} & rows[1].keys()
+    read = read_layouts(path)[0].openings
+    assert [(one.hinge, one.is_open) for one in read] == [("right", True), (None, False)]
+
+
+@pytest.mark.parametrize(
+    "more",
+    [{"hinge": "up"}, {"open": "yes"}, {"kind": "doorway", "hinge": "left"}, {"hinge": ["left"]}],
+)
+def test_a_door_that_makes_no_sense_is_refused(tmp_path, more):
+    path = tmp_path / "layout.json"
+    opening = replace(ROOM.openings[0], kind="door", hinge="left")
+    write_layouts(path, (replace(ROOM, openings=(opening,)),))
+    rows = json.loads(path.read_text())
+    rows[0]["openings"][0].update(more)
+    path.write_text(json.dumps(rows))
+    with pytest.raises(DamagedFileError, match="row 0 is not valid"):
+        read_layouts(path)

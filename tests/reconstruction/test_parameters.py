@@ -58,7 +58,8 @@ def test_settings_reach_their_stage():
 def test_paper_method_presets_can_be_changed_by_settings():
     assert with_method(Parameters(), "best") == Parameters()
     paper = with_method(Parameters(), "paper")
-    assert paper.find.paper_compat and paper.furnish.paper_compat and paper.register.passes == 0
+    assert paper.find.paper_compat and paper.furnish.paper_compat and paper.build.paper_compat
+    assert paper.register.passes == 0
     assert not with_settings(paper, ["furnish.paper_compat=no"]).furnish.paper_compat
     with pytest.raises(UnknownNameError, match="did you mean 'paper'"):
         with_method(Parameters(), "papers")

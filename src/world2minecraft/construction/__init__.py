@@ -6,16 +6,26 @@ from world2minecraft.construction.parameters import BuildParameters
 
 if TYPE_CHECKING:
     from world2minecraft.construction.build_files import WORLD_NAME, write_build
+    from world2minecraft.construction.door_leaves import with_hinges
     from world2minecraft.construction.spawn import Spawn, find_spawn
     from world2minecraft.construction.volume_builder import build_volume
 
-__all__ = ["WORLD_NAME", "BuildParameters", "Spawn", "build_volume", "find_spawn", "write_build"]
+__all__ = [
+    "WORLD_NAME",
+    "BuildParameters",
+    "Spawn",
+    "build_volume",
+    "find_spawn",
+    "with_hinges",
+    "write_build",
+]
 
 _HOMES = {
     "WORLD_NAME": "build_files",
     "Spawn": "spawn",
     "build_volume": "volume_builder",
     "find_spawn": "spawn",
+    "with_hinges": "door_leaves",
     "write_build": "build_files",
 }
 

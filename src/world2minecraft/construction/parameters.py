@@ -57,6 +57,8 @@ class BuildParameters:
     plane_reach_blocks: Maximum distance, in blocks, at which a surface is snapped to a wall plane.
     plane_area_m2: Minimum area of a plane that other surfaces are snapped to.
     gap_m: Maximum width of the unseen holes in walls that the builder closes.
+    paper_compat: Whether to build what was found and nothing else: door leaves are solid, and rugs
+        are distinguished from their floor by hue alone.
     """
 
     palette: str = parameter("vanilla")
@@ -159,6 +161,7 @@ class BuildParameters:
     gap_m: float = parameter(
         0.6, unit="m", origin="a guess: narrower than a doorway", bounds=NOT_BELOW_0
     )
+    paper_compat: bool = parameter(False)
 
     def __post_init__(self):
         self._choose("ceiling", CEILINGS)

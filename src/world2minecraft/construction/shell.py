@@ -3,7 +3,8 @@
 Rugs and pictures are parts of a flat surface with a different paint, which must be distinguished
 from shadow and noise. Shadow multiplies light, and thus all three Oklab coordinates, so hue and
 chroma are compared at equal lightness. Lightness is compared with a smooth surface fitted to the
-patch, so that a gradual change towards a corner does not count.
+patch, so that a gradual change towards a corner does not count. A smaller difference of hue is
+sufficient for what is lighter than its surroundings, since shadow is not.
 """
 
 from typing import NamedTuple
@@ -41,10 +42,16 @@ class PaintThresholds(NamedTuple):
     weak_hue: float  # Blocks beside sure ones belong to them from here on.
     weak_lightness: float
     least_m2: float
+    # Oklab distance of hue and chroma, and excess of lightness, that are sufficient together.
+    light_hue: float = np.inf
+    excess: float = np.inf
 
 
 # All 20 rugs of the generated rooms differ by 0.05 and more, planks of one floor by up to 0.03.
-RUG = PaintThresholds(0.04, np.inf, 0.03, np.inf, 0.5)
+# Pale and yellow rugs on wood, lighter by 0.1, differ by 0.02 or more; sunlight on a floor by less,
+# as does everything on the floors of the real kitchen and lounge but one existing patch.
+RUG = PaintThresholds(0.04, np.inf, 0.03, np.inf, 0.5, 0.02, 0.1)
+WEAK_SHARE = 0.7  # Of both differences, for blocks beside sure ones.
 # A picture is a mix of colours at 4 blocks a metre, darker than its wall by 0.25 to 0.3; a curtain
 # darkens the wall beside it by up to 0.19.
 PICTURE = PaintThresholds(0.04, 0.22, 0.015, 0.045, 0.3)
@@ -89,9 +96,13 @@ def _differ(
     # What dark cells have of hue is noise: it counts as much less as they are darker.
     trust = np.minimum(1.0, lightness / middle)
     hue = np.linalg.norm(hues - np.median(hues, axis=0), axis=1) * trust
-    light = np.abs(lightness - _smooth(at, lightness))
+    excess = lightness - _smooth(at, lightness)
+    light = np.abs(excess)
     sure = (hue >= steps.hue) | (light >= steps.lightness)
-    return sure, (hue >= steps.weak_hue) | (light >= steps.weak_lightness)
+    sure |= (hue >= steps.light_hue) & (excess >= steps.excess)
+    maybe = (hue >= steps.weak_hue) | (light >= steps.weak_lightness)
+    weak_hue, weak_excess = WEAK_SHARE * steps.light_hue, WEAK_SHARE * steps.excess
+    return sure, maybe | ((hue >= weak_hue) & (excess >= weak_excess))
 
 
 def _smooth(at: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -157,7 +168,10 @@ def _put_surface(
     if class_id in STAND_OUT and (known & patch).any():
         step_m = 1 / canvas.lattice.blocks_per_metre
         filled = fill_colours(colours, known & patch, patch, np.zeros(3, np.float32))
-        parts[patch] = find_contrasting_parts(patch, filled, step_m, STAND_OUT[class_id])
+        steps = STAND_OUT[class_id]
+        if choice.parameters.paper_compat:
+            steps = steps._replace(light_hue=np.inf, excess=np.inf)
+        parts[patch] = find_contrasting_parts(patch, filled, step_m, steps)
     around: frozenset[str] = frozenset()
     for part in np.unique(parts[patch]).tolist():
         mask = patch & (parts == part)

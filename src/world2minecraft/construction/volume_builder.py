@@ -10,6 +10,8 @@ from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import cell_colours, coloured_cells, unify_paints
 from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.display.builder import DisplayBuilder
+from world2minecraft.construction.door_leaves import find_leaves, without_leaves
+from world2minecraft.construction.doors import put_doors
 from world2minecraft.construction.floating_blocks import close_gaps, support_floaters
 from world2minecraft.construction.islands import remove_islands
 from world2minecraft.construction.lighting import hang_lamps, put_lights
@@ -25,7 +27,13 @@ from world2minecraft.construction.storeys import add_storeys
 from world2minecraft.construction.voxel_blocks import place_voxels
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.errors import UsageError
-from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.core.types import (
+    BlockVolume,
+    Layout,
+    ObjectInstance,
+    OccupancyGrid,
+    Placement,
+)
 
 
 def build_volume(
@@ -37,6 +45,7 @@ def build_volume(
     blocks_per_metre: float = 4.0,
     parameters: BuildParameters | None = None,
     name: str = "",
+    rooms: Sequence[Layout] = (),
 ) -> BlockVolume:
     """Build a room of blocks.
 
@@ -52,6 +61,8 @@ def build_volume(
         parameters: Build parameters.
         name: Name of the scene for the plaque. Without a name, a plaque is placed only if the
             parameters contain its text.
+        rooms: Rooms, of whose openings the door leaves become doors, except if a block equals a
+            voxel.
 
     Raises:
         UsageError: If the scale is not positive or gives too many blocks.
@@ -70,7 +81,7 @@ def build_volume(
     if is_exact(grid, blocks_per_metre):
         footprints = place_voxels(canvas, source)
     else:
-        footprints = _put_room(canvas, placements, instances, source)
+        footprints = _put_room(canvas, placements, instances, source, rooms)
     restrict_to_palette(canvas, palette)
     apply_block_updates(canvas)
     if chosen.edge == "barrier":
@@ -91,17 +102,22 @@ def _put_room(
     placements: Sequence[Placement],
     instances: Sequence[ObjectInstance],
     source: BuildSource,
+    rooms: Sequence[Layout],
 ) -> tuple[np.ndarray, ...]:
-    """Place the shell and the objects, and return each storey's footprint, bool [X, Y]."""
+    """Place the shell, the objects and doors, and return each storey's footprint, bool [X, Y]."""
     grid, colours, coloured, palette, parameters = source
     shell = build_shell(grid, canvas.lattice, parameters)
     put_shell(canvas, shell, source)
+    found = find_leaves(grid, rooms)
+    placements = [one for one in placements if one.object_id not in found.objects]
+    grid = without_leaves(grid, found)
     things = coloured & np.isin(grid.labels, OBJECT_CLASSES)
     painted = colours.copy()
     painted[things] = unify_paints(colours[things])
-    object_source = source._replace(colours=painted)
+    object_source = source._replace(grid=grid, colours=painted)
     if parameters.style == "display":
         DisplayBuilder(canvas, object_source, instances).put_all(placements)
+        put_doors(canvas, shell.footprints, found, source)
         return shell.footprints
     builder = ObjectBuilder(canvas, object_source, shell.footprints, instances)
     remaining = place_mod_furniture(
@@ -110,6 +126,7 @@ def _put_room(
     builder.put_all(remaining)
     support_floaters(canvas)
     close_gaps(canvas)
+    put_doors(canvas, shell.footprints, found, source)
     return shell.footprints
 
 

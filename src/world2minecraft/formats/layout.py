@@ -1,8 +1,10 @@
 """``layout.json``: the rooms of a place with their outlines and openings.
 
 The file is a list of ``{name, floor_polygon_m, floor_z_m, wall_height_m, openings}``. An opening is
-``{kind, start_m, end_m, sill_m, head_m}``. Polygons are counter-clockwise seen from above. Sills,
-heads and wall heights are relative to the floor of the room. Objects are in ``objects.json``.
+``{kind, start_m, end_m, sill_m, head_m}``. A door also has ``hinge``, ``left`` or ``right`` as seen
+from inside the room, and ``open``, whether its leaf stands open; files of former versions have
+neither. Polygons are counter-clockwise seen from above. Sills, heads and wall heights are relative
+to the floor of the room. Objects are in ``objects.json``.
 """
 
 from dataclasses import replace
@@ -49,17 +51,21 @@ def layout_to_json(layout: Layout) -> dict[str, Any]:
         "floor_polygon_m": _rounded(layout.floor_polygon_m),
         "floor_z_m": round(float(layout.floor_z_m), 4),
         "wall_height_m": round(float(layout.wall_height_m), 4),
-        "openings": [
-            {
-                "kind": opening.kind,
-                "start_m": _rounded(opening.start_m),
-                "end_m": _rounded(opening.end_m),
-                "sill_m": round(float(opening.sill_m), 4),
-                "head_m": round(float(opening.head_m), 4),
-            }
-            for opening in layout.openings
-        ],
+        "openings": [_opening_to_json(opening) for opening in layout.openings],
     }
+
+
+def _opening_to_json(opening: Opening) -> dict[str, Any]:
+    row = {
+        "kind": opening.kind,
+        "start_m": _rounded(opening.start_m),
+        "end_m": _rounded(opening.end_m),
+        "sill_m": round(float(opening.sill_m), 4),
+        "head_m": round(float(opening.head_m), 4),
+    }
+    if opening.hinge is None:
+        return row
+    return row | {"hinge": opening.hinge, "open": opening.is_open}
 
 
 def layout_from_json(row: dict[str, Any]) -> Layout:
@@ -74,7 +80,15 @@ def layout_from_json(row: dict[str, Any]) -> Layout:
         floor_polygon_m=row["floor_polygon_m"],
         wall_height_m=float(row["wall_height_m"]),
         openings=tuple(
-            Opening(o["kind"], o["start_m"], o["end_m"], float(o["sill_m"]), float(o["head_m"]))
+            Opening(
+                o["kind"],
+                o["start_m"],
+                o["end_m"],
+                float(o["sill_m"]),
+                float(o["head_m"]),
+                o.get("hinge"),
+                o.get("open", False),
+            )
             for o in row["openings"]
         ),
         floor_z_m=float(row["floor_z_m"]),

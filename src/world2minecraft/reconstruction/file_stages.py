@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.construction import WORLD_NAME, build_volume, write_build
+from world2minecraft.construction import WORLD_NAME, build_volume, with_hinges, write_build
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, no_progress
@@ -80,6 +80,8 @@ def label_stage(folder: Path, chosen: Parameters) -> None:
     evidence = read_evidence(folder / "evidence.npz")
     grid = remove_floaters(extract_grid(evidence), chosen.clean)
     rooms = find_structure(grid, evidence)
+    if not chosen.find.paper_compat:
+        rooms = with_hinges(rooms)
     write_layouts(folder / "layout.json", rooms)
     from_photos = read_depth_kind(folder / "scan.json") == "stereo"
     if from_photos:
@@ -253,6 +255,7 @@ def _build_and_repair(
         blocks_per_metre=chosen.blocks_per_metre,
         parameters=chosen.build,
         name=scene_name(folder),
+        rooms=() if chosen.build.paper_compat else read_rooms(folder, grid),
     )
     return repair_volume(volume) if chosen.mend else (volume, ())
 

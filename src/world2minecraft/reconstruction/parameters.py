@@ -138,6 +138,7 @@ def with_method(parameters: Parameters, method: str) -> Parameters:
         occupy=replace(parameters.occupy, semantics="none"),
         find=replace(parameters.find, paper_compat=True),
         furnish=replace(parameters.furnish, paper_compat=True),
+        build=replace(parameters.build, paper_compat=True),
         mend=False,
     )
 

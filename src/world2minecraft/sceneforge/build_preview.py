@@ -22,6 +22,7 @@ from world2minecraft.reconstruction.file_stages import corner_m
 from world2minecraft.rendering.mesh import BlockMesh, mesh_of
 from world2minecraft.sceneforge.array_messages import pack_arrays
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.scene_sources import read_source_rooms
 
 MAGIC = b"W2MB"
 MAX_CELLS = 12_000_000  # Maximum size of a build's bounding box; pages draw no more.
@@ -97,6 +98,7 @@ class BlockBuild:
             blocks_per_metre=options.blocks_per_metre,
             parameters=replace(BuildParameters(), style=options.style),
             name=scene.name,
+            rooms=read_source_rooms(scene.folder, scene.grid),
         )
         return cls(scene.rev, options, repair_volume(volume)[0])
 

@@ -14,7 +14,7 @@ from world2minecraft.core.types.capture import (
     ViewStream,
 )
 from world2minecraft.core.types.edit import BlockEdit, Blocks, GridCells, Operation, SceneObject
-from world2minecraft.core.types.layout import Layout, LayoutObject, Opening
+from world2minecraft.core.types.layout import Hinge, Layout, LayoutObject, Opening
 from world2minecraft.core.types.objects import Alternative, ObjectInstance, Placement
 from world2minecraft.core.types.occupancy_and_evidence import (
     COMPLETED,
@@ -45,6 +45,7 @@ __all__ = [
     "FusedEvidence",
     "GridCells",
     "GridEvidence",
+    "Hinge",
     "Layout",
     "LayoutObject",
     "ObjectInstance",

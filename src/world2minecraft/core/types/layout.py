@@ -7,16 +7,24 @@ import numpy as np
 
 from world2minecraft.core.types import checks
 
+Hinge = Literal["left", "right"]
+
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """A window, door or doorway in a wall, from floor-plan point ``start_m`` to ``end_m``."""
+    """A window, door or doorway in a wall, from floor-plan point ``start_m`` to ``end_m``.
+
+    A door has a leaf, a doorway has none. ``hinge`` is the side of the leaf's hinge as seen from
+    inside the room, or None if it is unknown, and ``is_open`` whether the leaf stands open.
+    """
 
     kind: Literal["window", "door", "doorway"]
     start_m: np.ndarray  # float64 [2]
     end_m: np.ndarray  # float64 [2]
     sill_m: float
     head_m: float
+    hinge: Hinge | None = None
+    is_open: bool = False
 
     def __post_init__(self):
         put = object.__setattr__
@@ -26,6 +34,12 @@ class Opening:
             raise ValueError(f"kind must be window, door or doorway, got {self.kind!r}")
         if not 0 <= self.sill_m < self.head_m:
             raise ValueError(f"sill_m must be below head_m, got {self.sill_m} and {self.head_m}")
+        if self.hinge not in ("left", "right", None):
+            raise ValueError(f"hinge must be left, right or null, got {self.hinge!r}")
+        if not isinstance(self.is_open, bool):
+            raise ValueError(f"open must be true or false, got {self.is_open!r}")
+        if self.kind != "door" and (self.hinge or self.is_open):
+            raise ValueError(f"a {self.kind} has no leaf, so it must have no hinge and not be open")
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import Camera, Scan, View, checks
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
-from world2minecraft.reconstruction.naming.name_votes import CUBE_M, NameVotes
+from world2minecraft.reconstruction.naming.name_votes import CUBE_M, NameVotes, class_votes
 from world2minecraft.reconstruction.recognition.segmentation import SegmentationModel, splat_depth
 from world2minecraft.reconstruction.recognition.segmentation_channels import (
     sample_nearest,
@@ -145,7 +145,7 @@ class _VoteTable:
         self.shape = votes.cubes.max(axis=0) + 1 - self.low
         self.numbers = self._number(votes.cubes)
         self.order = np.argsort(self.numbers, kind="stable")
-        self.best = (votes.votes.argmax(axis=1) + 1).astype(np.uint8)
+        self.best = (class_votes(votes.votes).argmax(axis=1) + 1).astype(np.uint8)
 
     def find(self, cubes: np.ndarray) -> np.ndarray:
         """Return the class of each cube, int64 [N, 3], as uint8 [N], or 0 without votes."""
