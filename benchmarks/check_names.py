@@ -71,16 +71,20 @@ def _figures(out: Path, capture: Path) -> dict[str, Any]:
             sure.append([objects[found].name_confidence, float(name == entry.name)])
     placed: dict[int, set[str]] = {}
     for one in read_placements(out / "placements.json"):
-        if (entry := vocabulary.of_template(one.template)) is not None:
-            placed.setdefault(one.object_id, set()).add(entry.name)
+        placed.setdefault(one.object_id, set()).add(one.template)
+    built = {
+        name
+        for name, entry in vocabulary.names.items()
+        if any(templates & set(entry.templates) for templates in placed.values())
+    }
     asked = []
     for found, wanted in match_objects(places, true_places):
         entry = vocabulary.find(true_places[wanted].name.replace("_", " "))
         if entry is not None and entry.templates:
-            asked.append(entry.name in placed.get(objects[found].id, ()))
+            asked.append(bool(placed.get(objects[found].id, set()) & set(entry.templates)))
     return name_facts(objects, room.objects) | {
         "sure": sure,
-        "built": sorted(set().union(*placed.values())),
+        "built": sorted(built),
         "built_right": sum(asked),
         "built_asked": len(asked),
     }

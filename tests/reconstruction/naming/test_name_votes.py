@@ -11,6 +11,7 @@ from tests.reconstruction.instances.test_instances import grid_of
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_npz
 from world2minecraft.core.vocabulary import label_id_names, label_id_of, nyu40_names
+from world2minecraft.reconstruction.naming import name_votes
 from world2minecraft.reconstruction.naming.name_votes import (
     CUBE_M,
     NameVoteMap,
@@ -98,3 +99,16 @@ def test_votes_for_a_name_support_its_class():
     found = class_votes(votes)[0]
     assert found[nyu40_names()["chair"] - 1] == 0.7 and found[nyu40_names()["bed"] - 1] == 0.3
     assert found.sum() == 1
+
+
+def test_votes_are_found_again_in_another_vocabulary(tmp_path, monkeypatch):
+    votes = np.zeros((1, len(label_id_names()) - 1), np.float32)
+    votes[0, label_id_of("toilet") - 1], votes[0, label_id_of("piano") - 1] = 200_000, 100_000
+    votes[0, 2] = 8
+    path = tmp_path / "names.npz"
+    write_name_votes(path, NameVotes(np.zeros((1, 3), np.int32), votes))
+    fewer = ("", *label_id_names()[1:41], "gizmo", "piano")
+    monkeypatch.setattr(name_votes, "label_id_names", lambda: fewer)
+    (found,) = read_name_votes(path).votes
+    assert found.shape == (42,) and found[41] == 30_000 and found[2] == pytest.approx(2.4, rel=0.01)
+    assert found.sum() == found[41] + found[2], "no other name has votes"

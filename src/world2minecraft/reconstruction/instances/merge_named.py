@@ -1,16 +1,17 @@
-"""Merging of touching pieces that were recognised as parts of the same thing.
+"""Merging of neighbouring pieces that were recognised as parts of the same thing.
 
 A toilet and its cistern, a bed and its headboard and the halves of a sofa often come as objects of
-their own, even of different classes. Pieces that touch become one object if most votes for both are
-for the same NYU40 class, and if they are together no larger than such a thing.
+their own, even of different classes. Pieces whose boxes meet become one object if most votes for
+both are for the same NYU40 class, and if they are together no larger than such a thing.
 """
+
+from itertools import combinations
 
 import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.core.vocabulary import nyu40_names
-from world2minecraft.geometry.connected_components import touching_pairs
 
 # Longest side and height of one thing in metres. Several chairs, tables or cabinets may touch.
 LARGEST_M = {
@@ -27,7 +28,7 @@ MIN_SHARE = 0.5  # Of the votes for a piece.
 def merge_same_names(
     owners: np.ndarray, grid: OccupancyGrid, class_votes: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Merge touching pieces of one thing.
+    """Merge neighbouring pieces of one thing.
 
     Args:
         owners: Number of the object of each cell, int32 [X, Y, Z], 0 for none.
@@ -47,8 +48,9 @@ def merge_same_names(
     if not best.any():
         return owners, grid.labels
     result, labels = owners.copy(), grid.labels.copy()
-    for first, second in touching_pairs(np.where(best[owners] > 0, owners, 0)):
-        if best[first] != best[second]:
+    boxes = ndimage.find_objects(owners)
+    for first, second in combinations(np.flatnonzero(best).tolist(), 2):
+        if best[first] != best[second] or not _meet(boxes[first - 1], boxes[second - 1]):
             continue
         one, other = (int(result[owners == number][0]) for number in (first, second))
         if one == other or not _fits(result, (one, other), limits[int(best[first])], grid.voxel_m):
@@ -59,6 +61,13 @@ def merge_same_names(
         labels[moved] = np.bincount(labels[result == large]).argmax()
         result[moved] = large
     return result, labels
+
+
+def _meet(one: tuple[slice, ...] | None, other: tuple[slice, ...] | None) -> bool:
+    """Return whether two boxes of cells overlap or touch."""
+    if one is None or other is None:
+        return False
+    return all(a.start <= b.stop and b.start <= a.stop for a, b in zip(one, other, strict=True))
 
 
 def _fits(

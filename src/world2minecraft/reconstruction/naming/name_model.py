@@ -26,6 +26,10 @@ WEIGHTS = Path(__file__).parents[2] / "weights" / "object_names.npz"
 MIN_CONFIDENCE = MIN_NAME_CONFIDENCE
 MAX_WALL_M, MAX_GAP_M = 1.0, 1.0
 SMALLEST_M, SMALLEST_CHANCE = 0.04, 1e-9
+# Log-odds that a name is right: constant, and factors of the log-odds of its share in the votes and
+# of log(votes / 1000). ``benchmarks/fit_name_confidence.py`` fits them.
+CALIBRATION = (0.12, 1.583, 0.145)
+SHARE_LIMITS = (0.01, 0.99)
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +44,7 @@ class ObjectTraits:
         ceiling_m: Distance of its top to the ceiling; large if it was not seen.
         votes: Shares of the label ids from 1 in its votes, float [40] for the NYU40 classes or
             float [K] with all names after them; zeros without votes.
+        vote_count: Number of votes, such as pixels of views; 0 without votes.
     """
 
     class_id: int
@@ -48,6 +53,7 @@ class ObjectTraits:
     wall_m: float
     ceiling_m: float
     votes: np.ndarray
+    vote_count: float = 0.0
 
 
 def features_of(objects: Sequence[ObjectTraits]) -> np.ndarray:
@@ -125,9 +131,8 @@ def name_objects(
 
     The votes decide among the 40 NYU classes, and the model among the names of each class: the
     segmentation network saw real rooms, and the model saw generated rooms only. Votes for names
-    count as such. Below
-    ``MIN_CONFIDENCE``, and without votes, the name is that of the class; the probability is still
-    that of the best name.
+    count as such. Below ``MIN_CONFIDENCE``, and without votes, the name is that of the class; the
+    probability is still that of the best name.
     """
     chosen = model or read_name_model()
     names, nyu40 = tuple(read_vocabulary().names), label_id_nyu40()[NYU40_COUNT:] - 1
@@ -140,8 +145,25 @@ def name_objects(
         shares = item.votes[nyu40] * row / np.maximum(within, SMALLEST_CHANCE)
         if len(item.votes) > NYU40_COUNT:
             shares += item.votes[NYU40_COUNT:]
-        best = int(shares.argmax()) if item.votes.any() else int(row.argmax())
-        sure = shares[best] >= MIN_CONFIDENCE
-        name = names[best] if sure else CLASS_DISPLAY_NAMES[item.class_id]
-        result.append((name, float(shares[best] if item.votes.any() else row[best])))
+        if not item.votes.any():
+            result.append((CLASS_DISPLAY_NAMES[item.class_id], float(row.max())))
+            continue
+        best = int(shares.argmax())
+        confidence = calibrated(float(shares[best]), item.vote_count)
+        sure = confidence >= MIN_CONFIDENCE
+        result.append((names[best] if sure else CLASS_DISPLAY_NAMES[item.class_id], confidence))
     return result
+
+
+def calibrated(share: float, vote_count: float) -> float:
+    """Return the probability that a name is right, from its share in a number of votes.
+
+    Example:
+        >>> round(calibrated(0.5, 1000), 2), calibrated(0.5, 40_000) > calibrated(0.5, 1000)
+        (0.53, True)
+    """
+    constant, by_share, by_count = CALIBRATION
+    limited = min(max(share, SHARE_LIMITS[0]), SHARE_LIMITS[1])
+    odds = by_share * np.log(limited / (1 - limited))
+    odds += by_count * np.log(max(vote_count, 1) / 1000)
+    return float(1 / (1 + np.exp(-constant - odds)))

@@ -12,13 +12,14 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError
-from world2minecraft.core.files import read_npz, write_npz
+from world2minecraft.core.files import npz_array_names, read_npz, write_npz
 from world2minecraft.core.types import OccupancyGrid, checks
 from world2minecraft.core.vocabulary import label_id_names, label_id_nyu40
 
 NAME_VOTES = "names.npz"  # In the folder of a run.
 CUBE_M = 0.08  # Of votes, whatever the cells of the grid.
 NYU40_COUNT = 40
+MAX_STORED = 60_000.0  # Votes in a cube, as 16-bit floats; more are scaled down.
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,19 +146,37 @@ def class_votes(votes: np.ndarray) -> np.ndarray:
 
 
 def write_name_votes(path: Path, votes: NameVotes) -> None:
-    """Write votes to ``names.npz``."""
-    write_npz(path, {"cubes": votes.cubes, "votes": votes.votes.astype(np.float16)})
+    """Write votes to ``names.npz``, with the names of the columns after the NYU40 classes."""
+    names = label_id_names()[NYU40_COUNT + 1 : votes.votes.shape[1] + 1]
+    largest = votes.votes.max(axis=1, keepdims=True, initial=1.0)
+    stored = votes.votes * np.minimum(MAX_STORED / largest, 1)
+    arrays = {"cubes": votes.cubes, "votes": stored.astype(np.float16)}
+    write_npz(path, arrays | {"names": np.array(names, np.str_)})
 
 
 def read_name_votes(path: Path) -> NameVotes:
-    """Read votes.
+    """Read votes. Votes for names that the vocabulary lacks are left out.
 
     Raises:
         InputError: If the file does not exist.
         DamagedFileError: If the file does not contain votes.
     """
     arrays = read_npz(path, ("cubes", "votes"))
+    names: list[str] = []
+    if "names" in npz_array_names(path):
+        names = [str(name) for name in read_npz(path, ("names",))["names"].reshape(-1)]
     try:
-        return NameVotes(arrays["cubes"], arrays["votes"].astype(np.float32))
+        stored = arrays["votes"].astype(np.float32)
+        if stored.ndim != 2 or stored.shape[1] != NYU40_COUNT + len(names):
+            raise ValueError(f"votes must have {NYU40_COUNT + len(names)} columns")
+        if not names:
+            return NameVotes(arrays["cubes"], stored)
+        votes = np.zeros((len(stored), len(label_id_names()) - 1), np.float32)
+        votes[:, :NYU40_COUNT] = stored[:, :NYU40_COUNT]
+        known = {name: number for number, name in enumerate(label_id_names()[NYU40_COUNT + 1 :])}
+        for column, name in enumerate(names):
+            if name in known:
+                votes[:, NYU40_COUNT + known[name]] = stored[:, NYU40_COUNT + column]
+        return NameVotes(arrays["cubes"], votes)
     except (ValueError, TypeError) as error:
         raise DamagedFileError(path, f"does not contain votes ({error})") from error

@@ -58,7 +58,7 @@ def traits_of(
     """
     shares = votes / np.maximum(votes.sum(axis=1, keepdims=True), 1e-6)
     result = []
-    for item, share in zip(items, shares, strict=True):
+    for item, share, count in zip(items, shares, votes.sum(axis=1).tolist(), strict=True):
         depth, width, height = item.size_m.tolist()
         floor_m = 0.0 if layout is None else layout.floor_z_m
         bottom_m = float(item.center_m[2]) - height / 2 - floor_m
@@ -67,7 +67,9 @@ def traits_of(
             wall_m = _wall_distance_m(item, layout)
             gap_m = layout.wall_height_m - bottom_m - height
         result.append(
-            ObjectTraits(item.class_id, (depth, width, height), bottom_m, wall_m, gap_m, share)
+            ObjectTraits(
+                item.class_id, (depth, width, height), bottom_m, wall_m, gap_m, share, count
+            )
         )
     return result
 

@@ -360,7 +360,7 @@ def _placement(
 ) -> Placement:
     least = 0.0 if chosen.paper_compat else chosen.min_iou
     explained = bool(found.matches) and (found.whole or found.is_named or found.iou >= least)
-    explained &= not _is_uncertain(instance, chosen)
+    explained &= found.is_named or not _is_uncertain(instance, chosen)
     low, counts, turns = _own_box(found)
     if explained:
         trial = found.matches[0].trial
