@@ -19,7 +19,7 @@ import numpy as np
 from PIL import Image
 from scipy.optimize import minimize
 
-from benchmarks.real_captures.scenes import NYU_FOLDER, nyu_scene
+from benchmarks.real_captures.scenes import NYU_FOLDER, nyu_scene, sample_nyu
 from benchmarks.train_names import calibration_error
 from world2minecraft.core.types import ObjectInstance, OccupancyGrid
 from world2minecraft.core.vocabulary import OTHER_NYU40, read_vocabulary
@@ -44,6 +44,7 @@ from world2minecraft.reconstruction.pipeline import read_registered, reconstruct
 
 OBJS = 11
 MIN_POINTS = 50  # Of an object that are labelled.
+VALIDATION_FRAMES = 22
 
 
 class Named(NamedTuple):
@@ -167,16 +168,19 @@ def main() -> None:
     parser.add_argument("--rooms", type=Path, required=True, metavar="ROOMS")
     parser.add_argument("--frames", type=int, help="so many frames of each part only")
     chosen = parser.parse_args()
-    numbers = sorted(
-        int(path.name[:4]) for path in (chosen.data / NYU_FOLDER).glob("*.label40.png")
-    )
+    labelled = (chosen.data / NYU_FOLDER).glob("*.label40.png")
+    numbers = sorted(int(path.name[:4]) for path in labelled)
+    used = {
+        "calibration": [number for number in numbers if nyu_part(number) == "calibration"],
+        "validation": sample_nyu(chosen.data / NYU_FOLDER, VALIDATION_FRAMES),
+    }
     parts = {
         part: [
             named
-            for number in [n for n in numbers if nyu_part(n) == part][: chosen.frames]
+            for number in frames[: chosen.frames]
             for named in frame_names(chosen.data, chosen.keep, number)
         ]
-        for part in ("calibration", "validation")
+        for part, frames in used.items()
     }
     rooms = [named for folder in sorted(chosen.rooms.iterdir()) for named in room_names(folder)]
     constants = fit([parts["calibration"], rooms])

@@ -28,7 +28,7 @@ MAX_WALL_M, MAX_GAP_M = 1.0, 1.0
 SMALLEST_M, SMALLEST_CHANCE = 0.04, 1e-9
 # Log-odds that a name is right: constant, and factors of the log-odds of its share in the votes and
 # of log(votes / 1000). ``benchmarks/fit_name_confidence.py`` fits them.
-CALIBRATION = (0.12, 1.583, 0.145)
+CALIBRATION = (0.139, 1.486, 0.12)
 SHARE_LIMITS = (0.01, 0.99)
 
 
