@@ -72,7 +72,7 @@ class Vocabulary:
         by_template: dict[str, ThingName] = {}
         for entry in self.names.values():
             by_label |= dict.fromkeys((entry.name, *entry.labels), entry)
-            by_template = dict.fromkeys(entry.templates, entry) | by_template
+            by_template |= dict.fromkeys(entry.templates, entry)
         for label in (*self.classes, *self.silent):
             by_label.pop(label, None)
         object.__setattr__(self, "_by_label", by_label)
@@ -93,7 +93,7 @@ class Vocabulary:
     def of_template(self, template: str) -> ThingName | None:
         """Return the name of what a furniture template shows, or None.
 
-        If it can stand for several names, that is the first of them.
+        If it can stand for several names, that is the last of them.
 
         Example:
             >>> read_vocabulary().of_template("fridge_double").name
