@@ -125,8 +125,8 @@ class GltfFormat(FileFormat):
         """Write meshes, and store the blocks in the same file."""
         from world2minecraft.formats.gltf import write_gltf  # noqa: PLC0415  # It needs numba.
 
-        details = {key: options.other.get(key) for key in ("templates", "names")}
-        write_gltf(volume, path, **details)
+        told = options.other
+        write_gltf(volume, path, templates=told.get("templates"), names=told.get("names"))
 
 
 class HabitatFormat:

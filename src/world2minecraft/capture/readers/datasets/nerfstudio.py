@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.images import SUFFIXES, read_header
-from world2minecraft.capture.readers.datasets.nyu40_labels import label_reading
+from world2minecraft.capture.readers.datasets.nyu40_labels import Reading, label_reading
 from world2minecraft.capture.readers.panoramas import (
     is_panorama_size,
     panorama_frames,
@@ -63,11 +63,8 @@ class NerfstudioSource:
         scale = _number(path, stated, "applied_scale", 1.0)
         if scale <= 0:
             raise CaptureError(path, f'"applied_scale" must be above 0, got {scale}')
-        frames = [one for entry in entries for one in _frames(path, stated, entry, scale)]
         reading = label_reading(folder / LABEL_FOLDER)
-        frames = [
-            replace(one, labels_path=one.labels_path and reading(one.labels_path)) for one in frames
-        ]
+        frames = [one for entry in entries for one in _frames(path, stated, entry, scale, reading)]
         notes = [] if scale == 1 else [f"camera positions are divided by applied_scale, {scale:g}"]
         panoramas = len({frame.rig.place for frame in frames if frame.rig is not None})
         notes += [panorama_note(panoramas)] if panoramas else []
@@ -105,10 +102,12 @@ def _is_from_colmap(stated: dict[str, Any], entries: list[Any]) -> bool:
     return "applied_transform" in stated and not any(map(_depth_name, entries))
 
 
-def _frames(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> list[FrameFiles]:
+def _frames(
+    path: AnyPath, stated: dict[str, Any], entry: Any, scale: float, reading: Reading
+) -> list[FrameFiles]:
     """Return the frame of an entry, or the views of its panorama."""
     if not isinstance(entry, dict) or {**stated, **entry}.get("camera_model") != PANORAMA:
-        return [_frame(path, stated, entry, scale)]
+        return [_frame(path, stated, entry, scale, reading)]
     if not isinstance(entry.get("file_path"), str):
         raise CaptureError(path, 'every frame must be an object with "file_path"')
     picture, pose = _file_in_folder(path, entry["file_path"]), _pose(path, entry, scale)
@@ -127,7 +126,9 @@ def _frames(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> 
     return panorama_frames(picture, picture.stem, view_camera(header.width_px), pose)
 
 
-def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> FrameFiles:
+def _frame(
+    path: AnyPath, stated: dict[str, Any], entry: Any, scale: float, reading: Reading
+) -> FrameFiles:
     if not isinstance(entry, dict) or not isinstance(entry.get("file_path"), str):
         raise CaptureError(path, 'every frame must be an object with "file_path"')
     colour = _file_in_folder(path, entry["file_path"])
@@ -148,7 +149,7 @@ def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> F
         camera,
         depth_path,
         camera if depth_path else None,
-        labels_path=labels if labels.is_file() else None,
+        labels_path=reading(labels) if labels.is_file() else None,
         problem="" if pose is not None else "has no transform_matrix",
         trust_path=trust_path,
     )
