@@ -106,7 +106,7 @@ def test_written_label_ids_come_back(tmp_path):
         ({"a": "wall"}, "ids from 0 to 65535 as keys, got 'a'"),
         ({"70000": "wall"}, "ids from 0 to 65535 as keys, got '70000'"),
         ({"1": 3}, "must state a name for the id 1, got '3'"),
-        ({"1": "gizmo", "2": "sky"}, "names no label that is known"),
+        ({"1": "gizmo", "2": "sky"}, "states no known name; use names such as"),
     ],
 )
 def test_wrong_names_of_ids_are_refused(names, said, capture):
