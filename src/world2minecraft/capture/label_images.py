@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.capture.images import ImagePlace, read_header, read_raw
-from world2minecraft.capture.readers.datasets.nyu40_labels import (
+from world2minecraft.capture.readers.datasets.label_ids import (
     FACTS_FILE,
     NYU40,
     Reading,

@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.capture.images import SUFFIXES
-from world2minecraft.capture.readers.datasets.nyu40_labels import FACTS_FILE, label_reading
+from world2minecraft.capture.readers.datasets.label_ids import FACTS_FILE, label_reading
 from world2minecraft.capture.source_types import Capture, FrameFiles, as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, UnknownNameError

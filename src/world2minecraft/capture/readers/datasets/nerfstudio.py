@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.images import SUFFIXES, read_header
-from world2minecraft.capture.readers.datasets.nyu40_labels import Reading, label_reading
+from world2minecraft.capture.readers.datasets.label_ids import Reading, label_reading
 from world2minecraft.capture.readers.panoramas import (
     is_panorama_size,
     panorama_frames,

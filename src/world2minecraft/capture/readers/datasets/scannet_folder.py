@@ -15,7 +15,7 @@ from world2minecraft.capture.readers.datasets.intrinsics import (
     intrinsics_size,
     matrix_camera,
 )
-from world2minecraft.capture.readers.datasets.nyu40_labels import MappedLabels
+from world2minecraft.capture.readers.datasets.label_ids import MappedLabels
 from world2minecraft.capture.readers.datasets.scannet_metadata import (
     find_labels,
     read_scene_info,

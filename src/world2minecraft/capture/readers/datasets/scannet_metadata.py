@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.capture.images import read_header
-from world2minecraft.capture.readers.datasets.nyu40_labels import (
+from world2minecraft.capture.readers.datasets.label_ids import (
     LABEL_TABLE,
     MappedLabels,
     find_label_table,

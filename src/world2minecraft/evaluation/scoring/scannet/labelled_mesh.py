@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.readers.datasets.nyu40_labels import (
+from world2minecraft.capture.readers.datasets.label_ids import (
     LABEL_TABLE,
     find_label_table,
     raw_id_labels,
