@@ -6,18 +6,17 @@ import numpy as np
 import pytest
 from forge_serving import client, served, small_editor
 
-from world2minecraft.editing.scene import SceneDraft
-from world2minecraft.evaluation.metrics.occupancy import count_occupancy
-from world2minecraft.formats.run_arrays import read_room
+from world2minecraft.evaluation.scoring import evaluate_reconstruction
 from world2minecraft.sceneforge.array_messages import HEADER
-from world2minecraft.sceneforge.comparison import read_file_labels, read_truth_labels
+from world2minecraft.sceneforge.comparison import read_file_labels
 from world2minecraft.sceneforge.editor import Editor
 
 
-def test_the_truth_of_a_generated_room_meets_its_run(small_run):
-    grid, scan_to_room = read_room(small_run / "room.npz")
-    truth = read_truth_labels(small_run / "capture", SceneDraft(grid), scan_to_room)
-    assert count_occupancy(grid.labels, truth, grid.source > 0).iou > 0.5
+def test_the_truth_is_masked_as_in_evaluate(small_run):
+    editor = Editor.open(small_run)
+    scored = evaluate_reconstruction(small_run, small_run / "capture")["occupancy"]["iou"]
+    assert editor.ask("compare", path="truth")["iou"] == pytest.approx(scored, abs=0.01)
+    editor.close()
 
 
 def npy(labels) -> bytes:

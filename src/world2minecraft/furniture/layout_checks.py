@@ -136,8 +136,11 @@ def out_of_bounds(
 def out_of_rooms(
     objects: Sequence[Any], rooms: Sequence[Layout], tolerance_m: float = OUTSIDE_M
 ) -> list[int]:
-    """Return the indices of objects that are not completely inside any of several rooms."""
-    outside = set(range(len(objects)))
+    """Return the indices of objects that are not completely inside any of several rooms.
+
+    Without rooms, no object is outside.
+    """
+    outside = set(range(len(objects))) if rooms else set()
     for room in rooms:
         outside &= set(
             out_of_bounds(

@@ -6,15 +6,12 @@ From the two label arrays, the page computes the added, removed and changed cell
 from pathlib import Path
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 
-from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import InputError
-from world2minecraft.core.types import UNSEEN
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.difference import resample_labels
-from world2minecraft.evaluation.metrics.truth_resampling import carry_truth
-from world2minecraft.evaluation.scoring.truth_files import read_truth
+from world2minecraft.evaluation.scoring.score import scored_labels, see_truth
+from world2minecraft.evaluation.scoring.used_frames import truth_of_run, used_frames
 from world2minecraft.formats.occupancy_files import read_occupancy
 
 SUFFIXES = (".npz", ".npy", ".json")
@@ -41,30 +38,26 @@ def find_truth_folder(run: Path, capture: Path | None) -> Path | None:
     return None
 
 
-def read_truth_labels(folder: Path, draft: SceneDraft, scan_to_room: np.ndarray) -> np.ndarray:
+def read_truth_labels(
+    run: Path, folder: Path, draft: SceneDraft, scan_to_room: np.ndarray
+) -> np.ndarray:
     """Return the ground truth of a generated room in the cells of a scene, as uint8 [X, Y, Z].
 
-    Raises:
-        InputError: If the ground truth cannot be read.
-    """
-    truth = read_truth(folder)
-    truth_to_room = scan_to_room @ truth.truth_to_scan
-    place = (draft.shape, draft.origin_m, draft.voxel_m)
-    return carry_truth(truth.labels, truth.voxel_m, truth.origin_m, truth_to_room, *place)
-
-
-def mask_unreached(labels: np.ndarray, source: np.ndarray) -> np.ndarray:
-    """Return labels in which cells that the scan did not reach are set to 255.
-
-    This excludes the inside of walls, which are thick in a ground truth.
+    Cells that are not scored, because no ray of the run's frames reached them, are 255. These are
+    the cells that ``w2m evaluate reconstruction`` leaves out.
 
     Args:
-        labels: Ground truth labels, uint8 [X, Y, Z].
-        source: Labels of the scene as it was first opened, uint8 [X, Y, Z]. Reached cells and their
-            neighbours are kept.
+        run: The folder of the run that the scene was opened from.
+        folder: The folder of the ground truth.
+        draft: The scene.
+        scan_to_room: The rigid 4x4 transform that the run estimated.
+
+    Raises:
+        InputError: If the ground truth cannot be read, or is that of another room.
     """
-    near = binary_dilation(source != UNSEEN, np.ones((3, 3, 3), bool))
-    return np.where(near, labels, np.uint8(UNKNOWN))
+    truth = truth_of_run(run, folder)
+    room = see_truth(truth, used_frames(run, truth), scan_to_room, draft.voxel_m)
+    return scored_labels(room, draft.shape, draft.origin_m)
 
 
 def check_suffix(name: str) -> str:

@@ -174,7 +174,7 @@ class Compare(Query):
         place = find_truth_folder(folder, None)
         if place is None:
             raise UsageError("no ground truth in the scene's folder; only generated rooms have one")
-        return read_truth_labels(place, scene.draft, scene.opened.scan_to_room)
+        return read_truth_labels(folder, place, scene.draft, scene.opened.scan_to_room)
 
 
 def compare_draft(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:
@@ -328,8 +328,7 @@ def _clashes(scene: QueriedScene) -> Iterator[dict[str, Any]]:
         middle = np.round((placed[m].center_m + placed[n].center_m) / 2, 3).tolist()
         ids = [placed[m].object_id, placed[n].object_id]
         yield {"kind": "collision", "ids": ids, "at_m": middle}
-    rooms = scene.opened.rooms
-    for index in out_of_rooms(placed, rooms) if rooms else ():
+    for index in out_of_rooms(placed, scene.opened.rooms):
         at_m = np.round(placed[index].center_m, 3).tolist()
         yield {"kind": "outside", "ids": [placed[index].object_id], "at_m": at_m}
 

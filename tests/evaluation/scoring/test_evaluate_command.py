@@ -1,13 +1,17 @@
 """``w2m evaluate reconstruction``: its tables, its file, its errors."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.cli.evaluate.reconstruction import next_steps, score_rows, stage_table
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.files import read_json, write_json
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
+from world2minecraft.reconstruction.run_folder import hash_capture
 
 
 def test_the_table_and_the_file_hold_the_scores(perfect, capture, tmp_path, capsys):
@@ -52,6 +56,24 @@ def test_the_stages_are_rows_after_the_run_itself(perfect, capture):
     assert next_steps(perfect, capture, True) == [
         f"next: open {perfect / 'report.html'} in a browser"
     ]
+
+
+def test_the_truth_of_another_room_is_refused(perfect, capture, tmp_path, capsys):
+    other = tmp_path / "other"
+    shutil.copytree(capture, other)
+    arrays = dict(np.load(other / "truth.npz"))
+    arrays["truth_room_to_scan"] = arrays["truth_room_to_scan"] @ rotation_about_z(60.0)
+    np.savez(other / "truth.npz", **arrays)
+    assert w2m(["evaluate", "reconstruction", str(perfect), str(other)]) == 3
+    text = " ".join(capsys.readouterr().err.split())
+    assert "is the ground truth of another room" in text
+    assert "use the capture that the run was made from" in text
+    # The run states that it was made from this capture: it is bad, and is scored.
+    manifest = read_json(perfect / "manifest.json") | {"capture": hash_capture(other)}
+    run = tmp_path / "run"
+    shutil.copytree(perfect, run)
+    write_json(run / "manifest.json", manifest)
+    assert w2m(["evaluate", "reconstruction", str(run), str(other)]) == 0
 
 
 @pytest.mark.parametrize(

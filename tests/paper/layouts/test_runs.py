@@ -50,12 +50,13 @@ def capture(folder, width):
          "yaw_deg": 0.0},
     ]  # fmt: skip
     write(folder / "truth.json", {"objects": objects, "layouts": [layout_to_json(truth)]})
+    grid = rasterize_plan(plan_of(ComparedScene("room", "m", (ROOM,), THINGS))).grid
     write_npz(
         folder / "truth.npz",
         {
-            "labels": np.zeros((2, 2, 2), np.uint8),
-            "voxel_m": np.float64(0.08),
-            "origin_m": np.zeros(3),
+            "labels": grid.labels,
+            "voxel_m": np.float64(grid.voxel_m),
+            "origin_m": grid.origin_m,
             "truth_room_to_scan": np.linalg.inv(SCAN_TO_ROOM),
         },
     )

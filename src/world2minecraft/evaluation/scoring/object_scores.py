@@ -159,11 +159,11 @@ def layout_facts(
     placements = read_placements(out / "placements.json")
     found = read_objects(out / "objects.json", grid)
     pairs = zip(objects.objects, objects.seen, strict=True)
-    judged = {"out_of_true_rooms": _outside(placements, true_rooms)} if true_rooms else {}
+    judged = {"out_of_true_rooms": len(out_of_rooms(placements, true_rooms))} if true_rooms else {}
     return judged | {
         "placements": len(placements),
         "collisions": len(collisions(placements, grid=grid)),
-        "out_of_bounds": _outside(placements, read_rooms(out, grid)),
+        "out_of_bounds": len(out_of_rooms(placements, read_rooms(out, grid))),
         "semantic_integrity": category_integrity(
             {item.class_id for item in found if stands_for(item, placements)},
             {item.class_id for item, seen in pairs if seen},
@@ -184,8 +184,3 @@ def in_room(layouts: Sequence[Layout], truth_to_room: np.ndarray) -> tuple[Layou
             )
         )
     return tuple(moved)
-
-
-def _outside(placements: Sequence[Any], rooms: Sequence[Layout]) -> int:
-    """Return the number of placements that are not completely within any room."""
-    return len(out_of_rooms(placements, rooms)) if rooms else 0

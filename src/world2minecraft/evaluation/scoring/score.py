@@ -245,10 +245,30 @@ def placed(values: np.ndarray, grid: OccupancyGrid, reached: Reached, fill: int)
         reached: The cells that rays reached, which define the box.
         fill: The value for cells of the box outside the grid.
     """
-    result = np.full(reached.flags.shape, fill, values.dtype)
     start = np.round(grid.origin_m / grid.voxel_m).astype(np.int64) - reached.low
-    stop = start + values.shape
-    first, last = np.maximum(start, 0), np.minimum(stop, result.shape)
+    return _copied(values, start, reached.flags.shape, fill)
+
+
+def scored_labels(room: TrueRoom, shape: tuple[int, int, int], origin_m: np.ndarray) -> np.ndarray:
+    """Return the true labels of the scored cells in the cells of a grid.
+
+    Args:
+        room: The ground truth in the frame of the grid, with the cell size of the grid.
+        shape: The shape [X, Y, Z] of the grid.
+        origin_m: The minimum corner of the grid, as float [3].
+
+    Returns:
+        The labels as uint8 of shape ``shape``; cells that no ray reached are 255.
+    """
+    labels = np.where(room.reached.scored, room.labels, np.uint8(UNKNOWN))
+    start = room.reached.low - np.round(origin_m / room.reached.voxel_m).astype(np.int64)
+    return _copied(labels, start, shape, UNKNOWN)
+
+
+def _copied(values: np.ndarray, start: np.ndarray, shape: tuple[int, ...], fill: int) -> np.ndarray:
+    """Copy a box of cells [X, Y, Z] whose first cell has index ``start`` in the result."""
+    result = np.full(shape, fill, values.dtype)
+    first, last = np.maximum(start, 0), np.minimum(start + values.shape, result.shape)
     if (first < last).all():
         inside = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
         source = tuple(slice(a, b) for a, b in zip(first - start, last - start, strict=True))

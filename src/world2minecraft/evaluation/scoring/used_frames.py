@@ -11,7 +11,9 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Camera
+from world2minecraft.evaluation.scoring.same_room import check_same_room
 from world2minecraft.evaluation.scoring.truth_files import Truth, read_truth
+from world2minecraft.formats.run_arrays import read_room
 
 COMPUTED = "capture"  # Where ``prepare`` keeps what it made.
 MIN_POSED = 3
@@ -90,11 +92,12 @@ def truth_of_run(out: Path, folder: Path) -> Truth:
     and a translation only, so that a wrong scale remains an error.
 
     Raises:
-        InputError: If a file is missing.
+        InputError: If a file is missing, or it is the ground truth of another room.
         DamagedFileError: If a file is not a valid ground truth, or belongs to other photos.
     """
     known, place = read_truth(folder), computed(out)
     if place is None:
+        check_same_room(out, known, *read_room(out / "room.npz"))
         return known
     true = known.camera_to_truth or {}
     posed = [f for f in find_capture(place).frames if f.name in true]

@@ -22,7 +22,6 @@ from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.sceneforge.array_messages import labels_bytes
 from world2minecraft.sceneforge.comparison import (
     check_suffix,
-    mask_unreached,
     read_file_labels,
     read_truth_labels,
 )
@@ -58,10 +57,10 @@ async def _truth(request: Request) -> Response:
     if folder is None:
         raise UsageError("this room has no ground truth; only generated rooms have one")
     editor = workspace.editor
+    scan_to_room = editor.opened.scan_to_room
     labels = await asyncio.to_thread(
-        read_truth_labels, folder, editor.draft, editor.opened.scan_to_room
+        read_truth_labels, workspace.run, folder, editor.draft, scan_to_room
     )
-    labels = mask_unreached(labels, editor.opened.grid.source)
     workspace.compared = Comparison("truth", labels, editor)
     return _answer(workspace)
 
