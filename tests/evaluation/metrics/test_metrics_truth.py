@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.coordinates import apply, invert_rigid, rotation_about_z
-from world2minecraft.evaluation.metrics.truth_resampling import carry_truth, scored_cells
+from world2minecraft.evaluation.metrics.truth_resampling import carry_truth
 
 FINE_M, COARSE_M = 0.02, 0.08
 
@@ -86,12 +86,6 @@ def test_a_truth_of_the_same_cells_comes_through_as_it_is():
     fine = random_fine(9, (5, 4, 3))
     found = carry_truth(fine, 0.08, np.zeros(3), np.eye(4), fine.shape, np.zeros(3), 0.08)
     np.testing.assert_array_equal(found, fine)
-
-
-def test_scored_are_the_reached_cells_that_the_truth_knows():
-    truth = np.array([[[0, 3, 255, 2]]], np.uint8)
-    source = np.array([[[1, 0, 1, 2]]], np.uint8)
-    assert scored_cells(truth, source).reshape(-1).tolist() == [True, False, False, True]
 
 
 def test_a_truth_coarser_than_the_grid_is_refused():

@@ -11,7 +11,6 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.jit import njit
-from world2minecraft.core.types import UNSEEN
 from world2minecraft.core.types.checks import labels as check_labels
 from world2minecraft.core.types.checks import transform
 
@@ -62,17 +61,6 @@ def carry_truth(
     start = (room_to_truth[:3, :3] @ first_m + room_to_truth[:3, 3] - origin_m) / voxel_m
     sub_cell_to_fine = np.concatenate([turn, start[:, None]], axis=1)
     return _resample(np.ascontiguousarray(fine), sub_cell_to_fine, np.array(grid_shape), per_side)
-
-
-def scored_cells(truth: np.ndarray, source: np.ndarray) -> np.ndarray:
-    """Return the cells to score, which the reconstruction reached and the ground truth knows.
-
-    Args:
-        truth: The result of ``carry_truth`` as uint8 [X, Y, Z].
-        source: The ``source`` of the OccupancyGrid as uint8 [X, Y, Z]. Completed cells count as
-            reached.
-    """
-    return (source != UNSEEN) & (truth != UNKNOWN)
 
 
 @njit
