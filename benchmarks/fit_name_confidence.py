@@ -21,7 +21,7 @@ from scipy.optimize import minimize
 
 from benchmarks.real_captures.scenes import NYU_FOLDER, nyu_scene, sample_nyu
 from benchmarks.train_names import calibration_error
-from world2minecraft.core.types import ObjectInstance, OccupancyGrid
+from world2minecraft.core.types import ObjectInstance, OccupancyGrid, View
 from world2minecraft.core.vocabulary import OTHER_NYU40, read_vocabulary
 from world2minecraft.evaluation.metrics.objects import match_objects
 from world2minecraft.evaluation.scoring.score import see_truth
@@ -64,9 +64,9 @@ class Found(NamedTuple):
     votes: float
 
 
-def best_names(run: Path) -> tuple[OccupancyGrid, np.ndarray, list[Found]]:
-    """Return the grid of a run, its transform from the scan, and the objects with names."""
-    grid, scan_to_room = read_room(run / "room.npz")
+def best_names(run: Path) -> tuple[OccupancyGrid, list[Found]]:
+    """Return the grid of a run, and its objects with their best names."""
+    grid, _ = read_room(run / "room.npz")
     objects = read_objects(run / "objects.json", grid)
     votes = votes_of_objects(read_name_votes(run / NAME_VOTES), grid, len(objects))[1:]
     before = name_model.CALIBRATION, name_model.MIN_CONFIDENCE
@@ -81,41 +81,74 @@ def best_names(run: Path) -> tuple[OccupancyGrid, np.ndarray, list[Found]]:
         for item, (name, share), row in zip(objects, names, votes, strict=True)
         if row.any()
     ]
-    return grid, scan_to_room, found
+    return grid, found
 
 
-def frame_names(data: Path, folder: Path, number: int) -> Iterator[Named]:
-    """Yield the names of the objects of a labelled frame, reconstructed once."""
+class Surface(NamedTuple):
+    """The labelled pixels of a frame of NYUv2 that lie in cells of its run.
+
+    Attributes:
+        view: The frame.
+        pixels: Flat indices of the pixels in the depth image, int64 [N].
+        cells: Their cells, int64 [N, 3].
+        nyu40: Their true NYU40 ids, 1 to 40, int64 [N].
+        area: The squares of their depths, to which the area that they show is proportional.
+    """
+
+    view: View
+    pixels: np.ndarray
+    cells: np.ndarray
+    nyu40: np.ndarray
+    area: np.ndarray
+
+
+def run_frame(data: Path, folder: Path, number: int) -> Path:
+    """Reconstruct a frame if that was not done before, and return the folder of the run."""
     run = folder / f"run-{number}"
     capture = nyu_scene(number).prepare(data, folder / f"capture-{number}")
     if not (run / "placements.json").is_file():
         reconstruct(capture, run, Parameters())
-    grid, scan_to_room, found = best_names(run)
+    return run
+
+
+def labelled_surface(data: Path, folder: Path, number: int, grid: OccupancyGrid) -> Surface:
+    """Return the labelled pixels of a frame that lie in the grid of its run."""
+    run = folder / f"run-{number}"
     with Image.open(data / NYU_FOLDER / f"{number:04d}.label40.png") as image:
-        labels = np.asarray(image).astype(np.int64) + 1
+        labels = np.asarray(image).astype(np.int64).reshape(-1) + 1
+    capture = nyu_scene(number).prepare(data, folder / f"capture-{number}")
     scan = read_registered(prepare_and_open(capture, run, Parameters()), run)
     view = next(iter(scan.views))
     if view.depth_m is None or view.depth_camera is None:
         raise ValueError(f"view {view.name} has no depth")
-    pose = scan_to_room @ view.depth_camera_to_scan
+    pose = scan.scan_to_room @ view.depth_camera_to_scan
     points_m, pixels = unproject_depth(view.depth_m, view.depth_camera, pose)
     cells = np.floor((points_m - grid.origin_m) / grid.voxel_m).astype(np.int64)
     known = ((cells >= 0) & (cells < grid.shape)).all(axis=1)
-    known &= labels.reshape(-1)[pixels] <= OTHER_NYU40
-    owners = grid.instance[tuple(cells[known].T)]
-    seen, area = labels.reshape(-1)[pixels][known], view.depth_m.reshape(-1)[pixels][known] ** 2
+    known &= labels[pixels] <= OTHER_NYU40
+    pixels = pixels[known]
+    area = view.depth_m.reshape(-1)[pixels] ** 2
+    return Surface(view, pixels, cells[known], labels[pixels], area)
+
+
+def frame_names(data: Path, folder: Path, number: int) -> Iterator[Named]:
+    """Yield the names of the objects of a labelled frame, reconstructed once."""
+    grid, found = best_names(run_frame(data, folder, number))
+    surface = labelled_surface(data, folder, number, grid)
+    owners = grid.instance[tuple(surface.cells.T)]
     names = read_vocabulary().names
     for item, name, share, votes in found:
         mine = owners == item.id
         if mine.sum() >= MIN_POINTS:
-            true = np.bincount(seen[mine], area[mine], OTHER_NYU40 + 1).argmax()
-            yield Named(share, votes, bool(names[name].nyu40 == true))
+            counts = np.bincount(surface.nyu40[mine], surface.area[mine], OTHER_NYU40 + 1)
+            yield Named(share, votes, bool(names[name].nyu40 == counts.argmax()))
 
 
 def room_names(folder: Path) -> Iterator[Named]:
     """Yield the names of the objects of a generated room that ``check_names`` reconstructed."""
     run = folder / "run"
-    grid, scan_to_room, found = best_names(run)
+    _, found = best_names(run)
+    grid, scan_to_room = read_room(run / "room.npz")
     known = truth_of_run(run, folder / "capture")
     room = see_truth(known, used_frames(run, known), scan_to_room, grid.voxel_m)
     places = [replace(one.item, class_id=OBJS) for one in found]

@@ -1,0 +1,95 @@
+"""Names of the labelled surface of real frames: those of reconstructions, and of their segmenter.
+
+``python -m benchmarks.check_surface_names DATA --keep DIR [--frames 22]``
+
+``DATA`` is the folder of shared inputs. Validation frames of NYUv2 are reconstructed once. A
+labelled pixel takes the best name of the object in whose cell it lies, or the class of a cell of
+the structure, or of those that touch it if it is empty. Printed is the share of pixels whose NYU40
+class is the labelled one, beside that of the segmentation network alone, which sees the same
+picture. Other props are left out. Classes that annotators do not separate count as the same with
+``--alike``.
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.fit_name_confidence import best_names, labelled_surface, run_frame
+from benchmarks.real_captures.scenes import NYU_FOLDER, sample_nyu
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.core.vocabulary import OTHER_NYU40, alike_nyu40, read_vocabulary
+from world2minecraft.reconstruction.recognition.segmentation import SegmentationModel
+from world2minecraft.reconstruction.recognition.segmentation_channels import sample_nearest
+
+NEAR = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+STRUCTURE = ("ceiling", "floor", "wall", "window")
+
+
+def named_cells(grid: OccupancyGrid, names: dict[int, str]) -> np.ndarray:
+    """Return the NYU40 id of the name of each cell, uint8 [X, Y, Z]; 0 where nothing has a name."""
+    vocabulary = read_vocabulary().names
+    ids = np.zeros(grid.shape, np.uint8)
+    for name in STRUCTURE:
+        ids[grid.labels == CLASS_NAMES.index(name)] = vocabulary[name].nyu40
+    for number, name in names.items():
+        ids[grid.instance == number] = vocabulary[name].nyu40
+    ids[grid.source == UNSEEN] = 0
+    return ids
+
+
+def names_at(ids: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Return the ids at cells int [N, 3], or the most frequent one that touches an unnamed cell."""
+    padded = np.pad(ids, 1)
+    near = np.stack([padded[tuple((cells + 1 + step).T)] for step in NEAR], axis=1)
+    found = padded[tuple((cells + 1).T)].astype(np.int64)
+    for index in np.flatnonzero(found == 0):
+        counts = np.bincount(near[index], minlength=2)
+        found[index] = counts[1:].argmax() + 1 if counts[1:].any() else 0
+    return found
+
+
+def right_share(found: np.ndarray, true: np.ndarray, *, alike: bool) -> float:
+    """Return the share of NYU40 ids that are right, int [N] each."""
+    right = found == true
+    if alike:
+        for number in np.unique(true):
+            right |= (true == number) & np.isin(found, list(alike_nyu40(int(number))))
+    return float(right.mean())
+
+
+def frame_shares(data: Path, folder: Path, number: int, *, alike: bool) -> tuple[float, float]:
+    """Return the share of right pixels of a frame, by the reconstruction and by the segmenter."""
+    grid, found = best_names(run_frame(data, folder, number))
+    surface = labelled_surface(data, folder, number, grid)
+    named = named_cells(grid, {one.item.id: one.name for one in found})
+    ids = names_at(named, surface.cells)
+    view = surface.view
+    probability = SegmentationModel().predict(view.colour, view.depth_m, view.depth_camera)
+    height, width = view.depth_m.shape
+    likely = sample_nearest(probability.argmax(axis=2) + 1, width, height).reshape(-1)
+    known = surface.nyu40 != OTHER_NYU40
+    pairs = (ids, likely[surface.pixels])
+    names, segmenter = (right_share(one[known], surface.nyu40[known], alike=alike) for one in pairs)
+    return names, segmenter
+
+
+def main() -> None:
+    """Print a row for each frame, and the means."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("data", type=Path)
+    parser.add_argument("--keep", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--frames", type=int, default=22)
+    parser.add_argument("--alike", action="store_true")
+    chosen = parser.parse_args()
+    rows = []
+    for number in sample_nyu(chosen.data / NYU_FOLDER, chosen.frames):
+        rows.append(frame_shares(chosen.data, chosen.keep, number, alike=chosen.alike))
+        print(f"{number:04d}: names {rows[-1][0]:.3f}, segmenter {rows[-1][1]:.3f}", flush=True)
+    names, segmenter = np.mean(rows, axis=0)
+    print(f"mean: names {names:.3f}, segmenter {segmenter:.3f}")
+
+
+if __name__ == "__main__":
+    main()
