@@ -7,6 +7,11 @@ import numpy as np
 from world2minecraft.core.types import Layout, LayoutObject, ObjectInstance
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.reconstruction.naming.name_model import ObjectTraits, name_objects
+from world2minecraft.reconstruction.naming.room_context import (
+    CONFIDENCE,
+    WASHBASIN,
+    find_washbasin,
+)
 
 FAR_M = 9.0  # Of walls and ceilings where there is no layout.
 
@@ -41,8 +46,12 @@ def name_instances(
         mine = [number for number, own in enumerate(rooms) if own == room]
         layout = None if room < 0 else layouts[room]
         traits = traits_of([instances[n] for n in mine], layout, votes[mine])
-        for number, named in zip(mine, name_objects(traits), strict=True):
-            result[number] = named
+        named = name_objects(traits)
+        basin = find_washbasin(traits, named)
+        if basin is not None:
+            named[basin] = (WASHBASIN, CONFIDENCE)
+        for number, one in zip(mine, named, strict=True):
+            result[number] = one
     return result
 
 
