@@ -12,6 +12,7 @@ import pytest
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.procgen import BASE_KINDS, KINDS, generate_room
+from world2minecraft.procgen.rooms.recipes import find_kind, room_title
 from world2minecraft.procgen.rooms.room import draw_kind
 from world2minecraft.procgen.sensors.navmesh import build_navmesh
 
@@ -72,6 +73,12 @@ def test_seeds_differ():
 def test_a_seed_alone_draws_its_kind():
     assert {draw_kind(seed) for seed in range(40)} == set(BASE_KINDS)
     assert generate_room(3).kind == draw_kind(3)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_kind_is_found_by_what_people_call_it(kind):
+    title = room_title(kind).partition(" ")[2]
+    assert find_kind(title) == find_kind(title.upper().replace(" ", "_")) == find_kind(kind) == kind
 
 
 def test_an_unknown_kind_is_refused_by_name():

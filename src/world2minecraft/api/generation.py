@@ -308,6 +308,7 @@ def demo(
     """
     from world2minecraft.procgen import generate_room as generate
     from world2minecraft.procgen import scan_room as scan
+    from world2minecraft.procgen.rooms.recipes import KINDS, find_kind, room_title
     from world2minecraft.reconstruction.run_folder import check_writable
     from world2minecraft.runs import run_capture
 
@@ -315,14 +316,15 @@ def demo(
         raise UsageError(f"seed must be 0 or more, got {seed}")
     if frames < MIN_FRAMES:
         raise UsageError(f"frames must be {MIN_FRAMES} or more, got {frames}; try 40")
-    plaque = {"build.plaque": f"A {kind} room"}
+    kind = find_kind(kind)
+    plaque = {"build.plaque": room_title(kind)}
     options = BuildOptions(blocks_per_metre, style, palette, formats, settings=plaque)
     chosen = options.parameters()
     folder = Path(out)
     check_writable(folder)
     progress("room", 0, 1)
     made = generate(seed, kind=kind)
-    progress("room", 1, 1, f"a {kind} room, seed {seed}")
+    progress("room", 1, 1, f"{KINDS[kind].title}, seed {seed}")
     scan(made, folder / "capture", frames=frames, seed=seed, progress=progress)
     run_capture(folder / "capture", folder, chosen, progress=progress)
     return Run(folder)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.procgen.rooms import bathroom_fittings as washing
 from world2minecraft.procgen.rooms import children_and_hall_furniture as playing
 from world2minecraft.procgen.rooms import decor
@@ -435,22 +436,51 @@ class Kind:
     long_m: tuple[float, float]
     floor: str  # planks or tiles
     furnish: "Callable[[Plan, Style], tuple[Rug, ...] | None]"
+    title: str  # What people call it, with its article.
 
 
 KINDS: dict[str, Kind] = {
-    "living": Kind((3.6, 4.4), (4.4, 5.4), "planks", furnish_living),
-    "bed": Kind((3.2, 3.8), (3.8, 4.6), "planks", furnish_bed),
-    "kitchen": Kind((2.9, 3.5), (3.7, 4.6), "tiles", furnish_kitchen),
-    "dining": Kind((3.4, 4.0), (4.2, 5.0), "planks", furnish_dining),
-    "study": Kind((3.0, 3.6), (3.6, 4.4), "planks", furnish_study),
-    "bathroom": Kind((1.9, 2.4), (2.5, 3.3), "tiles", furnish_bathroom),
-    "hall": Kind((1.6, 2.1), (3.2, 4.8), "tiles", furnish_hall),
-    "office": Kind((3.2, 4.0), (4.0, 5.2), "planks", furnish_office),
-    "children": Kind((2.8, 3.4), (3.4, 4.4), "planks", furnish_children),
-    "laundry": Kind((2.3, 2.9), (3.1, 4.0), "tiles", furnish_laundry),
+    "living": Kind((3.6, 4.4), (4.4, 5.4), "planks", furnish_living, "a living room"),
+    "bed": Kind((3.2, 3.8), (3.8, 4.6), "planks", furnish_bed, "a bedroom"),
+    "kitchen": Kind((2.9, 3.5), (3.7, 4.6), "tiles", furnish_kitchen, "a kitchen"),
+    "dining": Kind((3.4, 4.0), (4.2, 5.0), "planks", furnish_dining, "a dining room"),
+    "study": Kind((3.0, 3.6), (3.6, 4.4), "planks", furnish_study, "a study"),
+    "bathroom": Kind((1.9, 2.4), (2.5, 3.3), "tiles", furnish_bathroom, "a bathroom"),
+    "hall": Kind((1.6, 2.1), (3.2, 4.8), "tiles", furnish_hall, "a hall"),
+    "office": Kind((3.2, 4.0), (4.0, 5.2), "planks", furnish_office, "an office"),
+    "children": Kind((2.8, 3.4), (3.4, 4.4), "planks", furnish_children, "a children's room"),
+    "laundry": Kind((2.3, 2.9), (3.1, 4.0), "tiles", furnish_laundry, "a laundry"),
 }
 # Training sets draw kinds by seed from these: a later kind would change the rooms of their seeds.
 TRAINING_KINDS = tuple(name for name in KINDS if name != "laundry")
+
+
+def find_kind(name: str) -> str:
+    """Return the kind of room with a name: that of ``KINDS``, or what people call it.
+
+    Raises:
+        UnknownNameError: If there is no such kind.
+
+    Example:
+        >>> find_kind("bedroom"), find_kind("Living_Room"), find_kind("office")
+        ('bed', 'living', 'office')
+    """
+    words = name.lower().replace("_", " ").replace("-", " ")
+    for kind, made in KINDS.items():
+        if words in (kind, made.title.partition(" ")[2]):
+            return kind
+    raise UnknownNameError("room kind", name, KINDS)
+
+
+def room_title(kind: str) -> str:
+    """Return what people call a kind of room or a house, with its article and a capital letter.
+
+    Example:
+        >>> room_title("bed"), room_title("office"), room_title("house")
+        ('A bedroom', 'An office', 'A house')
+    """
+    title = KINDS[kind].title if kind in KINDS else f"a {kind}"
+    return title[0].upper() + title[1:]
 
 
 def random_size(kind: Kind, rng: np.random.Generator) -> tuple[float, float, float]:

@@ -23,7 +23,7 @@ from world2minecraft.procgen.rooms.openings import (
     hang_curtains,
 )
 from world2minecraft.procgen.rooms.placement import Item, Plan, Rug, paths_are_clear
-from world2minecraft.procgen.rooms.recipes import BASE_KINDS, KINDS, random_size
+from world2minecraft.procgen.rooms.recipes import BASE_KINDS, KINDS, find_kind, random_size
 
 ATTEMPTS = 80  # A recipe fits on its first tries as a rule; the worst of 500 seeds is far below.
 
@@ -91,7 +91,8 @@ def generate_room(
 
     Args:
         seed: The random seed, at least 0.
-        kind: One of ``KINDS``. The default is a random kind from ``BASE_KINDS``.
+        kind: One of ``KINDS``, or its title, such as ``bedroom``. The default is a random kind from
+            ``BASE_KINDS``.
         clutter: Amount of loose objects and displaced chairs, from 0 (tidy) to 1.
         shape: One of ``SHAPES``, or None for a random shape.
         furnishing: ``basic`` for the main furniture, or ``full`` for all that people expect in a
@@ -106,9 +107,7 @@ def generate_room(
         raise ValueError(f"seed must be 0 or more, got {seed}")
     if not 0 <= clutter <= 1:
         raise ValueError(f"clutter must be from 0 to 1, got {clutter}")
-    kind = draw_kind(seed) if kind is None else kind
-    if kind not in KINDS:
-        raise UnknownNameError("room kind", kind, KINDS)
+    kind = draw_kind(seed) if kind is None else find_kind(kind)
     shape = draw_shape(seed) if shape is None else shape
     if shape not in SHAPES:
         raise UnknownNameError("room shape", shape, SHAPES)

@@ -15,6 +15,7 @@ from world2minecraft.construction import BuildParameters
 from world2minecraft.core.files import write_bytes, write_json
 from world2minecraft.core.progress import Progress
 from world2minecraft.procgen import generate_room, scan_room
+from world2minecraft.procgen.rooms.recipes import room_title
 from world2minecraft.reconstruction.floorplans import read_roomplan
 from world2minecraft.reconstruction.opening import scene_name
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
@@ -132,6 +133,6 @@ def demo(
     progress("room", 1, 1)
     capture = target / "capture"
     scan_room(room, capture, frames=frames or DEMO_FRAMES, seed=seed, progress=progress)
-    chosen = Parameters(build=BuildParameters(plaque=f"A {kind} room"))
+    chosen = Parameters(build=BuildParameters(plaque=room_title(kind)))
     facts = run_capture(capture, target, chosen, progress=progress)
     return {"out": out, "objects": len(facts["objects"])}

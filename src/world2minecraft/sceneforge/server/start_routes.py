@@ -31,6 +31,7 @@ from world2minecraft.capture.scale.known_lengths import LENGTHS_M
 from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.procgen import BASE_KINDS
+from world2minecraft.procgen.rooms.recipes import room_title
 from world2minecraft.sceneforge.document.document_metadata import SUFFIX
 from world2minecraft.sceneforge.jobs.jobs import JobState
 from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of_choice
@@ -215,7 +216,7 @@ async def _demo(request: Request) -> Response:
     frames = body.get("frames", 40)
     if not isinstance(frames, int) or not 3 <= frames <= 200:
         raise UsageError(f"frames must be an integer from 3 to 200, got {str(frames)[:40]!r}")
-    name, title = f"demo/{kind}-{seed}", f"A {kind} room"
+    name, title = f"demo/{kind}-{seed}", room_title(kind)
     if (running := workspace.job_at(name)) is not None:
         return JSONResponse({"job": running})  # Whoever asks again sees how far it is.
     work = run_in_subprocess(
