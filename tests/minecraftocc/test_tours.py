@@ -22,10 +22,11 @@ from world2minecraft.minecraftocc.tours import (
 )
 from world2minecraft.minecraftocc.tours.planning import GAP_DEG, GAP_M
 from world2minecraft.minecraftocc.tours.rooms import find_rooms, share_views
+from world2minecraft.minecraftocc.tours.view_quality import assess_views
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering.batch import render_batch
-from world2minecraft.rendering.views.cameras import camera_of
+from world2minecraft.rendering.views.cameras import GamePose, camera_of
 
 COUNT = 60
 
@@ -74,6 +75,35 @@ def test_the_same_seed_gives_the_same_views_and_another_others(volume, scene, vi
     assert [view.pose for view in again] == [view.pose for view in views]
     other = plan_views(volume, COUNT, 4, scene=scene)
     assert [view.pose for view in other] != [view.pose for view in views]
+
+
+def test_few_views_are_flat_or_empty_and_no_two_alike(volume, scene):
+    views = plan_views(volume, 24, scene=scene)
+    poses = np.array([view.camera_to_room for view in views])
+    seen = assess_views(scene, volume, poses, TourRule())
+    assert (seen.plane > 0.35).mean() <= 0.1 and (seen.count < 3).mean() <= 0.1
+    eyes, per_metre = eyes_of(views), volume.blocks_per_metre
+    for n, view in enumerate(views):
+        near = np.abs(eyes[:n] - eyes[n]).max(axis=1) < 0.5 * per_metre
+        alike = [views[m] for m in np.flatnonzero(near) if views[m].room == view.room]
+        assert all(
+            turned(view.pose.yaw_deg, one.pose.yaw_deg) >= 20
+            or abs(view.pose.pitch_deg - one.pose.pitch_deg) >= 20
+            for one in alike
+        )
+
+
+def test_the_ceiling_fills_a_view_of_it_alone(volume, scene):
+    room = find_rooms(volume, walk_graph(volume), collision_grid(volume), TourRule())[0]
+    graph = walk_graph(volume)
+    eye = graph.feet[room.places[0]] + [0, 1.6 * volume.blocks_per_metre, 0]
+    shares = []
+    for yaw in (0, 90, 180, 270):
+        pose = GamePose(*eye, float(yaw), 0.0, "eye").camera_to_room(volume.block_to_room)
+        shares.append(assess_views(scene, volume, pose[None], TourRule()).plane[0])
+    ceiling = GamePose(*eye, 0.0, -89.0, "eye").camera_to_room(volume.block_to_room)
+    up = assess_views(scene, volume, ceiling[None], TourRule()).plane[0]
+    assert up > 0.5 and min(shares) < 0.6
 
 
 def test_the_pose_is_the_camera(volume, views):
@@ -137,7 +167,7 @@ def test_no_view_is_blocked_or_empty(scene, views):
 
 
 def test_no_two_views_are_nearly_the_same(volume, views):
-    near = TourRule().apart_m * volume.blocks_per_metre * 0.7**3
+    near = TourRule().apart_m * volume.blocks_per_metre * 0.7**4
     for n, a in enumerate(views):
         for b in views[n + 1 :]:
             alike = np.abs(np.subtract(*eyes_of([a, b]))).max() < near

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.coordinates import camera_to_block_of_game_pose, carry_camera
+from world2minecraft.core.coordinates import apply, camera_to_block_of_game_pose, carry_camera
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.tours.types import KINDS, TourRule
@@ -45,12 +45,13 @@ def rate_headings(
         block_to_room: Matrix from block coordinates to room coordinates, float64 [4, 4].
         rule: Tour settings, which define the camera.
     """
-    poses = [
-        carry_camera(camera_to_block_of_game_pose(eye, yaw_deg, 0.0), block_to_room)
-        for eye in eyes
+    around = [
+        carry_camera(camera_to_block_of_game_pose(np.zeros(3), yaw_deg, 0.0), block_to_room)
         for yaw_deg in (0.0, 90.0, 180.0, 270.0)
     ]
-    seen = render_batch(scene, PANORAMA_CAMERA, np.array(poses), outputs=("depth", "semantic"))
+    poses = np.tile(around, (len(eyes), 1, 1))
+    poses[:, :3, 3] = np.repeat(apply(block_to_room, eyes), len(around), axis=0)
+    seen = render_batch(scene, PANORAMA_CAMERA, poses, outputs=("depth", "semantic"))
     depth_m, semantic = np.asarray(seen.depth_m), np.asarray(seen.semantic)
     worth = np.clip((depth_m - NEAR_M) / (GOOD_M - NEAR_M), 0, 1)
     worth += THING_WORTH * ((semantic >= SemanticClass.CHAIR) & (semantic != 255))

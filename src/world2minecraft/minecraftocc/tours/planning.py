@@ -36,13 +36,14 @@ from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.views.cameras import GamePose
 
 WALK_M_S, TURN_DEG_S = 1.0, 60.0  # How fast one walks and turns between two frames.
-GAP_M, GAP_DEG = 0.8, 75.0  # A tour ends where the next good view is farther than this.
+GAP_M, GAP_DEG = 1.2, 75.0  # A tour ends where the next good view is farther than this.
 MIN_FRAMES = 3  # Of a tour, where more are wanted.
 MAX_SPACING_M = 0.6  # Between frames, where few are wanted,
 OVERSAMPLING = 1.5  # and so many times as many are assessed.
-MAX_FRUITLESS_WALKS = 5  # A room is done when so many walks in turn find nothing new.
+MAX_FRUITLESS_WALKS = 8  # A room is done when so many walks in turn find nothing new.
 EASING_FACTOR = 0.7  # Then views may be so much nearer to each other,
-MAX_EASINGS = 3  # so many times.
+PLANE_EASING = 0.05  # and show so much more of a plane,
+MAX_EASINGS = 4  # so many times.
 PITCH_MEAN_DEG, PITCH_SPREAD_DEG = 11.0, 8.0  # Furniture lies lower than the eye.
 SWAY_M = 0.04  # An eye rises and sinks so much along a walk.
 DECIMALS = 6  # Of poses: what a tour file holds is exactly what was planned.
@@ -104,7 +105,8 @@ class RoomTour:
     taken: _ChosenViews = field(default_factory=_ChosenViews)
     tours: list[np.ndarray] = field(default_factory=list)  # [N, 6]: a pose, and seconds
     walks: int = 0
-    eased: int = 0
+    eased: int = 0  # How often the demands on a view were eased,
+    nearer: int = 0  # and those on the distance between views.
 
     @property
     def count(self) -> int:
@@ -112,15 +114,24 @@ class RoomTour:
         return sum(map(len, self.tours))
 
     def find(self, more: int) -> None:
-        """Find ``more`` further views, or fewer if the room has no more different views."""
+        """Find ``more`` further views, or fewer if the room has no more different views.
+
+        A room without any good view eases its demands, and shows a few.
+        """
         wanted, vain = self.count + more, 0
         while self.count < wanted and not self.is_done:
             before = self.count
             self._walk(wanted - self.count)
             vain = 0 if self.count > before else vain + 1
             if vain == MAX_FRUITLESS_WALKS:
-                vain, self.eased = 0, self.eased + 1
-                self.is_done = self.eased > MAX_EASINGS
+                self.is_done = self.count > 0 or self.eased == MAX_EASINGS
+                self.eased, vain = self.eased + (not self.is_done), 0
+                wanted = min(wanted, MIN_FRAMES)
+        self.is_done |= wanted < more
+
+    def ease(self, times: int) -> None:
+        """Allow views that are nearer to each other, flatter and emptier."""
+        self.eased, self.nearer, self.is_done = max(self.eased, times), times, False
 
     def views(self) -> Iterator[PlannedView]:
         """Yield the views found, in order."""
@@ -144,10 +155,11 @@ class RoomTour:
         self.walks += 1
         rows = self._poses(wanted, rng)
         poses = np.array([self._camera_to_room(row) for row in rows])
-        seen = assess_views(self.scene, self.volume.states, poses, self.rule)
-        labelled = bool(self.volume.semantic.any())
-        good = np.flatnonzero(seen.is_good(self.volume.blocks_per_metre, labelled))
-        ease = EASING_FACTOR**self.eased
+        seen = assess_views(self.scene, self.volume, poses, self.rule)
+        ease = EASING_FACTOR**self.nearer
+        plane = self.rule.max_plane_share + PLANE_EASING * self.eased
+        things = self.rule.min_things - self.eased
+        good = np.flatnonzero(seen.is_good(self.volume, plane, things))
         min_distance = self.rule.apart_m * self.volume.blocks_per_metre * ease
         good = good[self.taken.are_new(rows[good], min_distance, self.rule.apart_deg * ease)]
         for found in self._split_tours(rows[good], min(MIN_FRAMES, wanted)):
@@ -264,13 +276,21 @@ def _rooms(
 
 
 def _fill(tours: list[RoomTour], count: int, progress: Progress) -> None:
-    """Find the views of all rooms, passing on the shares that a room cannot provide."""
+    """Find the views of all rooms, passing on the shares that a room cannot provide.
+
+    Where all rooms together cannot provide enough, the demands on the views are eased.
+    """
     progress("views", 0, count)
-    left = count
+    left, eased = count, 0
     while left > 0:
         open_ones = [one for one in tours if not one.is_done]
         if not open_ones:
-            break
+            eased += 1
+            if not tours or eased > MAX_EASINGS:
+                break
+            for one in tours:
+                one.ease(eased)
+            continue
         for one, share in zip(
             open_ones, share_views([t.room for t in open_ones], left), strict=True
         ):

@@ -47,6 +47,9 @@ class TourRule:
         apart_m: Views closer than this in metres are discarded if they also face in similar
             directions.
         apart_deg: Maximum angle between similar directions in degrees.
+        max_plane_share: Views of which one wall, door or side of furniture takes up more than this
+            share are discarded; the floor may take up 1.4 times as much.
+        min_things: Views that show fewer pieces of furniture and objects are discarded.
         light: Light settings for judging the views.
         start: Start position in world blocks, such as the spawn point.
         reachable_only: Whether to skip rooms that cannot be reached from ``start``.
@@ -59,8 +62,10 @@ class TourRule:
     player_share: float = 0.5
     pitch_deg: tuple[float, float] = (-8.0, 32.0)
     spacing_m: float = 0.25
-    apart_m: float = 0.15
-    apart_deg: float = 12.0
+    apart_m: float = 0.5
+    apart_deg: float = 20.0
+    max_plane_share: float = 0.35
+    min_things: int = 3
     light: LightSettings = DAY
     start: tuple[float, float, float] | None = None
     reachable_only: bool = False

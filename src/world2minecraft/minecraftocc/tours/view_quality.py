@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.geometry.undistort import pinhole_camera
 from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.rendering.batch import render_batch
@@ -17,8 +18,8 @@ OUT_SHARE = 0.45  # Looks out: so much of it is window or sky.
 MIN_CLASSES, MIN_OBJECTS = 3, 0.05  # Empty: fewer classes, or a smaller share of objects,
 # or few blocks: this, and one more for each in a square metre, up to the second.
 MIN_CELLS, MIN_CELLS_LIMIT = 20, 60
-FLAT_SHARE = 0.55  # Flat: so much of it is one wall,
-PLANE_SHARE = 0.85  # or so much of it faces one way, whatever hangs there.
+LEVEL_FACTOR = 1.4  # The floor and the ceiling may take up more of a picture than a wall.
+THING_SHARE = 0.003  # Of a picture: a thing that shows less is not seen.
 MIN_BRIGHTNESS, MAX_BRIGHTNESS = 0.10, 0.97  # Of 1, the mean of the small picture.
 
 
@@ -32,9 +33,10 @@ class ViewQuality:
         out: Fraction of pixels that show sky or windows.
         classes: Number of visible classes.
         things: Fraction of pixels that show furniture and objects.
+        count: Number of visible pieces of furniture and objects.
         cells: Number of visible blocks.
-        flat: Fraction of pixels that show walls facing in the most frequent direction.
-        plane: Fraction of pixels with any surface facing in the most frequent direction.
+        plane: Fraction of pixels that show the largest plane, such as a wall. For the floor and the
+            ceiling, it is divided by ``LEVEL_FACTOR``.
         bright: Mean brightness from 0 to 1.
     """
 
@@ -43,31 +45,38 @@ class ViewQuality:
     out: np.ndarray  # the share of sky and windows
     classes: np.ndarray  # how many are seen
     things: np.ndarray  # the share of pixels of furniture and objects
+    count: np.ndarray  # how many pieces of furniture and objects are seen
     cells: np.ndarray  # how many blocks are seen
-    flat: np.ndarray  # the share of the largest wall
-    plane: np.ndarray  # the share of what faces one way
+    plane: np.ndarray  # the share of the largest plane
     bright: np.ndarray  # 0 to 1
 
-    def is_good(self, blocks_per_metre: float, labelled: bool) -> np.ndarray:
-        """Return whether each view is good enough to be used, bool [N]."""
+    def is_good(self, volume: BlockVolume, max_plane_share: float, min_things: int) -> np.ndarray:
+        """Return whether each view of a volume is good enough to be used, bool [N].
+
+        Args:
+            volume: The volume. In one without labels, things are not counted.
+            max_plane_share: Maximum share of the picture that one plane may take up.
+            min_things: Minimum number of visible pieces of furniture and objects.
+        """
         blocked = (self.near > NEAR_SHARE) | (self.middle_m < CLOSE_M)
-        cells = min(MIN_CELLS_LIMIT, MIN_CELLS + blocks_per_metre**2)
+        cells = min(MIN_CELLS_LIMIT, MIN_CELLS + volume.blocks_per_metre**2)
         empty = (self.out > OUT_SHARE) | (self.classes < MIN_CLASSES) | (self.cells < cells)
-        if labelled:
+        if volume.semantic.any():
             empty |= self.things < MIN_OBJECTS
+        if volume.instance.any():
+            empty |= self.count < min_things
         dark = (self.bright < MIN_BRIGHTNESS) | (self.bright > MAX_BRIGHTNESS)
-        flat = (self.flat > FLAT_SHARE) | (self.plane > PLANE_SHARE)
-        return ~(blocked | empty | dark | flat)
+        return ~(blocked | empty | dark | (self.plane > max_plane_share))
 
 
 def assess_views(
-    scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourRule
+    scene: BlockScene, volume: BlockVolume, poses: np.ndarray, rule: TourRule
 ) -> ViewQuality:
     """Render small images of views and measure their quality.
 
     Args:
         scene: Scene prepared with ``prepare_scene``.
-        states: Block states of the volume, used instead of classes if the volume has no labels.
+        volume: The volume. Without labels, block states are counted instead of classes.
         poses: Camera poses in the room, float64 [N, 4, 4].
         rule: Tour settings, which define the camera and the light.
     """
@@ -86,25 +95,51 @@ def assess_views(
     things = (semantic >= SemanticClass.CHAIR) & (semantic != 255)
     known = semantic.astype(np.int32)
     if not scene.semantic.any():
-        known = states.reshape(-1)[np.maximum(block, 0)].astype(np.int32)
+        known = volume.states.reshape(-1)[np.maximum(block, 0)].astype(np.int32)
     classes = _distinct(np.where(is_sky | (semantic == 255), -1, known))
-    wall = np.where(things | is_sky, 255, face)
+    owner = volume.instance.reshape(-1)[np.maximum(block, 0)].astype(np.int64)
+    owner = np.where(things & ~is_sky, owner, 0)
     return ViewQuality(
         (there < NEAR_M).mean(axis=1),
         np.median(there, axis=1),
         out.mean(axis=1),
         classes,
         things.mean(axis=1),
+        _frequent(owner, THING_SHARE),
         _distinct(block),
-        _largest(wall),
-        _largest(np.where(is_sky, 255, face)),
+        _largest_plane(np.where(is_sky, -1, block), face, volume.states.shape),
         np.asarray(seen.colour).mean(axis=(1, 2, 3)) / 255,
     )
 
 
-def _largest(faces: np.ndarray) -> np.ndarray:
-    """Return the fraction of the most frequent of the four vertical face directions in each row."""
-    return np.max([(faces == side).mean(axis=1) for side in (0, 1, 4, 5)], axis=0)
+def _largest_plane(block: np.ndarray, face: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
+    """Return the fraction of the largest plane in each row, less for floors and ceilings.
+
+    Args:
+        block: Flat indices of the visible blocks, int [N, P]; negative for none.
+        face: Their visible faces, int [N, P]: 0 and 1 along x, 2 and 3 along y, 4 and 5 along z.
+        shape: The shape of the volume.
+    """
+    axis = np.minimum(face, 5).astype(np.int64) // 2
+    places = np.stack(np.unravel_index(np.maximum(block, 0), shape))
+    layer = np.take_along_axis(places, axis[None], axis=0)[0]
+    plane = np.where(block < 0, -1, np.minimum(face, 5) + 6 * layer)
+    result = np.zeros(len(plane))
+    for row, planes in enumerate(plane):
+        known, counts = np.unique(planes[planes >= 0], return_counts=True)
+        level = known % 6 // 2 == 1
+        shares = counts / len(planes) / np.where(level, LEVEL_FACTOR, 1.0)
+        result[row] = shares.max(initial=0.0)
+    return result
+
+
+def _frequent(values: np.ndarray, share: float) -> np.ndarray:
+    """Return the number of positive values that fill at least a share of each row."""
+    result = np.zeros(len(values))
+    for row, own in enumerate(values):
+        _, counts = np.unique(own[own > 0], return_counts=True)
+        result[row] = (counts >= share * len(own)).sum()
+    return result
 
 
 def _distinct(values: np.ndarray) -> np.ndarray:
