@@ -1,6 +1,7 @@
 """Other furniture for an object than the one placed: templates, quarter turns, designs, cells."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import chain, zip_longest
 
 import numpy as np
@@ -17,6 +18,7 @@ from world2minecraft.furniture import (
 from world2minecraft.furniture.solid_parts import box_m, own_cells
 from world2minecraft.reconstruction.retrieval.furniture_placement import (
     OWN_CELLS,
+    Matched,
     match_object,
     placement_of,
 )
@@ -60,31 +62,17 @@ class OtherFurniture:
             return
         turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
         floor_m = floor_under_m(instance.center_m, self.rooms, self.grid.voxel_m)
-        whole = match_object(
-            self.grid, instance, instance.cells, turns, self.parameters, floor_m
-        )
-        facing = estimate_facing(instance.cells, instance.class_id, self._around)
-        matched = []
-        for match in whole.matches:
-            found = whole._replace(matches=(match,))
-            one = within_rooms(
-                placement_of(self.grid, instance, found, self.parameters),
-                self.rooms,
-                self.grid.voxel_m,
-            )
-            if one is None or one.template == OWN_CELLS:
-                continue
-            period = template(one.template).turns
-            is_front = (one.quarter_turns - facing.quarter_turns) % period == 0
-            if is_front or facing.confidence < SURE_FRONT:
-                matched.append((one,))
+        whole = match_object(self.grid, instance, instance.cells, turns, self.parameters, floor_m)
+        matched = self._templates(instance, whole)
         designs = self._designs(placed, colour_of_cells(self.grid, whole.evidence))
         listed = {_looks_of(placed)}
-        for one in chain.from_iterable(zip_longest(matched, designs)):
-            if one is not None and _looks_of(one) not in listed:
-                listed.add(_looks_of(one))
-                yield one
-        yield (placement_of(self.grid, instance, whole.unmatched(), self.parameters),)
+        for made in chain.from_iterable(zip_longest(matched, designs)):
+            if made is not None and _looks_of(made) not in listed:
+                listed.add(_looks_of(made))
+                yield tuple(replace(one, alternatives=placed[0].alternatives) for one in made)
+        cells = placement_of(self.grid, instance, whole.unmatched(), self.parameters)
+        rejected = round(whole.iou, 4)
+        yield (replace(cells, iou=rejected, alternatives=placed[0].alternatives),)
 
     def iou(self, instance: ObjectInstance, placed: Furniture) -> float:
         """Return the IoU of an object's cells and its furniture, 1 for its own cells.
@@ -99,6 +87,22 @@ class OtherFurniture:
         against = ~own & (labels <= SemanticClass.WINDOW) & (labels != UNKNOWN)
         return float(own.sum() / max(len(instance.cells) + against.sum(), 1))
 
+    def _templates(self, instance: ObjectInstance, whole: Matched) -> list[Furniture]:
+        """Return the templates that match an object, in each rotation that its front allows."""
+        facing = estimate_facing(instance.cells, instance.class_id, self._around)
+        result = []
+        for match in whole.matches:
+            found = whole._replace(matches=(match,))
+            placement = placement_of(self.grid, instance, found, self.parameters)
+            one = within_rooms(placement, self.rooms, self.grid.voxel_m)
+            if one is None or one.template == OWN_CELLS:
+                continue
+            period = template(one.template).turns
+            is_front = (one.quarter_turns - facing.quarter_turns) % period == 0
+            if is_front or facing.confidence < SURE_FRONT:
+                result.append((one,))
+        return result
+
     def _designs(self, placed: Furniture, colour: np.ndarray | None) -> list[Furniture]:
         """Return the furniture in each other design of its families."""
         known = [one for one in placed if one.template != OWN_CELLS]
@@ -109,9 +113,8 @@ class OtherFurniture:
         }
         rows = []
         for name, other in sorted(names.items()):
-            changed = [in_other_design(one, other) for one in known]
-            made = tuple(new or old for new, old in zip(changed, known, strict=True))
-            if any(changed):
+            made = tuple(filter(None, (in_other_design(one, other) for one in known)))
+            if len(made) == len(known):
                 cost = sum(design_cost(one, colour) for one in made)
                 rest = tuple(one for one in placed if one.template == OWN_CELLS)
                 rows.append((round(cost, 6), name, (*made, *rest)))

@@ -74,16 +74,15 @@ class ObjectScore:
         wrong: Number of pixels that are not right, of those that show it in the photos or in the
             rendered images.
         silhouette_iou: IoU of its pixels in the photos and in the rendered images.
-        right: Share of its pixels in the photos that are right.
-        agreement: Of the pixels that show it in the photos or in the rendered images, the mean of
-            three shares: those at which it is there, those at which it also has the right look,
-            and those at which it is right.
+        there: Share of these at which it is there.
+        agreement: Mean of three of their shares: those at which it is there, those at which it also
+            has the right look, and those at which it is right.
     """
 
     pixels: int
     wrong: int
     silhouette_iou: float
-    right: float
+    there: float
     agreement: float
 
 
@@ -191,9 +190,7 @@ def share_right(samples: Sequence[PhotoSample], views: Sequence[ViewAgreement]) 
 
 def score_objects(views: Sequence[ViewAgreement]) -> dict[int, ObjectScore]:
     """Return the scores of all objects that photos or rendered images show, by id."""
-    size = 1 + max(
-        (int(max(view.thing.max(), view.built.max(), 0)) for view in views), default=0
-    )
+    size = 1 + max((int(max(view.thing.max(), view.built.max(), 0)) for view in views), default=0)
     counts = np.zeros((6, size))
     for view in views:
         thing = np.maximum(view.thing[view.measured], 0)
@@ -211,7 +208,7 @@ def score_objects(views: Sequence[ViewAgreement]) -> dict[int, ObjectScore]:
             pixels=int(photographed),
             wrong=int(either - right),
             silhouette_iou=both / either,
-            right=right / max(photographed, 1),
+            there=there / either,
             agreement=(there + looks + right) / 3 / either,
         )
     return result
@@ -241,9 +238,7 @@ def headline_gains(
     return result
 
 
-def _counts_of_views(
-    samples: Sequence[PhotoSample], views: Sequence[ViewAgreement]
-) -> np.ndarray:
+def _counts_of_views(samples: Sequence[PhotoSample], views: Sequence[ViewAgreement]) -> np.ndarray:
     """Return the counts of ``_counts`` for each view, int64 [V, 2, 4]."""
     pairs = zip(samples, views, strict=True)
     return np.array([_counts(view, _is_object(sample, view)) for sample, view in pairs])
