@@ -35,7 +35,6 @@ Build = Callable[[Sequence[Placement]], BlockVolume]
 # Own cells are faithful, but people recognise furniture. They replace furniture that shows the
 # object's name only if less than this share of it is in its place, other furniture if less agrees.
 NAMED_THERE, OTHER_AGREEMENT = 0.3, 0.5
-MAX_SILHOUETTE_LOSS = 0.02
 MAX_OVERLAP_M = 0.03  # As in the settling of placements.
 CHECKS = 3  # Worlds with all changes that are compared before all are given up.
 
@@ -164,6 +163,10 @@ class _Repair:
         """Return the IoU of an object's cells and furniture."""
         return self.others.iou(self.by_id[number], made)
 
+    def lost_iou(self, number: int, made: Furniture) -> float:
+        """Return how much IoU an object loses by other furniture."""
+        return self.iou(number, self.placed[number]) - self.iou(number, made)
+
     def compare(self, made: Mapping[int, Furniture], before: _Result | None) -> _Result:
         """Return the result of the world with other furniture, and its gains over another."""
         placements = self.exchanged(made)
@@ -201,14 +204,13 @@ class _Repair:
 
     def _candidates_of(self, number: int) -> list[Furniture]:
         instance, placed = self.by_id[number], self.placed[number]
-        least = self.iou(number, placed) - self.chosen.max_iou_loss
         around = [one for one in self.placements if one.object_id != number]
         found: list[Furniture] = []
         for made in self.others.options(instance, placed):
             if _is_cells(made) or (
                 len(found) < self.chosen.max_candidates - 1
                 and stands_for(instance, made)
-                and self.iou(number, made) >= least
+                and self.lost_iou(number, made) <= self.chosen.max_iou_loss
                 and _fits(made, placed, around, self.grid)
             ):
                 found.append(made)
@@ -228,7 +230,7 @@ class _Repair:
                 continue
             result = self.compare(best | tried, self.before)
             for number, made in tried.items():
-                if not self.is_better(number, result):
+                if not self.is_better(number, made, result):
                     continue
                 if result.scores[number].agreement > reached[number].agreement:
                     best[number], reached[number] = made, result.scores[number]
@@ -250,7 +252,7 @@ class _Repair:
             if not kept:
                 break
             after = self.compare(kept, self.before)
-            better = {n: made for n, made in kept.items() if self.is_better(n, after)}
+            better = {n: made for n, made in kept.items() if self.is_better(n, made, after)}
             if len(better) == len(kept):
                 if after.headline >= self.before.headline:
                     return kept, after
@@ -258,16 +260,17 @@ class _Repair:
             kept = better
         return {}, self.before
 
-    def is_better(self, number: int, after: _Result) -> bool:
-        """Return whether an object compares better than before."""
-        if number not in after.scores:
+    def is_better(self, number: int, made: Furniture, after: _Result) -> bool:
+        """Return whether an object compares better than before with other furniture.
+
+        It must gain more agreement than it loses IoU, with its cells and with its silhouettes in
+        the photos, and must not lower the headline.
+        """
+        if number not in after.scores or after.gains.get(number, 0.0) < 0:
             return False
         new, old = after.scores[number], self.before.scores[number]
-        return (
-            new.agreement >= old.agreement + self.chosen.min_gain
-            and new.silhouette_iou >= old.silhouette_iou - MAX_SILHOUETTE_LOSS
-            and after.gains.get(number, 0.0) >= 0
-        )
+        lost = max(self.lost_iou(number, made), old.silhouette_iou - new.silhouette_iou)
+        return new.agreement - old.agreement >= max(self.chosen.min_gain, lost)
 
     def _within_mean_loss(self, best: Mapping[int, Furniture]) -> dict[int, Furniture]:
         """Return the furniture without that which loses most IoU, up to the mean loss allowed."""
