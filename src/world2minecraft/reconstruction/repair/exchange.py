@@ -14,7 +14,7 @@ from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGri
 from world2minecraft.furniture.solid_parts import OWN_CELLS, box_m, depth_m, solids_m
 from world2minecraft.reconstruction.repair.parameters import RepairParameters
 from world2minecraft.reconstruction.retrieval.furniture_placement import named_templates
-from world2minecraft.reconstruction.retrieval.other_furniture import Furniture, OtherFurniture
+from world2minecraft.reconstruction.retrieval.other_furniture import Fit, Furniture, OtherFurniture
 from world2minecraft.reconstruction.verification.built_names import stands_for
 from world2minecraft.reconstruction.verification.photo_agreement import (
     ViewAgreement,
@@ -35,6 +35,8 @@ Build = Callable[[Sequence[Placement]], BlockVolume]
 # Own cells are faithful, but people recognise furniture. They replace furniture that shows the
 # object's name only if less than this share of it is in its place, other furniture if less agrees.
 NAMED_THERE, OTHER_AGREEMENT = 0.3, 0.5
+CELLS_GAIN = 0.15
+MAX_UNCOVERED = 0.15  # Share of the cells; more of them would be built beside the furniture.
 MAX_OVERLAP_M = 0.03  # As in the settling of placements.
 CHECKS = 3  # Worlds with all changes that are compared before all are given up.
 
@@ -123,7 +125,7 @@ def repair_placements(
             repair.placed[number],
             best[number],
             (scores[number].agreement, after.scores[number].agreement),
-            (repair.iou(number, repair.placed[number]), repair.iou(number, best[number])),
+            (repair.fit(number, repair.placed[number]).iou, repair.fit(number, best[number]).iou),
         )
         for number in sorted(best)
     )
@@ -159,13 +161,13 @@ class _Repair:
         self.shown = [things_of_photo(sample, grid) for sample in samples]
         self.before = self.compare({}, None)
 
-    def iou(self, number: int, made: Furniture) -> float:
-        """Return the IoU of an object's cells and furniture."""
-        return self.others.iou(self.by_id[number], made)
+    def fit(self, number: int, made: Furniture) -> Fit:
+        """Return how well furniture fits an object's cells."""
+        return self.others.fit(self.by_id[number], made)
 
     def lost_iou(self, number: int, made: Furniture) -> float:
         """Return how much IoU an object loses by other furniture."""
-        return self.iou(number, self.placed[number]) - self.iou(number, made)
+        return self.fit(number, self.placed[number]).iou - self.fit(number, made).iou
 
     def compare(self, made: Mapping[int, Furniture], before: _Result | None) -> _Result:
         """Return the result of the world with other furniture, and its gains over another."""
@@ -205,12 +207,14 @@ class _Repair:
     def _candidates_of(self, number: int) -> list[Furniture]:
         instance, placed = self.by_id[number], self.placed[number]
         around = [one for one in self.placements if one.object_id != number]
+        covered = self.fit(number, placed).covered - MAX_UNCOVERED
         found: list[Furniture] = []
         for made in self.others.options(instance, placed):
             if _is_cells(made) or (
                 len(found) < self.chosen.max_candidates - 1
                 and stands_for(instance, made)
                 and self.lost_iou(number, made) <= self.chosen.max_iou_loss
+                and self.fit(number, made).covered >= covered
                 and _fits(made, placed, around, self.grid)
             ):
                 found.append(made)
@@ -270,13 +274,12 @@ class _Repair:
             return False
         new, old = after.scores[number], self.before.scores[number]
         lost = max(self.lost_iou(number, made), old.silhouette_iou - new.silhouette_iou)
-        return new.agreement - old.agreement >= max(self.chosen.min_gain, lost)
+        least = CELLS_GAIN if _is_cells(made) else self.chosen.min_gain
+        return new.agreement - old.agreement >= max(least, lost)
 
     def _within_mean_loss(self, best: Mapping[int, Furniture]) -> dict[int, Furniture]:
         """Return the furniture without that which loses most IoU, up to the mean loss allowed."""
-        losses = {
-            n: max(self.iou(n, self.placed[n]) - self.iou(n, made), 0.0) for n, made in best.items()
-        }
+        losses = {n: max(self.lost_iou(n, made), 0.0) for n, made in best.items()}
         order = sorted(best, key=lambda n: (round(losses[n], 9), n))
         sums = np.cumsum([losses[n] for n in order])
         most = self.chosen.mean_iou_loss * len(self.instances)

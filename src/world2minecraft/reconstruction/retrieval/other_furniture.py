@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, zip_longest
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,7 +32,14 @@ from world2minecraft.reconstruction.retrieval.variants import (
 )
 
 Furniture = tuple[Placement, ...]  # All placements of one object.
-SURE_FRONT = 0.3  # Confidence of a front from which furniture is not turned.
+SURE_FRONT = 0.6  # Confidence of a front from which furniture is not turned.
+
+
+class Fit(NamedTuple):
+    """The IoU of furniture and an object's cells, and the share of the cells that it covers."""
+
+    iou: float
+    covered: float
 
 
 class OtherFurniture:
@@ -74,18 +82,19 @@ class OtherFurniture:
         rejected = round(whole.iou, 4)
         yield (replace(cells, iou=rejected, alternatives=placed[0].alternatives),)
 
-    def iou(self, instance: ObjectInstance, placed: Furniture) -> float:
-        """Return the IoU of an object's cells and its furniture, 1 for its own cells.
+    def fit(self, instance: ObjectInstance, placed: Furniture) -> Fit:
+        """Return how well furniture fits an object's cells, 1 and 1 for its own cells.
 
         As in the matching, cells of unknown state and those of other objects do not count.
         """
-        every = [self._cells(one) for one in placed]
-        cells = np.unique(np.concatenate([np.zeros((0, 3), np.int64), *every]), axis=0)
+        parts = [self._cells(one) for one in placed]
+        cells = np.unique(np.concatenate([np.zeros((0, 3), np.int64), *parts]), axis=0)
         cells = cells[((cells >= 0) & (cells < self.grid.shape)).all(axis=1)]
         labels = self.grid.labels[tuple(cells.T)]
         own = self.grid.instance[tuple(cells.T)] == instance.id
         against = ~own & (labels <= SemanticClass.WINDOW) & (labels != UNKNOWN)
-        return float(own.sum() / max(len(instance.cells) + against.sum(), 1))
+        covered, every = float(own.sum()), max(len(instance.cells), 1)
+        return Fit(covered / (every + float(against.sum())), covered / every)
 
     def _templates(self, instance: ObjectInstance, whole: Matched) -> list[Furniture]:
         """Return the templates that match an object, in each rotation that its front allows."""
