@@ -18,16 +18,16 @@ from world2minecraft.reconstruction import repair_run as module
 from world2minecraft.reconstruction.parameters import Parameters, with_method, with_settings
 from world2minecraft.reconstruction.repair_run import REPAIRS, repair_run
 
-SETTINGS = ["repair.max_objects=1", "repair.max_candidates=2"]
+SETTINGS = ["repair.max_objects=7", "repair.max_candidates=2"]
 NO_SCAN: Scan = None  # type: ignore[assignment]
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A furnished run whose toilet became a bin, and which has photos."""
+    """A furnished run whose toilet became a washing machine, and which has photos."""
     room = verified_room()
     toilet = next(one for one in room.instances if one.name == "toilet")
-    wrong = {"template": "pedal_bin", "parameters": {}, "alternatives": ()}
+    wrong = {"template": "washing_machine", "parameters": {}, "alternatives": ()}
     placements = [
         replace(one, **wrong) if one.object_id == toilet.id else one for one in room.placements
     ]
@@ -45,7 +45,7 @@ def test_changes_are_written_and_reported(folder):
     facts = json.loads((folder / REPAIRS).read_text())
     (change,) = facts["changes"]
     assert change["name"] == "toilet"
-    assert change["before"][0]["template"] == "pedal_bin"
+    assert change["before"][0]["template"] == "washing_machine"
     assert change["after"][0]["template"] == "toilet"
     assert change["agreement_after"] > change["agreement_before"]
     assert facts["headline_after"] > facts["headline_before"]
@@ -53,7 +53,7 @@ def test_changes_are_written_and_reported(folder):
     assert placed[change["id"]] == "toilet"
     stage, done, total, note = told[-1]
     assert (stage, done, total) == ("repair", 1, 1)
-    assert note.startswith("1 of 1 objects exchanged, headline ")
+    assert note.startswith("1 of 7 objects exchanged, headline ")
 
 
 @pytest.mark.parametrize("how", ["paper", "off", "no depth"])

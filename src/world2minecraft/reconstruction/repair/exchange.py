@@ -36,7 +36,7 @@ Build = Callable[[Sequence[Placement]], BlockVolume]
 # object's name only if less than this share of it is in its place, other furniture if less agrees.
 NAMED_THERE, OTHER_AGREEMENT = 0.3, 0.5
 CELLS_GAIN = 0.15
-MAX_UNCOVERED = 0.15  # Share of the cells; more of them would be built beside the furniture.
+MAX_LEFT = 0.1  # Share of the cells that other furniture may leave to be built beside it.
 MAX_OVERLAP_M = 0.03  # As in the settling of placements.
 CHECKS = 3  # Worlds with all changes that are compared before all are given up.
 
@@ -207,14 +207,14 @@ class _Repair:
     def _candidates_of(self, number: int) -> list[Furniture]:
         instance, placed = self.by_id[number], self.placed[number]
         around = [one for one in self.placements if one.object_id != number]
-        covered = self.fit(number, placed).covered - MAX_UNCOVERED
+        least = self.fit(number, placed).near - MAX_LEFT
         found: list[Furniture] = []
         for made in self.others.options(instance, placed):
             if _is_cells(made) or (
                 len(found) < self.chosen.max_candidates - 1
                 and stands_for(instance, made)
                 and self.lost_iou(number, made) <= self.chosen.max_iou_loss
-                and self.fit(number, made).covered >= covered
+                and self.fit(number, made).near >= least
                 and _fits(made, placed, around, self.grid)
             ):
                 found.append(made)

@@ -24,7 +24,7 @@ class RepairParameters:
 
     enabled: bool = parameter(True)
     max_views: int = parameter(
-        8, origin="photos that the report does not use, where there are so many", bounds=COUNT
+        6, origin="with 8, headlines of other photos rise as much", bounds=COUNT
     )
     max_objects: int = parameter(20, origin="number of pieces in a furnished room", bounds=COUNT)
     max_candidates: int = parameter(

@@ -6,6 +6,7 @@ from itertools import chain, zip_longest
 from typing import NamedTuple
 
 import numpy as np
+from scipy.ndimage import binary_dilation
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
@@ -32,14 +33,18 @@ from world2minecraft.reconstruction.retrieval.variants import (
 )
 
 Furniture = tuple[Placement, ...]  # All placements of one object.
-SURE_FRONT = 0.6  # Confidence of a front from which furniture is not turned.
+NEAR = 2  # Cells: about half a block at four blocks per metre.
+SURE_FRONT = 0.6  # Confidence of a front from which furniture is not turned sideways.
 
 
 class Fit(NamedTuple):
-    """The IoU of furniture and an object's cells, and the share of the cells that it covers."""
+    """The IoU of furniture and an object's cells, and the share of the cells at most ``NEAR`` away.
+
+    Other cells would be built beside the furniture.
+    """
 
     iou: float
-    covered: float
+    near: float
 
 
 class OtherFurniture:
@@ -59,8 +64,10 @@ class OtherFurniture:
         """Yield other furniture for an object, the likely first, and its own cells last.
 
         Templates that match the whole object, in the order of their scores, alternate with other
-        designs of the placed furniture, in the order of size and colour. Furniture whose front is
-        sure is not turned. An object that is built from its cells keeps them.
+        designs of the placed furniture, in the order of size and colour. A template is listed in
+        its best rotation, with the front of the object, and sideways if that front is not sure, but
+        never with its back to the front: backs are plain, and plain surface compares well. An
+        object that is built from its cells keeps them.
 
         Args:
             instance: The object, with cells.
@@ -93,22 +100,24 @@ class OtherFurniture:
         labels = self.grid.labels[tuple(cells.T)]
         own = self.grid.instance[tuple(cells.T)] == instance.id
         against = ~own & (labels <= SemanticClass.WINDOW) & (labels != UNKNOWN)
-        covered, every = float(own.sum()), max(len(instance.cells), 1)
-        return Fit(covered / (every + float(against.sum())), covered / every)
+        every = max(len(instance.cells), 1)
+        iou = float(own.sum() / (every + against.sum()))
+        return Fit(iou, _share_near(instance.cells, cells))
 
     def _templates(self, instance: ObjectInstance, whole: Matched) -> list[Furniture]:
-        """Return the templates that match an object, in each rotation that its front allows."""
+        """Return the templates that match an object, in the best and in all possible rotations."""
         facing = estimate_facing(instance.cells, instance.class_id, self._around)
-        result = []
+        result: list[Furniture] = []
         for match in whole.matches:
             found = whole._replace(matches=(match,))
             placement = placement_of(self.grid, instance, found, self.parameters)
             one = within_rooms(placement, self.rooms, self.grid.voxel_m)
             if one is None or one.template == OWN_CELLS:
                 continue
-            period = template(one.template).turns
-            is_front = (one.quarter_turns - facing.quarter_turns) % period == 0
-            if is_front or facing.confidence < SURE_FRONT:
+            turned = (one.quarter_turns - facing.quarter_turns) % template(one.template).turns
+            is_best = all(one.template != made[0].template for made in result)
+            sideways = turned % 2 == 1 and facing.confidence < SURE_FRONT
+            if turned == 0 or is_best or sideways:
                 result.append((one,))
         return result
 
@@ -143,6 +152,15 @@ class OtherFurniture:
             tuple(shift.tolist()),
             voxel_m,
         )
+
+
+def _share_near(own: np.ndarray, cells: np.ndarray) -> float:
+    """Return the share of an object's cells, int [N, 3], within ``NEAR`` of others, int [M, 3]."""
+    low, size = own.min(axis=0) - NEAR, np.ptp(own, axis=0) + 1 + 2 * NEAR
+    at = cells - low
+    filled = np.zeros(tuple(size), bool)
+    filled[tuple(at[((at >= 0) & (at < size)).all(axis=1)].T)] = True
+    return float(binary_dilation(filled, iterations=NEAR)[tuple((own - low).T)].mean())
 
 
 def _looks_of(placed: Furniture) -> tuple[tuple[str, int], ...]:
