@@ -2,8 +2,8 @@
 
     python -m benchmarks.check_repair RUN CAPTURE
 
-The run must be made with ``--set repair.enabled=no``; it is not changed. The headline is that of the
-report's photos. CPU seconds are those of the repair after the compilation of its kernels.
+The run must be made with ``--set repair.enabled=no``; it is not changed. The headline is that of
+the report's photos. CPU seconds are those of the repair after the compilation of its kernels.
 """
 
 import argparse

@@ -46,7 +46,7 @@ COSTS = {
     "label": StageCost(0.25, 0.003),
     "find": StageCost(0.1),
     "furnish": StageCost(0.4),
-    "repair": StageCost(1.2),
+    "repair": StageCost(2.5),
     "build": StageCost(0.3),
     "report": StageCost(1.2, 0.045),
 }
