@@ -52,6 +52,7 @@ def main() -> None:
     scene = read_finished(words.run)
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "RUN"
+        cpu_s = 0.0
         for _ in range(2):
             shutil.copytree(words.run, copy, dirs_exist_ok=True)
             begun = time.process_time()

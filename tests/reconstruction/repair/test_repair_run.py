@@ -40,8 +40,11 @@ def folder(tmp_path, monkeypatch):
 
 def test_changes_are_written_and_reported(folder):
     told = []
-    chosen = with_settings(Parameters(), SETTINGS)
-    repair_run(folder, NO_SCAN, chosen, lambda *words: told.append(words))
+
+    def progress(stage: str, done: int, total: int, note: str = "") -> None:
+        told.append((stage, done, total, note))
+
+    repair_run(folder, NO_SCAN, with_settings(Parameters(), SETTINGS), progress)
     facts = json.loads((folder / REPAIRS).read_text())
     (change,) = facts["changes"]
     assert change["name"] == "toilet"
