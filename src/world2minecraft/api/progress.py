@@ -43,6 +43,7 @@ STAGE_TEXTS = {
     "quality": "Measuring image quality",
     "register": "Refining camera poses",
     "render": "Rendering views",
+    "repair": "Comparing furniture with photos",
     "report": "Writing the report",
     "room": "Generating the room",
     "scan": "Reading the capture",

@@ -46,11 +46,14 @@ COSTS = {
     "label": StageCost(0.25, 0.003),
     "find": StageCost(0.1),
     "furnish": StageCost(0.4),
+    "repair": StageCost(2.5),
     "build": StageCost(0.3),
     "report": StageCost(1.2, 0.045),
 }
 
-RECONSTRUCTION = ("scan", "register", "fuse", "label", "find", "furnish", "build", "report")
+RECONSTRUCTION = (
+    *("scan", "register", "fuse", "label", "find", "furnish", "repair", "build", "report"),
+)
 FROM_PHOTOS = ("photos", "poses", "stereo", *RECONSTRUCTION)
 DEMO = ("room", "capture", *RECONSTRUCTION)
 

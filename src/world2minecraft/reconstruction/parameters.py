@@ -23,6 +23,7 @@ from world2minecraft.reconstruction.occupancy import (
     PredictionParameters,
 )
 from world2minecraft.reconstruction.registration import RegistrationParameters
+from world2minecraft.reconstruction.repair import RepairParameters
 from world2minecraft.reconstruction.retrieval import RetrievalParameters
 from world2minecraft.reconstruction.semantics import LABELLERS
 
@@ -80,6 +81,7 @@ class Parameters:
     clean: CleaningParameters = parameter(CleaningParameters, stage="label")
     find: InstanceParameters = parameter(InstanceParameters, stage="find")
     furnish: RetrievalParameters = parameter(RetrievalParameters, stage="furnish")
+    repair: RepairParameters = parameter(RepairParameters, stage="furnish")
     build: BuildParameters = parameter(BuildParameters, stage="build")
 
     def __post_init__(self):
@@ -123,8 +125,9 @@ def with_method(parameters: Parameters, method: str) -> Parameters:
 
     ``best`` does not change the parameters. ``paper`` follows the paper exactly: no refinement of
     poses and depth, no votes of a segmentation network, each DBSCAN cluster is an object, templates
-    are matched by IoU over all cells and rotations, and the build is not corrected. Values that the
-    paper does not state (k, tau, eta, fusion, labels) are the same in both.
+    are matched by IoU over all cells and rotations and not exchanged, and the build is not
+    corrected. Values that the paper does not state (k, tau, eta, fusion, labels) are the same in
+    both.
 
     Raises:
         UnknownNameError: If the method does not exist.
@@ -138,6 +141,7 @@ def with_method(parameters: Parameters, method: str) -> Parameters:
         occupy=replace(parameters.occupy, semantics="none"),
         find=replace(parameters.find, paper_compat=True),
         furnish=replace(parameters.furnish, paper_compat=True),
+        repair=replace(parameters.repair, enabled=False),
         build=replace(parameters.build, paper_compat=True),
         mend=False,
     )

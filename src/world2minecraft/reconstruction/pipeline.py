@@ -6,7 +6,7 @@ paper line   step                                               package
 4 to 7       O_mono, the evidence of each view                  ``occupancy``
 8            O_scene, all views fused                           ``fusion``, ``semantics``
 9 to 11      density D, candidates C, clusters C'               ``instances``
-(eq. argmax) templates by IoU over rotations                    ``retrieval``
+(eq. argmax) templates by IoU over rotations                    ``retrieval``, ``repair``
 12, 13       commands M, executed                               ``construction``
 ===========  =================================================  ==================================
 
@@ -49,6 +49,7 @@ from world2minecraft.reconstruction.registration import (
     register,
     with_registration_note,
 )
+from world2minecraft.reconstruction.repair_run import repair_run
 from world2minecraft.reconstruction.resume import resume_manifest, resume_parameters
 from world2minecraft.reconstruction.run_folder import RunFolder, hash_capture
 
@@ -107,6 +108,8 @@ def reconstruct(
                 run_stage(stage, run.folder, chosen, progress)
                 if stage == "label" and chosen.plan:
                     add_plan_openings(run.folder, Path(chosen.plan))
+                if stage == "furnish":
+                    repair_run(run.folder, scan, chosen, progress)
         if stage == until:
             break
     return replace(scan, notes=(*scan.notes, *resumed.notes))

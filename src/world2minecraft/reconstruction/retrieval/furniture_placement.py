@@ -169,9 +169,9 @@ def _furnish_one(
     floor_m: float,
 ) -> list[Choice]:
     turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
-    whole = _match(grid, instance, instance.cells, turns, chosen, floor_m)
+    whole = match_object(grid, instance, instance.cells, turns, chosen, floor_m)
     if _is_uncertain(instance, chosen):
-        return [Choice(_placement(grid, instance, whole, chosen), (), None)]
+        return [Choice(placement_of(grid, instance, whole, chosen), (), None)]
     if whole.iou < chosen.seat_below and instance.class_id == SemanticClass.CHAIR:
         seated = None if chosen.paper_compat else _seated(grid, whole, chosen)
         if seated is not None:
@@ -182,7 +182,7 @@ def _furnish_one(
     for run in cut_into_runs(whole.evidence, chosen.max_runs, chosen.min_run_cells):
         cells = (run + whole.evidence.corner).astype(np.int32)
         front = estimate_facing(cells, instance.class_id, around).quarter_turns
-        parts.append(_match(grid, instance, cells, front, chosen, floor_m))
+        parts.append(match_object(grid, instance, cells, front, chosen, floor_m))
     least = max(chosen.min_run_cells, chosen.min_run_share * whole.evidence.own)
     parts = [part if part.evidence.own >= least else part.unmatched() for part in parts]
     parts = _with_one_design(parts, grid.voxel_m, chosen)
@@ -279,7 +279,7 @@ def _seated(grid: OccupancyGrid, found: Matched, chosen: RetrievalParameters) ->
     return found._replace(matches=(scored, *found.matches), whole=True)
 
 
-def _match(
+def match_object(
     grid: OccupancyGrid,
     instance: ObjectInstance,
     cells: np.ndarray,
@@ -287,6 +287,7 @@ def _match(
     chosen: RetrievalParameters,
     floor_m: float,
 ) -> Matched:
+    """Match some cells of an object, whose front has the direction ``quarter_turns``."""
     named = () if chosen.paper_compat else named_templates(instance)
     names = frozenset(one.name for one in named)
     usual = tuple(one for one in templates_of_class(instance.class_id) if one.name not in names)
@@ -344,7 +345,7 @@ def _choice(
     grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: RetrievalParameters
 ) -> Choice:
     """Return the placement of a match and the designs that may replace it."""
-    placement = _placement(grid, instance, found, chosen)
+    placement = placement_of(grid, instance, found, chosen)
     if placement.template == OWN_CELLS or not chosen.variants or chosen.paper_compat:
         return Choice(placement, (), None)
     bias = _bias(found.quarter_turns, grid, chosen)
@@ -355,9 +356,10 @@ def _choice(
     return Choice(placement, offers, colour_of_cells(grid, found.evidence))
 
 
-def _placement(
+def placement_of(
     grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: RetrievalParameters
 ) -> Placement:
+    """Return the placement of the best match, or of the own cells if the match explains too few."""
     least = 0.0 if chosen.paper_compat else chosen.min_iou
     explained = bool(found.matches) and (found.whole or found.is_named or found.iou >= least)
     explained &= found.is_named or not _is_uncertain(instance, chosen)

@@ -69,6 +69,17 @@ def _alike(other: Template, own: Template, size_m: np.ndarray) -> bool:
     )
 
 
+def in_other_design(placement: Placement, other: Template) -> Placement | None:
+    """Return a placement in another design of its family, or None if that does not fit."""
+    own = template(placement.template)
+    values = _taken_over(other, dict(placement.parameters))
+    if other.name == own.name or other.family != own.family or values is None:
+        return None
+    if not _alike(other, own, placement.size_m):
+        return None
+    return replace(placement, template=other.name, parameters=values)
+
+
 def _taken_over(other: Template, values: dict[str, float]) -> dict[str, float] | None:
     """Apply the parameter values of the matched design to another design.
 
@@ -154,6 +165,11 @@ def _best(members: list[Choice]) -> str:
         return own
     costs[own] -= STAY
     return min(costs, key=lambda name: (round(costs[name], 6), name != own, name))
+
+
+def design_cost(placement: Placement, colour: np.ndarray | None) -> float:
+    """Return how little a placed design suits its size and an Oklab colour, as a distance."""
+    return _cost(template(placement.template), placement.size_m, colour)
 
 
 def _cost(design: Template, size_m: np.ndarray, colour: np.ndarray | None) -> float:

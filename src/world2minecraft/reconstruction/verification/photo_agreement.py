@@ -119,14 +119,15 @@ def compare_view(
     built = thing_numbers(picture.semantic, picture.instance)
     measured = sample.depth_m > 0
     there, place = _found(sample, thing, built, picture.depth_m, tolerance_m)
-    lab, lab_built = _smooth_labs(sample.colour, picture.colour, there)
-    difference = np.where(there, ciede2000(lab, lab_built.reshape(-1, 3)[place]), np.nan)
+    difference = np.full(thing.shape, np.nan, np.float32)
+    if there.any():
+        difference[there] = _colour_differences(sample.colour, picture.colour, there, place[there])
     named = np.zeros(thing.shape, bool)
     for number in np.unique(thing[measured]):
         if number in things:
             mine = thing == number
             named[mine] = np.isin(sample.seen[mine], list(things[number].nyu40))
-    return ViewAgreement(thing, built, measured, there, difference.astype(np.float32), named)
+    return ViewAgreement(thing, built, measured, there, difference, named)
 
 
 def _found(
@@ -151,16 +152,17 @@ def _found(
     return there, place
 
 
-def _smooth_labs(
-    photo: np.ndarray, built: np.ndarray, there: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the CIELAB colours of both images, smoothed, the photo's at the world's brightness."""
+def _colour_differences(
+    photo: np.ndarray, built: np.ndarray, there: np.ndarray, place: np.ndarray
+) -> np.ndarray:
+    """Return the CIEDE2000 differences of the pixels ``there`` and those that show the same things.
+
+    Both images are smoothed, and the photo is brought to the world's brightness.
+    """
     light, light_built = (
         uniform_filter(srgb_to_linear(image), SMOOTH_PX, axes=(0, 1)) for image in (photo, built)
     )
-    if there.any():
-        middle, middle_built = (
-            np.median(image[there].mean(axis=1)) for image in (light, light_built)
-        )
-        light = light * np.clip(middle_built / max(middle, 1e-6), 1 / MAX_GAIN, MAX_GAIN)
-    return linear_to_lab(np.clip(light, 0, 1)), linear_to_lab(light_built)
+    middle, middle_built = (np.median(image[there].mean(axis=1)) for image in (light, light_built))
+    gain = np.clip(middle_built / max(middle, 1e-6), 1 / MAX_GAIN, MAX_GAIN)
+    lab = linear_to_lab(np.clip(light[there] * gain, 0, 1))
+    return ciede2000(lab, linear_to_lab(light_built.reshape(-1, 3)[place]))

@@ -6,7 +6,7 @@ the reconstruction, at the place of the measured point; without such votes the n
 photo again.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -89,6 +89,7 @@ def sample_photos(
     votes: NameVotes | None = None,
     *,
     count: int = MAX_SAMPLES,
+    without: Collection[str] = (),
     model: SegmentationModel | None = None,
 ) -> tuple[PhotoSample, ...]:
     """Return samples of up to ``count`` views, evenly spread over the used frames.
@@ -99,6 +100,7 @@ def sample_photos(
         scan: The aligned scan.
         votes: Votes of the segmentation network in the room, from the reconstruction.
         count: Maximum number of views.
+        without: Frames that are left out.
         model: Segmentation network that is used without votes. None uses the shipped one.
     """
     if votes is not None and len(votes.cubes):
@@ -106,7 +108,8 @@ def sample_photos(
     else:
         recognise = partial(_seen_by_network, model or SegmentationModel())
     samples = []
-    for view in views_named(scan.views, evenly_spread(scan.frames_used, count)):
+    frames = [name for name in scan.frames_used if name not in without]
+    for view in views_named(scan.views, evenly_spread(frames, count)):
         colour, camera, measured_m = view.colour, view.colour_camera, _measured_points_m(view)
         if colour is None or camera is None or measured_m is None:
             continue

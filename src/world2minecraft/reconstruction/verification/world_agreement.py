@@ -65,6 +65,27 @@ class ObjectAgreement:
     box_px: tuple[int, int, int, int]
 
 
+@dataclass(frozen=True)
+class ObjectScore:
+    """How well an object agrees with the photos, in a few numbers.
+
+    Attributes:
+        pixels: Number of its pixels with a measured depth, over all samples.
+        wrong: Number of pixels that are not right, of those that show it in the photos or in the
+            rendered images.
+        silhouette_iou: IoU of its pixels in the photos and in the rendered images.
+        there: Share of these at which it is there.
+        agreement: Mean of three of their shares: those at which it is there, those at which it also
+            has the right look, and those at which it is right.
+    """
+
+    pixels: int
+    wrong: int
+    silhouette_iou: float
+    there: float
+    agreement: float
+
+
 @dataclass(frozen=True, eq=False)
 class PhotoAgreement:
     """The agreement of the world with the photos.
@@ -109,18 +130,12 @@ def compare_world(
         placements: Their furniture.
         volume: The built world.
     """
-    things = {-number: thing for number, thing in built_structure().items()}
-    things |= {one.id: built_thing(one, placements) for one in instances}
-    scene = prepare_scene(volume)
-    tolerance_m = max(1 / volume.blocks_per_metre, 2 * grid.voxel_m)
-    views = [
-        compare_view(sample, things_of_photo(sample, grid), scene, things, tolerance_m)
-        for sample in samples
-    ]
+    things = built_things(instances, placements)
+    shown = [things_of_photo(sample, grid) for sample in samples]
+    views = compare_views(samples, shown, things, volume, grid.voxel_m)
     if not any(view.measured.any() for view in views):
         return None
-    groups = [_is_object(sample, view) for sample, view in zip(samples, views, strict=True)]
-    counts = np.array([_counts(view, mask) for view, mask in zip(views, groups, strict=True)])
+    counts = _counts_of_views(samples, views)
     missing, look, name, right = _weighted(counts.sum(axis=0))
     of_objects, of_structure = counts.sum(axis=0)
     return PhotoAgreement(
@@ -134,6 +149,99 @@ def compare_world(
         name=name,
         objects=_object_rows(samples, views, things, [one.id for one in instances]),
     )
+
+
+def built_things(
+    instances: Sequence[ObjectInstance], placements: Sequence[Placement]
+) -> dict[int, BuiltThing]:
+    """Return what the things of a world show, by object id or minus the class of structure."""
+    things = {-number: thing for number, thing in built_structure().items()}
+    return things | {one.id: built_thing(one, placements) for one in instances}
+
+
+def compare_views(
+    samples: Sequence[PhotoSample],
+    shown: Sequence[np.ndarray],
+    things: Mapping[int, BuiltThing],
+    volume: BlockVolume,
+    voxel_m: float,
+) -> list[ViewAgreement]:
+    """Compare the world with each photo.
+
+    Args:
+        samples: Samples of the photos.
+        shown: What each of them shows, from ``things_of_photo``.
+        things: What the world's things show, from ``built_things``.
+        volume: The built world.
+        voxel_m: Cell size of the grid in metres.
+    """
+    scene = prepare_scene(volume)
+    tolerance_m = max(1 / volume.blocks_per_metre, 2 * voxel_m)
+    return [
+        compare_view(sample, thing, scene, things, tolerance_m)
+        for sample, thing in zip(samples, shown, strict=True)
+    ]
+
+
+def share_right(samples: Sequence[PhotoSample], views: Sequence[ViewAgreement]) -> float:
+    """Return the headline of compared photos."""
+    return _weighted(_counts_of_views(samples, views).sum(axis=0))[3]
+
+
+def score_objects(views: Sequence[ViewAgreement]) -> dict[int, ObjectScore]:
+    """Return the scores of all objects that photos or rendered images show, by id."""
+    size = 1 + max((int(max(view.thing.max(), view.built.max(), 0)) for view in views), default=0)
+    counts = np.zeros((6, size))
+    for view in views:
+        thing = np.maximum(view.thing[view.measured], 0)
+        built = np.maximum(view.built[view.measured], 0)
+        counts[0] += np.bincount(thing, minlength=size)
+        counts[1] += np.bincount(built, minlength=size)
+        counts[2] += np.bincount(thing[thing == built], minlength=size)
+        for row, mask in enumerate((view.there, view.looks, view.right), 3):
+            counts[row] += np.bincount(thing, weights=mask[view.measured], minlength=size)
+    result = {}
+    for number in (np.flatnonzero(counts[:2].sum(axis=0)[1:]) + 1).tolist():
+        photographed, built, both, there, looks, right = counts[:, number].tolist()
+        either = photographed + built - both
+        result[number] = ObjectScore(
+            pixels=int(photographed),
+            wrong=int(either - right),
+            silhouette_iou=both / either,
+            there=there / either,
+            agreement=(there + looks + right) / 3 / either,
+        )
+    return result
+
+
+def headline_gains(
+    samples: Sequence[PhotoSample],
+    before: Sequence[ViewAgreement],
+    after: Sequence[ViewAgreement],
+) -> dict[int, float]:
+    """Return by how much each object changes the headline between two worlds, by id.
+
+    An object accounts for its pixels in the photos, and for those that it covers in one of the
+    worlds. Where objects cover each other, both account for a pixel.
+    """
+    totals = _counts_of_views(samples, before).sum(axis=(0, 2))
+    weights = 1 / (np.maximum(totals, 1) * np.count_nonzero(totals))
+    result: dict[int, float] = {}
+    for sample, old, new in zip(samples, before, after, strict=True):
+        changed = old.measured & (old.right != new.right)
+        weight = np.where(_is_object(sample, old), *weights)[changed]
+        gain = np.where(new.right[changed], weight, -weight)
+        shown = np.stack([view[changed] for view in (old.thing, old.built, new.built)])
+        for number in np.unique(shown[shown > 0]).tolist():
+            mine = (shown == number).any(axis=0)
+            result[number] = result.get(number, 0.0) + float(gain[mine].sum())
+    return result
+
+
+def _counts_of_views(samples: Sequence[PhotoSample], views: Sequence[ViewAgreement]) -> np.ndarray:
+    """Return the counts of ``_counts`` for each view, int64 [V, 2, 4]."""
+    pairs = zip(samples, views, strict=True)
+    return np.array([_counts(view, _is_object(sample, view)) for sample, view in pairs])
 
 
 def _is_object(sample: PhotoSample, view: ViewAgreement) -> np.ndarray:

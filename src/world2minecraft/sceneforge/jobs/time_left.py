@@ -9,7 +9,7 @@ demo room and with 100 photos of a generated room.
 from collections.abc import Mapping
 from typing import Any
 
-LATER_S = {"label": 0.5, "find": 0.5, "furnish": 1.0, "build": 2.0, "report": 5.0}
+LATER_S = {"label": 0.5, "find": 0.5, "furnish": 1.0, "repair": 3.0, "build": 2.0, "report": 5.0}
 SENSED_FRAME_S = {"scan": 0.04, "register": 0.06, "fuse": 0.04}
 PICTURE_S = {"photos": 0.05, "poses": 0.7, "shrink": 0.05, "stereo": 0.65}
 DEMO_FRAMES = 40

@@ -19,6 +19,7 @@ const STAGES: Record<string, string> = {
   label: "Predicting semantic occupancy",
   find: "Detecting objects",
   furnish: "Matching furniture",
+  repair: "Comparing furniture with photos",
   build: "Building blocks",
   report: "Writing the report",
   write: "Writing the file",
