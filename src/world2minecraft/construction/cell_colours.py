@@ -2,18 +2,25 @@
 
 import numpy as np
 
-from world2minecraft.core.types import OccupancyGrid
+from world2minecraft.core.classes import STRUCTURE_CLASSES, SemanticClass
+from world2minecraft.core.types import COMPLETED, OccupancyGrid
 from world2minecraft.geometry.colour import linear_to_oklab, srgb_to_linear, srgb_to_oklab
 from world2minecraft.geometry.morphology import nearest_set_cells
 from world2minecraft.minecraft.block_colours import colour_of
 
-# Exposure: the brightest twentieth of a room's surfaces comes to this linear light, about that of
-# white concrete. Photos of dim rooms come out darker than any wall paint is.
-BRIGHT_LIGHT, BRIGHT_QUANTILE = 0.6, 0.95
-GAIN_LIMIT = 1.8
-# White balance: bright cells that are nearly grey are taken for grey.
-GREY_CHROMA, CAST_LIMIT = 0.05, 1.1
+# Exposure: photos of rooms come out darker than their surfaces are, by the same factor everywhere. The
+# linear light that surfaces usually reflect, and how far that varies, in natural logarithms: paint
+# of ceilings and walls is pale, floors and things are anything.
+REFLECTANCES = {
+    int(SemanticClass.CEILING): (0.75, 0.4),
+    int(SemanticClass.WALL): (0.6, 0.5),
+    int(SemanticClass.FLOOR): (0.25, 1.5),
+    int(SemanticClass.FURN): (0.25, 1.5),
+    int(SemanticClass.OBJS): (0.25, 1.5),
+}
+EXPOSURE_SIGMA, MAX_GAIN = 0.5, 1.8  # How far cameras err, likewise.
 MIN_CELLS = 50
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 # Chroma under which a colour is a grey with a cast, and from which it is meant.
 FAINT_CHROMA, CLEAR_CHROMA = 0.02, 0.06
 # Wood lies within these degrees of hue; red begins where they fade out.
@@ -26,8 +33,18 @@ NEAR_BLOCKS = 2.0  # Unseen blocks take the colour of the nearest seen one withi
 
 
 def coloured_cells(grid: OccupancyGrid) -> np.ndarray:
-    """Return the bool [X, Y, Z] mask of cells with a colour; black (exactly 0) means no colour."""
-    return grid.occupied & grid.colour.any(-1)
+    """Return the bool [X, Y, Z] mask of cells with a colour; black (exactly 0) means no colour.
+
+    The colour of structure that was completed is that of its nearest edge, often shadow, and counts
+    only where nothing else of its class has a colour.
+    """
+    result = grid.occupied & grid.colour.any(-1)
+    guessed = result & (grid.source == COMPLETED)
+    for class_id in STRUCTURE_CLASSES:
+        own = grid.labels == class_id
+        if (result & own & ~guessed).any():
+            result &= ~(own & guessed)
+    return result
 
 
 def cell_colours(grid: OccupancyGrid, expose: bool, saturation: float) -> np.ndarray:
@@ -45,7 +62,8 @@ def cell_colours(grid: OccupancyGrid, expose: bool, saturation: float) -> np.nda
         return result
     if expose:
         linear = srgb_to_linear(colours)
-        result[seen] = linear_to_oklab(np.clip(linear * exposure_gains(linear), 0, 1))
+        gain = exposure_gain(linear, grid.labels[seen])
+        result[seen] = linear_to_oklab(np.clip(linear * gain, 0, 1))
     else:
         result[seen] = srgb_to_oklab(colours)
     result[seen] = boost_saturation(result[seen], saturation)
@@ -101,24 +119,25 @@ def _turn(degrees: np.ndarray) -> np.ndarray:
     return (degrees + 180) % 360 - 180
 
 
-def exposure_gains(linear: np.ndarray) -> np.ndarray:
-    """Compute the gain per channel, float64 [3], that brightens and white-balances a room.
+def exposure_gain(linear: np.ndarray, labels: np.ndarray) -> float:
+    """Estimate the gain, from 1 to ``MAX_GAIN``, that gives surfaces their usual brightness.
+
+    The estimate is the most probable one, given how bright surfaces of each class usually are and
+    how far cameras usually err. Colour casts are not removed: a warm light and a cream paint look
+    the same, and the photos of cameras that balance white by themselves have no cast to remove.
 
     Args:
         linear: Linear light of the room's surfaces, float64 [N, 3].
+        labels: Their classes, uint8 [N].
     """
-    if len(linear) < MIN_CELLS:
-        return np.ones(3)
-    light = linear @ np.array([0.2126, 0.7152, 0.0722])
-    bright = np.quantile(light, BRIGHT_QUANTILE)
-    exposure = np.clip(BRIGHT_LIGHT / max(bright, 1e-6), 1.0, GAIN_LIMIT)
-    grey = linear[
-        (np.hypot(*linear_to_oklab(linear)[:, 1:].T) < GREY_CHROMA) & (light >= 0.5 * bright)
-    ]
-    if len(grey) < MIN_CELLS:
-        return np.full(3, exposure)
-    mean = np.maximum(grey.mean(0), 1e-6)
-    return exposure * np.clip(mean.mean() / mean, 1 / CAST_LIMIT, CAST_LIMIT)
+    light = linear @ LUMINANCE
+    total, weights = 0.0, 1 / EXPOSURE_SIGMA**2
+    for class_id, (usual, sigma) in REFLECTANCES.items():
+        own = light[labels == class_id]
+        if len(own) >= MIN_CELLS:
+            total += np.log(usual / max(float(np.median(own)), 1e-3)) / sigma**2
+            weights += 1 / sigma**2
+    return float(np.clip(np.exp(total / weights), 1.0, MAX_GAIN))
 
 
 def block_colour(block: str) -> np.ndarray:

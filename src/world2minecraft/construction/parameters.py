@@ -115,9 +115,9 @@ class BuildParameters:
         bounds=NOT_BELOW_0,
     )
     lightness_weight: float = parameter(
-        0.4,
+        0.7,
         unit="times",
-        origin="a red cupboard in shadow stays red; at 1 it becomes brown",
+        origin="least CIEDE2000 difference between photos and worlds of 9 real and 8 generated rooms",
         bounds=NOT_BELOW_0,
     )
     calm: float = parameter(

@@ -21,21 +21,17 @@ from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.classes import STRUCTURE_CLASSES, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.colour import srgb_to_oklab
+from world2minecraft.geometry.colour import ciede2000, oklab_to_lab, srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 
 MIN_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
 MIN_BLOCKS = 3.0
 ROUNDS = 4
-# A blue chair may be a stronger blue, but not purple: hue counts more than chroma.
-CHROMA_WEIGHT, HUE_WEIGHT = 0.6, 1.5
-# Of what is nearly grey the hue is noise, and a clear colour in its place is plainly wrong: the
-# kitchen's blue-grey carpet came out purple.
-FAINT_CHROMA, CLEAR_CHROMA, FAINT_WEIGHT = 0.01, 0.025, 2.5
+OKLAB_OF_CIEDE = 0.01  # Oklab distance that looks like a CIEDE2000 difference of 1.
 DULL_CHROMA, STRONG_CHROMA = 0.035, 0.055  # From where on a grey for a colour is a fault.
 FADED = 0.05  # How great a fault, of an object; on walls and floors a calm grey is none.
 SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise of fused colours.
-MAX_DISTANCES = 1 << 24  # Blocks times candidates held at once: 64 MB.
+MAX_DISTANCES = 1 << 20  # Blocks times candidates compared at once: some 150 MB.
 SAME_SET = 0.08  # Oklab, lightness as light as in the choice of blocks: brown and grey are 0.1.
 LIGHTER_SHARE = 0.5
 MIN_HUE_CHROMA, MIN_HUE_SHARE = (
@@ -55,7 +51,7 @@ def colour_costs(
 ) -> np.ndarray:
     """Compute the squared distances, float32 [N, M], between Oklab colours [N, 3] and M blocks.
 
-    The distance has separate terms for lightness, chroma and hue.
+    The distance is the CIEDE2000 difference, in units of Oklab.
 
     Args:
         colours: Oklab colours, float32 [N, 3].
@@ -64,19 +60,14 @@ def colour_costs(
         handicaps: Distances added for each block, float [M].
         fading: Distance added for blocks that would turn a saturated colour grey.
     """
-    wanted = colours.astype(np.float32)[:, None]
     offered = srgb_to_oklab(colours_of(candidates))
-    square = (wanted - offered) ** 2
-    own = np.hypot(wanted[..., 1], wanted[..., 2])
-    chroma = own - np.hypot(offered[:, 1], offered[:, 2])
-    hue = np.maximum(square[..., 1] + square[..., 2] - chroma**2, 0)
-    clear = np.clip((own - FAINT_CHROMA) / (CLEAR_CHROMA - FAINT_CHROMA), 0, 1)
-    weight = FAINT_WEIGHT + (CHROMA_WEIGHT - FAINT_WEIGHT) * clear
-    weight = np.where(chroma < 0, weight, CHROMA_WEIGHT)  # Greyer than it is, is no such fault.
-    distances = lightness_weight * square[..., 0] + weight * chroma**2 + HUE_WEIGHT * hue
+    differences = ciede2000(
+        oklab_to_lab(colours)[:, None], oklab_to_lab(offered), lightness_weight
+    ).astype(np.float32)
+    own, chroma = (np.hypot(one[:, 1], one[:, 2]) for one in (colours, offered))
     faded = fading * np.clip((own - DULL_CHROMA) / (STRONG_CHROMA - DULL_CHROMA), 0, 1)
-    faded = faded * (np.hypot(offered[:, 1], offered[:, 2]) < own / 2)
-    return (np.sqrt(distances) + handicaps.astype(np.float32) + faded) ** 2
+    faded = faded[:, None] * (chroma < own[:, None] / 2)
+    return (OKLAB_OF_CIEDE * differences + handicaps.astype(np.float32) + faded) ** 2
 
 
 def choose_blocks(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:

@@ -82,6 +82,11 @@ def srgb_to_oklab(rgb: np.ndarray) -> np.ndarray:
     return linear_to_oklab(srgb_to_linear(rgb))
 
 
+def oklab_to_lab(oklab: np.ndarray) -> np.ndarray:
+    """Convert Oklab, float [..., 3], to CIELAB (D65), float64 [..., 3]."""
+    return linear_to_lab(np.maximum(oklab_to_linear(oklab), 0))
+
+
 def linear_to_lab(linear: np.ndarray) -> np.ndarray:
     """Convert linear light, float [..., 3], to CIELAB (D65), float64 [..., 3], L from 0 to 100."""
     share = np.asarray(linear, np.float64) @ _RGB_TO_XYZ.T / _WHITE_XYZ
@@ -90,15 +95,16 @@ def linear_to_lab(linear: np.ndarray) -> np.ndarray:
     return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
 
 
-def ciede2000(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+def ciede2000(one: np.ndarray, other: np.ndarray, lightness_weight: float = 1.0) -> np.ndarray:
     """Return the CIEDE2000 difference of CIELAB colours, float64 [...].
 
     A difference of 2 is just noticeable; black and white differ by 100. The formula is that of
-    Sharma, Wu and Dalal (2005) with all weights 1.
+    Sharma, Wu and Dalal (2005) with weights 1 of chroma and hue.
 
     Args:
         one: CIELAB colours, float [..., 3].
         other: CIELAB colours, float [..., 3].
+        lightness_weight: Weight of the squared difference of lightness.
     """
     (light_1, a_1, b_1), (light_2, a_2, b_2) = (
         np.moveaxis(np.asarray(lab, np.float64), -1, 0) for lab in (one, other)
@@ -127,5 +133,5 @@ def ciede2000(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     chroma_7 = chroma**7
     bend = np.radians(60 * np.exp(-((((hue % 360) - 275) / 25) ** 2)))
     mixed = -2 * np.sqrt(chroma_7 / (chroma_7 + _CHROMA_7)) * np.sin(bend)
-    squares = by_light**2 + by_chroma**2 + by_hue**2 + mixed * by_chroma * by_hue
+    squares = lightness_weight * by_light**2 + by_chroma**2 + by_hue**2 + mixed * by_chroma * by_hue
     return np.sqrt(np.maximum(squares, 0))
