@@ -18,7 +18,7 @@ REFLECTANCES = {
     int(SemanticClass.FURN): (0.25, 1.5),
     int(SemanticClass.OBJS): (0.25, 1.5),
 }
-EXPOSURE_SIGMA, MAX_GAIN = 0.5, 1.8  # How far cameras err, likewise.
+EXPOSURE_SIGMA, MAX_GAIN = 0.15, 1.4  # How far cameras err, likewise.
 MIN_CELLS = 50
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 # Chroma under which a colour is a grey with a cast, and from which it is meant.

@@ -28,6 +28,8 @@ MIN_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
 MIN_BLOCKS = 3.0
 ROUNDS = 4
 OKLAB_OF_CIEDE = 0.01  # Oklab distance that looks like a CIEDE2000 difference of 1.
+# More chroma than a colour has is a worse fault than less: a dark floor came out purple.
+MORE_CHROMA, GAUDY_WEIGHT = 0.02, 1.0
 DULL_CHROMA, STRONG_CHROMA = 0.035, 0.055  # From where on a grey for a colour is a fault.
 FADED = 0.05  # How great a fault, of an object; on walls and floors a calm grey is none.
 SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise of fused colours.
@@ -67,7 +69,8 @@ def colour_costs(
     own, chroma = (np.hypot(one[:, 1], one[:, 2]) for one in (colours, offered))
     faded = fading * np.clip((own - DULL_CHROMA) / (STRONG_CHROMA - DULL_CHROMA), 0, 1)
     faded = faded[:, None] * (chroma < own[:, None] / 2)
-    return (OKLAB_OF_CIEDE * differences + handicaps.astype(np.float32) + faded) ** 2
+    gaudy = GAUDY_WEIGHT * np.maximum(chroma - own[:, None] - MORE_CHROMA, 0)
+    return (OKLAB_OF_CIEDE * differences + handicaps.astype(np.float32) + faded + gaudy) ** 2
 
 
 def choose_blocks(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
@@ -217,7 +220,7 @@ def chair_paints(
     chairs = np.equal(grid.labels, SemanticClass.CHAIR) & usable & (grid.instance > 0)
     weight = np.array([lightness_weight, 1, 1], np.float32)
     own = {
-        int(number): lit_colour(colours[chairs & (grid.instance == number)])
+        int(number): lit_colour(colours[chairs & (grid.instance == number)], LIGHTER_SHARE)
         for number in np.unique(grid.instance[chairs])
     }
     sets: list[list[int]] = []
@@ -235,15 +238,15 @@ def chair_paints(
     return shared
 
 
-def lit_colour(colours: np.ndarray) -> np.ndarray:
-    """Return the median, float32 [3], of the lighter half of Oklab colours [N, 3].
+def lit_colour(colours: np.ndarray, share: float = 1.0) -> np.ndarray:
+    """Return the median, float32 [3], of the lighter ``share`` of Oklab colours [N, 3].
 
     If a sufficient share of the colours is saturated, only these count.
     """
     clear = np.hypot(colours[:, 1], colours[:, 2]) >= MIN_HUE_CHROMA
     counted = colours[clear] if clear.mean() >= MIN_HUE_SHARE else colours
     order = np.argsort(counted[:, 0], kind="stable")
-    lighter = counted[order[int(len(order) * (1 - LIGHTER_SHARE)) :]]
+    lighter = counted[order[int(len(order) * (1 - share)) :]]
     return np.median(lighter, axis=0).astype(np.float32)
 
 
