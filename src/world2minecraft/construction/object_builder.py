@@ -43,6 +43,7 @@ from world2minecraft.construction.objects_from_cells import (
     resample_cells,
 )
 from world2minecraft.construction.overlap_avoidance import best_place, best_step
+from world2minecraft.construction.plants import is_plant, leafy_states
 from world2minecraft.construction.simple_volumes import fill_boxes, simple_boxes
 from world2minecraft.construction.surface_painting import (
     block_colours,
@@ -100,9 +101,14 @@ class ObjectBuilder:
         self.paints = chair_paints(
             grid, colours, coloured & self.colour_source.exposed, parameters.lightness_weight
         )
+        self.plants = frozenset(one.id for one in instances if self._is_plant(one))
         self.uncertain = frozenset(
             one.id for one in instances if one.confidence < parameters.simple_below
         )
+
+    def _is_plant(self, instance: ObjectInstance) -> bool:
+        at = tuple(instance.cells.T)
+        return is_plant(instance, self.colours[at][self.coloured[at]])
 
     def put_all(self, placements: Sequence[Placement]) -> None:
         """Place all templates, then the object cells that no nearby block represents."""
@@ -449,6 +455,8 @@ class ObjectBuilder:
             colours[filled], known = paint, filled
         states = self.shape_painter.states(design, colours, filled & known.any(), thing.class_id)
         at = tuple(np.argwhere(filled).T[axis] + low[axis] for axis in range(3))
+        if thing.instance in self.plants:
+            states = leafy_states(states, at[2], colours[filled])
         names, index = np.unique(states.astype(str), return_inverse=True)
         ids = self.canvas.ids_of(names.tolist())[index]
         self.canvas.put(at, ids, thing.class_id, thing.instance)

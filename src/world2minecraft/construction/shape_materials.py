@@ -34,8 +34,15 @@ HANDICAPS = {
 }
 
 
-# A screen is no wood, and a panel of the right black there is none.
-EXCLUDED_KINDS = {int(SemanticClass.TVS): frozenset(("trapdoor", "stairs"))}
+# A screen is no wood, and a panel of the right black there is none. Of cushions, trapdoors look like
+# grilles, and planks like crates.
+EXCLUDED_KINDS = {
+    int(SemanticClass.TVS): frozenset(("trapdoor", "stairs")),
+    int(SemanticClass.SOFA): frozenset(("trapdoor", "post")),
+    int(SemanticClass.BED): frozenset(("trapdoor",)),
+}
+UPHOLSTERED = (int(SemanticClass.SOFA),)
+WOODEN = ("_planks", "_wood")
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,10 +134,17 @@ def _distances(colours, offered, light, handicaps) -> np.ndarray:
     return np.sqrt(distances) + handicaps
 
 
-def materials_of(palette: Palette) -> Materials:
-    """Return the shapes in which the blocks of a palette exist."""
+def materials_of(palette: Palette, *, wood: bool = True) -> Materials:
+    """Return the shapes in which the blocks of a palette exist, with or without those of wood."""
     full = sorted({block for blocks in palette.blocks.values() for block in blocks})
-    slabs, fences = palette.slabs, palette.fences
+    slabs, fences = (
+        {
+            block: name
+            for block, name in names.items()
+            if block in full and (wood or not any(word in block for word in WOODEN))
+        }
+        for names in (palette.slabs, palette.fences)
+    )
     woods = {block: name for block, name in fences.items() if "nether_brick" not in name}
     own = {
         "slab": slabs,
@@ -140,7 +154,7 @@ def materials_of(palette: Palette) -> Materials:
         "carpet": {b: b.replace("_wool", "_carpet") for b in full if b.endswith("_wool")},
     }
     known = {kind: _alike(_known(names)) for kind, names in own.items()}
-    more = {"trapdoor": ["minecraft:iron_trapdoor"]}
+    more = {"trapdoor": ["minecraft:iron_trapdoor"]} if wood else {}
     blocks = {
         kind: tuple(sorted({*names.values(), *more.get(kind, ())}))
         for kind, names in known.items()

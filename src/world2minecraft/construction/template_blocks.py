@@ -15,7 +15,12 @@ from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.fitted_objects import Design, halves_from_layers
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.shape_materials import WEIGHTS, materials_of
+from world2minecraft.construction.shape_materials import (
+    UPHOLSTERED,
+    WEIGHTS,
+    Materials,
+    materials_of,
+)
 from world2minecraft.construction.surface_painting import BlockChoice, paint_surface
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
@@ -60,7 +65,11 @@ class ShapePainter:
 
     def __init__(self, palette: Palette, parameters: BuildParameters):
         self.palette, self.parameters = palette, parameters
-        self.materials = materials_of(palette)
+        self.wooden, self.soft = materials_of(palette), materials_of(palette, wood=False)
+
+    def _materials(self, class_id: int) -> Materials:
+        """Return the shapes that an object of a class may be made of."""
+        return self.soft if class_id in UPHOLSTERED else self.wooden
 
     def kinds(self, colours: np.ndarray, class_id: int) -> frozenset[str]:
         """Return the kinds of shape that exist in an object's Oklab colours [N, 3]."""
@@ -71,7 +80,7 @@ class ShapePainter:
         preferred = self.palette.preferred[class_id] or full
         handicaps = np.array([self.parameters.preference * (one not in preferred) for one in full])
         weight = self.parameters.lightness_weight
-        return self.materials.kinds_for(few, full, handicaps, class_id, weight)
+        return self._materials(class_id).kinds_for(few, full, handicaps, class_id, weight)
 
     def states(
         self, design: Design, colours: np.ndarray, known: np.ndarray, class_id: int
@@ -82,13 +91,14 @@ class ShapePainter:
         full block of the right colour is used instead.
         """
         limit = PAINTS.get(class_id, self.parameters.object_colours)
+        materials = self._materials(class_id)
         choice = BlockChoice(class_id, self.palette, self.parameters, limit)
         full = self.palette.blocks[class_id]
         kinds = design.shapes.kinds[design.numbers]
         used = sorted(set(kinds[design.filled].tolist()) - {"full"})
         shaped = design.filled & (kinds != "full")
         plain = np.empty(design.numbers.shape, object)
-        own, able = plain.copy(), self.materials.in_all(used, full)
+        own, able = plain.copy(), materials.in_all(used, full)
         if able and shaped.any():
             own[shaped] = paint_surface(shaped, colours, known & shaped, choice, only=able)
         alike = frozenset(own[shaped].tolist()) if able else frozenset()
@@ -100,7 +110,7 @@ class ShapePainter:
             shape = design.shapes.shapes[int(design.numbers[at]) - 1]
             first, second = str(own[at]), str(plain[at])
             near = self._is_near(first, second, colours[at])
-            state = self.materials.shaped_state(shape, first if near else second)
+            state = materials.shaped_state(shape, first if near else second)
             result[at] = state or plain[at]
         return result[design.filled]
 
