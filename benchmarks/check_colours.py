@@ -25,7 +25,7 @@ from scipy.spatial import cKDTree
 from benchmarks.real_captures.running import Options, run_scene
 from benchmarks.real_captures.scenes import list_scenes
 from world2minecraft.core.classes import CLASS_NAMES, SemanticClass
-from world2minecraft.core.coordinates import apply, invert
+from world2minecraft.core.coordinates import apply
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.evaluation.scoring.used_frames import truth_of_run

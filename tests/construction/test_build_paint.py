@@ -3,16 +3,29 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.construction.cell_colours import exposure_gains, fill_colours, group_medians
+from world2minecraft.construction.cell_colours import (
+    MAX_GAIN,
+    MIN_CELLS,
+    coloured_cells,
+    exposure_gain,
+    fill_colours,
+    group_medians,
+)
 from world2minecraft.construction.design_placement import DYES
 from world2minecraft.construction.palettes import load_palette
+from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.surface_painting import (
+    BlockChoice,
     choose_blocks,
     neighbour_table,
     paint,
+    paint_surface,
     smooth_blocks,
 )
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.geometry.colour import (
+    linear_to_lab,
     linear_to_oklab,
     linear_to_srgb,
     oklab_to_linear,
@@ -160,15 +173,63 @@ def test_unseen_blocks_take_near_colours_or_the_median():
     assert nothing[:, 0] == pytest.approx([0.9] * 9)
 
 
-def test_a_dim_room_is_lifted_and_a_bright_one_left():
-    rng = np.random.default_rng(7)
-    bright = rng.uniform(0.5, 0.9, (200, 1)) * np.ones(3)
-    assert exposure_gains(bright) == pytest.approx([1, 1, 1])
-    dim = exposure_gains(bright * 0.4)
-    assert dim == pytest.approx([dim[0]] * 3)
-    assert 1.5 < dim[0] <= 1.8
-    warm = exposure_gains(bright * [1.0, 0.95, 0.9])
-    assert warm[0] < warm[1] < warm[2]
+@given(st.floats(0.02, 1.0), st.floats(0.3, 1.0))
+def test_a_dim_room_is_lifted_and_a_bright_one_left(light, factor):
+    walls = np.full((MIN_CELLS, 3), light)
+    labels = np.full(MIN_CELLS, int(SemanticClass.WALL), np.uint8)
+    gain = exposure_gain(walls, labels)
+    assert 1.0 <= gain <= exposure_gain(walls * factor, labels) <= MAX_GAIN
+    assert light < 0.6 or gain == 1.0
+    assert light > 0.2 or gain > 1.05
+
+
+def test_few_cells_say_nothing_of_the_exposure():
+    labels = np.full(MIN_CELLS - 1, int(SemanticClass.WALL), np.uint8)
+    assert exposure_gain(np.full((MIN_CELLS - 1, 3), 0.01), labels) == 1.0
+
+
+@pytest.mark.parametrize(
+    "paint", [(208, 195, 178), (226, 220, 204), (234, 220, 200), (213, 184, 169)]
+)
+@pytest.mark.parametrize("share", [0.7, 0.85, 1.0])
+def test_a_pale_wall_is_built_pale_and_not_grey(paint, share):
+    palette, parameters = load_palette("vanilla"), BuildParameters()
+    dimmed = linear_to_oklab(srgb_to_linear(np.array(paint, np.uint8)) * share)
+    mask = np.ones((4, 1, 4), bool)
+    colours = np.broadcast_to(dimmed, (4, 1, 4, 3)).astype(np.float32)
+    choice = BlockChoice(int(SemanticClass.WALL), palette, parameters, 3)
+    built = set(paint_surface(mask, colours, mask, choice).tolist())
+    assert len(built) == 1
+    lab = linear_to_lab(srgb_to_linear(np.array(colour_of(built.pop()), np.uint8)))
+    assert np.hypot(lab[1], lab[2]) > 3.5
+    assert lab[0] > 70
+
+
+def test_walls_and_ceilings_are_of_smooth_blocks():
+    relief = ("bricks", "_tiles", "polished_", "diorite", "andesite", "granite", "smooth_stone")
+    palette = load_palette("vanilla")
+    for class_id in (SemanticClass.WALL, SemanticClass.CEILING):
+        assert not [b for b in palette.blocks[int(class_id)] if any(word in b for word in relief)]
+
+
+def test_completed_structure_lends_no_colour():
+    labels = np.full((4, 4, 4), 255, np.uint8)
+    labels[:, :, 0] = int(SemanticClass.FLOOR)
+    labels[0, 0, 1:] = int(SemanticClass.WALL)
+    source = np.where(labels < 255, COMPLETED, UNSEEN).astype(np.uint8)
+    source[:2, :, 0] = OBSERVED
+    grid = OccupancyGrid(
+        labels=labels,
+        confidence=np.ones(labels.shape, np.float16),
+        source=source,
+        instance=np.zeros(labels.shape, np.uint16),
+        colour=np.full((*labels.shape, 3), 90, np.uint8),
+        voxel_m=0.08,
+        origin_m=np.zeros(3),
+    )
+    coloured = coloured_cells(grid)
+    assert (coloured[:, :, 0] == (source[:, :, 0] == OBSERVED)).all()
+    assert coloured[0, 0, 1:].all()  # Of the wall nothing else was seen.
 
 
 def test_the_palette_allows_only_blocks_that_stay_as_they_are():

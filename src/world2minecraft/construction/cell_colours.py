@@ -8,9 +8,9 @@ from world2minecraft.geometry.colour import linear_to_oklab, srgb_to_linear, srg
 from world2minecraft.geometry.morphology import nearest_set_cells
 from world2minecraft.minecraft.block_colours import colour_of
 
-# Exposure: photos of rooms come out darker than their surfaces are, by the same factor everywhere. The
-# linear light that surfaces usually reflect, and how far that varies, in natural logarithms: paint
-# of ceilings and walls is pale, floors and things are anything.
+# Exposure: photos of rooms come out darker than their surfaces are, by one factor. The linear light
+# that surfaces usually reflect, and how far that varies, in natural logarithms: paint of ceilings
+# and walls is pale, floors and things are anything.
 REFLECTANCES = {
     int(SemanticClass.CEILING): (0.75, 0.4),
     int(SemanticClass.WALL): (0.6, 0.5),

@@ -50,7 +50,8 @@ from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 OTHER_CLOTH = 0.03  # Oklab: what another full block must be nearer by than wool. A guess.
 OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A guess.
-OWN_LOOK = 0.1  # Oklab: up to this far off a fixed block keeps its own look. A guess.
+# Oklab: up to this far off a fixed block keeps its own look; lightness counts less. Guesses.
+OWN_LOOK, OWN_LIGHT = 0.1, 0.63
 CLEAR_CHROMA, CLEAR_SHARE = 0.06, 0.3
 PLAIN_PAINTS = 3  # Blocks of one plain role: a front, its trim and one thing in it.
 _KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
@@ -142,7 +143,7 @@ def recolour_design(
             renewed = [_cube_of(colour, own[0], palette.blocks[class_id], parameters)] * len(own)
         elif material.kind not in (PLAIN, FIXED):
             renewed = _change_material(own, material.kind, colour, parameters)
-        elif material.kind == FIXED and not _is_far(material, colour, parameters.lightness_weight):
+        elif material.kind == FIXED and not _is_far(material, colour):
             renewed = own
         elif own_colours.paint is None and all(map(is_full_cube, own)):
             renewed = _paint_blocks(at, own_colours, class_id, palette, parameters)
@@ -169,10 +170,10 @@ def _cube_of(
     return offered[int(costs[0].argmin())]
 
 
-def _is_far(material: Material, colour: np.ndarray, lightness_weight: float) -> bool:
+def _is_far(material: Material, colour: np.ndarray) -> bool:
     """Return whether a fixed material differs clearly from an object's colour."""
     own = srgb_to_oklab(np.array(colour_of(material.block("full") or ""), np.uint8))
-    return float(np.linalg.norm((own - colour) * [lightness_weight**0.5, 1, 1])) > OWN_LOOK
+    return float(np.linalg.norm((own - colour) * [OWN_LIGHT, 1, 1])) > OWN_LOOK
 
 
 def _colour(cells: np.ndarray, own_colours: ObjectColours) -> np.ndarray:

@@ -117,7 +117,7 @@ class BuildParameters:
     lightness_weight: float = parameter(
         0.7,
         unit="times",
-        origin="least CIEDE2000 difference between photos and worlds of 9 real and 8 generated rooms",
+        origin="photos and worlds of 9 real and 8 generated rooms differ least",
         bounds=NOT_BELOW_0,
     )
     calm: float = parameter(

@@ -34,8 +34,8 @@ HANDICAPS = {
 }
 
 
-# A screen is no wood, and a panel of the right black there is none. Of cushions, trapdoors look like
-# grilles, and planks like crates.
+# A screen is no wood, and a panel of the right black there is none. On cushions, trapdoors look
+# like grilles, and planks like crates.
 EXCLUDED_KINDS = {
     int(SemanticClass.TVS): frozenset(("trapdoor", "stairs")),
     int(SemanticClass.SOFA): frozenset(("trapdoor", "post")),

@@ -14,6 +14,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import block_colour, fill_colours, group_medians
@@ -27,6 +29,7 @@ from world2minecraft.minecraft.block_colours import colours_of
 MIN_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
 MIN_BLOCKS = 3.0
 ROUNDS = 4
+SPECK_BLOCKS = 3  # Fewer connected blocks of a paint are noise.
 OKLAB_OF_CIEDE = 0.01  # Oklab distance that looks like a CIEDE2000 difference of 1.
 # More chroma than a colour has is a worse fault than less: a dark floor came out purple.
 MORE_CHROMA, GAUDY_WEIGHT = 0.02, 1.0
@@ -124,7 +127,24 @@ def smooth_blocks(costs: np.ndarray, positions: np.ndarray, step: float) -> np.n
             differing = ((around != column) & (around >= 0)).sum(1)
             energy[:, column] += step**2 * differing
         chosen[mine] = energy.argmin(1)
-    return chosen
+    return _without_specks(chosen, neighbours)
+
+
+def _without_specks(chosen: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+    """Return choices, int [N], in which specks take the commonest choice around them."""
+    count = len(chosen)
+    around = np.append(chosen, -1)[neighbours]
+    rows, sides = np.nonzero(around == chosen[:, None])
+    links = coo_array((np.ones(len(rows), bool), (rows, neighbours[rows, sides])), (count, count))
+    parts = connected_components(links, directed=False)[1]
+    speck = np.bincount(parts)[parts] < SPECK_BLOCKS
+    result = chosen.copy()
+    for row in np.flatnonzero(speck):
+        others = neighbours[row][neighbours[row] < count]
+        calm = others[~speck[others]]
+        if len(calm):
+            result[row] = np.bincount(chosen[calm]).argmax()
+    return result
 
 
 def paint(
