@@ -1,7 +1,7 @@
 """Colours of built worlds against photos, by class, and grey walls that should not be.
 
-``python -m benchmarks.check_colours --keep DIR [--data DATA] [--scenes NAME ...] [--rooms 6]
-[--set KEY=VALUE] [--previews DIR] [--json FILE]``
+``python -m benchmarks.check_colours --keep DIR [--data DATA] [--scenes NAME ...] [--nyu 4]
+[--rooms 8] [--set KEY=VALUE] [--previews DIR] [--json FILE]``
 
 Scenes of ``benchmarks.real_captures`` and generated rooms, scanned with noise, are reconstructed
 once in ``DIR``; their blocks are built again by each call. For each class, the median CIEDE2000
@@ -57,7 +57,7 @@ ROOMS = (
     ("dining", 6),
     ("hall", 6),
 )
-FRAMES, NYU_FRAMES = 16, 4
+FRAMES = 16
 COLOURED, GREY = 8.0, 3.5  # A paint of less chroma is white or grey with a cast.
 MIN_WALL_M2 = 1.0
 LARGE = ("wall", "floor", "sofa", "bed", "table", "furn")
@@ -202,7 +202,7 @@ def rows_of(chosen: argparse.Namespace) -> Iterable[tuple[dict[str, Any], BlockV
     parameters = with_settings(Parameters(), chosen.set)
     if chosen.data:
         options = Options(chosen.data.resolve(), chosen.keep)
-        for scene in list_scenes(options.data, NYU_FRAMES):
+        for scene in list_scenes(options.data, chosen.nyu):
             if not {scene.name, scene.group} & set(chosen.scenes):
                 continue
             folder = options.folder(scene)
@@ -228,6 +228,7 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, required=True, metavar="DIR")
     parser.add_argument("--data", type=Path, help="folder of shared inputs, for real scenes")
     parser.add_argument("--scenes", nargs="+", default=SCENES, metavar="NAME")
+    parser.add_argument("--nyu", type=int, default=4, help="NYUv2 validation frames (default 4)")
     parser.add_argument("--rooms", type=int, default=len(ROOMS), help="generated rooms")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     parser.add_argument("--previews", type=Path, metavar="DIR")
