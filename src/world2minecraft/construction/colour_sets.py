@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.construction.surface_painting import lit_colour
+from world2minecraft.construction.surface_painting import LIGHTER_SHARE, lit_colour
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import ObjectInstance, OccupancyGrid
 
@@ -46,7 +46,7 @@ def unify_sets(
     for members, same in ((curtains, SAME_CLOTH), (furniture, SAME_FRONT)):
         for group in _groups(members, paints, same, beside=members is furniture):
             own = [colours[tuple(cells[number].T)] for number in group]
-            shared = lit_colour(np.concatenate(own))
+            shared = lit_colour(np.concatenate(own), LIGHTER_SHARE)
             for number, held in zip(group, own, strict=True):
                 mine = _distance(held, paints[number]) <= OWN_PAINT
                 result[tuple(cells[number][mine].T)] = shared

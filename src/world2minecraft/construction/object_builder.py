@@ -46,6 +46,7 @@ from world2minecraft.construction.overlap_avoidance import best_place, best_step
 from world2minecraft.construction.plants import is_plant, leafy_states
 from world2minecraft.construction.simple_volumes import fill_boxes, simple_boxes
 from world2minecraft.construction.surface_painting import (
+    LIGHTER_SHARE,
     block_colours,
     chair_paints,
     lit_colour,
@@ -265,7 +266,8 @@ class ObjectBuilder:
         thing = ObjectLabel(class_id, number)
         colours, usable = self.colour_source.colours_of(ColourSamples(cells, cells))
         if usable.any():
-            self.paints[number] = lit_colour(colours[usable])
+            share = 1.0 if class_id in UPHOLSTERED else LIGHTER_SHARE
+            self.paints[number] = lit_colour(colours[usable], share)
         boxes = simple_boxes(cells, self.grid, self._floor_layer(cells))
         filled = fill_boxes(boxes, self.grid.shape)
         at = tuple(filled.T)
