@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from PIL import Image
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from benchmarks.real_captures.running import Options, run_scene
 from benchmarks.real_captures.scenes import list_scenes
@@ -89,7 +89,7 @@ def wall_colours(
         points_m: Points on walls in the room, float64 [N, 3].
         colours: sRGB colours of the points, uint8 [N, 3].
     """
-    tree = cKDTree(points_m)
+    tree = KDTree(points_m)
     walls = (volume.semantic == SemanticClass.WALL) & (volume.states > 0)
     rows = []
     for axis, side in ((0, 1), (0, -1), (2, 1), (2, -1)):

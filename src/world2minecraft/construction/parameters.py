@@ -33,7 +33,7 @@ class BuildParameters:
         sign.
     edge: Blocks at the edge of the floor where no wall was seen. ``barrier`` places invisible
         barriers, so that players cannot fall into the void; ``none`` places no blocks.
-    expose: Whether to brighten the colours of a dark room and remove its colour cast.
+    expose: Whether to brighten the colours of a dark room.
     structure_colours: Maximum number of different blocks per wall, floor or ceiling.
     object_colours: Maximum number of different blocks per object; a chair always has one.
     saturation: Factor by which the chroma of saturated colours is increased.
@@ -43,7 +43,7 @@ class BuildParameters:
         different colour.
     structure_noticed, object_noticed: Minimum Oklab distance at which a part of a surface gets its
         own block.
-    lightness_weight: Weight of lightness compared to hue and chroma; 1 is plain Oklab distance.
+    lightness_weight: Weight of lightness compared to hue and chroma; 1 is plain CIEDE2000.
     calm: Additional Oklab distance accepted for each neighbouring block of the same kind.
     face_share: Minimum share of a block's face that structure must cover.
     object_share: Minimum share of a block's face that an object must cover.
