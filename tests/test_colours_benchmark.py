@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-
 from benchmarks.check_colours import figures, relief_share, wall_colours
+
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import AIR, BlockVolume
 

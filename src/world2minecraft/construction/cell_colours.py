@@ -52,7 +52,7 @@ def cell_colours(grid: OccupancyGrid, expose: bool, saturation: float) -> np.nda
 
     Args:
         grid: The grid of the room.
-        expose: Whether to brighten a dark room and remove its colour cast.
+        expose: Whether to brighten a dark room.
         saturation: Factor on the chroma of saturated colours; greys are not changed.
     """
     seen = coloured_cells(grid)

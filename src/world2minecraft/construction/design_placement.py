@@ -18,6 +18,7 @@ from world2minecraft.construction.block_lattice import Lattice
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.shape_materials import is_wooden
 from world2minecraft.construction.surface_painting import (
     FADED,
     BlockChoice,
@@ -140,7 +141,8 @@ def recolour_design(
         own, at = [states[index] for index in indices], cells[indices]
         colour = _colour(at, own_colours)
         if material.kind == "cloth" and all(map(is_full_cube, own)):
-            renewed = [_cube_of(colour, own[0], palette.blocks[class_id], parameters)] * len(own)
+            cubes = [one for one in palette.blocks[class_id] if not is_wooden(one)]
+            renewed = [_cube_of(colour, own[0], cubes, parameters)] * len(own)
         elif material.kind not in (PLAIN, FIXED):
             renewed = _change_material(own, material.kind, colour, parameters)
         elif material.kind == FIXED and not _is_far(material, colour):

@@ -8,6 +8,7 @@ import numpy as np
 from world2minecraft.construction.block_lattice import volume_shares
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import block_colour, fill_colours
+from world2minecraft.construction.colour_sets import CURTAIN
 from world2minecraft.construction.colour_sources import BuildSource, ColourSamples, ColourSource
 from world2minecraft.construction.design_placement import (
     CanvasWindow,
@@ -102,6 +103,7 @@ class ObjectBuilder:
         self.paints = chair_paints(
             grid, colours, coloured & self.colour_source.exposed, parameters.lightness_weight
         )
+        self.curtains = frozenset(one.id for one in instances if one.name == CURTAIN)
         self.plants = frozenset(one.id for one in instances if self._is_plant(one))
         self.uncertain = frozenset(
             one.id for one in instances if one.confidence < parameters.simple_below
@@ -397,6 +399,8 @@ class ObjectBuilder:
 
     def _kinds(self, cells: np.ndarray, thing: ObjectLabel) -> frozenset[str]:
         """Return the kinds of shape that exist in the colours of an object of cells [N, 3]."""
+        if thing.instance in self.curtains:
+            return frozenset(("full",))
         paint = self.paints.get(thing.instance)
         if paint is not None:
             return self.shape_painter.kinds(np.reshape(paint, (-1, 3)), thing.class_id)
@@ -455,7 +459,9 @@ class ObjectBuilder:
         paint = self.paints.get(thing.instance)
         if paint is not None:
             colours[filled], known = paint, filled
-        states = self.shape_painter.states(design, colours, filled & known.any(), thing.class_id)
+        cloth = thing.instance in self.curtains
+        made_as = int(SemanticClass.SOFA) if cloth else thing.class_id
+        states = self.shape_painter.states(design, colours, filled & known.any(), made_as)
         at = tuple(np.argwhere(filled).T[axis] + low[axis] for axis in range(3))
         if thing.instance in self.plants:
             states = leafy_states(states, at[2], colours[filled])

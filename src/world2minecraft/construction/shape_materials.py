@@ -141,7 +141,7 @@ def materials_of(palette: Palette, *, wood: bool = True) -> Materials:
         {
             block: name
             for block, name in names.items()
-            if block in full and (wood or not any(word in block for word in WOODEN))
+            if block in full and (wood or not is_wooden(block))
         }
         for names in (palette.slabs, palette.fences)
     )
@@ -169,6 +169,11 @@ def materials_of(palette: Palette, *, wood: bool = True) -> Materials:
             for kind, names in blocks.items()
         },
     )
+
+
+def is_wooden(block: str) -> bool:
+    """Return whether a full block is of wood."""
+    return any(word in block for word in WOODEN)
 
 
 def _known(names: Mapping[str, str]) -> dict[str, str]:

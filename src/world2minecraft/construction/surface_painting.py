@@ -1,7 +1,7 @@
 """Painting: choose the blocks of each surface of the shell and of each object.
 
-A surface uses the block closest in Oklab among those its class allows. To avoid noise, a few blocks
-are first chosen for the whole surface, and then each block weighs its own colour against its
+A surface uses the block closest by CIEDE2000 among those its class allows. To avoid noise, a few
+blocks are first chosen for the whole surface, and then each block weighs its own colour against its
 neighbours. A plain wall becomes uniform, while the edge between a red front and a dark counter
 stays.
 
@@ -31,8 +31,8 @@ MIN_BLOCKS = 3.0
 ROUNDS = 4
 SPECK_BLOCKS = 3  # Fewer connected blocks of a paint are noise.
 OKLAB_OF_CIEDE = 0.01  # Oklab distance that looks like a CIEDE2000 difference of 1.
-# More chroma than a colour has is a worse fault than less: a dark floor came out purple.
-MORE_CHROMA, GAUDY_WEIGHT = 0.02, 1.0
+# Of walls and floors, more chroma is a worse fault than less: a dark floor came out purple.
+MORE_CHROMA = 0.02
 DULL_CHROMA, STRONG_CHROMA = 0.035, 0.055  # From where on a grey for a colour is a fault.
 FADED = 0.05  # How great a fault, of an object; on walls and floors a calm grey is none.
 SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise of fused colours.
@@ -72,7 +72,7 @@ def colour_costs(
     own, chroma = (np.hypot(one[:, 1], one[:, 2]) for one in (colours, offered))
     faded = fading * np.clip((own - DULL_CHROMA) / (STRONG_CHROMA - DULL_CHROMA), 0, 1)
     faded = faded[:, None] * (chroma < own[:, None] / 2)
-    gaudy = GAUDY_WEIGHT * np.maximum(chroma - own[:, None] - MORE_CHROMA, 0)
+    gaudy = np.maximum(chroma - own[:, None] - MORE_CHROMA, 0) * (fading == 0)
     return (OKLAB_OF_CIEDE * differences + handicaps.astype(np.float32) + faded + gaudy) ** 2
 
 
