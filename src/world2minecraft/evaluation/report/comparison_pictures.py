@@ -7,14 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.view_stream import views_named
 from world2minecraft.core.types import Camera, Scan, View
+from world2minecraft.geometry.undistort import pinhole_camera
 from world2minecraft.reconstruction.verification.photo_samples import evenly_spread
+from world2minecraft.rendering.batch import render_batch
 from world2minecraft.rendering.picture import render_volume
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.shading_parameters import NEUTRAL
 
 PAIRS = 6
+CHOICE_PX, MIN_SHARE = 64, 0.005  # Width of the pictures that choose views, and share of a thing.
 WIDTH_PX = 480
 SAMPLES = 2  # Rays across a pixel; light is even, so that colours compare with the photo's.
 AGREES_M = 0.25  # One block at the default scale.
@@ -40,9 +44,35 @@ class Pair:
 
 
 def make_pairs(scan: Scan, scene: BlockScene) -> list[Pair]:
-    """Return up to six pairs, spread evenly over the frames used."""
-    chosen = evenly_spread(scan.frames_used, PAIRS)
+    """Return up to six pairs: of each sixth of the frames used, one that shows many things."""
+    chosen = choose_views(scan, scene)
     return [_pair(view, scan, scene) for view in views_named(scan.views, chosen)]
+
+
+def choose_views(scan: Scan, scene: BlockScene) -> list[str]:
+    """Return the names of up to six views that show most things of the built world.
+
+    They are spread over the frames used. Without the frames of a capture, whose poses are known
+    before they are decoded, every n-th frame is taken.
+    """
+    frames = {frame.name: frame for frame in getattr(scan.views, "frames", ())}
+    known = [frames[name] for name in scan.frames_used if name in frames]
+    if len(known) < len(scan.frames_used):
+        return evenly_spread(scan.frames_used, PAIRS)
+    parts = np.array_split(np.arange(len(known)), min(PAIRS, len(known)))
+    return [known[max(part, key=lambda n: _things(known[n], scan, scene))].name for part in parts]
+
+
+def _things(frame: FrameFiles, scan: Scan, scene: BlockScene) -> int:
+    """Return the number of things that the built world shows from the pose of a frame."""
+    camera, pose = frame.colour_camera or frame.depth_camera, frame.camera_to_world
+    if camera is None or pose is None or not np.isfinite(pose).all():
+        return 0
+    small = pinhole_camera(camera, CHOICE_PX)
+    poses = (scan.scan_to_room @ pose)[None]
+    seen = np.asarray(render_batch(scene, small, poses, outputs=("instance",)).instance)
+    ids, counts = np.unique(seen, return_counts=True)
+    return int((counts[ids > 0] >= MIN_SHARE * seen.size).sum())
 
 
 def _pair(view: View, scan: Scan, scene: BlockScene) -> Pair:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.view_stream import views_named
 from world2minecraft.core.types import Corrections, Scan, View, ViewStream
 
@@ -30,6 +31,17 @@ class CorrectedViews:
         """Read the views of the given names."""
         for view in views_named(self.views, names):
             yield correct_view(view, self.changes)
+
+    @property
+    def frames(self) -> tuple[FrameFiles, ...]:
+        """The frames of the capture with corrected poses, without decoding them."""
+        return tuple(self._corrected(frame) for frame in getattr(self.views, "frames", ()))
+
+    def _corrected(self, frame: FrameFiles) -> FrameFiles:
+        if frame.name not in self.changes or frame.camera_to_world is None:
+            return frame
+        change, _ = self.changes[frame.name]
+        return replace(frame, camera_to_world=change @ frame.camera_to_world)
 
     @property
     def damaged(self) -> dict[str, str]:
