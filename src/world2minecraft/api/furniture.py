@@ -286,7 +286,8 @@ def _cards(piece: "Template") -> list["Card"]:
     from world2minecraft.furniture.preview_scene import preview_volume
     from world2minecraft.rendering.furniture_sheet import Card
 
-    volumes = {f"{scale:g} per metre": preview_volume(piece, scale, room=False) for scale in SCALES}
+    wall = piece.mount == "wall"
+    volumes = {f"{scale:g} per metre": preview_volume(piece, scale, room=wall) for scale in SCALES}
     drawn = {label: volume for label, volume in volumes.items() if volume is not None}
     size = " x ".join(f"{side:.2f}" for side in piece.typical_m)
     return [Card(piece.title, f"{piece.name}   {size} m", drawn)] if drawn else []

@@ -139,7 +139,7 @@ def _drawers(plan: Plan, body: Body, rows: range) -> None:
     columns = (
         [width // 4, width - 1 - width // 4]
         if width > 3
-        else range((width - 1) // 2, width // 2 + 1)
+        else [width // 2]
     )
     handles(plan, body, "handle", columns if plan.size.per_metre >= 3 else plan.width, rows)
 
