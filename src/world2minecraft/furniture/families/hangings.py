@@ -159,12 +159,12 @@ def _wall_mirror(depth: float, width: float, height: float, look: Look) -> list[
 
 
 def _wall_mirror_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
-    """Join panes to a mirror, with a frame where there is room for one."""
+    """Join bright plates to a mirror, with a frame where there is room for one."""
     plan = Plan(size, look)
-    lay_sheet(plan, "glass", plan.width, plan.height)
+    plan.panel("glass", 0, plan.width, plan.height, "back")
     if size.width > 3 and size.height > 3:
-        lay_sheet(plan, "frame", plan.width, [0, size.height - 1])
-        lay_sheet(plan, "frame", [0, size.width - 1], plan.height)
+        plan.panel("frame", 0, plan.width, [0, size.height - 1], "back")
+        plan.panel("frame", 0, [0, size.width - 1], plan.height, "back")
     return plan.blocks
 
 

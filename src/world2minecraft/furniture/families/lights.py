@@ -189,15 +189,13 @@ def _wall_lamp(depth: float, width: float, height: float, look: Look) -> list[Pa
 
 
 def _wall_lamp_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
-    """Place a tube of light at few blocks per metre, and a shade of three plates at many."""
+    """Place a tube of light at few blocks per metre, and a light behind a plate at many."""
     plan = Plan(size, look)
     if size.per_metre < FINE:
         plan.put_state("light", "minecraft:end_rod[facing=up]", 0, 0, 0)
         return plan.blocks
-    plan.put("light", 0, 1, 0)
-    plan.panel("arm", 1, 1, 0, "back")
-    plan.panel("arm", 0, 0, 0, "left")
-    plan.panel("arm", 0, 2, 0, "right")
+    plan.put("light", 0, 0, 0)
+    plan.panel("arm", 1, 0, 0, "back")
     return plan.blocks
 
 

@@ -17,6 +17,7 @@ from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import bevel, box, bricks, rim, stones
 from world2minecraft.rendering.textures.wood import fibre
 
+MARK = 2.0  # Sixteenths: how long the marks in the corners of clear glass are.
 CHAIN = """
 ......ml........ ......ml........ .....m..l....... .....m..l.......
 .....m..l....... .....d..m....... ......dm........ ......ml........
@@ -32,15 +33,17 @@ RAIL = """
 
 
 def glass(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Return the glass texture: clear or stained, with a border one texel wide."""
-    edge = rim(canvas)
-    frame = edge < SIDE / canvas.size_px
+    """Return the glass texture: stained with a faint border, or clear with marks in its corners."""
+    texel = SIDE / canvas.size_px
+    border = rim(canvas) < texel
     lit = canvas.x + canvas.y < SIDE
-    tone = np.where(frame, np.where(lit, 0.1, -0.08), 0.0)
+    tone = np.where(border, np.where(lit, 0.1, -0.08), 0.0)
     if recipe.word("stained") == "1":
-        alpha = 0.5 + 0.16 * frame
-        return Surface(tone, 0.3 * frame, alpha=alpha, roughness=0.05, translucent=True)
-    return Surface(tone, 0.3 * frame, alpha=frame, roughness=0.08)
+        alpha = 0.5 + 0.1 * border
+        return Surface(tone, 0.3 * border, alpha=alpha, roughness=0.05, translucent=True)
+    corner = np.maximum(np.abs(canvas.x - SIDE / 2), np.abs(canvas.y - SIDE / 2)) > SIDE / 2 - texel
+    corner &= np.minimum(np.abs(canvas.x - SIDE / 2), np.abs(canvas.y - SIDE / 2)) > SIDE / 2 - MARK
+    return Surface(tone, 0.3 * corner, alpha=corner, roughness=0.08)
 
 
 def door(canvas: Canvas, recipe: Recipe) -> Surface:
