@@ -17,7 +17,7 @@ from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import bevel, box, bricks, rim, stones
 from world2minecraft.rendering.textures.wood import fibre
 
-MARK = 2.0  # Sixteenths: how long the marks in the corners of clear glass are.
+MARK = 1.0  # Sixteenths: how long the marks in the corners of clear glass are.
 CHAIN = """
 ......ml........ ......ml........ .....m..l....... .....m..l.......
 .....m..l....... .....d..m....... ......dm........ ......ml........
@@ -41,8 +41,8 @@ def glass(canvas: Canvas, recipe: Recipe) -> Surface:
     if recipe.word("stained") == "1":
         alpha = 0.5 + 0.1 * border
         return Surface(tone, 0.3 * border, alpha=alpha, roughness=0.05, translucent=True)
-    corner = np.maximum(np.abs(canvas.x - SIDE / 2), np.abs(canvas.y - SIDE / 2)) > SIDE / 2 - texel
-    corner &= np.minimum(np.abs(canvas.x - SIDE / 2), np.abs(canvas.y - SIDE / 2)) > SIDE / 2 - MARK
+    across, down = np.abs(canvas.x - SIDE / 2), np.abs(canvas.y - SIDE / 2)
+    corner = border & (np.minimum(across, down) > SIDE / 2 - MARK)
     return Surface(tone, 0.3 * corner, alpha=corner, roughness=0.08)
 
 
