@@ -160,14 +160,14 @@ def _painting(picture: _Picture, variant: str, first: tuple[int, int, int]) -> E
     width, height = VARIANTS[variant][:2]
     u, v, depth = first
     anchor = (u + (width - 1) // 2) * along + depth * ahead + (0, v + (height - 1) // 2, 0)
-    # Cells along negative steps count from their other side, so middles are taken of cells.
     centre = (u + (width - 1) / 2) * along + depth * ahead + (0, v + (height - 1) / 2, 0) + 0.5
     centre = centre - (1 - THICK) / 2 * ahead
+    side = SIDES.index(picture.facing)
     nbt = {
-        "variant": f"minecraft:{variant}",
-        "facing": Byte(SIDES.index(picture.facing)),
+        **dict.fromkeys(("variant", "Motive"), f"minecraft:{variant}"),  # Motive is before 1.19.
+        **dict.fromkeys(("facing", "Facing"), Byte(side)),
         **dict(zip(("TileX", "TileY", "TileZ"), map(int, anchor), strict=True)),
-        "Rotation": [Float(90.0 * SIDES.index(picture.facing)), Float(0.0)],
+        "Rotation": [Float(90.0 * side), Float(0.0)],
         "Tags": owner_tags(picture.class_id, picture.instance),
     }
     x, y, z = (float(value) for value in centre)
