@@ -34,6 +34,8 @@ _STEPS = {
     "east": ((1, 0, 0), (0, 0, -1)),
 }
 
+_OPPOSITE = {"south": "north", "north": "south", "west": "east", "east": "west"}
+
 
 def painting_state(facing: str, motif: str) -> str:
     """Return the state of a cell of a picture before ``hang_paintings``."""
@@ -53,7 +55,8 @@ class _Picture(NamedTuple):
 def hang_paintings(volume: BlockVolume) -> BlockVolume:
     """Return a volume in which paintings hang in place of the cells of pictures.
 
-    A picture that is one block off its wall moves to the wall. Panels replace one without a wall.
+    A picture that is one block off its wall moves to the wall, and one whose front is at a wall is
+    turned. Panels replace a picture without a wall.
     """
     pictures = list(_pictures(volume))
     if not pictures:
@@ -68,9 +71,9 @@ def hang_paintings(volume: BlockVolume) -> BlockVolume:
     entities = list(volume.entities)
     for one in pictures:
         semantic[tuple(one.cells.T)] = instance[tuple(one.cells.T)] = 0
-    for one in pictures:
-        cells, supported = _at_wall(one, solid[states], states == 0)
-        at = tuple(cells.T)
+    for picture in pictures:
+        one, supported = _at_wall(picture, solid[states], states == 0)
+        at = tuple(one.cells.T)
         states[at] = number[INVISIBLE if len(supported) else _panel(one.facing)]
         semantic[at], instance[at] = one.class_id, one.instance
         if len(supported):
@@ -103,24 +106,24 @@ def _pictures(volume: BlockVolume) -> Iterator[_Picture]:
             yield _Picture(own, properties["facing"], properties["motif"], class_id, owner)
 
 
-def _at_wall(
-    picture: _Picture, solid: np.ndarray, free: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the cells of a picture, int [N, 3], and those of them with a wall behind them.
+def _at_wall(picture: _Picture, solid: np.ndarray, free: np.ndarray) -> tuple[_Picture, np.ndarray]:
+    """Return a picture at the nearest wall, and those of its cells that have the wall behind them.
+
+    The front of a thin scanned picture is a guess, so the wall before it counts too.
 
     Args:
         picture: The picture.
         solid: Full blocks, bool [X, Y, Z].
         free: Air, bool [X, Y, Z], including the cells of pictures.
     """
-    back = -np.array(_STEPS[picture.facing][0])
-    best = picture.cells, picture.cells[:0]
-    for shift in (0, 1):
+    best = picture, picture.cells[:0]
+    for shift, facing in product((0, 1), (picture.facing, _OPPOSITE[picture.facing])):
+        back = -np.array(_STEPS[facing][0])
         cells = picture.cells + shift * back
         cells = cells[_lookup(free, cells)]
         supported = cells[_lookup(solid, cells + back)]
         if len(supported) > len(best[1]):
-            best = cells, supported
+            best = picture._replace(cells=cells, facing=facing), supported
     return best
 
 

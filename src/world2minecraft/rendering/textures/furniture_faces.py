@@ -13,7 +13,7 @@ from world2minecraft.rendering.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.rendering.textures.pixel_art import draw, paints_of
+from world2minecraft.rendering.textures.pixel_art import draw
 from world2minecraft.rendering.textures.recipe import Recipe
 from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import boards, box, rim
@@ -34,6 +34,8 @@ mkKMKkmmmmkKMKkm mkMMMkmmmmkMMMkm mkkkkkmmmmkkkkkm mmmdmmmkkmmmmmdm
 mmmdmmkKKkmmmmdm mmmdmmmmmdmmmmdm mkkmkkmkkmkkmkkm mkMkMMkMMkMMkMkm
 mdkMMMMMMMMMMkdm mmmkkMMMMMMkkmmm mmmmmkkkkkkmmmdm mmmdmmmmmdmmmmdm
 """
+
+
 def books(canvas: Canvas, recipe: Recipe) -> Surface:
     """Return the bookshelf texture: two rows of spines (accents) between boards."""
     y = canvas.y % 8
