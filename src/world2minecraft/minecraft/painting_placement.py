@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.core.types import BlockVolume, Entity
+from world2minecraft.core.types import AIR, BlockVolume, Entity
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.entities import owner_tags
@@ -56,7 +56,7 @@ def hang_paintings(volume: BlockVolume) -> BlockVolume:
     """Return a volume in which paintings hang in place of the cells of pictures.
 
     A picture that is one block off its wall moves to the wall, and one whose front is at a wall is
-    turned. Panels replace a picture without a wall.
+    turned. Panels replace a picture without a wall. The palette is sorted, without unused states.
     """
     pictures = list(_pictures(volume))
     if not pictures:
@@ -67,21 +67,23 @@ def hang_paintings(volume: BlockVolume) -> BlockVolume:
     states = np.array([number.get(state, 0) for state in volume.palette], np.uint16)[volume.states]
     semantic = volume.semantic.copy()
     instance = volume.instance.copy()
-    solid = np.array([is_full_cube(state) for state in palette])
+    solid = np.array([is_full_cube(state) for state in palette])[states]
     entities = list(volume.entities)
     for one in pictures:
         semantic[tuple(one.cells.T)] = instance[tuple(one.cells.T)] = 0
     for picture in pictures:
-        one, supported = _at_wall(picture, solid[states], states == 0)
+        one, supported = _at_wall(picture, solid, states == 0)
         at = tuple(one.cells.T)
         states[at] = number[INVISIBLE if len(supported) else _panel(one.facing)]
         semantic[at], instance[at] = one.class_id, one.instance
         if len(supported):
             entities.append(_best_painting(one, supported + volume.corner))
+    names = sorted(palette[index] for index in np.unique(states) if palette[index] != AIR)
+    order = {name: index for index, name in enumerate((AIR, *names))}
     return replace(
         volume,
-        states=states,
-        palette=tuple(palette),
+        states=np.array([order.get(name, 0) for name in palette], np.uint16)[states],
+        palette=(AIR, *names),
         semantic=semantic,
         instance=instance,
         entities=tuple(entities),
