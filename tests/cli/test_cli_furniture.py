@@ -119,6 +119,15 @@ def test_a_sheet_is_drawn(own, tmp_path, capsys):
     assert red.sum() > 500  # The rug.
 
 
+def test_each_class_is_a_page_of_its_own(own, tmp_path, monkeypatch, capsys):
+    few = [template(name) for name in ("rug", "toilet", "stool", "wall_shelf")]
+    monkeypatch.setattr("world2minecraft.api.furniture.list_furniture", lambda: few)
+    assert furniture("sheet", "--out", tmp_path / "all.png") == 0
+    names = ["all_chair.png", "all_furniture.png", "all_object.png"]
+    assert sorted(path.name for path in tmp_path.glob("*.png")) == names
+    assert capsys.readouterr().out.count("designs") == len(names)
+
+
 def test_classes_are_chosen_by_readable_names_or_codes(own, capsys):
     listed = []
     for name in ("television", "tvs"):

@@ -196,11 +196,9 @@ def test_what_hangs_on_a_block_keeps_it(key, tmp_path):
     write_litematic(volume, path)
     _, tree = read_nbt(unpack(path.read_bytes(), path), path)
     held = tree["Regions"]["room"]["Entities"][0]
-    written = [held["TileX"], held["TileY"], held["TileZ"]] if key == "TileX" else held[key]
-    assert list(written) == [1, 1, 2]
+    assert [held[k] for k in tags] == [1, 1, 2]  # In the form of 1.20.1.
     (entity,) = read_litematic(path).entities
-    found = [entity.nbt[k] for k in tags] if key == "TileX" else entity.nbt[key]
-    assert list(found) == list(block)
+    assert tuple(entity.nbt[k] for k in tags) == block
 
 
 # Files of others.

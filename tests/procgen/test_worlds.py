@@ -59,6 +59,13 @@ def test_designs_are_of_the_library_and_of_their_class(house):
     assert not house.design[house.volume.states == 0].any()
 
 
+@pytest.mark.parametrize("which", ["house", "tall"])
+def test_a_wall_holds_at_most_one_picture(which, request):
+    things = request.getfixturevalue(which).things
+    walls = [(t.room, t.quarter_turns) for t in things if template(t.design).family == "framed"]
+    assert len(walls) == len(set(walls))
+
+
 def test_a_house_has_structure_and_furniture(house):
     classes = set(np.unique(house.volume.semantic).tolist())
     wanted = (SemanticClass.FLOOR, SemanticClass.WALL, SemanticClass.CEILING, SemanticClass.WINDOW)

@@ -241,28 +241,32 @@ def draw_furniture(
     class_name: str = "",
     columns: int = 4,
     progress: Progress = no_progress,
-) -> list["Template"]:
-    """Draw furniture by class at 1, 2 and 4 blocks per metre, and write a PNG file.
+) -> dict[Path, list["Template"]]:
+    """Draw furniture at 1, 2 and 4 blocks per metre, and write a PNG file for each page.
+
+    The named pieces or those of one class are one page. Without either, each class is a page of its
+    own, whose file name ends in the class, such as ``furniture_chair.png``.
 
     Args:
         out: PNG file to write.
         names: Pieces to draw. Defaults to all pieces.
         class_name: Draw only this class.
         columns: Number of pieces per row.
-        progress: Callback that is called before and after drawing.
+        progress: Callback that is called before and after each page.
 
     Returns:
-        The selected pieces.
+        The pieces on each page, by the page's file.
 
     Raises:
         UsageError: If no selected piece can be drawn.
         UnknownNameError: If a piece or class is unknown.
-        OutputError: If the image cannot be written.
+        OutputError: If a file cannot be written.
 
     Example:
         >>> from world2minecraft.api.furniture import draw_furniture
-        >>> [piece.name for piece in draw_furniture(tmp / "rug.png", ["rug"])]
-        ['rug']
+        >>> pages = draw_furniture(tmp / "rug.png", ["rug"])
+        >>> [(file.name, [piece.name for piece in pieces]) for file, pieces in pages.items()]
+        [('rug.png', ['rug'])]
     """
     from world2minecraft.core.files import write_bytes
     from world2minecraft.rendering.furniture_sheet import contact_sheet, sheet_png
@@ -270,23 +274,39 @@ def draw_furniture(
     number = class_id(class_name) if class_name else None
     every = [furniture_piece(name) for name in names] if names else list_furniture()
     chosen = [one for one in every if number in (None, one.class_id)]
-    groups = {
-        heading: [card for one in members for card in _cards(one)]
-        for heading, members in by_heading(chosen).items()
-    }
-    if not any(groups.values()):
-        raise UsageError("nothing to draw: no selected piece has a block design at scale 1, 2 or 4")
-    progress("render", 0, 1)
-    write_bytes(out, sheet_png(contact_sheet(groups, columns)))
-    progress("render", 1, 1)
-    return chosen
+    pages = {Path(out): chosen}
+    if not names and number is None:
+        pages = _class_pages(Path(out), chosen)
+    for done, (file, pieces) in enumerate(pages.items()):
+        progress("render", done, len(pages))
+        groups = {
+            heading: [card for one in members for card in _cards(one)]
+            for heading, members in by_heading(pieces).items()
+        }
+        if not any(groups.values()):
+            raise UsageError(
+                "nothing to draw: no selected piece has a block design at scale 1, 2 or 4"
+            )
+        write_bytes(file, sheet_png(contact_sheet(groups, columns)))
+    progress("render", len(pages), len(pages))
+    return pages
+
+
+def _class_pages(out: Path, pieces: Sequence["Template"]) -> dict[Path, list["Template"]]:
+    """Return the pieces of each class by a file named after it."""
+    pages: dict[Path, list[Template]] = {}
+    for piece in sorted(pieces, key=lambda one: one.class_id):
+        name = display_name(piece.class_id)
+        pages.setdefault(out.with_stem(f"{out.stem}_{name}"), []).append(piece)
+    return pages
 
 
 def _cards(piece: "Template") -> list["Card"]:
     from world2minecraft.furniture.preview_scene import preview_volume
     from world2minecraft.rendering.furniture_sheet import Card
 
-    volumes = {f"{scale:g} per metre": preview_volume(piece, scale, room=False) for scale in SCALES}
+    wall = piece.mount == "wall"
+    volumes = {f"{scale:g} per metre": preview_volume(piece, scale, room=wall) for scale in SCALES}
     drawn = {label: volume for label, volume in volumes.items() if volume is not None}
     size = " x ".join(f"{side:.2f}" for side in piece.typical_m)
     return [Card(piece.title, f"{piece.name}   {size} m", drawn)] if drawn else []

@@ -94,7 +94,7 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
         "furniture list": "List the furniture templates.",
         "furniture show": "Show one furniture template.",
         "furniture add": "Add a furniture template from a schematic.",
-        "furniture sheet": "Draw all furniture templates on one sheet.",
+        "furniture sheet": "Draw all furniture templates, a page per class.",
         "palettes": "List the block palettes, or check a palette file.",
         "settings": "List the keys of --set with units, defaults and meanings.",
         "completion": "Print a script that completes w2m commands in a shell.",

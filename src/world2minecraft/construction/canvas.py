@@ -9,6 +9,7 @@ from world2minecraft.core.coordinates import block_to_room, grid_to_block_axes
 from world2minecraft.core.errors import LimitError
 from world2minecraft.core.types import AIR, BlockVolume, Entity
 from world2minecraft.minecraft.block_states import complete, parse_state
+from world2minecraft.minecraft.painting_placement import hang_paintings
 
 # Blocks that nobody sees; they are no surface, so they carry class 0.
 LIGHT = "minecraft:light[level=15,waterlogged=false]"
@@ -70,13 +71,13 @@ class Canvas:
         return tuple(self._ids)
 
     def volume(self) -> BlockVolume:
-        """Return the blocks in block axes, with a sorted palette without unused states."""
+        """Return the blocks in block axes without unused states, and with paintings hung."""
         used = np.unique(self.states)
         names = sorted(self.palette[number] for number in used if number)
         order = {name: number for number, name in enumerate(names, 1)} | {AIR: 0}
         renumber = np.array([order.get(name, 0) for name in self.palette], np.uint16)
         frame = block_to_room(self.lattice.corner_m, self.lattice.blocks_per_metre)
-        return BlockVolume(
+        volume = BlockVolume(
             states=grid_to_block_axes(renumber[self.states]),
             palette=(AIR, *names),
             semantic=grid_to_block_axes(self.semantic),
@@ -85,3 +86,4 @@ class Canvas:
             block_to_room=frame,
             entities=tuple(self.entities),
         )
+        return hang_paintings(volume)

@@ -30,8 +30,7 @@ WALL_M = 0.5  # No lamp hangs nearer to a wall, unless the room is that narrow.
 MAX_LAMPS = 24  # Lamps a storey.
 CHAIN = "minecraft:chain[axis=y,waterlogged=false]"
 LANTERN = "minecraft:lantern[hanging=true,waterlogged=false]"
-SHADE = "minecraft:sea_lantern"
-DOWNLIGHT = "minecraft:ochre_froglight[axis=y]"
+SHADE = DOWNLIGHT = "minecraft:ochre_froglight[axis=y]"
 LEVEL = BRIGHTEST
 MIN_LIGHT = 8  # Minimum light on walkable floor cells; monsters spawn at 0.
 MIN_CORNER_LIGHT = 5  # Assumed minimum light in the air of a room; walls there are dim.

@@ -22,7 +22,7 @@ from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.entities import BLOCK_DISPLAY
 from world2minecraft.minecraft.visual_shapes import visual_boxes
 
-UNSEEN = frozenset(f"minecraft:{name}" for name in ("air", "light", "barrier"))
+UNSEEN = frozenset(f"minecraft:{name}" for name in ("air", "light", "barrier", "painting"))
 # Endings of names that are one shape in many materials.
 SHAPES = ("_stairs", "_slab", "_trapdoor", "_fence_gate", "_fence", "_wall", "_carpet", "_bed",
           "_door", "_button", "_pressure_plate", "_wall_sign", "_sign", "_wall_banner", "_banner",

@@ -103,6 +103,19 @@ def lay_back(plan: Plan, role: str, j: Numbers, k: Numbers, i: Numbers = 0) -> N
         plan.put(role, i, j, k)
 
 
+def lay_sheet(plan: Plan, role: str, j: Numbers, k: Numbers) -> None:
+    """Place a thin upright sheet of the panes or bars of a role's material.
+
+    A single one would be a post, so a sheet one block wide consists of panels if the material has
+    them.
+    """
+    joined = next((shape for shape in ("pane", "bars") if plan.look.has(role, shape)), None)
+    if joined is None or (plan.size.width == 1 and plan.look.has(role, "trapdoor")):
+        plan.panel(role, 0, j, k, "back")
+    else:
+        plan.put(role, 0, j, k, joined)
+
+
 def lay_trestle(plan: Plan, role: str, k: int = 0) -> None:
     """Place a table one block high: a top in the upper half, and a leg at either end.
 

@@ -94,6 +94,7 @@ FAMILIES = Registry(
         "curtain": f"{_FOLDER}.hangings:CURTAIN",
         "blind": f"{_FOLDER}.hangings:BLIND",
         "framed": f"{_FOLDER}.hangings:FRAMED",
+        "wall_mirror": f"{_FOLDER}.hangings:WALL_MIRROR",
         "ribbed": f"{_FOLDER}.hangings:RIBBED",
         "standing_mirror": f"{_FOLDER}.hangings:STANDING_MIRROR",
         "rug": f"{_FOLDER}.hangings:RUG",

@@ -10,6 +10,7 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.block_designs import BlockDesign, block_size, lay_template
 from world2minecraft.furniture.template import Parameters, Template
+from world2minecraft.minecraft.painting_placement import hang_paintings
 from world2minecraft.minecraft.rules.connections import update_connections
 
 ROOM = "minecraft:smooth_stone"
@@ -63,7 +64,7 @@ def preview_design(
     semantic = np.where(own, template.class_id, 0).astype(np.uint8)
     semantic[(states > 0) & ~own] = SemanticClass.FLOOR
     corner_m = np.zeros(3)
-    return BlockVolume(
+    volume = BlockVolume(
         states,
         palette,
         semantic,
@@ -71,6 +72,7 @@ def preview_design(
         (0, 0, 0),
         block_to_room(corner_m, blocks_per_metre),
     )
+    return hang_paintings(volume)
 
 
 def _put_room(states: np.ndarray, number: int, mount: str, quarter_turns: int) -> None:
@@ -78,5 +80,11 @@ def _put_room(states: np.ndarray, number: int, mount: str, quarter_turns: int) -
     if mount != "wall":
         states[:, 0 if mount != "ceiling" else -1, :] = number
         return
-    back = {0: np.s_[0], 1: np.s_[:, :, -1], 2: np.s_[-1], 3: np.s_[:, :, 0]}[quarter_turns % 4]
+    inner = np.s_[1:-1]
+    back = {
+        0: np.s_[0, inner, inner],
+        1: np.s_[inner, inner, -1],
+        2: np.s_[-1, inner, inner],
+        3: np.s_[inner, inner, 0],
+    }[quarter_turns % 4]
     states[back] = number

@@ -21,6 +21,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.nbt import Float
+from world2minecraft.minecraft.paintings import PAINTING, painting_cube
 from world2minecraft.minecraft.versions import GameVersion
 
 BLOCK_DISPLAY = "minecraft:block_display"
@@ -54,7 +55,7 @@ def entity_tags(nbt: Mapping[str, Any]) -> list[str]:
 
 @dataclass(frozen=True, eq=False)
 class DisplayCube:
-    """The block state that a display entity renders, and the transform of its unit cube.
+    """The block state that a display entity or painting renders, and the transform of its cube.
 
     ``cube_to_world``, float64 [4, 4], maps [0, 1] cubed to world block coordinates.
     """
@@ -140,8 +141,8 @@ def owner_of(entity: Entity) -> tuple[int, int]:
 
 
 def display_cubes(entities: Iterable[Entity]) -> list[DisplayCube]:
-    """Return the cubes that block display entities render, skipping other and invalid entities."""
-    found = (_parse_display(entity) for entity in entities if entity.id == BLOCK_DISPLAY)
+    """Return the cubes that block displays and paintings render, without other and invalid ones."""
+    found = (_PARSERS[entity.id](entity) for entity in entities if entity.id in _PARSERS)
     return [cube for cube in found if cube is not None]
 
 
@@ -174,6 +175,17 @@ def _parse_display(entity: Entity) -> DisplayCube | None:
         return None
     class_id, instance = owner_of(entity)
     return DisplayCube(state, matrix, class_id, instance)
+
+
+def _parse_painting(entity: Entity) -> DisplayCube | None:
+    try:
+        state, matrix = painting_cube(entity.nbt, entity.position)
+    except (KeyError, TypeError, ValueError):
+        return None
+    return DisplayCube(state, matrix, *owner_of(entity))
+
+
+_PARSERS = {BLOCK_DISPLAY: _parse_display, PAINTING: _parse_painting}
 
 
 def _matrix_of(transformation: Any) -> np.ndarray:

@@ -1,4 +1,6 @@
-"""Conversion of block entity and entity data between game versions: sign texts and item stacks.
+"""Conversion of block entity and entity data between game versions.
+
+Sign texts, item stacks, and the block that a painting or item frame hangs on are converted.
 
 Up to 1.20.4 an item stack is ``{id, Count, tag}``, and since 1.20.5 ``{id, count, components}``. A
 game that reads the other form loses the stack or its count. A volume keeps item stacks in the form
@@ -14,10 +16,16 @@ from typing import Any
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import Byte
+from world2minecraft.minecraft.rules.attached_entities import (
+    TILE,
+    name_attached_block,
+    named_block,
+)
 from world2minecraft.minecraft.signs import convert_sign
 
 FIRST_COMPONENTS = 3837  # 1.20.5.
 OLD, NEW = ("Count", "tag"), ("count", "components")
+FIRST_BLOCK_POS = 4325  # 1.21.5, since which ``block_pos`` holds what ``TileX`` to ``TileZ`` held.
 MAX_OLD_COUNT = 127  # The maximum of a signed byte.
 
 
@@ -43,9 +51,14 @@ def convert_block_entity(entity: BlockEntity, data_version: int) -> BlockEntity:
 
 def convert_entity(entity: Entity, data_version: int) -> Entity:
     """Convert the data of an entity to the form of a game version."""
-    if not any(_item_stacks(entity.nbt, data_version)):
+    if any(_item_stacks(entity.nbt, data_version)):
+        entity = replace(entity, nbt=_convert(entity.nbt, data_version))
+    block = named_block(entity.nbt)
+    if block is None or ("block_pos" in entity.nbt) == (data_version >= FIRST_BLOCK_POS):
         return entity
-    return replace(entity, nbt=_convert(entity.nbt, data_version))
+    kept = {key: held for key, held in entity.nbt.items() if key not in (*TILE, "block_pos")}
+    form = {"block_pos": ()} if data_version >= FIRST_BLOCK_POS else {}
+    return replace(entity, nbt=name_attached_block({**kept, **form}, block))
 
 
 def count_lost_data(volume: BlockVolume, data_version: int, losses: Losses) -> None:

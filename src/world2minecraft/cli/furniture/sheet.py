@@ -1,4 +1,4 @@
-"""Draw all furniture at 1, 2 and 4 blocks per metre on one sheet: ``w2m furniture sheet``."""
+"""Draw furniture at 1, 2 and 4 blocks per metre, a page per class: ``w2m furniture sheet``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 EXAMPLES = """\
-w2m furniture sheet -o furniture.png
+w2m furniture sheet -o furniture.png        one page per class: furniture_chair.png, ...
 w2m furniture sheet --class object -o small_things.png
 w2m furniture sheet sofa corner_sofa -o sofas.png
 """
@@ -18,7 +18,13 @@ def run(
         typer.Argument(metavar="[NAME]...", help="Pieces to draw.", show_default="all"),
     ] = None,
     out: Annotated[
-        Path, typer.Option("--out", "-o", metavar="PNG", help="Output PNG file.")
+        Path,
+        typer.Option(
+            "--out",
+            "-o",
+            metavar="PNG",
+            help="Output PNG file. Pages of all classes add the class to its name.",
+        ),
     ] = Path("furniture.png"),
     kind: Annotated[
         str,
@@ -41,5 +47,6 @@ def run(
 
     with show_progress() as progress:
         noted = with_compile_note(progress)
-        drawn = draw_furniture(out, names or (), class_name=kind, progress=noted)
-    print(f"{out}: {len(drawn)} designs")
+        pages = draw_furniture(out, names or (), class_name=kind, progress=noted)
+    for file, pieces in pages.items():
+        print(f"{file}: {len(pieces)} designs")

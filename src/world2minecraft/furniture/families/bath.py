@@ -36,6 +36,8 @@ def _toilet_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan.put("body", bowl, plan.width, 1, "slab", type="bottom")
     if size.height > 2:
         plan.panel("seat", 1, plan.width, 2, "back")
+        flush = "minecraft:stone_button[face=floor,facing=east]"
+        plan.put_state("body", flush, 0, size.width // 2, size.height)
     return plan.blocks
 
 

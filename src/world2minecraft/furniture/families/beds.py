@@ -217,6 +217,9 @@ def _crib_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
         _beds(plan, 0)
         return plan.blocks
     base = max(1, plan.layers(look["mattress_height"]))
+    if min(size.depth, size.width) == 1 and look.has("rail", "trapdoor"):
+        _rail_cot(plan, base)
+        return plan.blocks
     plan.put("mattress", plan.depth, plan.width, range(base - 1, base))
     for i, j in plan.corners:
         plan.put("rail", i, j, range(base), "fence")
@@ -225,6 +228,17 @@ def _crib_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     inner = plan.width if size.width < 3 else range(1, size.width - 1)
     plan.drop(range(1, size.depth - 1), inner, top)
     return plan.blocks
+
+
+def _rail_cot(plan: Plan, base: int) -> None:
+    """Place a mattress one block wide between four rails of plates."""
+    along, across = range(1, plan.size.depth + 1), range(1, plan.size.width + 1)
+    plan.put("mattress", along, across, range(base - 1, base))
+    rows = range(max(plan.size.height, base + 1))
+    plan.panel("rail", 0, across, rows, "front")
+    plan.panel("rail", plan.size.depth + 1, across, rows, "back")
+    plan.panel("rail", along, 0, rows, "left")
+    plan.panel("rail", along, plan.size.width + 1, rows, "right")
 
 
 CRIB = Family(

@@ -136,11 +136,7 @@ def _drawers(plan: Plan, body: Body, rows: range) -> None:
         return
     plan.put("door", body.face, plan.width, rows)
     width = plan.size.width
-    columns = (
-        [width // 4, width - 1 - width // 4]
-        if width > 3
-        else range((width - 1) // 2, width // 2 + 1)
-    )
+    columns = [width // 4, width - 1 - width // 4] if width > 3 else [width // 2]
     handles(plan, body, "handle", columns if plan.size.per_metre >= 3 else plan.width, rows)
 
 

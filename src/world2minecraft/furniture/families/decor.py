@@ -227,19 +227,20 @@ def _bicycle(depth: float, width: float, height: float, look: Look) -> list[Part
 
 
 def _bicycle_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
-    """Stand it up of plates in one plane, as a cut-out, with a bar across to steer by."""
+    """Join a frame of fences between two wheels, with a bar across to steer by."""
     plan, last = Plan(size, look), max(size.depth - 1, 1)
     if size.per_metre < FINE:
-        plan.panel("frame", range(1, last), 0, 0, "right")
         plan.panel("wheel", [0, last], 0, 0, "right")
-        if size.height > 1:
-            plan.panel("frame", [1, last], 0, 1, "right")
+        plan.put("frame", range(1, last), 0, 0, "fence")
+        if size.height > 1 and last > 1:
+            plan.plate("saddle", 1, 0, 1, "bottom")
+            plan.put("frame", last - 1, 0, 1, "fence")
         return plan.blocks
-    plan.panel("wheel", [0, 1, last - 1, last], 1, [0, 1], "right")
-    plan.panel("frame", range(2, last - 1), 1, 1, "right")
-    plan.panel("frame", [2, last - 2, last - 1], 1, 2, "right")
-    plan.put("saddle", [1, 2], 1, 3, "slab", type="bottom")
-    plan.put("frame", last - 1, [0, 1, 2], 3, "fence")
+    plan.put("wheel", [0, 1, last - 1, last], 1, [0, 1], "bars")
+    plan.put("frame", range(2, last - 1), 1, 1, "fence")
+    plan.put("frame", [2, last - 2], 1, 2, "fence")
+    plan.plate("saddle", [1, 2], 1, 3, "bottom")
+    plan.put("frame", last - 2, [0, 1, 2], 3, "fence")
     return plan.blocks
 
 

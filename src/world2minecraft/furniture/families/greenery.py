@@ -155,8 +155,7 @@ def _cactus_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
         return plan.blocks
     plan.put("pot", 0, 1, 0)
     plan.put("leaves", 0, 1, range(1, size.height))
-    plan.put("leaves", 0, 0, range(top // 2 + 1, top))
-    plan.put("leaves", 0, 2, range(max(top - 1, 2), size.height))
+    plan.put("leaves", 0, 2, top // 2 + 1)
     return plan.blocks
 
 

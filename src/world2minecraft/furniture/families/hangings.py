@@ -1,13 +1,15 @@
 """Flat hanging families: curtains, blinds, pictures, mirrors and radiators; also rugs.
 
-No block needs the support of a wall: plates, panes and wool stay in place on their own in the game.
+Only a painting needs the support of a wall: plates, panes and wool stay in place on their own in
+the game. Panes side by side join to a sheet in the middle of their blocks.
 """
 
 from world2minecraft.furniture.block_plan import Plan
-from world2minecraft.furniture.box_primitives import part, slab
+from world2minecraft.furniture.box_primitives import lay_sheet, part, slab
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 from world2minecraft.furniture.template_parameters import Look
+from world2minecraft.minecraft.painting_placement import painting_state
 
 FINE = 3.0  # Blocks per metre from which a curtain has folds.
 FOLD_M = 0.16
@@ -106,8 +108,6 @@ def _blind_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
     low = min(round(size.height * (1 - look["down"])), size.height - 1)
     plan.panel("slat", 0, plan.width, range(low, size.height), "back")
-    if size.height > 3:
-        plan.panel("rail", 0, plan.width, size.height - 1, "back")
     return plan.blocks
 
 
@@ -135,29 +135,44 @@ def _framed(depth: float, width: float, height: float, look: Look) -> list[Part]
 
 
 def _framed_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
-    """Stand plates in a frame, one picture's ground below and its sky above."""
     plan = Plan(size, look)
-    framed = size.width > 3 and size.height > 3
-    horizon = max(1, round(0.45 * size.height)) if size.height > 1 else 0
-    plan.panel("low", 0, plan.width, range(horizon), "back")
-    plan.panel("high", 0, plan.width, range(horizon, size.height), "back")
-    if framed and look.option("frame") == "yes":
-        plan.panel("frame", 0, plan.width, [0, size.height - 1], "back")
-        plan.panel("frame", 0, [0, size.width - 1], plan.height, "back")
-    if framed and look.option("motif") == "sun":
-        plan.panel("spot", 0, 2 * size.width // 3, size.height - 2, "back")
-    if framed and look.option("motif") == "figure":
-        middle = range((size.width - 1) // 2, size.width // 2 + 1)
-        plan.panel("spot", 0, middle, size.height - 2 - (size.height > 4), "back")
+    state = painting_state("east", _MOTIFS[look.option("motif")])
+    plan.put_state("high", state, 0, plan.width, plan.height)
     return plan.blocks
 
 
+_MOTIFS = {"plain": "abstract", "sun": "landscape", "figure": "figure"}
 FRAMED = Family(
     build=_framed,
     design=_framed_blocks,
     roles=("frame", "low", "high", "spot"),
     parameters={"rim": Span(0.02, 0.05, 0.1)},
     options={"frame": ("yes", "no"), "motif": ("plain", "sun", "figure")},
+)
+
+
+def _wall_mirror(depth: float, width: float, height: float, look: Look) -> list[Part]:
+    return [
+        part._replace(role="frame" if part.role == "frame" else "glass")
+        for part in _framed(depth, width, height, look)
+    ]
+
+
+def _wall_mirror_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    """Join bright plates to a mirror, with a frame where there is room for one."""
+    plan = Plan(size, look)
+    plan.panel("glass", 0, plan.width, plan.height, "back")
+    if size.width > 3 and size.height > 3:
+        plan.panel("frame", 0, plan.width, [0, size.height - 1], "back")
+        plan.panel("frame", 0, [0, size.width - 1], plan.height, "back")
+    return plan.blocks
+
+
+WALL_MIRROR = Family(
+    build=_wall_mirror,
+    design=_wall_mirror_blocks,
+    roles=("frame", "glass"),
+    parameters={"rim": Span(0.02, 0.05, 0.1)},
 )
 
 
@@ -175,9 +190,9 @@ def _ribbed(depth: float, width: float, height: float, look: Look) -> list[Part]
 
 def _ribbed_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
-    plan.panel("body", 0, plan.width, plan.height, "back")
+    lay_sheet(plan, "body", plan.width, plan.height)
     if look.option("towel") == "yes" and size.height > 2:
-        plan.panel("towel", 0, plan.width, range(1, size.height, 3), "back")
+        lay_sheet(plan, "towel", plan.width, range(1, size.height, 3))
     return plan.blocks
 
 
@@ -203,11 +218,9 @@ def _standing_mirror(depth: float, width: float, height: float, look: Look) -> l
 
 def _standing_mirror_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
-    low = 1 if size.height > 3 else 0
-    plan.panel("glass", 0, plan.width, range(low, size.height), "back")
-    if low:
-        plan.stairs("foot", 0, plan.width, 0, "back")
-        plan.panel("frame", 0, plan.width, size.height - 1, "back")
+    lay_sheet(plan, "glass", plan.width, plan.height)
+    if size.height > 3:
+        plan.put("foot", 0, plan.width, 0)
     return plan.blocks
 
 
@@ -256,10 +269,10 @@ def _checked(i: int, j: int, depth: int, width: int) -> str:
 
 def _rounded(i: int, j: int, depth: int, width: int) -> str:
     along, across = (2 * i + 1 - depth) / depth, (2 * j + 1 - width) / width
-    away = along * along + across * across
-    if away > 1.02 and min(depth, width) > 3:
+    away, narrow = along * along + across * across, min(depth, width)
+    if away > 1.02 and narrow > 3:
         return ""
-    return "border" if away > 0.55 and min(depth, width) > 4 else "field"
+    return "border" if narrow > 2 and away > (0.45 if narrow > 4 else 0.85) else "field"
 
 
 _PATTERNS = {"border": _bordered, "stripes": _striped, "checks": _checked, "round": _rounded}

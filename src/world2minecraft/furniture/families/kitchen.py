@@ -3,7 +3,7 @@
 A worktop consists of upside-down stairs: half a block of stone that overhangs the doors below it.
 """
 
-from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.block_plan import Numbers, Plan
 from world2minecraft.furniture.box_primitives import part, slab
 from world2minecraft.furniture.families.fronts import (
     Body,
@@ -158,14 +158,18 @@ def _fridge_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
         return plan.blocks
     plan.put("door", body.face, plan.width, plan.height)
     if look.option("doors") == "side":
-        middle = size.width // 2
-        columns = [middle - 1, middle] if size.width > 1 else [0]
-        rows = range(size.height // 2 - 1, size.height // 2 + 1) if size.height > 3 else [1]
-        handles(plan, body, "handle", columns, rows)
+        rows = range(size.height // 3, max(2 * size.height // 3, size.height // 3 + 1))
+        _bars(plan, body, [(size.width - 1) // 2, size.width // 2], rows)
         return plan.blocks
     plan.put("seam", body.face, plan.width, split - 1)
     handles(plan, body, "handle", 0, [max(split - 2, 0), split])
     return plan.blocks
+
+
+def _bars(plan: Plan, body: Body, j: Numbers, k: Numbers) -> None:
+    """Place upright bars as handles before a body, if the size leaves space for them."""
+    if body.front is not None:
+        plan.put_state("handle", "minecraft:chain[axis=y]", body.front, j, k)
 
 
 FRIDGE = Family(
@@ -298,7 +302,7 @@ def _appliance_door(plan: Plan, body: Body, rows: range) -> None:
         faces(plan, "door", body.face, plan.width, rows[0])
     else:
         plan.put("window", body.face, plan.width, rows[len(rows) // 3 : -1])
-    handles(plan, body, "handle", plan.width, rows[-1])
+    handles(plan, body, "handle", plan.width[-1], rows[-1])
 
 
 APPLIANCE = Family(

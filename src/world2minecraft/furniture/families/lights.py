@@ -72,7 +72,7 @@ def _desk_lamp(depth: float, width: float, height: float, look: Look) -> list[Pa
 def _desk_lamp_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan, top = Plan(size, look), size.height - 1
     if top == 0:
-        plan.put_state("shade", "minecraft:end_rod[facing=up]", 0, 0, 0)
+        plan.put_state("shade", STANDING, 0, 0, 0)
         return plan.blocks
     plan.put("pole", 0, 0, range(top), "bars")
     plan.put_state("shade", "minecraft:end_rod[facing=east]", 0, 0, top)
@@ -122,7 +122,7 @@ def _pendant(depth: float, width: float, height: float, look: Look) -> list[Part
 def _pendant_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
     if size.height == 1:
-        plan.put_state("light", "minecraft:end_rod[facing=down]", 0, 0, 0)
+        plan.put_state("light", HANGING, 0, 0, 0)
     elif look.option("shade") == "plates" and size.per_metre >= FINE:
         shade(plan, 1, 1, range(1))
         plan.put("chain", 1, 1, range(1, size.height), "chain", axis="y")
@@ -189,12 +189,13 @@ def _wall_lamp(depth: float, width: float, height: float, look: Look) -> list[Pa
 
 
 def _wall_lamp_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    """Place a tube of light at few blocks per metre, and a light behind a plate at many."""
     plan = Plan(size, look)
-    if size.height == 1:
-        plan.put_state("light", "minecraft:end_rod[facing=east]", 0, 0, 0)
+    if size.per_metre < FINE:
+        plan.put_state("light", "minecraft:end_rod[facing=up]", 0, 0, 0)
         return plan.blocks
-    plan.put("arm", 0, 0, size.height - 1, "fence")
-    plan.put_state("light", HANGING, 0, 0, size.height - 2)
+    plan.put("light", 0, 0, 0)
+    plan.panel("arm", 1, 0, 0, "back")
     return plan.blocks
 
 
@@ -215,13 +216,13 @@ def _glow(depth: float, width: float, height: float, look: Look) -> list[Part]:
 
 
 def _glow_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
-    """A body of light: a paper lamp on a foot, or a flat one under the ceiling."""
+    """Place a body of light: a paper lamp on a foot, or a shade of plates under the ceiling."""
     plan = Plan(size, look)
     if look.option("hangs") == "yes":
         if size.per_metre < 1.5:
-            plan.put_state("light", "minecraft:end_rod[facing=down]", 0, 0, 0)
+            plan.put_state("light", HANGING, 0, 0, 0)
         else:
-            plan.put("light", plan.depth, plan.width, 0)
+            _ceiling_shade(plan)
         return plan.blocks
     if size.height == 1:
         plan.put_state("light", STANDING, 0, 0, 0)
@@ -233,6 +234,17 @@ def _glow_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     if not foot:
         plan.put("frame", plan.depth, plan.width, 0, "fence")
     return plan.blocks
+
+
+def _ceiling_shade(plan: Plan) -> None:
+    """Place luminous blocks with plates on their four sides, open below."""
+    depth, width = plan.size.depth, plan.size.width
+    along, across = range(1, depth + 1), range(1, width + 1)
+    plan.put("light", along, across, 0)
+    plan.panel("frame", 0, across, 0, "front")
+    plan.panel("frame", depth + 1, across, 0, "back")
+    plan.panel("frame", along, 0, 0, "left")
+    plan.panel("frame", along, width + 1, 0, "right")
 
 
 GLOW = Family(

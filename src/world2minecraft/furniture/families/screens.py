@@ -1,8 +1,7 @@
 """Screen families: screens on a wall or on a foot.
 
-A thin screen consists of panes, which join side by side to one dark plate. A single pane would be a
-post, so a screen that is one block wide is a panel, or a whole block at few blocks per metre,
-because panels are brown and screens are not.
+A screen is a plate of panels. A wide one at many blocks per metre is a slab of whole blocks, since
+panels are brown and screens are black.
 """
 
 from world2minecraft.furniture.block_plan import Plan
@@ -11,8 +10,8 @@ from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 from world2minecraft.furniture.template_parameters import Look
 
-THICK = 0.3  # Blocks: a screen this deep is a whole block.
-PANELS_FROM = 3.0  # Blocks per metre.
+FINE = 3.0  # Blocks per metre from which a block is thin beside a wide screen.
+WIDE = 3  # Blocks.
 
 
 def _wall_screen(depth: float, width: float, height: float, look: Look) -> list[Part]:
@@ -21,19 +20,17 @@ def _wall_screen(depth: float, width: float, height: float, look: Look) -> list[
 
 def _wall_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size._replace(depth=1), look)
-    _lay_screen(plan, 0, size.exact[0])
+    _lay_screen(plan, 0)
     return plan.blocks
 
 
-def _lay_screen(plan: Plan, bottom: int, deep: float) -> None:
+def _lay_screen(plan: Plan, bottom: int) -> None:
     above = range(bottom, max(plan.size.height, bottom + 1))
-    small = plan.size.width == 1 and plan.size.per_metre < PANELS_FROM
-    if small or deep > THICK or not plan.look.has("screen", "pane", "trapdoor"):
+    wide = plan.size.width >= WIDE and plan.size.per_metre >= FINE
+    if wide or not plan.look.has("screen", "trapdoor"):
         plan.put("screen", 0, plan.width, above)
-    elif plan.size.width > 1:
-        plan.put("screen", 0, plan.width, above, "pane")
     else:
-        plan.panel("screen", 0, 0, above, "back")
+        plan.panel("screen", 0, plan.width, above, "back")
 
 
 WALL_SCREEN = Family(build=_wall_screen, design=_wall_blocks, roles=("screen",))
@@ -53,7 +50,7 @@ def _standing_screen(depth: float, width: float, height: float, look: Look) -> l
 def _standing_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size._replace(depth=1), look)
     raised = 1 if size.height > 2 else 0
-    _lay_screen(plan, raised, 0.2)
+    _lay_screen(plan, raised)
     if raised:
         middle = sorted({(size.width - 1) // 2, size.width // 2})
         lay_legs(plan, "post", [(0, j) for j in middle], 1)
@@ -79,7 +76,10 @@ def _box_screen(depth: float, width: float, height: float, look: Look) -> list[P
 def _box_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
     plan.put("body", plan.depth, plan.width, plan.height)
-    plan.put("screen", size.depth - 1, plan.width, plan.height)
+    if size.depth == 1 and look.has("screen", "trapdoor"):
+        plan.panel("screen", size.depth, plan.width, plan.height, "back")
+    else:
+        plan.put("screen", size.depth - 1, plan.width, plan.height)
     return plan.blocks
 
 

@@ -70,4 +70,9 @@ class WorldCanvas(Canvas):
         used_names = sorted(names[int(number)] for number in used if number)
         order = {name: number for number, name in enumerate(used_names, 1)} | {"": 0}
         renumber = np.array([order.get(name, 0) for name in names], np.uint16)
-        return self.volume(), grid_to_block_axes(renumber[self.design]), ("", *used_names)
+        volume, designs = self.volume(), grid_to_block_axes(renumber[self.design])
+        moved = volume.instance != grid_to_block_axes(self.instance)  # Pictures, to their walls.
+        of_instance = np.zeros(int(self.instance.max()) + 1, np.uint16)
+        of_instance[self.instance] = renumber[self.design] * (self.instance > 0)
+        designs[moved] = of_instance[volume.instance[moved]]
+        return volume, designs, ("", *used_names)

@@ -25,6 +25,7 @@ NUDGES = sorted(
     key=lambda step: (abs(step[0]) + abs(step[1]), step),
 )
 FLAT = ("rug",)  # Families that one walks over.
+PICTURES = "framed"  # The family of pictures, and what may stand for one: mirrors.
 PLACES_TRIED = 24
 Corner = tuple[int, int, int]
 
@@ -245,9 +246,13 @@ class Furnisher:
     ) -> int:
         """Place a design at a position or near it, if all its blocks are free.
 
+        A wall holds at most one picture.
+
         Returns:
             The instance number, or 0 if the design does not fit.
         """
+        if template(name).family == PICTURES and self._has_picture(room, turns):
+            return 0
         cells, inside = self._cells(found), room.floor(self.house.size)
         for dx, dy in nudges:
             at = cells + np.array([low[0] + dx, low[1] + dy, low[2]])
@@ -257,6 +262,15 @@ class Furnisher:
                     self.ways.take(room, stands)
                     return self._set(name, found, at, room, turns)
         return 0
+
+    def _has_picture(self, room: BlockRoom, turns: int) -> bool:
+        """Return whether a picture hangs on a wall of a room that faces a direction."""
+        return any(
+            thing.room == room.number
+            and thing.quarter_turns == turns
+            and template(thing.design).family == PICTURES
+            for thing in self.things
+        )
 
     def _cells(self, found: BlockDesign) -> np.ndarray:
         """Return the cells of a design's blocks relative to its lowest corner, int [N, 3]."""

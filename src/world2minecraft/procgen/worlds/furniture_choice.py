@@ -75,7 +75,7 @@ DESIGNS: dict[str, tuple[str, ...]] = {
     "office_chair": ("office_chair", "office_chair_executive", "office_chair_mesh"),
     "oven": ("stove", "dishwasher", "oven_tower"),
     "pendant": ("pendant_lamp", "globe_lamp", "lantern_lamp"),
-    "picture": ("picture", "portrait", "wall_mirror"),
+    "picture": ("picture", "portrait"),
     "plant": ("plant", "plant_flowering", "indoor_tree", "palm", "fir", "cactus", "bonsai"),
     "play_table": ("table_side", "coffee_table", "coffee_table_round"),
     "potted_plant": ("fern", "flowers", "bonsai"),

@@ -237,7 +237,13 @@ FACES = {
     "painting": Generator(
         faces.painting,
         "#9aa7a0",
-        (Accent("frame", "#6b4a2a"), Accent("land", "#6f8a4a")),
+        (
+            Accent("frame", "#6b4a2a"),
+            Accent("back", "#6f8a4a"),
+            Accent("front", "#4f6a3a"),
+            Accent("spot", "#e6d28a"),
+        ),
+        {"motif": Choice(faces.MOTIFS)},
         tiles=False,
     ),
     "glazed": Generator(

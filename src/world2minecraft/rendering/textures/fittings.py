@@ -17,7 +17,7 @@ from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import bevel, box, bricks, rim, stones
 from world2minecraft.rendering.textures.wood import fibre
 
-GLINTS = ((7.0, 1.0, 2.5, 5.5), (9.0, 1.0, 3.0, 5.0), (23.0, 1.0, 10.5, 13.5))
+MARK = 1.0  # Sixteenths: how long the marks in the corners of clear glass are.
 CHAIN = """
 ......ml........ ......ml........ .....m..l....... .....m..l.......
 .....m..l....... .....d..m....... ......dm........ ......ml........
@@ -33,23 +33,17 @@ RAIL = """
 
 
 def glass(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Return the glass texture: a frame with slanted glints, clear or stained."""
-    edge = rim(canvas)
-    frame = edge < (1.0 if canvas.size_px <= 16 else 0.75)
-    slant, across = canvas.x + canvas.y, canvas.x - canvas.y
-    glint = np.zeros(edge.shape, bool)
-    for place, width, low, high in GLINTS:
-        inside = (
-            (canvas.x > low - 0.5) & (canvas.x < high + 0.5) if place < 20 else np.abs(across) < 5
-        )
-        glint |= (np.abs(slant - place) < width / 2 + 0.01) & inside
-    glint &= ~frame
+    """Return the glass texture: stained with a faint border, or clear with marks in its corners."""
+    texel = SIDE / canvas.size_px
+    border = rim(canvas) < texel
     lit = canvas.x + canvas.y < SIDE
-    tone = np.where(frame, np.where(lit, 0.1, -0.12), 0.0) + 0.3 * glint
+    tone = np.where(border, np.where(lit, 0.1, -0.08), 0.0)
     if recipe.word("stained") == "1":
-        alpha = 0.42 + 0.34 * frame + 0.2 * glint
-        return Surface(tone, 0.3 * frame, alpha=alpha, roughness=0.05, translucent=True)
-    return Surface(tone, 0.3 * frame, alpha=frame | glint, roughness=0.08)
+        alpha = 0.5 + 0.1 * border
+        return Surface(tone, 0.3 * border, alpha=alpha, roughness=0.05, translucent=True)
+    across, down = np.abs(canvas.x - SIDE / 2), np.abs(canvas.y - SIDE / 2)
+    corner = border & (np.minimum(across, down) > SIDE / 2 - MARK)
+    return Surface(tone, 0.3 * corner, alpha=corner, roughness=0.08)
 
 
 def door(canvas: Canvas, recipe: Recipe) -> Surface:

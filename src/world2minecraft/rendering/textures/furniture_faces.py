@@ -13,7 +13,7 @@ from world2minecraft.rendering.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.rendering.textures.pixel_art import draw, paints_of
+from world2minecraft.rendering.textures.pixel_art import draw
 from world2minecraft.rendering.textures.recipe import Recipe
 from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import boards, box, rim
@@ -33,12 +33,6 @@ mmmdmmmmmdmmmmdm mmmdmmmmmdmmmmdm mmmdmmmmmdmmmmdm mmkkkmmmmmmkkkdm
 mkKMKkmmmmkKMKkm mkMMMkmmmmkMMMkm mkkkkkmmmmkkkkkm mmmdmmmkkmmmmmdm
 mmmdmmkKKkmmmmdm mmmdmmmmmdmmmmdm mkkmkkmkkmkkmkkm mkMkMMkMMkMMkMkm
 mdkMMMMMMMMMMkdm mmmkkMMMMMMkkmmm mmmmmkkkkkkmmmdm mmmdmmmmmdmmmmdm
-"""
-PAINTING = """
-MMMMMMMMMMMMMMMM MllllllllllllllD MllllllllhhllllD MlllllllhhhhlllD
-MlllllllhhhhlllD MlllmlllllhhlllD MllmmmlllllllllD MlmmmmmlllmlllmD
-MmmdmmmmlmmmlmmD Mmddmmmmmmmmmm1D M222d22m2m11112D M2322222211m222D
-M22232222122322D M32222221132222D M22322211222232D MDDDDDDDDDDDDDDD
 """
 
 
@@ -173,15 +167,65 @@ def face(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def painting(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Return the painting texture: hills and a frame (accents) below a sky (main colour)."""
-    drawn, tone, _ = draw(canvas, PAINTING)
+    """Return the painting texture: a motif in a frame (first accent) on a ground (main colour)."""
+    x, y = canvas.x, canvas.y
+    edge = rim(canvas)
+    frame = edge < 1
+    layers = _MOTIFS[recipe.word("motif")](canvas)
     brush = fractal(canvas, 8, 16, 1)
-    return Surface(
-        0.6 * tone + 0.05 * brush,
-        0.6 * np.isin(drawn, ("M", "D")),
-        paints_of(drawn, recipe),
-        roughness=0.7,
+    tone = 0.06 * brush + 0.16 * (8.0 - y) / SIDE
+    lit = np.where((x < 1) | (y < 1), 0.22, -0.18)
+    tone = np.where(frame, lit, tone) - 0.3 * ((edge >= 1) & (edge < 1 + canvas.joint / 2))
+    paints = [(recipe.ink(index + 2), (layer & ~frame) * 1.0) for index, layer in enumerate(layers)]
+    paints.append((recipe.ink(1), frame * 1.0))
+    return Surface(tone, 0.6 * frame, tuple(paints), roughness=0.7, bold=True)
+
+
+def _landscape(canvas: Canvas) -> tuple[np.ndarray, ...]:
+    x, y = canvas.x, canvas.y
+    far = y > 8.6 - 2.2 * np.sin(0.42 * x + 0.6) - 0.5 * noise(canvas, 8, 1, 2)
+    near = y > 11.6 + 1.4 * np.sin(0.36 * x + 2.2)
+    sun = (x - 11.5) ** 2 + (y - 4.4) ** 2 < 2.2
+    return far, near, sun & ~far
+
+
+def _figure(canvas: Canvas) -> tuple[np.ndarray, ...]:
+    x, y = canvas.x, canvas.y
+    hair = ((x - 8) / 3.1) ** 2 + ((y - 5.4) / 3.4) ** 2 < 1
+    head = ((x - 8) / 2.2) ** 2 + ((y - 6.2) / 2.8) ** 2 < 1
+    neck = (np.abs(x - 8) < 1.0) & (y > 8) & (y < 11)
+    dress = (y > 10.2) & (((x - 8) / 5.6) ** 2 + ((y - 15.5) / 5.3) ** 2 < 1)
+    return dress | (hair & ~head), head | (neck & ~dress), dress & (np.abs(x - 8) < 0.5)
+
+
+def _still_life(canvas: Canvas) -> tuple[np.ndarray, ...]:
+    x, y = canvas.x, canvas.y
+    table = y > 11.5
+    vase = (np.abs(x - 6.5) < 1.2 + 0.9 * np.sin(np.clip((12.8 - y) / 4.2, 0, 1) * np.pi)) & (
+        (y > 8.4) & (y < 13)
     )
+    blooms = np.zeros(x.shape, bool)
+    for u, v in ((4.6, 6.2), (6.6, 4.6), (8.6, 6.0), (6.3, 7.0)):
+        blooms |= (x - u) ** 2 + (y - v) ** 2 < 1.5
+    fruit = ((x - 11.2) ** 2 + (y - 12.0) ** 2 < 2.0) | ((x - 9.9) ** 2 + (y - 12.6) ** 2 < 1.2)
+    return table, vase, blooms | fruit
+
+
+def _abstract(canvas: Canvas) -> tuple[np.ndarray, ...]:
+    x, y = canvas.x, canvas.y
+    block = (x < 7) & (y > 6)
+    band = (x > 9) & (y < 10)
+    disc = (x - 10.5) ** 2 + (y - 11.0) ** 2 < 5.5
+    return block, band, disc
+
+
+_MOTIFS = {
+    "landscape": _landscape,
+    "figure": _figure,
+    "still_life": _still_life,
+    "abstract": _abstract,
+}
+MOTIFS = tuple(_MOTIFS)
 
 
 def glazed(canvas: Canvas, recipe: Recipe) -> Surface:
