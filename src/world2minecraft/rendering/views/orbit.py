@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.views.cameras import Shot
@@ -22,7 +23,10 @@ def orbit_shots(
     start_deg: float = TURN_DEG,
     rate_hz: float = 24.0,
 ) -> list[Shot]:
-    """Return shots on a circle around a volume, each of which shows all of its blocks.
+    """Return shots on a circle around a volume, each of which shows all of its building.
+
+    The building is the labelled blocks; a garden around them may be cut off. Without labels, all
+    blocks are shown.
 
     Args:
         volume: The blocks.
@@ -47,8 +51,10 @@ def orbit_shots(
 
 
 def corner_points_m(volume: BlockVolume) -> np.ndarray:
-    """Return the corners of the bounding box of all blocks, float64 [8, 3] in room metres."""
-    filled = volume.states != 0
+    """Return the corners of the bounding box of the building, float64 [8, 3] in room metres."""
+    filled = (volume.semantic > 0) & (volume.semantic != UNKNOWN)
+    if not filled.any():
+        filled = volume.states != 0
     if not filled.any():
         filled = np.ones_like(filled)
     spans = []
