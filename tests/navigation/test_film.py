@@ -1,12 +1,23 @@
 """Plans and films: the way is drawn where it was walked, and any text can be shown."""
 
 import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from PIL import ImageFont
 from small_flat import flat_volume
 
-from world2minecraft.navigation.running.film import compose, printable, wrap_text
+from world2minecraft.navigation.running.film import (
+    SIZE_PX,
+    Moment,
+    compose,
+    eased_stances,
+    look_at_goal,
+    printable,
+    wrap_text,
+)
 from world2minecraft.navigation.running.floor_map import GOAL, HERE, PlanMap, floor_plans
-from world2minecraft.navigation.types import Stance
+from world2minecraft.navigation.types import Episode, Instruction, Stance
 
 
 def near(picture, colour):
@@ -73,4 +84,46 @@ def test_a_frame_has_one_size_whatever_the_view():
         compose(np.zeros(shape, np.uint8), plan, "Go on " * 80, [("thinks", "x" * 900)] * 9)
         for shape in ((480, 640, 3), (224, 224, 3), (10, 900, 3))
     ]
-    assert {frame.size for frame in frames} == {(960, 536)}
+    assert {frame.size for frame in frames} == {SIZE_PX}
+
+
+def test_the_first_goal_is_labelled_once():
+    volume, _, _ = flat_volume()
+    plan, here = PlanMap(volume, 190), [Stance(1.5, 65.0, 1.5)]
+    goal = (14.0, 65.0, 6.5)
+    plain, named = (np.asarray(plan.picture(here, [goal], name), int) for name in ("", "lamp"))
+    rows, columns = np.nonzero(np.abs(plain - named).max(axis=2) > 25)
+    assert len(rows) and rows.max() < 45 + 65 and abs(columns.mean() - 140) < 25
+
+
+moves = st.lists(
+    st.tuples(st.floats(-0.25, 0.25), st.floats(-0.25, 0.25), st.floats(-40, 40)), max_size=12
+)
+
+
+@given(moves)
+def test_the_camera_eases_from_stance_to_stance(steps):
+    stances = [Stance(2.0, 65.0, 2.0, 170.0)]
+    for x, z, yaw in steps:
+        last = stances[-1]
+        turned = (last.yaw_deg + yaw + 180) % 360 - 180
+        stances.append(Stance(last.x + x, 65.0, last.z + z, turned))
+    moments = [Moment(stance, 0.5 if n else 2.0, ()) for n, stance in enumerate(stances)]
+    moments.append(Moment(stances[-1], 2.0, ()))
+    shown, numbers = eased_stances(moments, 20.0)
+    assert len(shown) == round(20 * (4 + 0.5 * len(steps)))
+    assert shown[0].feet == pytest.approx(stances[0].feet)
+    assert shown[-1].feet == pytest.approx(stances[-1].feet, abs=1e-6)
+    assert (shown[-1].yaw_deg - stances[-1].yaw_deg + 180) % 360 == pytest.approx(180, abs=1e-6)
+    yaws = np.array([one.yaw_deg for one in shown])
+    assert np.abs(np.diff(yaws)).max() <= 40 / 10 + 1e-6  # Never the longer way round.
+    assert numbers == sorted(numbers) and set(numbers) == set(range(len(moments)))
+
+
+def test_the_camera_turns_to_a_near_goal_at_the_end():
+    episode = Episode("e", "s", "s", Stance(2.0, 65.0, 2.0), ((3.0, 65.0, 2.0),), "lamp",
+                      Instruction("Go to the lamp", "human", "goal"),
+                      facing=(2.0, 65.0, 5.0))  # fmt: skip
+    assert look_at_goal(Stance(2.0, 65.0, 2.0, 90.0), episode, 0.25).yaw_deg == 0.0
+    far = Stance(2.0, 65.0, 60.0, 90.0)
+    assert look_at_goal(far, episode, 0.25) == far

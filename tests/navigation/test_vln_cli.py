@@ -279,3 +279,19 @@ def test_the_nearest_floor_is_where_one_begins(flat, flat_path, tmp_path):
     wish = GoalRequest("Go to the piano", start=Stance(3.1, 70.0, 3.2, 45.0))
     episode = episode_of_sentence(flat, wish)
     assert episode.start.yaw_deg == 45.0 and episode.start.y == pytest.approx(65.0)
+
+
+def test_a_walk_does_not_begin_at_its_goal(flat):
+    from world2minecraft.navigation.running.sentence_goals import (
+        MIN_START_M,
+        GoalRequest,
+        episode_of_sentence,
+    )
+
+    for landmark in flat.landmarks:
+        if not flat.goals_at(landmark):
+            continue
+        episode = episode_of_sentence(flat, GoalRequest("Go there", goal=landmark.name))
+        away_m = flat.distance_m(episode.start.feet, episode.goals)
+        farthest_m = max(d for d in flat.distances_m(episode.goals)[flat.main_places] if d < 1e9)
+        assert away_m >= min(MIN_START_M, farthest_m) - 1e-6

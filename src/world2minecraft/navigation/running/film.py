@@ -1,128 +1,201 @@
-"""The video of a walk: the view, the instruction, the agent's thoughts and a map with the path.
+"""The video of a walk: the agent's view, with instruction, plan and thoughts laid over it.
 
-The video has one frame per move. Characters that the font does not contain are shown as question
-marks, and texts that do not fit are truncated.
+The camera eases from one stance to the next, and turns to the goal at the end. Characters that the
+font does not contain are shown as question marks, and texts that do not fit are truncated.
 """
 
 from collections.abc import Sequence
-from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
+from scipy.ndimage import gaussian_filter1d
 
 from world2minecraft.navigation.agents.types import Decision, Observation
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 from world2minecraft.navigation.running.episode_runner import EpisodeWalk
-from world2minecraft.navigation.running.floor_map import SIDE_PX, PlanMap
-from world2minecraft.navigation.running.simulator import Simulator
+from world2minecraft.navigation.running.floor_map import PlanMap
+from world2minecraft.navigation.scene import camera_of
 from world2minecraft.navigation.types import Episode, Move, Stance
-from world2minecraft.rendering.output.animation import FrameWriter, animation_writer
+from world2minecraft.rendering.output.animation import animation_writer
 
 FILM_FILE = "walk.mp4"
-VIEW_PX = (640, 480)
-BAND_PX = 56  # For the instruction, above.
-SIZE_PX = (VIEW_PX[0] + SIDE_PX, VIEW_PX[1] + BAND_PX)
-RATE_HZ = 6.0
-HOLD_S = 2.0  # The first and the last frame stay.
-INK, FAINT, PAPER, BAD = (24, 26, 30), (110, 112, 118), (248, 247, 244), (190, 30, 30)
-LINE_PX = 17
+SIZE_PX, FOV_DEG = (960, 540), 79.0  # The horizontal field of view of agents.
+RATE_HZ = 20.0
+WALK_S, TURN_S, WAIT_S = 0.3, 0.25, 0.15  # A step, a turn, and a move that changes nothing.
+EASE_S = 0.12  # Standard deviation of the smoothing in time.
+HOLD_S = 2.0  # The first and the last frame stay,
+LOOK_S, LOOK_M = 1.0, 3.0  # and the camera turns to a goal that is so near.
+PLAN_PX, EDGE_PX = 190, 12
+INK, PAPER, BAD = (24, 26, 30), (248, 247, 244), (255, 130, 120)
+VEIL = (18, 20, 24, 165)  # Behind texts.
+TEXT_PX, SMALL_PX = 21, 15
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A stance of a walk, the seconds that lead to it, and the texts at it.
+
+    ``caption`` has lines with a heading, which may be empty, and a text.
+    """
+
+    stance: Stance
+    seconds: float
+    caption: tuple[tuple[str, str], ...]
 
 
 class Film:
-    """An observer that writes the video of an episode."""
+    """An observer that writes the video of an episode when the walk has ended."""
 
-    def __init__(self, path: Path, ground: Simulator, plan: PlanMap, rate_hz: float = RATE_HZ):
+    def __init__(self, path: Path, ground: Any, plan: PlanMap, rate_hz: float = RATE_HZ):
         self.path, self.ground, self.plan, self.rate_hz = path, ground, plan, rate_hz
-        self._stack = ExitStack()
-        self._write: FrameWriter | None = None
-        self._stances: list[Stance] = []
+        self._moments: list[Moment] = []
         self._episode: Episode | None = None
         self._agent = ""
-        self._last: Image.Image | None = None
 
     def on_begin(self, episode: Episode, agent: str) -> None:
-        """Open the video file."""
-        self._episode, self._agent, self._stances = episode, agent, []
-        self._stack = ExitStack()
-        self._write = self._stack.enter_context(animation_writer(self.path, self.rate_hz))
+        """Begin the film of an episode."""
+        self._episode, self._agent, self._moments = episode, agent, []
 
     def on_decision(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
     ) -> None:
-        """Ignore the decision, because frames are drawn for each move."""
+        """Ignore the decision, because each move has a moment."""
 
     def on_stance(
         self, stance: Stance, step: int, decision: Decision | None, move: Move | None
     ) -> None:
-        """Draw a frame for a stance."""
+        """Add a stance."""
         if self._episode is None:
             return
-        self._stances.append(stance)
-        view = self.ground.view(stance)
-        frame = compose(
-            view,
-            self.plan.picture(self._stances, self._episode.goals),
-            self._episode.instruction.text,
-            _caption(self._agent, step, self._episode.max_steps, decision, move),
-        )
-        self._send(frame, self.rate_hz * HOLD_S if decision is None else 1)
+        before = self._moments[-1].stance if self._moments else None
+        seconds = HOLD_S if before is None else _seconds(before, stance)
+        caption = _caption(self._agent, step, self._episode.max_steps, decision, move)
+        self._moments.append(Moment(stance, seconds, caption))
 
     def on_end(self, walk: EpisodeWalk) -> None:
-        """Show the result of the walk on the last frame, and close the video."""
-        if self._last is not None:
-            self._send(with_end(self._last, end_text(walk)), self.rate_hz * HOLD_S)
-        self._stack.close()
-        self._write = None
+        """Render the film, with the result of the walk on its last frames."""
+        if self._episode is None or not self._moments:
+            return
+        moments, text = list(self._moments), end_text(walk)
+        last = moments[-1]
+        looked = look_at_goal(last.stance, self._episode, self.ground.metres_per_block)
+        moments.append(Moment(looked, LOOK_S, (*last.caption, ("", text))))
+        moments.append(Moment(looked, HOLD_S, (*last.caption, ("", text))))
+        stances, numbers = eased_stances(moments, self.rate_hz)
+        width, height = SIZE_PX
+        camera = camera_of(width, height, FOV_DEG)
+        goal = self._episode.facing or self._episode.goals[0]
+        with animation_writer(self.path, self.rate_hz) as write:
+            for frame, (stance, number) in enumerate(zip(stances, numbers, strict=True)):
+                view = self.ground.scene.picture(stance, camera, outputs=("colour",)).colour
+                plan = self.plan.picture(stances[: frame + 1], (goal,), self._episode.goal_name)
+                caption = moments[number].caption
+                write(np.asarray(compose(view, plan, self._episode.instruction.text, caption)))
 
     def drop(self) -> None:
-        """Discard the video of an interrupted walk."""
-        self._write = None
-        error = RuntimeError("the walk was interrupted")
-        self._stack.__exit__(RuntimeError, error, None)
+        """Forget the film of an interrupted walk."""
+        self._episode, self._moments = None, []
 
-    def _send(self, frame: Image.Image, times: float) -> None:
-        self._last = frame
-        if self._write is not None:
-            for _ in range(max(1, round(times))):
-                self._write(np.asarray(frame))
+
+def _seconds(before: Stance, after: Stance) -> float:
+    if before.feet != after.feet:
+        return WALK_S
+    return TURN_S if before != after else WAIT_S
+
+
+def look_at_goal(stance: Stance, episode: Episode, metres_per_block: float) -> Stance:
+    """Return a stance turned to the goal object, or unchanged if that is far or unknown."""
+    if episode.facing is None:
+        return stance
+    away = np.array(episode.facing) - stance.feet
+    level = float(np.hypot(away[0], away[2]))
+    if not 0.2 <= level * metres_per_block <= LOOK_M:
+        return stance
+    yaw = float(np.degrees(np.arctan2(-away[0], away[2])))
+    return Stance(*stance.feet, yaw, stance.pitch_deg)
+
+
+def eased_stances(moments: Sequence[Moment], rate_hz: float) -> tuple[list[Stance], list[int]]:
+    """Return the stance of each frame, and the number of its moment.
+
+    Stances are interpolated in time, turning the shorter way, and smoothed.
+
+    Args:
+        moments: Stances with the seconds that lead to them. The first is held.
+        rate_hz: Frames per second.
+    """
+    seconds = np.array([one.seconds for one in moments])
+    ends = np.cumsum(seconds)
+    rows = np.array([[*one.stance.feet, one.stance.yaw_deg, one.stance.pitch_deg]
+                     for one in moments])  # fmt: skip
+    rows[:, 3] = np.degrees(np.unwrap(np.radians(rows[:, 3])))
+    times = np.arange(max(1, round(float(ends[-1]) * rate_hz))) / rate_hz
+    knots = np.concatenate([[0.0], ends])
+    rows = np.concatenate([rows[:1], rows])
+    smooth = np.stack([np.interp(times, knots, column) for column in rows.T], axis=1)
+    smooth = gaussian_filter1d(smooth, EASE_S * rate_hz, axis=0, mode="nearest")
+    numbers = np.minimum(np.searchsorted(ends, times, side="right"), len(moments) - 1)
+    return [Stance(*map(float, row)) for row in smooth], numbers.tolist()
 
 
 def compose(
     view: np.ndarray, plan: Image.Image, instruction: str, caption: Sequence[tuple[str, str]]
 ) -> Image.Image:
-    """Compose a video frame.
+    """Compose a video frame of ``SIZE_PX``.
 
     Args:
         view: The view of the agent as uint8 [H, W, 3].
-        plan: The floor map, ``SIDE_PX`` wide and high.
-        instruction: The instruction of the episode.
-        caption: Lines with a heading, which may be empty, and a text.
+        plan: The square floor map, laid over the upper right corner.
+        instruction: The instruction of the episode, laid over the bottom.
+        caption: Lines with a heading, which may be empty, and a text, for the upper left corner.
     """
-    frame = Image.new("RGB", SIZE_PX, PAPER)
+    frame = Image.new("RGB", SIZE_PX, INK)
     seen = Image.fromarray(view)
-    if seen.size != VIEW_PX:
-        seen = _fit_view(seen)
-    frame.paste(seen, (0, BAND_PX))
-    frame.paste(plan, (VIEW_PX[0], BAND_PX))
-    draw = ImageDraw.Draw(frame)
-    big = ImageFont.load_default(19)
-    lines = wrap_text(instruction, big, SIZE_PX[0] - 24, 2)
-    top = (BAND_PX - 23 * len(lines)) / 2
+    seen.thumbnail(SIZE_PX, Image.Resampling.LANCZOS)
+    frame.paste(seen, ((SIZE_PX[0] - seen.width) // 2, (SIZE_PX[1] - seen.height) // 2))
+    inset = plan.resize((PLAN_PX, PLAN_PX), Image.Resampling.LANCZOS)
+    left = SIZE_PX[0] - PLAN_PX - EDGE_PX
+    frame.paste(inset, (left, EDGE_PX))
+    veil = Image.new("RGBA", SIZE_PX)
+    draw = ImageDraw.Draw(veil)
+    outer = (left - 1, EDGE_PX - 1, left + PLAN_PX, EDGE_PX + PLAN_PX)
+    draw.rectangle(outer, outline=(255, 255, 255, 220))
+    _write_instruction(draw, instruction)
+    _write_caption(draw, caption, left - 2 * EDGE_PX)
+    return Image.alpha_composite(frame.convert("RGBA"), veil).convert("RGB")
+
+
+def _write_instruction(draw: ImageDraw.ImageDraw, instruction: str) -> None:
+    font, step = ImageFont.load_default(TEXT_PX), TEXT_PX + 5
+    lines = wrap_text(instruction, font, SIZE_PX[0] - 4 * EDGE_PX, 2)
+    top = SIZE_PX[1] - step * len(lines) - 2 * EDGE_PX
+    draw.rectangle((0, top, *SIZE_PX), VEIL)
     for number, line in enumerate(lines):
-        draw.text((12, top + 23 * number), line, INK, big)
-    _write_caption(draw, caption)
-    return frame
+        at = ((SIZE_PX[0] - font.getlength(line)) / 2, top + EDGE_PX + step * number)
+        draw.text(at, line, PAPER, font)
 
 
-def with_end(frame: Image.Image, text: str) -> Image.Image:
-    """Return a frame with a line of text across the bottom of the view."""
-    final = frame.copy()
-    draw = ImageDraw.Draw(final)
-    top = SIZE_PX[1] - 40
-    draw.rectangle((0, top, VIEW_PX[0] - 1, SIZE_PX[1]), INK)
-    draw.text((12, top + 9), printable(text), PAPER, ImageFont.load_default(18))
-    return final
+def _write_caption(
+    draw: ImageDraw.ImageDraw, caption: Sequence[tuple[str, str]], width_px: int
+) -> None:
+    font, step = ImageFont.load_default(SMALL_PX), SMALL_PX + 4
+    lines: list[tuple[str, tuple[int, int, int]]] = []
+    for name, text in caption:
+        colour = BAD if name.isupper() else PAPER
+        shown = f"{name}: {text}" if name else text
+        lines += [(line, colour) for line in wrap_text(shown, font, width_px - 2 * EDGE_PX, 3)]
+    lines = lines[:7]
+    if not lines:
+        return
+    widest = max(font.getlength(line) for line, _ in lines)
+    box = (EDGE_PX, EDGE_PX, 3 * EDGE_PX + widest, EDGE_PX + step * len(lines) + EDGE_PX)
+    draw.rectangle(box, VEIL)
+    for number, (line, colour) in enumerate(lines):
+        at = (2 * EDGE_PX, EDGE_PX + EDGE_PX / 2 + step * number)
+        draw.text(at, line, colour, font)
 
 
 def end_text(walk: EpisodeWalk) -> str:
@@ -168,41 +241,15 @@ def _truncate(
     return text
 
 
-def _fit_view(seen: Image.Image) -> Image.Image:
-    scale = min(VIEW_PX[0] / seen.width, VIEW_PX[1] / seen.height)
-    size = (round(seen.width * scale), round(seen.height * scale))
-    back = Image.new("RGB", VIEW_PX, INK)
-    at = ((VIEW_PX[0] - size[0]) // 2, (VIEW_PX[1] - size[1]) // 2)
-    back.paste(seen.resize(size, Image.Resampling.LANCZOS), at)
-    return back
-
-
 def _caption(
     agent: str, step: int, most: int, decision: Decision | None, move: Move | None
-) -> list[tuple[str, str]]:
+) -> tuple[tuple[str, str], ...]:
     lines = [("", f"{agent}   step {step} of {most}")]
     if decision is None:
-        return lines
+        return tuple(lines)
     if decision.outcome != "moves":
         lines.append((decision.outcome.upper(), str(decision.details.get("problem", ""))))
     elif move is not None:
         lines.append(("", f"now: {MOVE_NAMES[move]}"))
-    return lines + [
-        (name, text)
-        for name, text in (("thought", decision.thought), ("progress", decision.progress))
-        if text
-    ]
-
-
-def _write_caption(draw: ImageDraw.ImageDraw, caption: Sequence[tuple[str, str]]) -> None:
-    font, left = ImageFont.load_default(14), VIEW_PX[0] + 10
-    top, bottom = BAND_PX + SIDE_PX + 6, SIZE_PX[1] - 4
-    for name, text in caption:
-        line_text = f"{name}: {text}" if name else text
-        colour = BAD if name.isupper() else FAINT if not name else INK
-        most = max(1, (bottom - top) // LINE_PX)
-        for line in wrap_text(line_text, font, SIDE_PX - 20, min(most, 4)):
-            if top + LINE_PX > bottom:
-                return
-            draw.text((left, top), line, colour, font)
-            top += LINE_PX
+    thoughts = (("thought", decision.thought), ("progress", decision.progress))
+    return (*lines, *((name, text) for name, text in thoughts if text))

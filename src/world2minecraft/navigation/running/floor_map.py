@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from PIL import Image, ImageDraw
+from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.navigation.scene import VlnScene
@@ -51,9 +51,18 @@ class PlanMap:
         self._drawn: dict[int, tuple[Image.Image, float, tuple[float, float]]] = {}
 
     def picture(
-        self, stances: Sequence[Stance], goals: Sequence[tuple[float, float, float]]
+        self,
+        stances: Sequence[Stance],
+        goals: Sequence[tuple[float, float, float]],
+        goal_name: str = "",
     ) -> Image.Image:
-        """Return the map of the storey of the last stance, with the path and the goals."""
+        """Return the map of the storey of the last stance, with the path and the goals.
+
+        Args:
+            stances: The stances of the walk so far.
+            goals: The goal positions in world blocks.
+            goal_name: The name written beside the first goal on the storey.
+        """
         here = stances[-1]
         storey = self._storey(here.y)
         plain, scale, (left, top) = self._plan(storey)
@@ -64,15 +73,17 @@ class PlanMap:
             return ((x - left) * scale, (z - top) * scale)
 
         radius = self.size_px * FINE / 70
-        for x, y, z in goals:
-            if self._storey(y) == storey:
-                _dot(draw, place(x, z), radius, GOAL)
+        shown = [place(x, z) for x, y, z in goals if self._storey(y) == storey]
+        for at in shown:
+            _dot(draw, at, radius, GOAL)
         way = [place(one.x, one.z) for one in stances if self._storey(one.y) == storey]
         if len(way) > 1:
             draw.line(way, WAY, round(radius * 0.7), "curve")
         if self._storey(stances[0].y) == storey:
             _dot(draw, place(stances[0].x, stances[0].z), radius * 0.8, BEGIN)
         _arrow(draw, place(here.x, here.z), here.yaw_deg, radius * 2.2)
+        if shown and goal_name:
+            _label(draw, shown[0], radius, goal_name, picture.width)
         return picture.resize((self.size_px, self.size_px), Image.Resampling.LANCZOS)
 
     def _storey(self, y: float) -> int:
@@ -124,6 +135,18 @@ def _dot(
 ) -> None:
     x, y = at
     draw.ellipse((x - radius, y - radius, x + radius, y + radius), colour, (255, 255, 255), 2)
+
+
+def _label(
+    draw: ImageDraw.ImageDraw, at: tuple[float, float], radius: float, text: str, side_px: int
+) -> None:
+    """Write a text above a point, or below it at the upper edge, within the map."""
+    font = ImageFont.load_default(round(radius * 4.4))
+    shown = "".join(mark if " " <= mark <= "ÿ" else "?" for mark in text)[:24]
+    width, height = font.getlength(shown), radius * 5.2
+    left = min(max(at[0] - width / 2, 4.0), max(side_px - width - 4, 4.0))
+    top = at[1] - radius - height if at[1] > radius + height else at[1] + radius
+    draw.text((left, top), shown, GOAL, font, stroke_width=3, stroke_fill=(255, 255, 255))
 
 
 def _arrow(

@@ -27,6 +27,7 @@ NAMED_CLASSES = frozenset(
         SemanticClass.TVS,
     }
 )
+MIN_START_M = 2.0  # Walking distance from the start to the goal: a walk begins elsewhere.
 YAW_STEP_DEG = 15.0  # A turn of most sets of moves.
 
 
@@ -37,7 +38,7 @@ class GoalRequest:
     Attributes:
         instruction: The instruction text.
         goal: The goal landmark. If empty, it is taken from the instruction.
-        start: The start. None uses the scene's start.
+        start: The start. None uses the scene's start, or one far from the goal if it is near.
         move_set: The name of the move set.
         max_steps: The maximum number of steps.
     """
@@ -70,7 +71,7 @@ def episode_of_sentence(scene: VlnScene, wish: GoalRequest) -> Episode:
             f"the {target.name} has no free floor in front of it; name another goal, or "
             "clear space there",
         )
-    start = _default_start(scene) if wish.start is None else _snap_start(scene, wish.start)
+    start = _default_start(scene, goals) if wish.start is None else _snap_start(scene, wish.start)
     if scene.distance_m(start.feet, goals) == float("inf"):
         raise InputError(
             scene.path,
@@ -150,10 +151,17 @@ def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
     return {**words_of, **classes, **ends, **nouns, **names}
 
 
-def _default_start(scene: VlnScene) -> Stance:
-    """Return the scene's start, facing the middle of the floor instead of the nearest wall."""
-    start = scene.start
-    x, _, z = scene.graph.feet[scene.main_places].mean(axis=0) - np.array(start.feet)
+def _default_start(scene: VlnScene, goals: Sequence[tuple[float, float, float]]) -> Stance:
+    """Return the scene's start, or the place farthest from the goal if the start is beside it.
+
+    It faces the middle of the floor instead of the nearest wall.
+    """
+    start, floor = scene.start, scene.graph.feet[scene.main_places]
+    if scene.distance_m(start.feet, goals) < MIN_START_M:
+        away_m = scene.distances_m(goals)[scene.main_places]
+        farthest = int(np.where(np.isfinite(away_m), away_m, -1.0).argmax())
+        start = Stance(*map(float, floor[farthest]))
+    x, _, z = floor.mean(axis=0) - np.array(start.feet)
     yaw_deg = math.degrees(math.atan2(-x, z))
     return replace(start, yaw_deg=wrap_yaw(YAW_STEP_DEG * round(yaw_deg / YAW_STEP_DEG)))
 

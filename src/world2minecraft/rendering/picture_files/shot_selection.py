@@ -63,6 +63,9 @@ class CameraChoice:
         )
 
 
+MAX_STEP_M = 0.25  # Between the frames of a moving picture: more looks like jumps.
+
+
 @dataclass(frozen=True)
 class View:
     """The viewpoints from which a build is rendered.
@@ -179,6 +182,12 @@ def _tour(view: View, source: Source, choice: CameraChoice, medium: Medium) -> P
     tour = plan_tour(source.volume, camera, frames, rate_hz=view.rate_hz, start=start)
     volume, doors = with_open_doors(source.volume, tour.way)
     notes = [f"a walk of {tour.length_m:.0f} m through the rooms"]
+    step_m = tour.length_m / max(len(tour.shots), 1)
+    if view.frames and medium == "moving" and step_m > MAX_STEP_M:
+        notes.append(
+            f"the camera jumps {step_m:.1f} m from frame to frame; omit --frames, or use "
+            f"{round(tour.length_m / MAX_STEP_M):,} or more"
+        )
     if doors:
         notes.append(f"{doors} {'door' if doors == 1 else 'doors'} along the way are shown open")
     return Plan(tour.shots, lambda shot: volume, notes)
