@@ -15,6 +15,7 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
+from make_film import animated, film
 from PIL import Image
 
 from world2minecraft import cli
@@ -137,7 +138,6 @@ TUTORIAL = Scene(
 
 
 # The README's picture.
-FRONT = "w2m render demo --turntable --frames 48 --fps 12 --size 480x360 --out front.webp"
 
 
 def main() -> None:
@@ -150,15 +150,9 @@ def main() -> None:
             for shot in scene.shots:
                 _run(shot.command)
                 write_bytes(DOCS / place / f"{shot.stem}.jpg", small_jpeg(Path(shot.file)))
-        _run("w2m demo --out demo")
-        write_bytes(DOCS / "images" / "demo.webp", front_picture())
+        _run("w2m demo --kind living --seed 5 --out demo")
+        write_bytes(DOCS / "images" / "demo.webp", animated(film(Path("demo"))))
     write_text(DOCS / "gallery.md", page())
-
-
-def front_picture() -> bytes:
-    """Return the demo's room, turning, as an animated WebP."""
-    _run(FRONT)
-    return Path(shlex.split(FRONT)[-1]).read_bytes()
 
 
 def small_jpeg(path: Path) -> bytes:
