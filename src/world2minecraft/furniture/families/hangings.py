@@ -55,11 +55,11 @@ def _curtain_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     if size.per_metre < 1.5:
         plan.put("cloth", 0, sorted(columns), 0, "banner", rotation="12")
         return plan.blocks
-    rows = range(top) if top > 2 else plan.height
     shape = "pane" if look.option("cloth") == "sheer" and size.width > 1 else "full"
-    plan.put("cloth", 0, sorted(columns), rows, shape)
+    plan.put("cloth", 0, sorted(columns), plan.height, shape)
     if top > 2:
-        plan.put("rod", 0, plan.width, top, "fence")
+        between = sorted(set(plan.width) - columns)
+        plan.put_state("rod", "minecraft:chain[axis=z]", 0, between, top)
     return plan.blocks
 
 
