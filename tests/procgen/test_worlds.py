@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.errors import UnknownNameError
@@ -175,16 +176,54 @@ def test_layouts_say_where_the_blocks_are(tall):
                 assert found in (0, SemanticClass.OBJS)
 
 
-def test_the_garden_is_of_no_class_and_outside(house):
-    volume = house.volume
-    garden = volume.semantic == UNKNOWN
-    assert garden.any()
-    outside = np.ones(volume.semantic.shape, bool)
+@pytest.mark.parametrize("which", ["house", "tall", "game_scale"])
+def test_rooms_hold_nothing_of_the_garden_and_roof(which, request):
+    made = request.getfixturevalue(which)
+    volume, house = made.volume, made.house
+    outside = volume.semantic == UNKNOWN
+    assert outside.any()
+    x, y, z = (-value for value in volume.corner)
+    for room in house.rooms:
+        low = 64 + room.ground - 1 + y
+        layers = outside[x : x + house.size[0], low : low + room.height + 2, z : z + house.size[1]]
+        floor = room.floor(house.size)[:, ::-1]
+        assert not layers[np.broadcast_to(floor[:, None], layers.shape)].any()
+
+
+@pytest.mark.parametrize("which", ["house", "tall", "game_scale"])
+def test_roofs_cover_all_walls_and_hang_over(which, request):
+    made = request.getfixturevalue(which)
+    volume, house = made.volume, made.house
+    top = 64 + house.height - volume.corner[1]  # Of the lowest ceiling.
+    covered = (volume.states[:, top:] > 0).any(axis=1)
     x, _, z = (-value for value in volume.corner)
-    outside[x : x + house.house.size[0], :, z : z + house.house.size[1]] = False
-    empty = np.argwhere(garden & ~outside)
-    floors = np.any([room.floor(house.house.size) for room in house.house.rooms], axis=0)
-    assert not floors[empty[:, 0] - x, house.house.size[1] - 1 - (empty[:, 2] - z)].any()
+    rooms = np.any([room.floor(house.size)[:, ::-1] for room in house.rooms], axis=0)
+    inside = np.zeros(covered.shape, bool)
+    inside[x : x + house.size[0], z : z + house.size[1]] = rooms
+    hang = round(0.4 * house.blocks_per_metre)
+    wide = ndimage.binary_dilation(inside, np.ones((3, 3)), iterations=2 + hang)
+    assert covered[wide].all()
+    # Above the rooms there is a roof, not only their ceiling.
+    assert (volume.semantic[:, top + 1 :] == UNKNOWN).any(axis=1)[inside].all()
+
+
+def test_the_path_leads_from_the_door_to_the_gate(house):
+    volume = house.volume
+    doors = [g for g in house.house.gaps if g.kind != "window" and len(g.rooms) == 1]
+    assert doors
+    for gap in doors:
+        across, step = gap.turn % 2, -1 if gap.turn < 2 else 1
+        cell = [gap.low[0], gap.low[1]]
+        found = set()
+        for _ in range(2, 100):
+            cell[across] += step
+            x, z = cell[0] - volume.corner[0], house.house.size[1] - 1 - cell[1] - volume.corner[2]
+            if not (0 <= x < volume.states.shape[0] and 0 <= z < volume.states.shape[2]):
+                break
+            level = 64 - volume.corner[1]
+            assert not volume.states[x, level : level + 8, z].any()
+            found.add(volume.palette[volume.states[x, level - 1, z]])
+        assert 1 <= len(found) <= 2  # The path, and the threshold in the outer wall.
 
 
 def test_written_worlds_are_read_back(tmp_path):

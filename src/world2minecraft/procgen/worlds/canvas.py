@@ -13,15 +13,15 @@ from world2minecraft.procgen.worlds.block_house import BlockHouse
 
 MARGIN = 1  # The wall; what lies before it comes on top.
 UNDER = 2  # Layers under the lowest rooms: their floor, and the ground.
-OVER = 3  # Layers over the highest rooms: ceiling, roof and air.
+OVER = 3  # Layers over the highest rooms: ceiling and air. The roof comes on top.
 
 
 class WorldCanvas(Canvas):
     """A canvas that records designs. Its indices are house positions plus the margin."""
 
-    def __init__(self, house: BlockHouse, garden: int = 1):
+    def __init__(self, house: BlockHouse, garden: int = 1, roof: int = 0):
         self.margin = margin = MARGIN + garden
-        layers = UNDER + house.grounds[-1] + house.height + OVER
+        layers = UNDER + house.grounds[-1] + house.height + OVER + roof
         shape = (house.size[0] + 2 * margin, house.size[1] + 2 * margin, layers)
         corner = (-margin, ROOM_CORNER_BLOCK[1] - UNDER, -margin)
         scale = house.blocks_per_metre

@@ -1,4 +1,4 @@
-"""The garden around a house, which is visible through the windows and ends at a hedge.
+"""The garden around a house: a lawn that ends at a hedge, a path to the front door, beds and trees.
 
 Its blocks have the unknown class because they are not part of any room.
 """
@@ -11,19 +11,22 @@ from scipy import ndimage
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.procgen.worlds.block_house import BlockHouse
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
+from world2minecraft.procgen.worlds.exterior import outer_walls, outward
 from world2minecraft.procgen.worlds.wares_and_stands import WareDeck
 
-DEEP_M = 2.5  # Distance from the outer wall to the hedge, in metres.
-HEDGE_M = 1.3
-PLANTED = 0.06  # Share of the ground.
-TREES_A_HOUSE = 7
+DEEP_M = 2.75  # Distance from the inner face of the outer walls to the hedge, in metres.
+HEDGE_M = 1.1
+PLANTED = 0.5  # Share of the beds below windows, where most plants are,
+HEDGE_SHARE = 0.3  # and how much less of the ground before the hedge.
+TREES_A_HOUSE = 5
 
 
 @dataclass(frozen=True)
 class Garden:
-    """A kind of garden, with its ground, hedge, trees and share of planted ground."""
+    """A kind of garden: its ground, path, hedge and trees, and the share of beds with plants."""
 
-    ground: tuple[str, ...]
+    ground: str
+    path: str
     hedge: str
     trunk: str
     crown: str
@@ -32,59 +35,60 @@ class Garden:
 
 GARDENS: dict[str, Garden] = {
     "lawn": Garden(
-        ("grass_block", "grass_block", "moss_block"), "oak_leaves[persistent=true]",
-        "oak_log[axis=y]", "oak_leaves[persistent=true]",
+        "grass_block", "gravel", "oak_leaves[persistent=true]", "oak_log[axis=y]",
+        "oak_leaves[persistent=true]",
     ),
     "birch": Garden(
-        ("grass_block", "podzol"), "flowering_azalea_leaves[persistent=true]",
+        "grass_block", "andesite", "flowering_azalea_leaves[persistent=true]",
         "birch_log[axis=y]", "birch_leaves[persistent=true]",
     ),
     "jungle": Garden(
-        ("grass_block", "moss_block", "rooted_dirt"), "jungle_leaves[persistent=true]",
-        "jungle_log[axis=y]", "jungle_leaves[persistent=true]", 0.12,
+        "moss_block", "packed_mud", "jungle_leaves[persistent=true]", "jungle_log[axis=y]",
+        "jungle_leaves[persistent=true]", 0.8,
     ),
     "blossom": Garden(
-        ("grass_block",), "azalea_leaves[persistent=true]", "cherry_log[axis=y]",
-        "cherry_leaves[persistent=true]", 0.1,
+        "grass_block", "smooth_stone", "azalea_leaves[persistent=true]", "cherry_log[axis=y]",
+        "cherry_leaves[persistent=true]", 0.7,
     ),
     "taiga": Garden(
-        ("podzol", "coarse_dirt", "grass_block"), "spruce_leaves[persistent=true]",
-        "spruce_log[axis=y]", "spruce_leaves[persistent=true]",
+        "grass_block", "coarse_dirt", "spruce_leaves[persistent=true]", "spruce_log[axis=y]",
+        "spruce_leaves[persistent=true]",
     ),
     "snow": Garden(
-        ("snow_block",), "spruce_leaves[persistent=true]", "spruce_log[axis=y]",
-        "snow_block", 0.01,
+        "snow_block", "stone_bricks", "spruce_leaves[persistent=true]", "spruce_log[axis=y]",
+        "spruce_leaves[persistent=true]", 0.1,
     ),
     "desert": Garden(
-        ("sand", "sand", "smooth_sandstone"), "sandstone_wall", "stripped_acacia_log[axis=y]",
-        "acacia_leaves[persistent=true]", 0.02,
+        "sand", "cut_sandstone", "sandstone_wall", "stripped_acacia_log[axis=y]",
+        "acacia_leaves[persistent=true]", 0.2,
     ),
     "mesa": Garden(
-        ("red_sand", "terracotta", "coarse_dirt"), "red_sandstone_wall", "acacia_log[axis=y]",
-        "acacia_leaves[persistent=true]", 0.03,
+        "red_sand", "cut_red_sandstone", "red_sandstone_wall", "acacia_log[axis=y]",
+        "acacia_leaves[persistent=true]", 0.2,
     ),
     "swamp": Garden(
-        ("mud", "grass_block", "muddy_mangrove_roots"), "mangrove_leaves[persistent=true]",
-        "mangrove_log[axis=y]", "mangrove_leaves[persistent=true]", 0.1,
+        "moss_block", "mud_bricks", "mangrove_leaves[persistent=true]", "mangrove_log[axis=y]",
+        "mangrove_leaves[persistent=true]", 0.7,
     ),
     "dark wood": Garden(
-        ("podzol", "mycelium", "grass_block"), "dark_oak_leaves[persistent=true]",
-        "dark_oak_log[axis=y]", "dark_oak_leaves[persistent=true]",
+        "podzol", "cobblestone", "dark_oak_leaves[persistent=true]", "dark_oak_log[axis=y]",
+        "dark_oak_leaves[persistent=true]",
     ),
     "crimson": Garden(
-        ("crimson_nylium", "netherrack"), "nether_brick_fence", "crimson_stem[axis=y]",
-        "nether_wart_block", 0.05,
+        "crimson_nylium", "polished_blackstone", "nether_brick_fence", "crimson_stem[axis=y]",
+        "nether_wart_block", 0.4,
     ),
     "warped": Garden(
-        ("warped_nylium", "soul_soil"), "warped_fence", "warped_stem[axis=y]",
-        "warped_wart_block", 0.05,
+        "warped_nylium", "polished_deepslate", "warped_fence", "warped_stem[axis=y]",
+        "warped_wart_block", 0.4,
     ),
     "end": Garden(
-        ("end_stone",), "end_stone_brick_wall", "purpur_pillar[axis=y]", "purpur_block", 0.02,
+        "end_stone", "purpur_block", "end_stone_brick_wall", "purpur_pillar[axis=y]",
+        "purpur_block", 0.2,
     ),
     "yard": Garden(
-        ("stone", "gravel", "andesite"), "cobblestone_wall", "oak_log[axis=y]",
-        "oak_leaves[persistent=true]", 0.03,
+        "grass_block", "stone_bricks", "cobblestone_wall", "oak_log[axis=y]",
+        "oak_leaves[persistent=true]", 0.3,
     ),
 }  # fmt: skip
 SUITS: dict[str, tuple[str, ...]] = {
@@ -103,59 +107,103 @@ def garden_blocks(blocks_per_metre: float) -> int:
     return max(4, round(DEEP_M * blocks_per_metre))
 
 
-def put_garden(
-    canvas: WorldCanvas, house: BlockHouse, style: str, deck: WareDeck, rng: np.random.Generator
-) -> str:
-    """Add a garden around a house whose shell exists, and return the kind of garden."""
+def draw_garden(style: str, rng: np.random.Generator) -> Garden:
+    """Choose a random garden that suits a style of houses."""
     names = SUITS.get(style, ANYWHERE)
-    name = names[int(rng.integers(len(names)))]
-    garden, level = GARDENS[name], canvas.at(0, 0, 0)[2]
-    open_air = canvas.states[:, :, level - 1] == 0
-    rooms = np.pad(np.any([room.floor(house.size) for room in house.rooms], axis=0), canvas.margin)
-    built = ndimage.binary_dilation(rooms, np.ones((3, 3), bool)) | ~open_air
+    return GARDENS[names[int(rng.integers(len(names)))]]
+
+
+def put_garden(
+    canvas: WorldCanvas, house: BlockHouse, garden: Garden, deck: WareDeck, rng: np.random.Generator
+) -> None:
+    """Add a lawn, a path, a hedge and beds around a house whose outer walls exist."""
+    level = canvas.at(0, 0, 0)[2]
+    built, path = outer_walls(canvas, house, 0), _path(canvas, house)
     x, y = np.nonzero(~built)
-    kinds = rng.integers(len(garden.ground), size=len(x))
-    for number, block in enumerate(garden.ground):
-        own = kinds == number
+    state = np.where(path[x, y], garden.path, garden.ground)
+    for block in (garden.path, garden.ground):
+        own = state == block
         at = (x[own], y[own], np.full(int(own.sum()), level - 1))
         canvas.set(at, f"minecraft:{block}", UNKNOWN)
     below = (x, y, np.full(len(x), level - 2))  # Sand and gravel would fall.
     canvas.set(below, "minecraft:stone", UNKNOWN)
-    _put_hedge(canvas, garden, house, level)
-    away = np.asarray(ndimage.distance_transform_cdt(~built, "chessboard"))
-    _plant_trees(canvas, garden, away, level, house, rng)
-    _plant(canvas, garden, away, level, deck, rng)
-    return name
+    _put_hedge(canvas, garden, house, path)
+    _plant_beds(canvas, house, garden, path, deck, rng)
 
 
-def _put_hedge(canvas: WorldCanvas, garden: Garden, house: BlockHouse, level: int) -> None:
+def _path(canvas: WorldCanvas, house: BlockHouse) -> np.ndarray:
+    """Return the columns from the front doors straight to the hedge, as bool [X, Y]."""
+    columns = np.zeros(canvas.states.shape[:2], bool)
+    for gap in house.gaps:
+        if gap.kind == "window" or len(gap.rooms) != 1:
+            continue
+        x, y = (
+            slice(a + canvas.margin, b + canvas.margin)
+            for a, b in zip(gap.low, gap.high, strict=True)
+        )
+        sides = [x, y]
+        across, out = gap.turn % 2, outward(gap)
+        sides[across] = (
+            slice(sides[across].stop, None) if out > 0 else slice(0, sides[across].start)
+        )
+        columns[tuple(sides)] = True
+    return columns & ~outer_walls(canvas, house, 0)
+
+
+def _put_hedge(canvas: WorldCanvas, garden: Garden, house: BlockHouse, path: np.ndarray) -> None:
+    """Set a hedge around the garden, with a gap at the end of the path."""
     high = max(1, round(HEDGE_M * house.blocks_per_metre))
+    level = canvas.at(0, 0, 0)[2]
     rim = np.zeros(canvas.states.shape[:2], bool)
     rim[[0, -1]] = rim[:, [0, -1]] = True
     for z in range(level, level + high):
-        canvas.set((*np.nonzero(rim), z), f"minecraft:{garden.hedge}", UNKNOWN)
+        canvas.set((*np.nonzero(rim & ~path), z), f"minecraft:{garden.hedge}", UNKNOWN)
 
 
-def _plant_trees(
+def _plant_beds(
     canvas: WorldCanvas,
-    garden: Garden,
-    away: np.ndarray,
-    level: int,
     house: BlockHouse,
+    garden: Garden,
+    path: np.ndarray,
+    deck: WareDeck,
     rng: np.random.Generator,
 ) -> None:
-    """Place trees with round crowns where they do not hide a whole window."""
-    scale = house.blocks_per_metre
+    """Place plants along the house and, fewer, along the hedge, each with its own soil."""
+    level = canvas.at(0, 0, 0)[2]
+    near = np.asarray(ndimage.distance_transform_cdt(~outer_walls(canvas, house, 0), "chessboard"))
+    share = np.where(near == 1, garden.planted, 0.0)
+    share[1:-1, [1, -2]] = share[[1, -2], 1:-1] = HEDGE_SHARE * garden.planted
+    share[ndimage.binary_dilation(path, np.ones((3, 3)))] = 0
+    share[[0, -1]] = share[:, [0, -1]] = 0
+    for x, y in np.argwhere(rng.random(share.shape) < share).tolist():
+        ware = deck.deal("soil")
+        cells = slice(level, level + max(1, len(ware.states) - 1))
+        if canvas.states[x, y, cells].any():
+            continue
+        for n, state in enumerate(ware.turned("south")):
+            canvas.set((x, y, level - 1 + n), state, UNKNOWN)
+
+
+def plant_trees(
+    canvas: WorldCanvas, house: BlockHouse, garden: Garden, rng: np.random.Generator
+) -> None:
+    """Place trees with round crowns on the lawn, clear of the path, the house and its roof."""
+    scale, level = house.blocks_per_metre, canvas.at(0, 0, 0)[2]
     radius, trunk = max(1, round(0.7 * scale)), max(2, round(1.6 * scale))
-    inner = np.zeros_like(away, bool)
-    inner[1 + radius : -1 - radius, 1 + radius : -1 - radius] = True
-    places = np.argwhere((away > radius + 1) & inner)
     top = canvas.states.shape[2]
-    for x, y in places[rng.permutation(len(places))[:TREES_A_HOUSE]].tolist():
+    taken = canvas.states[:, :, level:].any(axis=2) | _path(canvas, house)
+    inner = np.zeros(taken.shape, bool)
+    inner[1 + radius : -1 - radius, 1 + radius : -1 - radius] = True
+    places = np.argwhere(inner & ~taken)
+    left = TREES_A_HOUSE
+    for x, y in places[rng.permutation(len(places))].tolist():
         high = min(trunk + int(rng.integers(2 * radius)), top - level - radius - 1)
         box = (slice(x - radius, x + radius + 1), slice(y - radius, y + radius + 1))
-        if high < 2 or canvas.states[(*box, slice(level, top))].any():
+        if left == 0:
+            return
+        if high < 2 or canvas.states[(*box, slice(level, top))].any() or taken[x, y]:
             continue
+        left -= 1
         canvas.set((x, y, slice(level, level + high)), f"minecraft:{garden.trunk}", UNKNOWN)
         dx, dy, dz = np.indices((2 * radius + 1,) * 3) - radius
         ball = np.argwhere(dx**2 + dy**2 + dz**2 <= (radius + 0.3) ** 2) - radius
@@ -163,23 +211,3 @@ def _plant_trees(
         at = at[(at[:, 2] < top) & (at[:, 2] >= level)]
         free = canvas.states[tuple(at.T)] == 0
         canvas.set(tuple(at[free].T), f"minecraft:{garden.crown}", UNKNOWN)
-
-
-def _plant(
-    canvas: WorldCanvas,
-    garden: Garden,
-    away: np.ndarray,
-    level: int,
-    deck: WareDeck,
-    rng: np.random.Generator,
-) -> None:
-    """Place plants, each with its own soil in the ground."""
-    places = np.argwhere(away > 0)
-    count = round(garden.planted * len(places))
-    for x, y in places[rng.permutation(len(places))[:count]].tolist():
-        ware = deck.deal("soil")
-        cells = slice(level, level + max(1, len(ware.states) - 1))
-        if canvas.states[x, y, cells].any():
-            continue
-        for n, state in enumerate(ware.turned("south")):
-            canvas.set((x, y, level - 1 + n), state, UNKNOWN)

@@ -26,8 +26,19 @@ from world2minecraft.procgen.worlds.decoration import (
     hang_leaves,
     lay_rugs,
 )
+from world2minecraft.procgen.worlds.exterior import (
+    draw_exterior,
+    put_facade,
+    put_roof,
+    roof_layers,
+)
 from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
-from world2minecraft.procgen.worlds.garden import garden_blocks, put_garden
+from world2minecraft.procgen.worlds.garden import (
+    draw_garden,
+    garden_blocks,
+    plant_trees,
+    put_garden,
+)
 from world2minecraft.procgen.worlds.recipes import (
     BLOCK_RECIPES,
     RecipeContext,
@@ -147,7 +158,10 @@ def generate_world(
     house = assign_room_kinds(plan, rng)
     light = {"hour": _hour(chosen, rng), "lamps": True}
     looks = tuple(draw_look(chosen, room.kind, rng) for room in house.rooms)
-    canvas, ways = WorldCanvas(house, garden_blocks(blocks_per_metre)), ClearPaths(house)
+    outside = np.random.default_rng([seed, rooms, storeys, 7])
+    exterior = draw_exterior(chosen, looks[0], outside)
+    depth, high = garden_blocks(blocks_per_metre), roof_layers(house, exterior)
+    canvas, ways = WorldCanvas(house, depth, high), ClearPaths(house)
     put_shell(canvas, house, looks)
     furnisher = Furnisher(canvas, house, looks, ways)
     dealt = WareDeck(*(deck or (seed, int(rng.integers(1000)))))
@@ -155,9 +169,13 @@ def generate_world(
     _put_flight(furnisher, house, looks[0])
     hang_leaves(furnisher, house.gaps, rng)
     _furnish(furnisher, show, (seed, rooms, storeys, 4), _is_night(light["hour"]))
-    put_garden(canvas, house, chosen.name, dealt, rng)
+    put_facade(canvas, house, exterior)
+    garden = draw_garden(chosen.name, outside)
+    put_garden(canvas, house, garden, dealt, outside)
     canvas.settle()
     put_lights(canvas, _footprints(canvas, house))
+    put_roof(canvas, house, exterior)  # After the lights, which are for rooms and not for attics.
+    plant_trees(canvas, house, garden, outside)
     volume, design, designs = canvas.finished()
     spawn = find_walkable_spawn(volume, house)
     things = tuple(furnisher.things)

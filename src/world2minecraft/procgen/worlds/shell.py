@@ -17,7 +17,6 @@ from world2minecraft.procgen.worlds.styles import RoomLook
 FLOOR, WALL = int(SemanticClass.FLOOR), int(SemanticClass.WALL)
 CEILING, WINDOW = int(SemanticClass.CEILING), int(SemanticClass.WINDOW)
 OBJS = int(SemanticClass.OBJS)
-DOOR = "minecraft:iron_door"
 BARS, RAIL_M = "minecraft:iron_bars", 0.9  # Codes ask for 0.9 m.
 EIGHT = np.ones((3, 3), bool)
 # Which way a block looks that looks by 0 to 3 quarter turns from +x, in the game's words.
@@ -107,21 +106,23 @@ def _put_gap(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
 
 
 def _put_front_door(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
-    """Fill the front door with iron doors.
+    """Fill the front door with a leaf that never opens, so that walks stay inside the house.
 
-    Players cannot open iron doors by hand, so that walks stay inside the house.
+    The leaf has a frame, a rail at half its height and a window above the rail.
     """
-    facing = FACINGS[gap.turn]
-    for n, (x, y) in enumerate(
-        (x, y) for x in range(gap.low[0], gap.high[0]) for y in range(gap.low[1], gap.high[1])
-    ):
-        for z in range(gap.bottom, gap.top - 1, 2):
-            for up, half in enumerate(("lower", "upper")):
-                hinge = ("left", "right")[n % 2]
-                state = f"{DOOR}[facing={facing},half={half},hinge={hinge},open=false]"
-                canvas.set(canvas.at(x, y, z + up), state, OBJS)
-        if (gap.top - gap.bottom) % 2:
-            canvas.set(canvas.at(x, y, gap.top - 1), look.wall, WALL)
+    along = 1 - gap.turn % 2
+    rail = (gap.bottom + gap.top) // 2
+    inner_low, inner_high = list(gap.low), list(gap.high)
+    inner_low[along] += 1
+    inner_high[along] -= 1
+
+    def put(low: list[int], high: list[int], layers: tuple[int, int], block: str) -> None:
+        box = canvas.box((low[0], low[1], layers[0]), (high[0], high[1], layers[1]))
+        canvas.set(box, block, OBJS)
+
+    put([*gap.low], [*gap.high], (gap.bottom, gap.top), look.frame)
+    put(inner_low, inner_high, (gap.bottom + 1, rail), f"minecraft:{look.wood}_planks")
+    put(inner_low, inner_high, (rail + 1, gap.top - 1), "minecraft:glass")
 
 
 def put_stairs(canvas: WorldCanvas, house: BlockHouse, look: RoomLook, instance: int) -> None:

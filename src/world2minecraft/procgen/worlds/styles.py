@@ -31,6 +31,9 @@ class Style:
     cloths: tuple[str, ...]
     stones: tuple[str, ...]
     skirtings: tuple[str, ...]
+    facades: tuple[str, ...]
+    roofs: tuple[str, ...]  # Blocks with a slab, without its ending.
+    plinths: tuple[str, ...]
     hours: tuple[int, ...]
 
 
