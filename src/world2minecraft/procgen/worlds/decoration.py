@@ -13,7 +13,8 @@ BLINDS = ("roller_blind", "venetian_blind")
 CEILING_LAMPS = ("ceiling_lamp", "pendant_lamp", "globe_lamp", "lantern_lamp", "chandelier")
 RUGS = ("rug", "rug_checked", "rug_round", "rug_striped")
 RUNNER_M = 3.4  # Length of hall per rug, in metres.
-LAMP_AREA_M2 = (14.0, 6.0)  # Of floor that a ceiling lamp is for, by day and by night.
+LAMP_AREA_M2 = (20.0, 12.0)  # Of floor that a ceiling lamp is for, by day and by night.
+MAX_LAMPS = 2
 
 
 def hang_leaves(furnisher: Furnisher, gaps: tuple[BlockGap, ...], rng: np.random.Generator) -> None:
@@ -64,13 +65,14 @@ def _hang_leaf(
 def dress_windows(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) -> None:
     """Add curtains of one kind, or blinds, to most windows of a room."""
     draw = rng.random()
+    curtain, blind = (furnisher.rarest_first(names, rng)[0] for names in (CURTAINS, BLINDS))
     for gap in furnisher.house.gaps:
         if gap.kind != "window" or gap.rooms[0] != room.number:
             continue
         if draw < 0.6:
-            _hang(furnisher, gap, room, CURTAINS[int(draw * 6) % 3], rng, True)
-        elif draw < 0.72:
-            _hang(furnisher, gap, room, BLINDS[int(draw * 20) % 2], rng, False)
+            _hang(furnisher, gap, room, curtain, rng, True)
+        elif draw < 0.8:
+            _hang(furnisher, gap, room, blind, rng, False)
 
 
 def _hang(
@@ -106,12 +108,11 @@ def hang_lamps(
 ) -> int:
     """Hang ceiling lamps of one kind in a room, more of them by night; return their number."""
     scale = furnisher.house.blocks_per_metre
-    if room.kind in ("hall", "shop", "storage", "bathroom", "laundry"):
+    names = furnisher.rarest_first(CEILING_LAMPS, rng)
+    if room.kind in ("storage", "bathroom", "laundry"):
         names = CEILING_LAMPS[:1]
-    else:
-        names = tuple(CEILING_LAMPS[int(n)] for n in rng.permutation(len(CEILING_LAMPS)))
     area = room.size[0] * room.size[1] / scale**2
-    count = max(1, round(area / LAMP_AREA_M2[by_night]))
+    count = min(max(1, round(area / LAMP_AREA_M2[by_night])), MAX_LAMPS)
     for name in names:
         if hung := sum(
             hang_one(furnisher, room, name, (n + 0.5) / count, rng) for n in range(count)
@@ -155,11 +156,11 @@ def lay_rugs(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) ->
         _lay_runners(furnisher, room, rng)
     elif rng.random() < 0.75:
         middle = [(a + b) / 2 for a, b in zip(room.low, room.high, strict=True)]
-        furnisher.put_flat(RUGS[int(rng.integers(len(RUGS)))], room, rng, middle)
+        furnisher.put_flat(furnisher.rarest_first(RUGS, rng)[0], room, rng, middle)
 
 
 def _lay_runners(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) -> None:
-    scale, name = furnisher.house.blocks_per_metre, RUGS[int(rng.integers(len(RUGS)))]
+    scale, name = furnisher.house.blocks_per_metre, furnisher.rarest_first(RUGS, rng)[0]
     end = room.blocked[0][1] if room.blocked else room.high[1]
     wide, long = end - room.low[1], room.size[0]
     count = max(1, round(long / scale / RUNNER_M))

@@ -4,6 +4,7 @@ An item of a metric layout keeps its position to within two blocks, its orientat
 its back. Other designs are placed at a wall, on the floor or on top of another piece.
 """
 
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -12,11 +13,17 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.furniture import BlockDesign, template
 from world2minecraft.furniture.block_designs import block_size, lay_template
+from world2minecraft.minecraft.rules.supports import UP, faces_of
 from world2minecraft.procgen.rooms.placement import Item
 from world2minecraft.procgen.worlds.block_house import BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
 from world2minecraft.procgen.worlds.clear_paths import ClearPaths
-from world2minecraft.procgen.worlds.furniture_choice import designs_for, recolour_design
+from world2minecraft.procgen.worlds.furniture_choice import (
+    ALIKE,
+    designs_for,
+    recolour_design,
+    room_allows,
+)
 from world2minecraft.procgen.worlds.styles import RoomLook
 
 AT_WALL_M = 0.12  # Maximum distance of furniture that stands at a wall, in metres.
@@ -25,8 +32,10 @@ NUDGES = sorted(
     key=lambda step: (abs(step[0]) + abs(step[1]), step),
 )
 FLAT = ("rug",)  # Families that one walks over.
-PICTURES = "framed"  # The family of pictures, and what may stand for one: mirrors.
 PLACES_TRIED = 24
+MAX_DROP = 2  # Blocks that a thing of a layout may stand lower than its place.
+HELD_SHARE = 0.6  # Share of the bottom or back of a thing that something must hold.
+HANGING = ("curtain", "curtain_sheer", "curtain_single", "shower_curtain")
 Corner = tuple[int, int, int]
 
 
@@ -53,6 +62,10 @@ class Furnisher:
     ways: ClearPaths
     things: list[PlacedFurniture] = field(default_factory=list)
     count: int = 0
+    placed: defaultdict[int, Counter[str]] = field(  # Designs by room; None counts all rooms.
+        default_factory=lambda: defaultdict(Counter)
+    )
+    alike: dict[tuple[int, str], str] = field(default_factory=dict)
     reserved: np.ndarray = field(init=False)  # bool [X, Y, Z] of the canvas; must remain air.
 
     def __post_init__(self):
@@ -73,19 +86,28 @@ class Furnisher:
         Returns:
             The instance number, or 0 if no design fits.
         """
-        names = designs_for(item.model.name, item.model.size_m)
+        key = item.model.name
+        names = self.rarest_first(designs_for(key, item.model.size_m), rng)
+        if first := self.alike.get((room.number, key)):
+            names = (first, *names)
         turns = round(item.yaw_deg / 90) % 4
-        for number in rng.permutation(len(names)):
-            name = names[int(number)]
+        for name in names:
             found = self.design(name, room, turns, rng, item.model.size_m)
             if found is None:
                 continue
             low = self._corner(item, found, room)
-            if template(name).mount == "floor":
+            if template(name).mount in ("floor", "any"):
                 low[2] = self._on(low, found)
             if placed := self.put(name, found, low, room, turns, NUDGES):
+                if key in ALIKE:
+                    self.alike[room.number, key] = name
                 return placed
         return 0
+
+    def rarest_first(self, names: Sequence[str], rng: np.random.Generator) -> tuple[str, ...]:
+        """Return designs in random order, those that the house holds least of first."""
+        order = [names[int(n)] for n in rng.permutation(len(names))]
+        return tuple(sorted(order, key=lambda name: sum(own[name] for own in self.placed.values())))
 
     def design(
         self,
@@ -131,8 +153,7 @@ class Furnisher:
         Returns:
             The instance number, or 0 if no design fits.
         """
-        for number in rng.permutation(len(names)):
-            name = names[int(number)]
+        for name in self.rarest_first(names, rng):
             for turns in rng.permutation(4).tolist():
                 found = self.design(name, room, turns, rng, size_m)
                 if found is None:
@@ -159,7 +180,7 @@ class Furnisher:
         Returns:
             The instance number, or 0 if the design does not fit.
         """
-        name = names[int(rng.integers(len(names)))]
+        name = self.rarest_first(names, rng)[0]
         turns = int(rng.integers(4))
         found = self.design(name, room, turns, rng, size_m)
         if found is None:
@@ -185,7 +206,7 @@ class Furnisher:
             The instance number, or 0 if there is no free space.
         """
         room = self.house.rooms[thing.room]
-        name = names[int(rng.integers(len(names)))]
+        name = self.rarest_first(names, rng)[0]
         found = self.design(name, room, thing.quarter_turns, rng)
         if found is None:
             return 0
@@ -219,6 +240,8 @@ class Furnisher:
         Returns:
             The instance number, or 0 if the rug does not fit.
         """
+        if not room_allows(name, self.placed[room.number]):
+            return 0
         turns = int(rng.integers(4)) if turns is None else turns
         found = self.design(name, room, turns, rng, size_m)
         if found is None:
@@ -244,33 +267,24 @@ class Furnisher:
         turns: int,
         nudges: Sequence[tuple[int, int]] = ((0, 0),),
     ) -> int:
-        """Place a design at a position or near it, if all its blocks are free.
+        """Place a design at a position or near it, if all its blocks are free and it is held.
 
-        A wall holds at most one picture.
+        A room holds a limited number of each design.
 
         Returns:
             The instance number, or 0 if the design does not fit.
         """
-        if template(name).family == PICTURES and self._has_picture(room, turns):
+        if not room_allows(name, self.placed[room.number]):
             return 0
         cells, inside = self._cells(found), room.floor(self.house.size)
         for dx, dy in nudges:
             at = cells + np.array([low[0] + dx, low[1] + dy, low[2]])
-            if self._is_free(at, room, inside):
+            if self._is_free(at, room, inside) and self._is_held(name, found, at, turns):
                 stands = self.ways.stands(room, at)
                 if self.ways.stay(room, stands):
                     self.ways.take(room, stands)
                     return self._set(name, found, at, room, turns)
         return 0
-
-    def _has_picture(self, room: BlockRoom, turns: int) -> bool:
-        """Return whether a picture hangs on a wall of a room that faces a direction."""
-        return any(
-            thing.room == room.number
-            and thing.quarter_turns == turns
-            and template(thing.design).family == PICTURES
-            for thing in self.things
-        )
 
     def _cells(self, found: BlockDesign) -> np.ndarray:
         """Return the cells of a design's blocks relative to its lowest corner, int [N, 3]."""
@@ -288,6 +302,27 @@ class Furnisher:
         free = (self.canvas.states[own] == 0) & ~self.reserved[own]
         return bool(free.all() and inside[tuple(flat.T)].all())
 
+    def _is_held(self, name: str, found: BlockDesign, at: np.ndarray, turns: int) -> bool:
+        """Return whether a design at cells, int [N, 3], stands, hangs or is fixed to something."""
+        made = template(name)
+        step, end, least = [0, 0, -1], at[:, 2].min(), HELD_SHARE
+        if made.mount == "wall" or name in HANGING:
+            axis, low = turns % 2, turns < 2
+            step, least = [0, 0, 0], HELD_SHARE
+            step[axis] = -1 if low else 1
+            end = at[:, axis].min() if low else at[:, axis].max()
+        elif made.mount == "ceiling":
+            step, end, least = [0, 0, 1], at[:, 2].max(), 0.0
+        axis = int(np.flatnonzero(step)[0])
+        own = at[:, axis] == end
+        beside = tuple((at[own] + step + self.canvas.at(0, 0, 0)).T)
+        own_blocks = [block for block, is_own in zip(found.blocks, own, strict=True) if is_own]
+        for number, block in zip(self.canvas.states[beside].tolist(), own_blocks, strict=True):
+            # A candle pops off a block without a top.
+            if "candle" in block.state and not faces_of(self.canvas.palette[number]).centre[UP]:
+                return False
+        return bool((self.canvas.states[beside] > 0).mean() > least)
+
     def _set(
         self, name: str, found: BlockDesign, at: np.ndarray, room: BlockRoom, turns: int
     ) -> int:
@@ -299,6 +334,7 @@ class Furnisher:
             instance, name, class_id, room.number, tuple(low), tuple(high), turns
         )
         self.things.append(thing)
+        self.placed[room.number][name] += 1
         return instance
 
     def _corner(self, item: Item, found: BlockDesign, room: BlockRoom) -> list[int]:
@@ -322,11 +358,15 @@ class Furnisher:
         return [*corner, room.ground + min(above, max(room.height - tall, 0))]
 
     def _on(self, low: list[int], found: BlockDesign) -> int:
-        """Return the layer above the highest block under the middle of a design."""
+        """Return the layer above the highest block under the middle of a design.
+
+        It is at most one layer above the given place, and two below; else it is the given place.
+        """
         x, y, _ = self.canvas.at(low[0] + found.size[0] // 2, low[1] + found.size[2] // 2, 0)
         top = self.canvas.at(0, 0, low[2] + 1)[2]
         filled = np.flatnonzero(self.canvas.states[x, y, : top + 1])
-        return int(filled.max()) + 1 - self.canvas.at(0, 0, 0)[2] if len(filled) else low[2]
+        on = int(filled.max()) + 1 - self.canvas.at(0, 0, 0)[2] if len(filled) else low[2]
+        return on if low[2] - on <= MAX_DROP else low[2]
 
     def _carries(self, place: list[int], found: BlockDesign, thing: PlacedFurniture) -> bool:
         """Return whether each bottom block of a design is on a block of the furniture."""

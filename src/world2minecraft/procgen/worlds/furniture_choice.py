@@ -4,6 +4,7 @@ A layout contains, for example, a sofa, and the library has eleven designs for i
 is chosen, so that a series of houses shows all of them, with the wood, cloth and stone of the room.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -106,7 +107,28 @@ DESIGNS: dict[str, tuple[str, ...]] = {
     "washstand": ("pedestal_basin", "vanity", "sink_unit"),
     "whiteboard": ("projector_screen",),
 }  # fmt: skip
-FIRST_CHOICE_SHARE = 0.8  # Probability of a room's first material.
+# Things of a layout that are alike within a room, as the chairs at one table.
+ALIKE = ("chair", "stool", "nightstand", "wall_cabinet", "office_chair", "counter")
+# How many of a design a room holds at most; of all others one.
+MOST_A_ROOM: dict[str, int] = {
+    **dict.fromkeys(DESIGNS["chair"] + DESIGNS["stool"] + DESIGNS["child_chair"], 8),
+    **dict.fromkeys(DESIGNS["office_chair"] + DESIGNS["desk"], 4),
+    **dict.fromkeys(DESIGNS["curtain"] + DESIGNS["rug"] + DESIGNS["bookshelf"], 4),
+    **dict.fromkeys(("ceiling_lamp", "pendant_lamp", "globe_lamp", "lantern_lamp"), 3),
+    **dict.fromkeys(("curtain", "roller_blind", "venetian_blind", "counter", "locker"), 4),
+    **dict.fromkeys(DESIGNS["wall_cabinet"] + DESIGNS["nightstand"], 2),
+    **dict.fromkeys(DESIGNS["armchair"] + DESIGNS["narrow_bed"] + DESIGNS["kitchen_table"], 2),
+    **dict.fromkeys(("crate", "box", "hanging_plant", "washing_machine", "planter_box"), 2),
+}
+# Groups of which a room holds one thing.
+ONE_OF: tuple[tuple[str, ...], ...] = (
+    ("picture", "portrait", "wall_mirror"),
+    ("standing_mirror", "vanity"),
+    ("radiator", "towel_radiator"),
+    DESIGNS["tv"],
+)
+ACCENT_SHARE = 0.6  # Probability of a room's accent for upholstery; else it is neutral.
+PLAIN = ("curtain", "curtain_sheer", "curtain_single", "shower_curtain")  # Always neutral.
 
 
 def designs_for(name: str, size_m: Sequence[float]) -> tuple[str, ...]:
@@ -117,6 +139,13 @@ def designs_for(name: str, size_m: Sequence[float]) -> tuple[str, ...]:
     if name in ("chair", "stool") and height < 0.62 and width < 0.4:
         name = "child_chair"
     return DESIGNS.get(name, ())
+
+
+def room_allows(name: str, placed: Counter[str]) -> bool:
+    """Return whether a room that holds some designs may get another one of a name."""
+    if placed[name] >= MOST_A_ROOM.get(name, 1):
+        return False
+    return not any(name in group and any(placed[one] for one in group) for group in ONE_OF)
 
 
 def recolour_design(
@@ -133,7 +162,7 @@ def recolour_design(
         shapes = frozenset(
             shape for n in own if (shape := shape_of(blocks[n].state, material.kind))
         )
-        value = values.setdefault(material.kind, _value(material, look, rng))
+        value = values.setdefault(material.kind, _value(material, template.name, look, rng))
         swatch = next((s for s in find_swatches(material.kind, shapes) if s.value == value), None)
         for n in own:
             shape = shape_of(blocks[n].state, material.kind)
@@ -154,11 +183,12 @@ def find_swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
     return tuple(offered.values())
 
 
-def _value(material: Material, look: RoomLook, rng: np.random.Generator) -> str:
-    first = rng.random() < FIRST_CHOICE_SHARE
+def _value(material: Material, name: str, look: RoomLook, rng: np.random.Generator) -> str:
+    accented = rng.random() < ACCENT_SHARE and name not in PLAIN
+    cloth = look.cloth if accented else look.second_cloth
     return {
-        "wood": look.wood if first else look.second_wood,
-        "cloth": look.cloth if first else look.second_cloth,
-        "paint": look.cloth if first else look.second_cloth,
+        "wood": look.wood,
+        "cloth": cloth,
+        "paint": cloth,
         "stone": look.stone,
     }.get(material.kind, material.value)

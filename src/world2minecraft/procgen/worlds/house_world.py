@@ -241,7 +241,7 @@ def _furnish(furnisher: Furnisher, show: StandBuilder, seed: Sequence[int], by_n
             hang_lamps(furnisher, room, own, by_night=by_night)
         dress_windows(furnisher, room, own)
         if room.kind not in BLOCK_RECIPES:
-            add_furniture(task, wall_lamps=3 if by_night else int(own.random() < 0.4))
+            add_furniture(task, by_night=by_night)
         lay_rugs(furnisher, room, own)
 
 

@@ -60,36 +60,64 @@ CONVERTIBLE_KINDS = ("children", "dining", "study", "office")  # of these, where
 EXTRA_DESIGNS: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
     "living": (
         "piano", "grand_piano", "fireplace", "aquarium", "bookcase", "display_cabinet",
-        "grandfather_clock", "corner_sofa", "indoor_tree", "bust", "globe_lamp", "arc_lamp",
-        "corner_sofa_leather", "corner_sofa_white", "cube_shelf", "planter_box",
+        "grandfather_clock", "corner_sofa", "indoor_tree", "bust", "arc_lamp", "paper_lamp",
+        "corner_sofa_leather", "corner_sofa_white", "cube_shelf", "planter_box", "armchair_white",
+        "ottoman", "palm", "table_side", "vase", "stool_padded", "blanket_chest", "table_bar",
     ),
     "bed": (
-        "single_bed", "vanity", "standing_mirror", "blanket_chest", "crib", "ottoman", "radiator",
-        "chair_padded", "chest_of_drawers", "palm", "double_bed_low", "paper_lamp",
+        "vanity", "standing_mirror", "blanket_chest", "crib", "ottoman", "radiator", "armchair",
+        "chair_padded", "chest_of_drawers", "palm", "paper_lamp", "bookcase_low", "lamp",
+        "laundry_basket", "plant", "desk_white", "tv_stand", "stool_padded", "coat_stand",
     ),
     "kitchen": (
         "dishwasher", "fridge_double", "oven_tower", "pantry_rack", "pedal_bin", "radiator",
-        "wall_shelf", "counter", "microwave", "kitchen_island",
+        "counter", "kitchen_island", "table_bistro", "stool_bar", "crate", "washer_dryer", "fern",
+        "bench", "display_cabinet",
     ),
-    "bathroom": ("towel_radiator", "laundry_basket", "shower_curtain", "wall_mirror", "fern"),
+    "bathroom": (
+        "towel_radiator", "laundry_basket", "shower_curtain", "fern", "stool", "pedal_bin",
+        "washing_machine", "plant", "bench_stone", "vanity", "shower",
+    ),
     "dining": (
         "display_cabinet", "sideboard", "table_console", "grandfather_clock", "fireplace", "plant",
-        "vase", "bonsai", "piano",
+        "vase", "bonsai", "piano", "cabinet", "bench", "plant_flowering", "table_side", "radiator",
+        "bust", "arc_lamp", "aquarium",
     ),
     "study": (
-        "bookcase", "armchair_wing", "globe_lamp", "filing_cabinet", "bust", "bookcase_low",
-        "desk_partners", "radiator", "cactus",
+        "bookcase", "armchair_wing", "filing_cabinet", "bust", "bookcase_low", "desk_partners",
+        "radiator", "cactus", "lamp", "cube_shelf", "armchair_leather", "grandfather_clock",
+        "sofa_two_seats", "plant", "table_side", "box", "stool_lab",
     ),
-    "children": ("bunk_bed_pine", "crate", "bicycle", "cube_shelf", "chair_child", "box", "crib"),
+    "children": (
+        "bunk_bed_pine", "crate", "bicycle", "cube_shelf", "chair_child", "box", "crib", "desk",
+        "stool", "bookcase_low", "ottoman", "plant", "aquarium", "lamp", "chest_of_drawers",
+        "single_bed_white", "blanket_chest",
+    ),
     "office": (
         "locker", "filing_cabinet", "projector_screen", "desk_white", "office_chair", "cactus",
-        "fir", "desk_drawers", "monitor_wide",
+        "fir", "desk_drawers", "bookcase", "cabinet", "pedal_bin", "coat_stand", "table_trestle",
+        "radiator", "sofa_armless", "plant", "arc_lamp",
     ),
     "hall": (
-        "coat_stand", "shoe_rack", "table_console", "bicycle", "standing_mirror", "wall_mirror",
-        "radiator",
+        "coat_stand", "shoe_rack", "table_console", "bicycle", "standing_mirror", "bench",
+        "radiator", "plant", "chest_of_drawers", "grandfather_clock", "palm", "blanket_chest",
+        "vase", "box", "stool",
     ),
 }  # fmt: skip
+EXTRAS = (4, 7)  # How many of them a room gets, at least and at most, where they fit.
+SMALL_DESIGNS: dict[str, tuple[str, ...]] = {  # What is put on the tables and cupboards of a kind.
+    "living": ("candles", "flowers", "table_lamp", "fern", "bonsai", "vase"),
+    "bed": ("table_lamp", "candles", "flowers", "box", "fern", "tv_tube"),
+    "kitchen": ("microwave", "flowers", "fern", "candles", "box"),
+    "dining": ("candles", "flowers", "vase", "bonsai", "table_lamp"),
+    "study": ("desk_lamp", "monitor", "monitor_wide", "bonsai", "table_lamp", "box"),
+    "office": ("desk_lamp", "monitor", "monitor_wide", "cactus", "fern", "box"),
+    "children": ("desk_lamp", "box", "monitor", "tv_tube", "fern"),
+    "hall": ("flowers", "vase", "table_lamp", "candles", "fern"),
+    "bathroom": ("candles", "flowers", "fern", "bonsai"),
+}  # fmt: skip
+SMALL_SHARE = 0.45  # Of the low tables and cupboards.
+PICTURE_SHARE = 0.6  # Of the rooms.
 CARRIERS = (int(SemanticClass.TABLE), int(SemanticClass.FURN))
 LOW_M = 1.3  # One sees what stands on a cupboard as high as this.
 SHELVES = {  # How many shelves hang in a room at most.
@@ -323,11 +351,16 @@ def assign_room_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse
 
 
 def _lay_about(task: RecipeContext) -> None:
-    """Place small household blocks on half of the low cupboards and tables of a room."""
+    """Place small designs and blocks on half of the low cupboards and tables of a room."""
     room, furnisher = task.room, task.furnisher
+    small = SMALL_DESIGNS[room.kind]
     for thing in [thing for thing in furnisher.things if thing.room == room.number]:
         low = thing.high[2] - room.ground <= round(LOW_M * furnisher.house.blocks_per_metre)
-        if thing.class_id in CARRIERS and low and task.rng.random() < 0.55:
+        if thing.class_id not in CARRIERS or not low:
+            continue
+        if task.rng.random() < SMALL_SHARE:
+            task.on(thing, *small)
+        if task.rng.random() < SMALL_SHARE:
             task.show.put_on(thing, (HOME,), most=1 + int(task.rng.integers(2)))
 
 
@@ -336,23 +369,29 @@ def _high(task: RecipeContext) -> int:
     return round(SHELF_M * task.furnisher.house.blocks_per_metre)
 
 
-def add_furniture(task: RecipeContext, wall_lamps: int = 0) -> None:
-    """Add extra furniture, pictures, lamps and small blocks to a room of a metric kind."""
+def add_furniture(task: RecipeContext, *, by_night: bool) -> None:
+    """Add extra furniture, a picture, lamps and small blocks to a room of a metric kind."""
     room, rng = task.room, task.rng
-    names = EXTRA_DESIGNS.get(room.kind, ())
-    for number in rng.permutation(len(names))[: 2 + int(rng.integers(3))].tolist():
-        task.wall(names[number])
+    left = int(rng.integers(EXTRAS[0], EXTRAS[1] + 1))
+    for name in task.furnisher.rarest_first(EXTRA_DESIGNS.get(room.kind, ()), rng):
+        if left and task.wall(name):
+            left -= 1
+    if by_night:
+        task.wall("lamp", "arc_lamp", "paper_lamp")
     _lay_about(task)
     for _ in range(3 if room.kind == "children" else 0):
         task.show.put_bed(room)
-    for _ in range(int(rng.integers(3)) + (room.kind == "hall")):
+    if rng.random() < PICTURE_SHARE:
         task.wall(*PICTURES, above_m=1.0)
     if room.kind in ("living", "study", "hall", "children") and rng.random() < 0.5:
         task.show.hang_on_walls(room, 2, 6)
-    if rng.random() < 0.35 and room.kind != "bathroom":
+    if rng.random() < 0.2 and room.kind != "bathroom":
         task.wall("wall_shelf", above_m=1.3)
+    if room.kind in ("living", "kitchen", "dining") and rng.random() < 0.5:
+        task.hang("hanging_plant", 1)
+    board = task.furnisher.looks[room.number].wood
     for _ in range(SHELVES.get(room.kind, 0)):
         if rng.random() < 0.75:
-            task.show.put_rack(room, (_high(task),), task.one(*BOARDS), most=10)
-    for _ in range(wall_lamps):
+            task.show.put_rack(room, (_high(task),), board, most=10)
+    if by_night or rng.random() < 0.4:
         task.wall("wall_lamp", above_m=1.4)
