@@ -12,6 +12,7 @@ from world2minecraft.minecraft.block_states import complete, known_blocks, parse
 from world2minecraft.minecraft.physics.walk_graph import walk_graph
 from world2minecraft.procgen.worlds.block_house import person_size_blocks, plan_block_house
 from world2minecraft.procgen.worlds.clear_paths import ClearPaths
+from world2minecraft.procgen.worlds.exterior import full_block
 from world2minecraft.procgen.worlds.furniture_choice import DESIGNS
 from world2minecraft.procgen.worlds.recipes import BLOCK_RECIPES, BOARDS, PILLARS, RIMS
 from world2minecraft.procgen.worlds.shell import rails
@@ -157,8 +158,13 @@ def test_a_deck_deals_all_before_it_begins_again():
 
 def test_styles_are_of_blocks_and_of_materials_of_the_library():
     for style in styles().values():
-        lists = (style.walls, style.wet_walls, style.ceilings, style.glass, style.skirtings)
+        lists = (style.walls, style.wet_walls, style.ceilings, style.skirtings, style.facades)
         for state in [*itertools.chain(*lists, *style.floors, *style.wet_floors)]:
+            is_block(state)
+        for state in (
+            *style.plinths,
+            *itertools.chain(*((f"{n}_slab", full_block(n)) for n in style.roofs)),
+        ):
             is_block(state)
         assert set(style.cloths) <= set(kinds()["cloth"].blocks)
         assert set(style.stones) <= set(kinds()["stone"].blocks)
@@ -166,10 +172,12 @@ def test_styles_are_of_blocks_and_of_materials_of_the_library():
             is_block(f"{wood}_stairs")
             is_block(f"{wood}_trapdoor")
             is_block(f"{wood}_slab")
-            look = replace(draw_look(style, "living", np.random.default_rng(0)), wood=wood)
+            look = replace(
+                draw_look(style, "living", style.woods[0], np.random.default_rng(0)), wood=wood
+            )
             is_block(look.frame.removeprefix("minecraft:"))
         assert all(0 <= hour < 24 for hour in style.hours)
-        look = draw_look(style, "living", np.random.default_rng(0))
+        look = draw_look(style, "living", style.woods[0], np.random.default_rng(0))
         assert look.wall in look.accents
 
 

@@ -5,8 +5,10 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.worlds.block_house import BlockGap, BlockRoom
 from world2minecraft.procgen.worlds.furnishing import Furnisher
+from world2minecraft.procgen.worlds.shell import FACINGS
 
 OBJS = int(SemanticClass.OBJS)
+HANDLE, HANDLE_M = "minecraft:polished_blackstone_button", 0.9
 LEAF_SHARE = 0.6  # Share of inner doors with a leaf; the others are open frames.
 CURTAINS = ("curtain", "curtain_sheer", "curtain_single")
 BLINDS = ("roller_blind", "venetian_blind")
@@ -54,12 +56,31 @@ def _hang_leaf(
     if not furnisher.ways.stay(room, columns):
         return False
     instance = furnisher.next_instance()
-    canvas.set(box, f"minecraft:{look.wood}_planks", OBJS, instance)
-    for level in (gap.bottom, (gap.bottom + gap.top) // 2, gap.top - 1):
-        rail = canvas.box((low[0], low[1], level), (*high, level + 1))
-        canvas.set(rail, look.frame, OBJS, instance)
+    canvas.set(box, look.frame, OBJS, instance)
+    long_axis = along if flat else across
+    inner = [[*low], [*high]]
+    inner[0][long_axis] += 1
+    inner[1][long_axis] -= 1
+    middle = (gap.bottom + gap.top) // 2
+    for bottom, top in ((gap.bottom + 1, middle), (middle + 1, gap.top - 1)):
+        panel = canvas.box((inner[0][0], inner[0][1], bottom), (inner[1][0], inner[1][1], top))
+        canvas.set(panel, f"minecraft:{look.wood}_planks", OBJS, instance)
     furnisher.ways.take(room, columns)
+    if flat:
+        _put_handle(furnisher, gap, low[along] if at_low else high[along] - 1, instance)
     return True
+
+
+def _put_handle(furnisher: Furnisher, gap: BlockGap, place: int, instance: int) -> None:
+    """Set a handle on a leaf along the wall, at the side away from the door, if there is space."""
+    across, along = gap.turn % 2, 1 - gap.turn % 2
+    at = [0, 0, gap.bottom + round(HANDLE_M * furnisher.house.blocks_per_metre)]
+    at[along] = place
+    at[across] = gap.high[across] + 1 if gap.turn < 2 else gap.low[across] - 2
+    cell = furnisher.canvas.at(at[0], at[1], at[2])
+    if furnisher.canvas.states[cell] == 0:
+        state = f"{HANDLE}[face=wall,facing={FACINGS[gap.turn]}]"
+        furnisher.canvas.set(cell, state, OBJS, instance)
 
 
 def dress_windows(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) -> None:

@@ -157,7 +157,8 @@ def generate_world(
     plan = plan_block_house((seed, 2), rooms, storeys, blocks_per_metre)
     house = assign_room_kinds(plan, rng)
     light = {"hour": _hour(chosen, rng), "lamps": True}
-    looks = tuple(draw_look(chosen, room.kind, rng) for room in house.rooms)
+    wood = chosen.woods[int(rng.integers(len(chosen.woods)))]
+    looks = tuple(draw_look(chosen, room.kind, wood, rng) for room in house.rooms)
     outside = np.random.default_rng([seed, rooms, storeys, 7])
     exterior = draw_exterior(chosen, looks[0], outside)
     depth, high = garden_blocks(blocks_per_metre), roof_layers(house, exterior)

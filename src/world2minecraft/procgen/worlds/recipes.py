@@ -379,12 +379,10 @@ def add_furniture(task: RecipeContext, *, by_night: bool) -> None:
     if by_night:
         task.wall("lamp", "arc_lamp", "paper_lamp")
     _lay_about(task)
-    for _ in range(3 if room.kind == "children" else 0):
-        task.show.put_bed(room)
     if rng.random() < PICTURE_SHARE:
         task.wall(*PICTURES, above_m=1.0)
     if room.kind in ("living", "study", "hall", "children") and rng.random() < 0.5:
-        task.show.hang_on_walls(room, 2, 6)
+        task.show.hang_on_walls(room, 2, 6, home=True)
     if rng.random() < 0.2 and room.kind != "bathroom":
         task.wall("wall_shelf", above_m=1.3)
     if room.kind in ("living", "kitchen", "dining") and rng.random() < 0.5:
@@ -392,6 +390,6 @@ def add_furniture(task: RecipeContext, *, by_night: bool) -> None:
     board = task.furnisher.looks[room.number].wood
     for _ in range(SHELVES.get(room.kind, 0)):
         if rng.random() < 0.75:
-            task.show.put_rack(room, (_high(task),), board, most=10)
+            task.show.put_rack(room, (_high(task),), board, most=10, home=True)
     if by_night or rng.random() < 0.4:
         task.wall("wall_lamp", above_m=1.4)

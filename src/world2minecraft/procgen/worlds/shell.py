@@ -17,6 +17,7 @@ from world2minecraft.procgen.worlds.styles import RoomLook
 FLOOR, WALL = int(SemanticClass.FLOOR), int(SemanticClass.WALL)
 CEILING, WINDOW = int(SemanticClass.CEILING), int(SemanticClass.WINDOW)
 OBJS = int(SemanticClass.OBJS)
+GLASS = "minecraft:glass"
 BARS, RAIL_M = "minecraft:iron_bars", 0.9  # Codes ask for 0.9 m.
 EIGHT = np.ones((3, 3), bool)
 # Which way a block looks that looks by 0 to 3 quarter turns from +x, in the game's words.
@@ -98,7 +99,7 @@ def _sides(rim: np.ndarray, inside: np.ndarray) -> list[np.ndarray]:
 def _put_gap(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
     box = canvas.box((*gap.low, gap.bottom), (*gap.high, gap.top))
     if gap.kind == "window":
-        canvas.set(box, look.glass, WINDOW)
+        canvas.set(box, GLASS, WINDOW)
     elif len(gap.rooms) == 1:
         _put_front_door(canvas, gap, look)
     else:
@@ -122,7 +123,7 @@ def _put_front_door(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
 
     put([*gap.low], [*gap.high], (gap.bottom, gap.top), look.frame)
     put(inner_low, inner_high, (gap.bottom + 1, rail), f"minecraft:{look.wood}_planks")
-    put(inner_low, inner_high, (rail + 1, gap.top - 1), "minecraft:glass")
+    put(inner_low, inner_high, (rail + 1, gap.top - 1), GLASS)
 
 
 def put_stairs(canvas: WorldCanvas, house: BlockHouse, look: RoomLook, instance: int) -> None:

@@ -4,6 +4,7 @@ The styles are defined in ``data/styles.json``.
 """
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -13,7 +14,16 @@ import numpy as np
 
 WET = ("bathroom", "kitchen", "laundry")
 CALM, CALM_SHARE = 2, 0.7  # Most rooms have calm walls, so that furniture is what one sees.
-ACCENT_SHARE = 0.45  # Share of rooms with one accent wall.
+ACCENT_SHARE = 0.35  # Share of rooms with one accent wall, where the style has one.
+NEUTRALS = ("white", "light_gray", "gray", "black", "brown")  # Dyes that go with all others.
+COLOURS = (  # Other dyes. None starts with the name of another one before it.
+    "light_blue", "blue", "cyan", "green", "lime", "magenta", "orange", "pink", "purple", "red",
+    "yellow",
+)  # fmt: skip
+WOODS = (
+    "oak", "spruce", "birch", "jungle", "acacia", "dark_oak", "mangrove", "cherry", "bamboo",
+    "crimson", "warped",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -26,7 +36,6 @@ class Style:
     floors: tuple[tuple[str, ...], ...]
     wet_floors: tuple[tuple[str, ...], ...]
     ceilings: tuple[str, ...]
-    glass: tuple[str, ...]
     woods: tuple[str, ...]
     cloths: tuple[str, ...]
     stones: tuple[str, ...]
@@ -49,7 +58,6 @@ class RoomLook:
     skirting: str
     skirting_height: int
     cornice: str
-    glass: str
     wood: str
     second_wood: str
     cloth: str
@@ -88,38 +96,71 @@ def _style(name: str, raw: dict[str, Any]) -> Style:
     return Style(name=name, **lists)
 
 
-def draw_look(style: Style, kind: str, rng: np.random.Generator) -> RoomLook:
-    """Choose a random look for a kind of room."""
+def draw_look(style: Style, kind: str, wood: str, rng: np.random.Generator) -> RoomLook:
+    """Choose a random look for a kind of room in a house of one wood.
 
-    def one(choices: tuple[Any, ...]) -> Any:
+    A room has one calm wall, the wood of the house, and one accent colour: of its cloths, and of
+    one wall where the style has a wall of that colour.
+    """
+
+    def one(choices: Sequence[Any]) -> Any:
         return choices[int(rng.integers(len(choices)))]
 
-    wet = kind in WET
-    floor = one(style.wet_floors if wet else style.floors)
-    calm = style.walls[:CALM] if rng.random() < CALM_SHARE else style.walls
-    wall = one(style.wet_walls if wet and rng.random() < 0.6 else calm)
+    def calm(choices: Sequence[str]) -> list[str]:
+        """Return the choices without colour, or of the wood."""
+        return [
+            name
+            for name in choices
+            if wood in name or not (_is_wood(name) or colour_of(name) or "glazed" in name)
+        ]
+
+    wet, cloth = kind in WET, one(style.cloths)
+    floors = style.wet_floors if wet else style.floors
+    own_floors = [floor for floor in floors if calm(floor) == [*floor]]
+    plain = [name for name in style.walls[:CALM] if not _is_wood(name)]
+    tiles = [name for name in calm(style.wet_walls) if wood not in name]
+    wall = one(tiles if wet and tiles and rng.random() < 0.6 else plain)
     accents = [_block(wall)] * 4
-    if rng.random() < ACCENT_SHARE:
-        accents[int(rng.integers(4))] = _block(one(style.wet_walls if wet else style.walls))
-    skirting = one(style.skirtings) if rng.random() < 0.6 else wall
-    cloth = int(rng.integers(len(style.cloths)))
-    wood = int(rng.integers(len(style.woods)))
+    bold = [name for name in (*style.walls, *style.wet_walls) if colour_of(name) == cloth]
+    bold += [name for name in style.walls if wood in name and not wet]
+    if bold and rng.random() < ACCENT_SHARE:
+        accents[int(rng.integers(4))] = _block(one(bold))
+    skirtings = calm(style.skirtings)
+    skirting = one(skirtings) if skirtings and rng.random() < 0.6 else wall
+    neutral = [name for name in NEUTRALS if name in style.cloths] or [*NEUTRALS[:3]]
+    others = [name for name in style.woods if name != wood]
     return RoomLook(
         wall=_block(wall),
         accents=(accents[0], accents[1], accents[2], accents[3]),
-        floor=tuple(_block(name) for name in floor),
+        floor=tuple(_block(name) for name in one(own_floors or floors)),
         floor_pattern=("rows", "checked")[int(wet)],
-        ceiling=_block(one(style.ceilings)),
+        ceiling=_block(one(calm(style.ceilings) or style.ceilings)),
         skirting=_block(skirting),
         skirting_height=1,
         cornice=_block(skirting) if rng.random() < 0.3 else "",
-        glass=_block(one(style.glass)),
-        wood=style.woods[wood],
-        second_wood=style.woods[(wood + 1) % len(style.woods)],
-        cloth=style.cloths[cloth],
-        second_cloth=style.cloths[(cloth + 1) % len(style.cloths)],
+        wood=wood,
+        second_wood=others[0],
+        cloth=cloth,
+        second_cloth=one(neutral),
         stone=one(style.stones),
     )
+
+
+def colour_of(name: str) -> str:
+    """Return the colour that the name of a block starts with, or an empty string.
+
+    White, greys, black and brown count as none.
+
+    Example:
+        >>> colour_of("light_blue_wool"), colour_of("light_gray_concrete"), colour_of("bricks")
+        ('light_blue', '', '')
+    """
+    found = [colour for colour in COLOURS if name.startswith(f"{colour}_")]
+    return found[0] if found else ""
+
+
+def _is_wood(name: str) -> bool:
+    return any(f"{wood}_" in f"{name}_" for wood in WOODS)
 
 
 def _block(name: str) -> str:

@@ -20,9 +20,11 @@ from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.procgen.worlds.block_house import BlockRoom
 from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
 from world2minecraft.procgen.worlds.shell import FACINGS
+from world2minecraft.procgen.worlds.styles import NEUTRALS, colour_of
 
 MOUNTS = ("board", "tall", "soil", "wall", "hanging", "water", "bed")
 HOME = "home"
+DEALS_TRIED = 12
 FURN, OBJS = int(SemanticClass.FURN), int(SemanticClass.OBJS)
 WALL = int(SemanticClass.WALL)
 Corner = tuple[int, int, int]
@@ -121,8 +123,24 @@ class StandBuilder:
             self.canvas.set(cell, state, OBJS, instance)
         return True
 
+    def _deal(self, mount: str, room: BlockRoom, *, home: bool) -> Ware | None:
+        """Return the next ware for a kind of mount; in a home, the next that suits the room."""
+        look = self.furnisher.looks[room.number]
+        for _ in range(DEALS_TRIED if home else 1):
+            ware = self.deck.deal(mount)
+            if not home or colour_of(ware.name) in ("", *NEUTRALS, look.cloth):
+                return ware
+        return None
+
     def put_rack(
-        self, room: BlockRoom, boards: Sequence[int], board: str, *, least: int = 4, most: int = 99
+        self,
+        room: BlockRoom,
+        boards: Sequence[int],
+        board: str,
+        *,
+        least: int = 4,
+        most: int = 99,
+        home: bool = False,
     ) -> int:
         """Place a rack with wares along the longest bare stretch of wall.
 
@@ -132,6 +150,7 @@ class StandBuilder:
             board: Material of the boards: a block that has a slab, such as ``oak``.
             least: Minimum length in blocks.
             most: Maximum length in blocks.
+            home: Whether the wares are those of homes, in the colours of the room.
 
         Returns:
             The number of wares on the rack, or 0 if the rack does not fit.
@@ -157,7 +176,7 @@ class StandBuilder:
                 state = f"minecraft:{board}_slab[type=top]"
                 self._set((x, y, room.ground + level), state, FURN, instance)
             if n not in (0, last) and n % 3:  # Pairs, with air between.
-                held += self._fill((x, y), room, boards, turns)
+                held += self._fill((x, y), room, boards, turns, home=home)
         return held
 
     def put_plinth(self, room: BlockRoom, pillar: str, height: int = 3) -> int:
@@ -224,12 +243,19 @@ class StandBuilder:
             under = self.canvas.at(x, y, thing.high[2] - 1)
             if self.canvas.instance[under] != thing.instance or not self._is_top(under):
                 continue
-            ware = self.deck.deal(mounts[int(self.rng.integers(len(mounts)))])
+            mount = mounts[int(self.rng.integers(len(mounts)))]
+            room = self.furnisher.house.rooms[thing.room]
+            ware = self._deal(mount, room, home=mount == HOME)
+            if ware is None:
+                break
             held += self.put_ware(ware, (x, y, thing.high[2]), FACINGS[thing.quarter_turns])
         return held
 
-    def hang_on_walls(self, room: BlockRoom, count: int, level: int) -> int:
-        """Hang up to ``count`` wares on bare walls at a layer above the floor; return the count."""
+    def hang_on_walls(self, room: BlockRoom, count: int, level: int, *, home: bool = False) -> int:
+        """Hang up to ``count`` wares on bare walls at a layer above the floor; return the count.
+
+        In a home they have the colours of the room.
+        """
         hung = 0
         for _ in range(count * 4):
             if hung >= count:
@@ -249,8 +275,9 @@ class StandBuilder:
                 continue
             below = self.canvas.at(at[0], at[1], z - 1)
             if self.canvas.states[below] == 0 and self._takes(room, at, level):
-                ware = self.deck.deal("wall")
-                hung += self.put_ware(ware, (at[0], at[1], z), FACINGS[turns])
+                ware = self._deal("wall", room, home=home)
+                if ware is not None:
+                    hung += self.put_ware(ware, (at[0], at[1], z), FACINGS[turns])
         return hung
 
     def hang_from_ceiling(self, room: BlockRoom, count: int) -> int:
@@ -325,20 +352,26 @@ class StandBuilder:
         return 0
 
     def _fill(
-        self, column: tuple[int, int], room: BlockRoom, boards: Sequence[int], turns: int
+        self,
+        column: tuple[int, int],
+        room: BlockRoom,
+        boards: Sequence[int],
+        turns: int,
+        *,
+        home: bool,
     ) -> int:
         """Place wares in one column of a rack, as high as the boards allow."""
         held = 0
         tops = (*boards[1:], min(boards[-1] + 3, room.height))
         for level, top in zip(boards, tops, strict=True):
             free = top - level - 1
-            mount = "board"
+            board = mount = HOME if home else "board"
             if free >= 2 and self.rng.random() < 0.35:
-                mount = ("soil", "tall")[int(self.rng.random() < 0.3)]
-            ware = self.deck.deal(mount)
-            if len(ware.states) > free:
-                ware = self.deck.deal("board")
-            if free >= 1:
+                mount = ("soil", "tall")[int(self.rng.random() < 0.3 and not home)]
+            ware = self._deal(mount, room, home=home)
+            if ware is not None and len(ware.states) > free:
+                ware = self._deal(board, room, home=home)
+            if free >= 1 and ware is not None:
                 at = (*column, room.ground + level + 1)
                 held += self.put_ware(ware, at, FACINGS[turns])
         return held
