@@ -185,7 +185,8 @@ def _put_slope(
 ) -> None:
     """Set a slope that rises with the distance from its edge, int [X, Y], 0 beside the roof.
 
-    The edge of the roof, by default its lowest blocks, is of wood.
+    The edge of the roof, by default its lowest blocks, is of wood. The roof is solid, so that
+    nobody stands in an attic, which tours would take for a room.
     """
     high = np.floor(exterior.pitch * away).astype(int)
     edge = away == 1 if edge is None else edge
@@ -197,8 +198,8 @@ def _put_slope(
             at = own & (edge == rim)
             state = f"{base}_slab[type=bottom]" if half % 2 else full_block(base)
             _put_air(canvas, at, top, state)
-            if top > level:
-                _put_air(canvas, at, top - 1, full_block(base))
+            for below in range(level, top):
+                _put_air(canvas, at, below, full_block(base))
 
 
 def _put_air(canvas: WorldCanvas, columns: np.ndarray, level: int, block: str) -> None:
@@ -234,10 +235,10 @@ def _put_gables(
         plan[first - eaves : last + eaves + 1] = np.maximum(away, 0)
         edge = plan == 1
         edge[[first - eaves, last + eaves]] = plan[[first - eaves, last + eaves]] > 0
-        _put_slope(canvas, plan, level, exterior, edge)
         tall = np.floor(exterior.pitch * away).astype(int)
         for end in (first, last):
             _put_gable_end(canvas, end, (low, high), level, tall, exterior)
+        _put_slope(canvas, plan, level, exterior, edge)
 
 
 def _extent(row: np.ndarray) -> tuple[int, int]:

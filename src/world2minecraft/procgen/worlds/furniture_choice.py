@@ -156,13 +156,19 @@ def recolour_design(
     values: dict[str, str] = {}
     for role in sorted({block.role for block in blocks}):
         material = template.materials.get(role)
-        if material is None or not material.takes_colour or material.kind not in kinds():
+        if material is None or material.kind not in kinds():
+            continue
+        border = template.family == "rug" and not material.takes_colour
+        if not (material.takes_colour or border):
             continue
         own = [n for n, block in enumerate(blocks) if block.role == role]
         shapes = frozenset(
             shape for n in own if (shape := shape_of(blocks[n].state, material.kind))
         )
-        value = values.setdefault(material.kind, _value(material, template.name, look, rng))
+        if border:
+            value = look.second_cloth
+        else:
+            value = values.setdefault(material.kind, _value(material, template, look, rng))
         swatch = next((s for s in find_swatches(material.kind, shapes) if s.value == value), None)
         for n in own:
             shape = shape_of(blocks[n].state, material.kind)
@@ -183,8 +189,9 @@ def find_swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
     return tuple(offered.values())
 
 
-def _value(material: Material, name: str, look: RoomLook, rng: np.random.Generator) -> str:
-    accented = rng.random() < ACCENT_SHARE and name not in PLAIN
+def _value(material: Material, made: Template, look: RoomLook, rng: np.random.Generator) -> str:
+    accented = rng.random() < ACCENT_SHARE or made.family == "rug"
+    accented &= made.name not in PLAIN
     cloth = look.cloth if accented else look.second_cloth
     return {
         "wood": look.wood,
