@@ -1,9 +1,11 @@
 """Houses as worlds: the same seed gives the same blocks, and every block knows what it is of."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchmarks.check_furnishing import loose_designs
 from scipy import ndimage
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
@@ -18,6 +20,7 @@ from world2minecraft.minecraft.rules.stability import find_unstable
 from world2minecraft.minecraft.worlds.world_reader import read_level
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.procgen.worlds import generate_world, write_worlds
+from world2minecraft.procgen.worlds.furniture_choice import MOST_A_ROOM
 from world2minecraft.procgen.worlds.house_world import LEVEL, count_reachable_floor
 from world2minecraft.procgen.worlds.world_files import house_layouts
 
@@ -205,6 +208,27 @@ def test_roofs_cover_all_walls_and_hang_over(which, request):
     assert covered[wide].all()
     # Above the rooms there is a roof, not only their ceiling.
     assert (volume.semantic[:, top + 1 :] == UNKNOWN).any(axis=1)[inside].all()
+
+
+@pytest.mark.parametrize("which", ["house", "tall", "game_scale"])
+def test_nothing_floats_or_is_gone(which, request):
+    made = request.getfixturevalue(which)
+    assert made.things
+    assert not loose_designs(made)
+
+
+@pytest.mark.parametrize("which", ["house", "tall", "game_scale"])
+def test_a_room_holds_one_picture_or_mirror(which, request):
+    made = request.getfixturevalue(which)
+    for room in made.house.rooms:
+        own = Counter(thing.design for thing in made.things if thing.room == room.number)
+        assert sum(own[name] for name in ("picture", "portrait", "wall_mirror")) <= 1
+        assert all(count <= MOST_A_ROOM.get(name, 1) for name, count in own.items())
+
+
+def test_the_five_commonest_designs_are_few(house, tall, game_scale):
+    counts = Counter(thing.design for made in (house, tall, game_scale) for thing in made.things)
+    assert sum(count for _, count in counts.most_common(5)) <= 0.18 * counts.total()
 
 
 def test_the_path_leads_from_the_door_to_the_gate(house):

@@ -11,12 +11,20 @@ from world2minecraft.furniture.materials import kinds
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state
 from world2minecraft.minecraft.physics.walk_graph import walk_graph
 from world2minecraft.procgen.worlds.block_house import person_size_blocks, plan_block_house
+from world2minecraft.procgen.worlds.canvas import WorldCanvas
 from world2minecraft.procgen.worlds.clear_paths import ClearPaths
-from world2minecraft.procgen.worlds.exterior import full_block
+from world2minecraft.procgen.worlds.exterior import (
+    draw_exterior,
+    full_block,
+    put_facade,
+    put_roof,
+    roof_layers,
+)
 from world2minecraft.procgen.worlds.furniture_choice import DESIGNS
+from world2minecraft.procgen.worlds.garden import garden_blocks
 from world2minecraft.procgen.worlds.recipes import BLOCK_RECIPES, BOARDS, PILLARS, RIMS
 from world2minecraft.procgen.worlds.shell import rails
-from world2minecraft.procgen.worlds.styles import draw_look, styles
+from world2minecraft.procgen.worlds.styles import NEUTRALS, colour_of, draw_look, styles
 from world2minecraft.procgen.worlds.wares_and_stands import (
     HOME,
     MOUNTS,
@@ -193,3 +201,35 @@ def test_things_of_layouts_have_designs_of_the_library():
     from world2minecraft.furniture import TEMPLATES
 
     assert set(itertools.chain(*DESIGNS.values())) <= set(TEMPLATES.names())
+
+
+def test_homes_have_one_wood_and_calm_walls():
+    for style in styles().values():
+        for seed in range(8):
+            rng = np.random.default_rng(seed)
+            wood = style.woods[seed % len(style.woods)]
+            look = draw_look(style, ("living", "bathroom")[seed % 2], wood, rng)
+            assert look.wood == wood != look.second_wood
+            assert look.second_cloth in NEUTRALS
+            bold = {state for state in look.accents if state != look.wall}
+            assert len(bold) <= 1
+            for state in bold:
+                name = state.removeprefix("minecraft:")
+                assert colour_of(name) == look.cloth or wood in name
+
+
+@pytest.mark.parametrize("scale", [2.0, 25 / 6, 5.9])
+def test_roofs_fit_below_the_top_of_the_canvas(scale):
+    looks = [style for style in styles().values()][:4]
+    for seed, style in enumerate(looks):
+        rng = np.random.default_rng(seed)
+        house = plan_block_house((seed,), 8, 1 + seed % 2, scale)
+        look = draw_look(style, "hall", style.woods[0], rng)
+        for pitch, form in itertools.product((1.0, 1.5), ("gable", "hip")):
+            exterior = replace(draw_exterior(style, look, rng), pitch=pitch, form=form)
+            canvas = WorldCanvas(house, garden_blocks(scale), roof_layers(house, exterior))
+            put_facade(canvas, house, exterior)
+            put_roof(canvas, house, exterior)
+            filled = canvas.states.any(axis=(0, 1))
+            assert filled[: canvas.at(0, 0, house.grounds[-1] + house.height)[2]].sum() > 3
+            assert not filled[-1]

@@ -151,7 +151,7 @@ def put_roof(canvas: WorldCanvas, house: BlockHouse, exterior: Exterior) -> None
         elif exterior.form == "hip":
             wide = ndimage.binary_dilation(walls, EIGHT, iterations=eaves)
             away = ndimage.distance_transform_cdt(wide, "chessboard")
-            _put_slope(canvas, np.asarray(away), level, exterior)
+            _put_slope(canvas, np.asarray(away), walls, level, exterior)
         else:
             _put_gables(canvas, walls, level, eaves, exterior)
         if not covered.any() and exterior.has_chimney:
@@ -173,20 +173,21 @@ def _put_shed(
         return
     wide = ndimage.binary_dilation(lower, EIGHT, iterations=eaves) & ~covered
     away = np.asarray(ndimage.distance_transform_cdt(wide | covered, "chessboard"))
-    _put_slope(canvas, np.where(wide, np.minimum(away, SHED_RISE), 0), level, exterior)
+    _put_slope(canvas, np.where(wide, np.minimum(away, SHED_RISE), 0), walls, level, exterior)
 
 
 def _put_slope(
     canvas: WorldCanvas,
     away: np.ndarray,
+    walls: np.ndarray,
     level: int,
     exterior: Exterior,
     edge: np.ndarray | None = None,
 ) -> None:
     """Set a slope that rises with the distance from its edge, int [X, Y], 0 beside the roof.
 
-    The edge of the roof, by default its lowest blocks, is of wood. The roof is solid, so that
-    nobody stands in an attic, which tours would take for a room.
+    The edge of the roof, by default its lowest blocks, is of wood. Above the columns ``walls``,
+    bool [X, Y], the roof is solid: nobody stands in an attic, which tours would take for a room.
     """
     high = np.floor(exterior.pitch * away).astype(int)
     edge = away == 1 if edge is None else edge
@@ -199,7 +200,7 @@ def _put_slope(
             state = f"{base}_slab[type=bottom]" if half % 2 else full_block(base)
             _put_air(canvas, at, top, state)
             for below in range(level, top):
-                _put_air(canvas, at, below, full_block(base))
+                _put_air(canvas, at & (walls | (below == top - 1)), below, full_block(base))
 
 
 def _put_air(canvas: WorldCanvas, columns: np.ndarray, level: int, block: str) -> None:
@@ -238,7 +239,7 @@ def _put_gables(
         tall = np.floor(exterior.pitch * away).astype(int)
         for end in (first, last):
             _put_gable_end(canvas, end, (low, high), level, tall, exterior)
-        _put_slope(canvas, plan, level, exterior, edge)
+        _put_slope(canvas, plan, walls, level, exterior, edge)
 
 
 def _extent(row: np.ndarray) -> tuple[int, int]:
@@ -277,6 +278,6 @@ def _put_chimney(
     x = x0 + (x1 - x0) // 3
     low, high = _extent(walls[x])
     y = (low + high) // 2 + wide
-    ridge = int(np.flatnonzero(canvas.states.any(axis=(0, 1))).max())
+    ridge = int(np.flatnonzero(canvas.states[x : x + wide].any(axis=(0, 1))).max())
     box = (slice(x, x + wide), slice(y, y + wide), slice(level + 1, ridge + 3))
     canvas.set(box, f"minecraft:{exterior.plinth}", UNKNOWN)
