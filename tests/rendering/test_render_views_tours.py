@@ -1,13 +1,15 @@
 """Orbits that fit, tours that stay in free space, tour files that come back."""
 
 import json
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from scenes import random_volume
 
-from world2minecraft.core.coordinates import apply, block_to_room, invert_rigid
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.coordinates import apply, block_to_room, invert, invert_rigid
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.rendering import prepare_scene
@@ -72,6 +74,19 @@ def test_an_orbit_holds_the_whole_build_and_fills_the_picture(size, elevation_de
         fullest = max(fullest, float(np.abs(at / (np.array(size) / 2)).max()))
         assert (np.abs(at) <= np.array(size) / 2).all()
     assert fullest > 0.85
+
+
+def test_an_orbit_frames_the_roof_and_not_the_garden():
+    states = np.zeros((20, 10, 20), np.uint16)
+    semantic = np.zeros(states.shape, np.uint8)
+    states[:, 0], semantic[:, 0] = 1, UNKNOWN  # The garden, a house in its middle, and its roof.
+    states[8:12, 1:4, 8:12], semantic[8:12, 1:4, 8:12] = 1, SemanticClass.WALL
+    states[8:12, 4:7, 8:12], semantic[8:12, 4:7, 8:12] = 1, UNKNOWN
+    volume = replace(built(states), semantic=semantic)
+    corners = apply(invert(volume.block_to_room), corner_points_m(volume))
+    size = np.ptp(corners, axis=0)
+    assert size[1] == pytest.approx(7)
+    assert (size[[0, 2]] < 20).all() and (size[[0, 2]] >= 4).all()
 
 
 def test_an_orbit_goes_around_once_at_one_height():

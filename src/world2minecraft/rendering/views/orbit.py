@@ -1,6 +1,7 @@
 """Orbits: circles of cameras that show a whole build, for still images and animations."""
 
 import numpy as np
+from scipy import ndimage
 
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at
@@ -10,6 +11,7 @@ from world2minecraft.rendering.views.cameras import Shot
 ELEVATION_DEG = 28.0  # One sees the roof and the walls of a house.
 TURN_DEG = 34.0  # Where the circle begins: off the diagonal, so that two sides differ.
 MARGIN = 1.08
+EAVES_M = 0.8  # From the labelled walls to the edge of the roof.
 CENTRINGS = 3  # What is near looks larger, so that the middle of a build is not that of its view.
 MAX_DISTANCE_M = 20_000.0
 
@@ -25,8 +27,8 @@ def orbit_shots(
 ) -> list[Shot]:
     """Return shots on a circle around a volume, each of which shows all of its building.
 
-    The building is the labelled blocks; a garden around them may be cut off. Without labels, all
-    blocks are shown.
+    The building is the labelled blocks with the roof above them; a garden around them may be cut
+    off. Without labels, all blocks are shown.
 
     Args:
         volume: The blocks.
@@ -52,9 +54,14 @@ def orbit_shots(
 
 def corner_points_m(volume: BlockVolume) -> np.ndarray:
     """Return the corners of the bounding box of the building, float64 [8, 3] in room metres."""
-    filled = (volume.semantic > 0) & (volume.semantic != UNKNOWN)
-    if not filled.any():
-        filled = volume.states != 0
+    filled = volume.states != 0
+    labelled = (volume.semantic > 0) & (volume.semantic != UNKNOWN)
+    if labelled.any():  # The roof and the eaves have no class either.
+        columns = labelled.any(axis=1)
+        near = ndimage.binary_dilation(
+            columns, np.ones((3, 3)), max(1, round(EAVES_M * volume.blocks_per_metre))
+        )
+        filled &= near[:, None]
     if not filled.any():
         filled = np.ones_like(filled)
     spans = []
