@@ -127,13 +127,19 @@ def _hang(
 def hang_lamps(
     furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator, *, by_night: bool
 ) -> int:
-    """Hang ceiling lamps of one kind in a room, more of them by night; return their number."""
+    """Hang ceiling lamps of one kind in a room, more of them by night; return their number.
+
+    Lamps that hang there already, such as one above a table, count.
+    """
     scale = furnisher.house.blocks_per_metre
+    placed = furnisher.placed[room.number]
     names = furnisher.rarest_first(CEILING_LAMPS, rng)
+    names = tuple(sorted(names, key=lambda name: not placed[name]))
     if room.kind in ("storage", "bathroom", "laundry"):
         names = CEILING_LAMPS[:1]
     area = room.size[0] * room.size[1] / scale**2
     count = min(max(1, round(area / LAMP_AREA_M2[by_night])), MAX_LAMPS)
+    count -= sum(placed[name] for name in CEILING_LAMPS)
     for name in names:
         if hung := sum(
             hang_one(furnisher, room, name, (n + 0.5) / count, rng) for n in range(count)

@@ -191,6 +191,8 @@ def plant_trees(
     scale, level = house.blocks_per_metre, canvas.at(0, 0, 0)[2]
     radius, trunk = max(1, round(0.7 * scale)), max(2, round(1.6 * scale))
     top = canvas.states.shape[2]
+    if len(house.grounds) > 1:  # Views that set storeys apart would cut through taller trees.
+        top = level + house.height
     taken = canvas.states[:, :, level:].any(axis=2) | _path(canvas, house)
     inner = np.zeros(taken.shape, bool)
     inner[1 + radius : -1 - radius, 1 + radius : -1 - radius] = True
@@ -201,7 +203,7 @@ def plant_trees(
         box = (slice(x - radius, x + radius + 1), slice(y - radius, y + radius + 1))
         if left == 0:
             return
-        if high < 2 or canvas.states[(*box, slice(level, top))].any() or taken[x, y]:
+        if high < 2 or canvas.states[(*box, slice(level, None))].any() or taken[x, y]:
             continue
         left -= 1
         canvas.set((x, y, slice(level, level + high)), f"minecraft:{garden.trunk}", UNKNOWN)

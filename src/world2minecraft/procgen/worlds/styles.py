@@ -115,8 +115,9 @@ def draw_look(style: Style, kind: str, wood: str, rng: np.random.Generator) -> R
         ]
 
     wet, cloth = kind in WET, one(style.cloths)
-    floors = style.wet_floors if wet else style.floors
-    own_floors = [floor for floor in floors if calm(floor) == [*floor]]
+    floors = (style.wet_floors, style.floors) if wet else (style.floors,)
+    calm_floors = ([floor for floor in own if calm(floor) == [*floor]] for own in floors)
+    own_floors = next((found for found in calm_floors if found), floors[0])
     plain = [name for name in style.walls[:CALM] if not _is_wood(name)]
     tiles = [name for name in calm(style.wet_walls) if wood not in name]
     wall = one(tiles if wet and tiles and rng.random() < 0.6 else plain)
@@ -132,7 +133,7 @@ def draw_look(style: Style, kind: str, wood: str, rng: np.random.Generator) -> R
     return RoomLook(
         wall=_block(wall),
         accents=(accents[0], accents[1], accents[2], accents[3]),
-        floor=tuple(_block(name) for name in one(own_floors or floors)),
+        floor=tuple(_block(name) for name in one(own_floors)),
         floor_pattern=("rows", "checked")[int(wet)],
         ceiling=_block(one(calm(style.ceilings) or style.ceilings)),
         skirting=_block(skirting),
