@@ -117,10 +117,13 @@ class Furnisher:
         rng: np.random.Generator,
         size_m: Sequence[float] | None = None,
     ) -> BlockDesign | None:
-        """Return a rotated design in the materials of a room, or None if it cannot be built.
+        """Return a rotated design in the materials of a room, or None.
 
-        The size is random if ``size_m`` is None.
+        None stands for a design that cannot be built or of which the room holds enough. The size is
+        random if ``size_m`` is None.
         """
+        if not room_allows(name, self.placed[room.number]):
+            return None
         made = template(name)
         if size_m is None:
             share = rng.triangular(-1, 0, 1)
@@ -240,8 +243,6 @@ class Furnisher:
         Returns:
             The instance number, or 0 if the rug does not fit.
         """
-        if not room_allows(name, self.placed[room.number]):
-            return 0
         turns = int(rng.integers(4)) if turns is None else turns
         found = self.design(name, room, turns, rng, size_m)
         if found is None:
@@ -269,13 +270,9 @@ class Furnisher:
     ) -> int:
         """Place a design at a position or near it, if all its blocks are free and it is held.
 
-        A room holds a limited number of each design.
-
         Returns:
             The instance number, or 0 if the design does not fit.
         """
-        if not room_allows(name, self.placed[room.number]):
-            return 0
         cells, inside = self._cells(found), room.floor(self.house.size)
         for dx, dy in nudges:
             at = cells + np.array([low[0] + dx, low[1] + dy, low[2]])
