@@ -230,6 +230,6 @@ def test_roofs_fit_below_the_top_of_the_canvas(scale):
             canvas = WorldCanvas(house, garden_blocks(scale), roof_layers(house, exterior))
             put_facade(canvas, house, exterior)
             put_roof(canvas, house, exterior)
-            filled = canvas.states.any(axis=(0, 1))
+            filled = np.asarray(canvas.states.any(axis=(0, 1)))
             assert filled[: canvas.at(0, 0, house.grounds[-1] + house.height)[2]].sum() > 3
             assert not filled[-1]

@@ -81,7 +81,7 @@ def outer_walls(canvas: WorldCanvas, house: BlockHouse, storey: int) -> np.ndarr
     """Return the columns of a storey's rooms and walls, both layers of them, as bool [X, Y]."""
     rooms = [room.floor(house.size) for room in house.rooms if room.storey == storey]
     inside = np.pad(np.any(rooms, axis=0), canvas.margin)
-    return ndimage.binary_dilation(inside, EIGHT, iterations=2)
+    return np.asarray(ndimage.binary_dilation(inside, EIGHT, iterations=2), bool)
 
 
 def put_facade(canvas: WorldCanvas, house: BlockHouse, exterior: Exterior) -> None:
@@ -89,7 +89,7 @@ def put_facade(canvas: WorldCanvas, house: BlockHouse, exterior: Exterior) -> No
     plinth = max(1, round(PLINTH_M * house.blocks_per_metre))
     for storey, ground in enumerate(house.grounds):
         every = outer_walls(canvas, house, storey)
-        skin = every & ~ndimage.binary_erosion(every, EIGHT)
+        skin = every & ~np.asarray(ndimage.binary_erosion(every, EIGHT), bool)
         beside = ndimage.convolve(every.astype(int), [[0, 1, 0], [1, 0, 1], [0, 1, 0]])
         corner = skin & (beside <= 2)
         for z in range(ground - 1 - (storey == 0), ground + house.height + 1):
@@ -274,7 +274,7 @@ def _put_chimney(
 ) -> None:
     """Set a chimney near the ridge that stands out above it."""
     wide = max(1, round(CHIMNEY_M * scale))
-    x0, x1 = _extent(walls.any(axis=1))
+    x0, x1 = _extent(np.asarray(walls.any(axis=1)))
     x = x0 + (x1 - x0) // 3
     low, high = _extent(walls[x])
     y = (low + high) // 2 + wide

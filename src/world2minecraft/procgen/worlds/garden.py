@@ -173,7 +173,7 @@ def _plant_beds(
     near = np.asarray(ndimage.distance_transform_cdt(~outer_walls(canvas, house, 0), "chessboard"))
     share = np.where(near == 1, garden.planted, 0.0)
     share[1:-1, [1, -2]] = share[[1, -2], 1:-1] = HEDGE_SHARE * garden.planted
-    share[ndimage.binary_dilation(path, np.ones((3, 3)))] = 0
+    share[np.asarray(ndimage.binary_dilation(path, np.ones((3, 3))), bool)] = 0
     share[[0, -1]] = share[:, [0, -1]] = 0
     for x, y in np.argwhere(rng.random(share.shape) < share).tolist():
         ware = deck.deal("soil")
