@@ -15,7 +15,7 @@ from world2minecraft.rendering import prepare_scene
 CAMERA = Camera(64, 48, 50.0, 50.0, 32.0, 24.0)
 
 
-def test_of_each_sixth_a_view_of_things_is_shown_and_poses_are_corrected():
+def test_of_each_sixth_a_view_of_things_is_shown():
     volume = generate_world(11, rooms=3, storeys=1).volume
     cells = np.argwhere(volume.instance > 0)[0] + np.array(volume.corner) + 0.5
     thing = (volume.block_to_room @ [*cells, 1])[:3]
