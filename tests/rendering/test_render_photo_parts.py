@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.jit import lean
-from world2minecraft.rendering.path_tracing.denoise import SWEEPS, denoise_light
+from world2minecraft.rendering.path_tracing.denoise import (
+    SPREAD,
+    SWEEPS,
+    Guides,
+    denoise_light,
+    guides_of,
+)
+from world2minecraft.rendering.path_tracing.film import new_film
 from world2minecraft.rendering.path_tracing.rng import EVEN_USES, hash_uint32, sample_pair
 from world2minecraft.rendering.path_tracing.scattering import (
     evaluate_gloss,
@@ -124,12 +131,29 @@ def once(band, rows: int) -> None:
     band((0, rows))
 
 
-def guides(height: int, width: int):
-    place = np.zeros((height, width, 3), np.float32)
-    place[..., 0], place[..., 2] = np.meshgrid(np.arange(width) * 0.05, np.arange(height) * 0.05)
+def guides(height: int, width: int) -> Guides:
     normal = np.zeros((height, width, 3), np.float32)
     normal[..., 1] = 1
-    return place, normal, normal.copy(), np.full((height, width), 5, np.float32)
+    return Guides(np.ones((height, width), np.int32), normal, np.zeros((height, width), bool))
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 22.5, 71.0])
+def test_planes_are_told_apart_by_turn_and_offset(turn_deg):
+    film = new_film(24, 32)
+    angle = np.deg2rad(turn_deg)
+    film.out[:] = [np.cos(angle), 0, np.sin(angle)]
+    film.normal[:] = film.out
+    along = np.random.default_rng(0).uniform(0, 200, (24, 32, 1))
+    offset = np.repeat(np.arange(32) // 8, 24).reshape(32, 24).T[..., None] * 0.0625 + 90
+    film.place[:] = film.out * offset + along * [-np.sin(angle), 0, np.cos(angle)]
+    film.far[:] = 5
+    film.far[:2] = 0  # Sky.
+    film.normal[5, 6] = [0, 1, 0]
+    found = guides_of(film)
+    assert (found.surface[:2] == 0).all() and (found.surface[2:] > 0).all()
+    assert len(np.unique(found.surface)) == 5
+    assert (np.diff(found.surface[2:], axis=0) == 0).all()
+    assert np.flatnonzero(found.uneven).tolist() == [5 * 32 + 6]
 
 
 def test_the_filter_keeps_an_even_light_to_the_bit():
@@ -160,11 +184,23 @@ def test_the_filter_takes_the_grain_and_leaves_the_shadow_s_edge():
 def test_the_filter_never_crosses_from_one_surface_to_another():
     mean = np.where(np.arange(64)[None] < 32, 1.0, 1.1) * np.ones((48, 1))
     light, squares = grainy(np.random.default_rng(1), mean)
-    place, normal, out, far = guides(*mean.shape)
-    place[:, 32:, 1] = 2
+    two = guides(*mean.shape)
+    two.surface[:, 32:] = 2
     count = np.full(mean.shape, 16, np.float32)
-    result = denoise_light(light, squares, count, (place, normal, out, far), SWEEPS, once)[..., 0]
+    result = denoise_light(light, squares, count, two, SWEEPS, once)[..., 0]
     assert abs(result[:, 31].mean() - 1.0) < 0.03 and abs(result[:, 32].mean() - 1.1) < 0.03
+
+
+def test_rare_bright_samples_leave_no_stain_and_lose_nothing():
+    rng = np.random.default_rng(3)
+    drawn = np.where(rng.random((16, 96, 96)) < 0.003, 40.0, 0.2)
+    light = np.repeat(drawn.mean(axis=0)[..., None], 3, axis=-1).astype(np.float32)
+    count = np.full((96, 96), 16, np.float32)
+    squares = (drawn**2).mean(axis=0).astype(np.float32)
+    result = denoise_light(light, squares, count, guides(96, 96), SWEEPS, once)
+    assert abs(result.mean() / light.mean() - 1) < 0.05
+    inner = result[SPREAD:-SPREAD, SPREAD:-SPREAD, 0]
+    assert inner.std() < 0.25 * light.std()
 
 
 def test_bands_of_rows_give_what_the_whole_gives():

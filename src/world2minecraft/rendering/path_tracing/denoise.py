@@ -1,37 +1,66 @@
 """Denoising by an edge-preserving a-trous filter on light divided by surface reflectance.
 
-Dividing by the reflectance keeps textures sharp. Five passes of doubling width average over
-neighbours on the same surface: same plane, same relief, and a difference in light that noise can
-explain. The noise is estimated from the samples of each pixel and decreases with each pass, so that
-shadow edges are preserved.
+Dividing by the reflectance keeps textures sharp. Light far above that of its neighbours is first
+spread over them, which keeps the mean: cutting it instead would darken walls in stains. Five passes
+of doubling width then average over neighbours on the same surface: same plane, same relief, and a
+difference in light that the noise of both pixels can explain. The noise is estimated from the
+samples of each pixel and decreases with each pass, so that shadow edges are preserved.
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.core.jit import inlined, lean
-from world2minecraft.rendering.path_tracing.film import (
-    SAME_NORMAL,
-    SAME_PLANE,
-    SAME_PLANE_FAR,
-    luminance,
-)
+from world2minecraft.rendering.path_tracing.film import Film, luminance
 
 SWEEPS = 5  # The last reaches 32 pixels to each side.
 GLOSS_SWEEPS = 3  # What is mirrored has edges of its own.
-GRAIN = 4.0  # Standard deviations of difference that still count as one light.
+GRAIN = 3.0  # Standard deviations of a difference that still count as one light.
+SPREAD = 3  # Pixels to each side over which outliers are spread,
+OUTLIER = 3.0  # which are so many times as bright as the mean there,
+DISAGREEMENT = 0.5  # and whose mean has so much of itself as its standard deviation.
+MIN_NEIGHBOURS = 3  # Pixels of a surface that tell what an outlier is.
 _RELIEF = 3  # The cosine of two normals counts to the power of 2 ** _RELIEF.
 _SOFT = 0.015  # Of the light: a difference that is nothing.
+_GAP = 0.01  # Cells between two planes.
+_STEPS = 1000  # Of a normal's components, to tell planes apart.
 
 Bands = Callable[[Callable[[tuple[int, int]], None], int], None]
+
+
+class Guides(NamedTuple):
+    """What tells the surfaces of an image apart."""
+
+    surface: np.ndarray  # int32 [H, W]: number of the plane at the pixel's centre, 0 for none
+    normal: np.ndarray  # float32 [H, W, 3]: of its relief
+    uneven: np.ndarray  # bool [H, W]: whether that is not the plane's
+
+
+def guides_of(film: Film) -> Guides:
+    """Return the guides of a film, with a number for each plane that it shows."""
+    shown = film.far > 0
+    out = film.out[shown].astype(np.float64)
+    steps = np.rint(out * _STEPS).astype(np.int64) + _STEPS
+    direction = (steps * (2 * _STEPS + 1) ** np.arange(3)).sum(axis=1)
+    offset = (out * film.place[shown]).sum(axis=1)
+    order = np.lexsort((offset, direction))
+    begins = np.diff(direction[order], prepend=-1) != 0
+    begins |= np.diff(offset[order], prepend=0) > _GAP
+    numbers = np.empty(len(order), np.int32)
+    numbers[order] = np.cumsum(begins)
+    surface = np.zeros(shown.shape, np.int32)
+    surface[shown] = numbers
+    uneven = np.abs(film.normal - film.out).max(axis=-1) > 1 / _STEPS
+    return Guides(surface, film.normal, uneven)
 
 
 def denoise_light(
     light: np.ndarray,
     squares: np.ndarray,
     count: np.ndarray,
-    guides: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
+    guides: Guides,
     sweeps: int,
     run: Bands,
 ) -> np.ndarray:
@@ -42,14 +71,16 @@ def denoise_light(
         squares: Means of the squared luminances of the samples, float32 [H, W].
         count: Number of samples, float32 [H, W]. Pixels without samples are ignored and not
             changed.
-        guides: ``place``, ``normal``, ``out`` and ``far`` of a ``Film``.
+        guides: The result of ``guides_of``.
         sweeps: Number of filter passes.
         run: Function that calls another function for bands that cover a number of rows.
     """
-    grain = np.zeros(light.shape[:2], np.float32)
+    grain, excess, sharers = (np.zeros(light.shape[:2], np.float32) for _ in range(3))
     now, then = light.copy(), light.copy()
     rows = len(light)
-    run(lambda band: estimate_variance(light, squares, count, guides, band, now, grain), rows)
+    run(lambda band: estimate_variance(light, squares, count, guides, band, grain), rows)
+    run(lambda band: find_outliers(light, squares, count, guides, band, excess, sharers), rows)
+    run(lambda band: spread_outliers(light, excess, sharers, guides, band, now), rows)
     other = grain.copy()
     for sweep in range(sweeps):
         step = 1 << sweep
@@ -65,61 +96,97 @@ def denoise_light(
 
 
 @inlined
-def same_surface(guides, v, u, y, x):
-    """Return whether two pixels show the same surface, or both show none."""
-    place, _, out, far = guides
-    cosine = out[v, u, 0] * out[y, x, 0] + out[v, u, 1] * out[y, x, 1] + out[v, u, 2] * out[y, x, 2]
-    if cosine <= SAME_NORMAL:
-        return far[v, u] == 0 and far[y, x] == 0
-    off = (
-        out[v, u, 0] * (place[y, x, 0] - place[v, u, 0])
-        + out[v, u, 1] * (place[y, x, 1] - place[v, u, 1])
-        + out[v, u, 2] * (place[y, x, 2] - place[v, u, 2])
-    )
-    return abs(off) < SAME_PLANE + SAME_PLANE_FAR * far[v, u]
+def luminance_at(light, v, u):
+    """Return the luminance of a pixel."""
+    return luminance(light[v, u, 0], light[v, u, 1], light[v, u, 2])
+
+
+@inlined
+def variance_of_mean(bright, squares, count):
+    """Return the variance of the mean luminance of some samples."""
+    square = bright * bright
+    return max(squares - square, 0.0) / (count - 1) if count > 1 else square
 
 
 @lean
-def estimate_variance(light, squares, count, guides, rows, cut, grain):
-    """Clip isolated bright pixels, and estimate the variance of the other pixels' means."""
+def estimate_variance(light, squares, count, guides, rows, grain):
+    """Estimate the variance of the pixels' means, from 3 x 3 pixels of a surface."""
+    surface = guides.surface
     height, width = grain.shape
     for v in range(rows[0], rows[1]):
         for u in range(width):
             if count[v, u] <= 0:
                 continue
-            most, total, weights = 0.0, 0.0, 0.0
+            total, weights = 0.0, 0.0
             for y in range(max(v - 1, 0), min(v + 2, height)):
                 for x in range(max(u - 1, 0), min(u + 2, width)):
-                    if count[y, x] <= 0 or not same_surface(guides, v, u, y, x):
+                    if count[y, x] <= 0 or surface[y, x] != surface[v, u]:
                         continue
-                    bright = luminance(light[y, x, 0], light[y, x, 1], light[y, x, 2])
+                    bright = luminance_at(light, y, x)
                     weight = 1.0 / (1 + abs(y - v)) / (1 + abs(x - u))
-                    if count[y, x] > 1:
-                        own = max(squares[y, x] - bright * bright, 0.0) / (count[y, x] - 1)
-                    else:
-                        own = bright * bright
-                    total += weight * own
+                    total += weight * variance_of_mean(bright, squares[y, x], count[y, x])
                     weights += weight
-                    if y != v or x != u:
-                        most = max(most, bright)
-            own = luminance(light[v, u, 0], light[v, u, 1], light[v, u, 2])
             grain[v, u] = total / weights
-            shrink = most / own if own > most > 0 else 1.0
+
+
+@lean
+def find_outliers(light, squares, count, guides, rows, excess, sharers):
+    """Fill the share of each pixel's light that is too much, and how many neighbours share it."""
+    surface = guides.surface
+    height, width = excess.shape
+    for v in range(rows[0], rows[1]):
+        for u in range(width):
+            if count[v, u] <= 0:
+                continue
+            total, found = 0.0, -1
+            for y in range(max(v - SPREAD, 0), min(v + SPREAD + 1, height)):
+                for x in range(max(u - SPREAD, 0), min(u + SPREAD + 1, width)):
+                    if count[y, x] > 0 and surface[y, x] == surface[v, u]:
+                        total += luminance_at(light, y, x)
+                        found += 1
+            own = luminance_at(light, v, u)
+            sharers[v, u] = found
+            if found >= MIN_NEIGHBOURS:
+                most = OUTLIER * (total - own) / found
+                noise = np.sqrt(variance_of_mean(own, squares[v, u], count[v, u]))
+                if own > most > 0 and noise > DISAGREEMENT * own:
+                    excess[v, u] = 1.0 - most / own
+
+
+@lean
+def spread_outliers(light, excess, sharers, guides, rows, result):
+    """Move the excess light of outliers to their neighbours on the same surface, in equal parts.
+
+    ``result`` is a copy of ``light``.
+    """
+    surface = guides.surface
+    height, width = excess.shape
+    for v in range(rows[0], rows[1]):
+        for u in range(width):
+            if sharers[v, u] <= 0:
+                continue
             for n in range(3):
-                cut[v, u, n] = light[v, u, n] * shrink
+                result[v, u, n] *= 1.0 - excess[v, u]
+            for y in range(max(v - SPREAD, 0), min(v + SPREAD + 1, height)):
+                for x in range(max(u - SPREAD, 0), min(u + SPREAD + 1, width)):
+                    if excess[y, x] <= 0 or surface[y, x] != surface[v, u]:
+                        continue
+                    if y != v or x != u:
+                        for n in range(3):
+                            result[v, u, n] += light[y, x, n] * excess[y, x] / sharers[y, x]
 
 
 @lean
 def filter_pass(light, grain, count, guides, step, rows, out_light, out_grain):
     """Apply one filter pass to a band of rows, with 5 x 5 taps that are ``step`` pixels apart."""
-    normal = guides[1]
+    surface, normal, uneven = guides.surface, guides.normal, guides.uneven
     height, width = grain.shape
     for v in range(rows[0], rows[1]):
         for u in range(width):
             if count[v, u] <= 0:
                 continue
-            own = luminance(light[v, u, 0], light[v, u, 1], light[v, u, 2])
-            differ = 1.0 / (GRAIN * np.sqrt(grain[v, u]) + _SOFT * own + 1e-6)
+            own, noise = luminance_at(light, v, u), grain[v, u]
+            alike = _SOFT * own + 1e-6
             red, green, blue, rough, weights = 0.0, 0.0, 0.0, 0.0, 0.0
             for b in range(-2, 3):
                 y = v + b * step
@@ -129,26 +196,35 @@ def filter_pass(light, grain, count, guides, step, rows, out_light, out_grain):
                     x = u + a * step
                     if x < 0 or x >= width or count[y, x] <= 0:
                         continue
-                    if not same_surface(guides, v, u, y, x):
+                    if surface[y, x] != surface[v, u]:
                         continue
-                    r, g, c = light[y, x, 0], light[y, x, 1], light[y, x, 2]
-                    relief = (
-                        normal[v, u, 0] * normal[y, x, 0]
-                        + normal[v, u, 1] * normal[y, x, 1]
-                        + normal[v, u, 2] * normal[y, x, 2]
-                    )
-                    relief = max(relief, 0.0) if guides[3][v, u] > 0 else 1.0
-                    for _ in range(_RELIEF):
-                        relief *= relief
-                    off = abs(luminance(r, g, c) - own) * differ
-                    weight = relief * np.exp(-off) * spline_weight(a) * spline_weight(b)
-                    red, green, blue = red + weight * r, green + weight * g, blue + weight * c
+                    weight = spline_weight(a) * spline_weight(b)
+                    if uneven[v, u] or uneven[y, x]:
+                        weight *= relief_weight(normal, v, u, y, x)
+                    off = luminance_at(light, y, x) - own
+                    off /= GRAIN * np.sqrt(noise + grain[y, x]) + alike
+                    weight *= np.exp(-off * off)
+                    red += weight * light[y, x, 0]
+                    green += weight * light[y, x, 1]
+                    blue += weight * light[y, x, 2]
                     rough += weight * weight * grain[y, x]
                     weights += weight
             out_light[v, u, 0] = red / weights
             out_light[v, u, 1] = green / weights
             out_light[v, u, 2] = blue / weights
             out_grain[v, u] = rough / (weights * weights)
+
+
+@inlined
+def relief_weight(normal, v, u, y, x):
+    """Return the weight of a tap whose surface is turned to another side."""
+    cosine = 0.0
+    for n in range(3):
+        cosine += normal[v, u, n] * normal[y, x, n]
+    cosine = max(cosine, 0.0)
+    for _ in range(_RELIEF):
+        cosine *= cosine
+    return cosine
 
 
 @inlined

@@ -25,7 +25,9 @@ class Film(NamedTuple):
     other_share: np.ndarray
     gloss: np.ndarray  # by glossy ones, and by the mirror of glass
     gloss_share: np.ndarray
-    squares: np.ndarray  # [H, W, 2]: of the light over its share, matt and glossy, luminances
+    squares: np.ndarray  # [H, W, 2]: of the light over its share, luminances: matt, and glossy
+    # times its share
+    share_squares: np.ndarray  # [H, W]: of the glossy shares' luminances
     samples: np.ndarray  # [H, W, 2]: those of the middle's surface, and all
     place: np.ndarray  # of the middle's surface, cells
     normal: np.ndarray  # of its relief, 0 where there is none
@@ -35,7 +37,7 @@ class Film(NamedTuple):
 
 def new_film(height: int, width: int) -> Film:
     """Return an empty film."""
-    depths = {"squares": (2,), "samples": (2,), "far": ()}
+    depths = {"squares": (2,), "samples": (2,), "share_squares": (), "far": ()}
     return Film(
         *(np.zeros((height, width, *depths.get(name, (3,))), np.float32) for name in Film._fields)
     )
@@ -78,8 +80,9 @@ def add_sample(film, v, u, s):
         film.gloss[v, u, n] += s.gloss[n]
         film.gloss_share[v, u, n] += s.gloss_share[n]
     share = luminance(s.gloss_share[0], s.gloss_share[1], s.gloss_share[2])
-    value = luminance(s.gloss[0], s.gloss[1], s.gloss[2]) / max(share, 0.02)
-    film.squares[v, u, 1] += value * value
+    value = luminance(s.gloss[0], s.gloss[1], s.gloss[2])
+    film.squares[v, u, 1] += value * value / max(share, 1e-4)
+    film.share_squares[v, u] += share * share
     if s.own == 0:
         return
     if not is_center_surface(film, v, u, s):

@@ -9,8 +9,9 @@ from world2minecraft.rendering.path_tracing.denoise import (
     GLOSS_SWEEPS,
     SWEEPS,
     Bands,
+    Guides,
     denoise_light,
-    same_surface,
+    guides_of,
 )
 from world2minecraft.rendering.path_tracing.film import Film
 
@@ -31,24 +32,29 @@ def surface_light(film: Film, denoise: bool, run: Bands) -> np.ndarray:
     count = np.maximum(film.samples[..., 1:], 1)
     if not denoise:
         return (film.light + film.other_light + film.gloss) / count
-    guides = (film.place, film.normal, film.out, film.far)
+    guides = guides_of(film)
     own = np.ascontiguousarray(film.samples[..., 0])
     squares = film.squares[..., 0] / np.maximum(own, 1)
     light = denoise_light(
         _divide_by_share(film.light, film.share), squares, own, guides, SWEEPS, run
     )
     result = film.share / count * light
-    _add_other(light, own, film, guides, result)
+    add_other(light, own, film.other_light, film.other_share, film.samples, guides.surface, result)
     if film.gloss_share.any():
-        every = np.ascontiguousarray(film.samples[..., 1])
-        squares = film.squares[..., 1] / np.maximum(every, 1)
-        gloss = _divide_by_share(film.gloss, film.gloss_share)
-        result += (
-            film.gloss_share
-            / count
-            * denoise_light(gloss, squares, every, guides, GLOSS_SWEEPS, run)
-        )
+        result += film.gloss_share / count * _denoised_gloss(film, guides, run)
     return result
+
+
+def _denoised_gloss(film: Film, guides: Guides, run: Bands) -> np.ndarray:
+    """Return the light of glossy surfaces over their share, denoised.
+
+    Samples count by their share, since few of a pixel's may meet what shines.
+    """
+    share = film.gloss_share @ LUMINANCE.astype(np.float32)
+    squares = film.squares[..., 1] / np.maximum(share, 1e-6)
+    count = share * share / np.maximum(film.share_squares, 1e-12)
+    light = _divide_by_share(film.gloss, film.gloss_share)
+    return denoise_light(light, squares, count, guides, GLOSS_SWEEPS, run)
 
 
 def _divide_by_share(light: np.ndarray, share: np.ndarray) -> np.ndarray:
@@ -56,13 +62,8 @@ def _divide_by_share(light: np.ndarray, share: np.ndarray) -> np.ndarray:
     return light / np.maximum(share, 1e-6)
 
 
-def _add_other(light, own, film: Film, guides, result) -> None:
-    """Add what pixels at edges see of surfaces that their middle does not look at."""
-    add_other(light, own, film.other_light, film.other_share, film.samples, guides, result)
-
-
 @lean
-def add_other(light, own, other_light, other_share, count, guides, result):
+def add_other(light, own, other_light, other_share, count, surface, result):
     """Light the secondary surfaces of each pixel like those of its neighbours."""
     height, width = own.shape
     for v in range(height):
@@ -73,7 +74,7 @@ def add_other(light, own, other_light, other_share, count, guides, result):
             red, green, blue, found = 0.0, 0.0, 0.0, 0
             for y in range(max(v - 1, 0), min(v + 2, height)):
                 for x in range(max(u - 1, 0), min(u + 2, width)):
-                    if own[y, x] > 0 and not same_surface(guides, v, u, y, x):
+                    if own[y, x] > 0 and surface[y, x] != surface[v, u]:
                         red, green = red + light[y, x, 0], green + light[y, x, 1]
                         blue, found = blue + light[y, x, 2], found + 1
             if found > 0:

@@ -45,7 +45,7 @@ from world2minecraft.rendering.ray_caster.ray import (
 from world2minecraft.rendering.scene_tables import NO_FACE
 
 MAX_PANES = 12  # Of glass that one path passes.
-MAX_INDIRECT = 8.0  # What a path may bring that was not aimed, or by several bounces: it is cut.
+MAX_INDIRECT = 2.0  # What a path may bring that was not aimed, or by several bounces: it is cut.
 SEEN_GLOW = 2.2  # How bright a lamp itself is seen, beside its texture; what it gives is another.
 _OFF = 1e-4  # Cells: how far before a surface a new ray begins.
 _WIDE = 0.35  # How a beam widens that a matt surface sends on.

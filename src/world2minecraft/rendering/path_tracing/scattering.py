@@ -181,7 +181,8 @@ def pane_reflectance(s):
 @inlined
 def set_lobes(s):
     """Compute the weights of both lobes, and the probability of sampling the glossy lobe."""
-    cosine = -(s.normal[0] * s.d[0] + s.normal[1] * s.d[1] + s.normal[2] * s.d[2])
+    # By the face, since relief that is seen edge-on would glitter.
+    cosine = -(s.out[0] * s.d[0] + s.out[1] * s.d[1] + s.out[2] * s.d[2])
     width = lobe_width(s)
     glossy = min(max((_DULL - width) / _FADE, 0.0), 1.0)
     gloss_light, matt_light = 0.0, 0.0
