@@ -26,7 +26,8 @@ BRICK = 8  # Cells.
 MAX_NEARBY = 12  # Lamps in a brick's list.
 MIN_LIGHT_SHARE = 0.004  # Of a brick's light; lamps that give less are left out of its list.
 POWER = 8.0  # Light of a lamp of level 15: a quarter of full daylight at 3 cells.
-WARM = np.array([1.0, 0.84, 0.60])  # What lamps of pale textures shine like.
+WARM = np.array([1.0, 0.76, 0.47])  # What lamps of pale textures shine like.
+OWN_COLOUR = 0.2  # How much the texture's colour counts at least.
 _UNSEEN = np.array([0.25, 0.25, 0.25, 0.75, 0.75, 0.75])  # Where a block shines that has no box.
 _MIN_AREA = 0.02  # Square cells.
 _NEAREST = 3.0  # Cells: a brick's own lamps are taken to be so far.
@@ -177,7 +178,8 @@ def _radiance(
     _, group = np.unique(owner, return_inverse=True)
     whole = np.bincount(group, weights=2 * area.sum(axis=1))[group]
     strength = 4 * POWER * level**1.5 / np.maximum(whole, _MIN_AREA)
-    return (0.5 * colour + 0.5 * WARM) * strength[:, None]
+    own = np.maximum(1 - colour.min(axis=1, keepdims=True), OWN_COLOUR)
+    return (own * colour + (1 - own) * WARM) * strength[:, None]
 
 
 def _colour(scene: BlockScene, element: int) -> np.ndarray:

@@ -15,9 +15,11 @@ from world2minecraft.rendering.path_tracing.denoise import (
 )
 from world2minecraft.rendering.path_tracing.film import Film
 
-KEY = 0.36  # What the geometric mean of the surfaces' light is exposed to, by day.
+DAY_KEY, NIGHT_KEY = 1.10, 0.30  # What the geometric mean of irradiance over pi is exposed to.
 ADAPTATION = 0.85  # How much of the way there: what is dim stays a little dim.
 MIN_EXPOSURE, MAX_EXPOSURE = 0.25, 60.0
+BRIGHT = 1.2  # Irradiance beyond which only the root of it counts: windows keep their colours.
+MIN_SHARE = 0.01  # Of light that a surface sends on, where that divides.
 SEEN_POWER = 0.5  # Sky and lamps themselves are opened up half as far as what they light.
 
 
@@ -86,21 +88,42 @@ def add_other(light, own, other_light, other_share, count, surface, result):
                     result[v, u, n] += other_light[v, u, n] / count[v, u, 1]
 
 
-def picture_exposure(light: np.ndarray, film: Film, daylight: float) -> float:
-    """Return the exposure of an image, computed from its light.
+def irradiance(light: np.ndarray, film: Film) -> np.ndarray:
+    """Return the luminance of surfaces' light over what they send on of it, float32 [H, W].
 
     Args:
         light: Light of surfaces, float32 [H, W, 3].
+        film: Sums over samples.
+    """
+    weights = LUMINANCE.astype(np.float32)
+    share = (film.share + film.other_share + film.gloss_share) @ weights
+    return light @ weights / np.maximum(share / np.maximum(film.samples[..., 1], 1), MIN_SHARE)
+
+
+def picture_exposure(bright: np.ndarray, film: Film, daylight: float) -> float:
+    """Return the exposure of an image, computed from its light, not from how dark its things are.
+
+    Args:
+        bright: The result of ``irradiance``.
         film: The film, which marks the pixels with surfaces.
-        daylight: Amount of daylight, 0 to 1. Images at night are exposed slightly darker.
+        daylight: Amount of daylight, 0 to 1. Images at night are darker.
     """
     shows = film.far > 0
     if not shows.any():
         return 1.0
-    bright = light[shows].astype(np.float64) @ LUMINANCE
-    mean = np.exp(np.log(np.maximum(bright, 1e-4)).mean())
-    key = KEY * (0.5 + 0.5 * daylight)
+    mean = np.exp(np.log(np.maximum(bright[shows].astype(np.float64), 1e-4)).mean())
+    key = NIGHT_KEY + (DAY_KEY - NIGHT_KEY) * daylight
     return float(np.clip((key / mean) ** ADAPTATION, MIN_EXPOSURE, MAX_EXPOSURE))
+
+
+def dodging(bright: np.ndarray, exposure: float) -> np.ndarray:
+    """Return factors of surfaces' light, [H, W, 1], that hold back what is lit far too brightly.
+
+    They depend on irradiance and not on colours, so that textures keep their contrast, and a garden
+    in the sun is seen through the window of a room.
+    """
+    over = bright * np.float32(exposure / BRIGHT)
+    return ((1 + over * over) ** np.float32(-0.25))[..., None]
 
 
 @lean

@@ -42,11 +42,14 @@ from world2minecraft.rendering.ray_caster.ray import (
     make_ray,
     ray_of_pixel,
 )
-from world2minecraft.rendering.scene_tables import NO_FACE
+from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, NO_FACE, TURN
 
 MAX_PANES = 12  # Of glass that one path passes.
 MAX_INDIRECT = 2.0  # What a path may bring that was not aimed, or by several bounces: it is cut.
 SEEN_GLOW = 2.2  # How bright a lamp itself is seen, beside its texture; what it gives is another.
+SHADE_GLOW = 0.8  # The same of a lampshade, a panel of a lamp's neighbour that lies on it.
+SEEN_WARM_G, SEEN_WARM_B = 0.84, 0.58  # The colour of both, beside red, half and half with theirs.
+_SHADE = 0.25  # Cells: the thickest lampshade.
 _OFF = 1e-4  # Cells: how far before a surface a new ray begins.
 _WIDE = 0.35  # How a beam widens that a matt surface sends on.
 _MIRROR_ODDS = 0.2  # How often at least the mirror of the first pane is followed.
@@ -191,8 +194,13 @@ def add_emitter_radiance(tables, emitters, s):
     """Add the radiance of a lamp that the path has hit."""
     if s.sharp:
         glow = SEEN_GLOW * s.level
+        if glow <= 0 and is_lampshade(tables, emitters, s):
+            glow = SHADE_GLOW
         if glow > 0:
-            r, g, b = s.colour[0] * glow, s.colour[1] * glow, s.colour[2] * glow
+            glow, peak = 0.5 * glow, max(s.colour[0], s.colour[1], s.colour[2])
+            r = glow * (s.colour[0] + peak)
+            g = glow * (s.colour[1] + peak * SEEN_WARM_G)
+            b = glow * (s.colour[2] + peak * SEEN_WARM_B)
             add_radiance(s, s.share[0] * r, s.share[1] * g, s.share[2] * b, s.bounces > 1)
         return
     row = emitter_row(emitters, tables.space.shape, s, s.element)
@@ -200,6 +208,25 @@ def add_emitter_radiance(tables, emitters, s):
         part = s.last / (s.last + sampling_density(emitters, row, s))
         r, g, b = emitters.light[row, 0], emitters.light[row, 1], emitters.light[row, 2]
         add_radiance(s, part * s.share[0] * r, part * s.share[1] * g, part * s.share[2] * b, True)
+
+
+@inlined
+def is_lampshade(tables, emitters, s):
+    """Return whether the surface is that of a thin panel on a lamp of the next cell."""
+    n, axis = s.element, s.face // 2
+    if tables.traits[n, FLAGS] & ABSOLUTE or tables.traits[n, TURN] >= 0:
+        return False
+    if tables.boxes[n, axis + 3] - tables.boxes[n, axis] > _SHADE:
+        return False
+    i = int(np.floor(s.at[0] - _SHADE * s.out[0]))
+    j = int(np.floor(s.at[1] - _SHADE * s.out[1]))
+    k = int(np.floor(s.at[2] - _SHADE * s.out[2]))
+    if i == s.cell[0] and j == s.cell[1] and k == s.cell[2]:
+        return False
+    x, y, z = tables.space.shape
+    if i < 0 or j < 0 or k < 0 or i >= x or j >= y or k >= z:
+        return False
+    return emitters.row_of_cell[i, j, k] >= 0
 
 
 @inlined

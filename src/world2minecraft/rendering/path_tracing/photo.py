@@ -17,6 +17,8 @@ from world2minecraft.rendering.path_tracing.emitters import Emitters, emitters_o
 from world2minecraft.rendering.path_tracing.film import Film, new_film
 from world2minecraft.rendering.path_tracing.film_development import (
     SEEN_POWER,
+    dodging,
+    irradiance,
     picture_exposure,
     screen_colours,
     surface_light,
@@ -170,11 +172,12 @@ def _trace_passes(
 def _develop(
     picture: Picture, light: LightSettings, film: Film, surfaces: np.ndarray, done: int
 ) -> Photo:
-    exposure = light.exposure
+    exposure, bright = light.exposure, irradiance(surfaces, film)
     if exposure is None:
         daylight = min(float(LUMINANCE @ light.sky.light), 1.0)
-        exposure = picture_exposure(surfaces, film, daylight)
+        exposure = picture_exposure(bright, film, daylight)
     count = np.float32(done)
+    surfaces = surfaces * dodging(bright, exposure)
     radiance = surfaces + film.seen / count * np.float32(exposure ** (SEEN_POWER - 1))
     return Photo(
         **{
