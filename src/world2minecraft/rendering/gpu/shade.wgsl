@@ -89,8 +89,8 @@ fn decoded(texel: u32) -> vec3<f32> {
 fn texel_colour(n: i32, face: i32, p: vec3<f32>, block_px: f32, cosine: f32) -> vec4<f32> {
   var side = P.side_px;
   var start = 0u;
-  let along = f32(side) / block_px;
-  var many = along * along / max(cosine, 0.04);
+  let along = f32(side) / (block_px * max(cosine, 0.04));
+  var many = along * along;
   while (many > MOST_TEXELS && side > 1) {
     start += u32(side * side);
     side /= 2;

@@ -14,7 +14,7 @@ from world2minecraft.rendering.light.propagation import BRIGHTEST, light_units
 
 # The light that surfaces shall have by day, at night under lamps, at night without: a night stays
 # a night.
-DAY_KEY, LAMP_KEY, NIGHT_KEY = 1.20, 0.70, 0.32
+DAY_KEY, LAMP_KEY, NIGHT_KEY = 1.20, 0.50, 0.16
 ADAPTATION = 0.80  # Degree of adaptation: dim rooms remain slightly dimmer than bright ones.
 MIN_EXPOSURE, MAX_EXPOSURE = 0.6, 4.0
 REACH_BLOCKS = 24  # Steps from an eye: at 4 blocks per metre, a room.
@@ -45,7 +45,7 @@ def scene_exposure(field: LightField, look: LightSettings, eyes: np.ndarray | No
     sky, lamps = _surface_light(field, look, cells)
     light = np.exp(np.log(sky + lamps).mean())
     daylight = min(float(LUMINANCE @ look.sky.light), 1.0)
-    at_night = NIGHT_KEY + (LAMP_KEY - NIGHT_KEY) * lamps.sum() / (sky + lamps).sum()
+    at_night = NIGHT_KEY + (LAMP_KEY - NIGHT_KEY) * (lamps.sum() / (sky + lamps).sum()) ** 2
     key = at_night + (DAY_KEY - at_night) * daylight
     return float(np.clip((key / light) ** ADAPTATION, MIN_EXPOSURE, MAX_EXPOSURE))
 
@@ -63,7 +63,8 @@ def _surface_light(field: LightField, look: LightSettings, cells: np.ndarray) ->
     )
     full = 15 * field.reach
     levels = (field.sky.reshape(-1)[cells] / full, field.block.reshape(-1)[cells] / full)
-    shines = [level / (1 + lit.curve * (1 - level)) for level in levels]
+    curves = (lit.curve, lit.block_curve)
+    shines = [level / (1 + curve * (1 - level)) for level, curve in zip(levels, curves, strict=True)]
     sky_light = ambient + sky * shines[0]
     if look.sun_shadow:  # In the open the sun shines on about as much as it does not.
         sky_light += (levels[0] == 1) * (float(LUMINANCE @ look.sky.light) - sky)

@@ -22,6 +22,7 @@ WARM = (1.0, 0.86, 0.62)  # The game's torchlight.
 LAMP_BY_DAY, LAMP_BY_NIGHT = (0.58, 0.52, 0.42), (0.98, 0.72, 0.42)
 GLOW = 1.9  # Brightness of a lamp's face: above the shoulder, so that it looks lit.
 AMBIENT = 0.05
+NIGHT_CURVE = 4.0  # What it adds to the curve of block light: what leaves a room is faint outside.
 DIM_BY_NIGHT = (0.45, 0.48, 0.60)  # Factors of the ambient light at night.
 CORNER = 0.28  # Linear equivalent of the game's value of 0.2 on the screen.
 # Shades of faces: x (east, west), up, down, z (north, south).
@@ -80,12 +81,14 @@ class LightSettings:
         daylight = min(sky.light[1], 1.0)
         lamp = mix(LAMP_BY_NIGHT, LAMP_BY_DAY, daylight)
         ambient = AMBIENT * (0.4 + 1.2 * self.brightness) * mix(DIM_BY_NIGHT, (1, 1, 1), daylight)
-        rest = [3.0 - 2.0 * self.brightness, CORNER, *self._shades(), 0.0, GLOW, 0.0]
+        curve = 3.0 - 2.0 * self.brightness
+        block_curve = curve + NIGHT_CURVE * (1 - daylight)
+        rest = [curve, block_curve, CORNER, *self._shades(), 0.0, GLOW, 0.0]
         if self.preset == "game":
             light, lamp = light ** (1 / SCREEN_POWER), np.array(WARM)
             # The game mixes b with 1 - (1 - b) ** 4 for b = l / (4 - 3 l); these come close.
             curve = 3.0 - 6.6 * self.brightness + 3.3 * self.brightness**2
-            rest = [curve, GAME_CORNER, *GAME_SHADE, 0.0, 1.0, min(exposure, MAX_SCREEN)]
+            rest = [curve, curve, GAME_CORNER, *GAME_SHADE, 0.0, 1.0, min(exposure, MAX_SCREEN)]
         sun = np.array(sky.sun) * self.sun_shadow
         colours = np.concatenate([light, lamp, ambient, sun]) * exposure
         return LightCoefficients._make([*colours.tolist(), *sky.sun_direction, *rest])
@@ -115,5 +118,5 @@ def _neutral(exposure: float) -> LightCoefficients:
     """Return a grey light at the camera, with the shades of the preview."""
     light = NEUTRAL_EXPOSURE * exposure
     colours = [*[0.0] * 6, light, light, light, *[0.0] * 3]
-    rest = [3.0, NEUTRAL_CORNER, *NEUTRAL_SHADE, NEUTRAL_HEADLIGHT, NEUTRAL_GLOW, MAX_SCREEN]
+    rest = [3.0, 3.0, NEUTRAL_CORNER, *NEUTRAL_SHADE, NEUTRAL_HEADLIGHT, NEUTRAL_GLOW, MAX_SCREEN]
     return LightCoefficients._make([*colours, 0.0, 1.0, 0.0, *rest])

@@ -29,6 +29,7 @@ class LightCoefficients(NamedTuple):
     sun_y: float
     sun_z: float
     curve: float  # light l of 0 to 1 shines l / (1 + curve * (1 - l)); the game has 3
+    block_curve: float  # the same of block light
     corner: float  # what each solid neighbour of a corner takes, 0 to 1
     shade_x: float  # shade of faces to the east and west
     shade_up: float
@@ -88,7 +89,7 @@ def light_multipliers(sky, block, occluders, shade, sun, params):
     """
     s, b = sky * (1 / 15), block * (1 / 15)
     s = s / (1.0 + params.curve * (1.0 - s))
-    b = b / (1.0 + params.curve * (1.0 - b))
+    b = b / (1.0 + params.block_curve * (1.0 - b))
     m = shade * (1.0 - params.corner * occluders)
     red = m * (params.ambient_r + params.sky_r * s + params.block_r * b) + params.sun_r * sun
     green = m * (params.ambient_g + params.sky_g * s + params.block_g * b) + params.sun_g * sun

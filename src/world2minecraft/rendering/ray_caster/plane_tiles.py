@@ -92,7 +92,8 @@ def draw_plane_tile(
             s = face[12] + face[13] * fp + face[14] * fq
             w = face[15] + face[16] * fp + face[17] * fq
             size, start = side_px, 0
-            many = coarse * t * t / max(abs(d) / (length * scale), 0.04)
+            steep = max(abs(d) / (length * scale), 0.04)
+            many = coarse * t * t / (steep * steep)
             while many > MAX_TEXELS and size > 1:
                 start += size * size
                 size //= 2

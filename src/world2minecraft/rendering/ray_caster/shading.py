@@ -204,8 +204,9 @@ def texel_colour(tables, side_px, tone, n, side, x, y, z, block_px, cosine):
     u = m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]
     v = m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3]
     size, start = side_px, 0
-    many = side_px / block_px  # Texels a pixel; a face seen edge-on has more one way.
-    many = many * many / max(cosine, 0.04)
+    # Texels a pixel, by its longer side on the face: the shorter one would leave moire.
+    many = side_px / (block_px * max(cosine, 0.04))
+    many = many * many
     while many > MAX_TEXELS and size > 1:
         start += size * size
         size //= 2
