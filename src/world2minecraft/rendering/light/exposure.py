@@ -63,8 +63,8 @@ def _surface_light(field: LightField, look: LightSettings, cells: np.ndarray) ->
     )
     full = 15 * field.reach
     levels = (field.sky.reshape(-1)[cells] / full, field.block.reshape(-1)[cells] / full)
-    curves = (lit.curve, lit.block_curve)
-    shines = [level / (1 + curve * (1 - level)) for level, curve in zip(levels, curves, strict=True)]
+    curves = zip(levels, (lit.curve, lit.block_curve), strict=True)
+    shines = [level / (1 + curve * (1 - level)) for level, curve in curves]
     sky_light = ambient + sky * shines[0]
     if look.sun_shadow:  # In the open the sun shines on about as much as it does not.
         sky_light += (levels[0] == 1) * (float(LUMINANCE @ look.sky.light) - sky)
