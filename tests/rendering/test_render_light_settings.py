@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from world2minecraft.core.jit import njit
 from world2minecraft.rendering.light import (
@@ -191,6 +193,30 @@ def test_the_day_goes_round():
         assert sky.sun_direction[1] > 0
     assert np.allclose(sky_at(0).light, sky_at(24).light)
     assert sky_at(17.6).horizon[0] > 2 * sky_at(17.6).horizon[2]
+
+
+def test_no_sun_shines_where_it_jumps_across_the_sky():
+    hours = np.linspace(0, 24, 24 * 60 + 1)
+    skies = [sky_at(float(hour)) for hour in hours]
+    toward = np.array([sky.sun_direction for sky in skies])
+    jumps = np.flatnonzero(np.linalg.norm(np.diff(toward, axis=0), axis=1) > 0.5)
+    assert len(jumps) == 2
+    for n in jumps:
+        assert max(max(skies[n].sun), max(skies[n + 1].sun)) < 0.06
+    light = np.array([sky.light[1] for sky in skies])
+    assert (np.diff(light[hours >= 15.5]) <= 1e-12).all()
+
+
+@given(st.floats(0, 15), st.floats(0.0, 1.0))
+def test_lamps_reach_less_far_at_night(level, brightness):
+    by_hour = {
+        hour: LightSettings(hour=hour, brightness=brightness).parameters() for hour in (0, 12)
+    }
+    share = {
+        hour: (light_of(0, level, 0, 1.0, 0.0, lit)[0] - lit.ambient_r) / lit.block_r
+        for hour, lit in by_hour.items()
+    }
+    assert share[0] <= share[12] + 1e-9
 
 
 def test_the_sky_is_lightest_at_the_horizon_and_shows_the_sun():

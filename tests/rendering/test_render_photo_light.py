@@ -215,6 +215,24 @@ def test_a_lamp_that_is_turned_is_where_its_box_is():
         )
 
 
+@pytest.mark.parametrize(("lamp", "glows"), [(2, True), (1, False)])
+def test_a_panel_on_a_lamp_glows_as_its_shade(lamp, glows):
+    class Shades(OneGrey):
+        def model(self, state: str) -> BlockModel:
+            if state != "minecraft:oak_trapdoor":
+                return super().model(state)
+            low, high = (0.0, 0.0, 0.0), (0.1875, 1.0, 1.0)
+            faces = tuple(ElementFace("grey", face_uv(side, low, high)) for side in range(6))
+            return BlockModel((Element(low, high, faces),))
+
+    states = floor_with((8, 2, 8, lamp), (9, 2, 8, 4))
+    palette = (*LAMP, "minecraft:oak_trapdoor")
+    scene = prepare_scene(volume(states, palette), Shades({LAMP[2]: "glow"}))
+    film = film_of(scene, (14, 2.5, 8.5), (9, 2.5, 8.5), NO_SKY, 4, 1)
+    assert (film.seen[12, 16].max() > 0) == glows
+    np.testing.assert_allclose(film.place[12, 16, 0], 9.1875, atol=1e-4)
+
+
 @pytest.mark.parametrize("hour", [9.0, 15.0])
 def test_shadows_point_away_from_the_sun(hour):
     states = floor_with((8, 1, 8, 1), (8, 2, 8, 1))

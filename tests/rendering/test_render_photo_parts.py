@@ -12,6 +12,11 @@ from world2minecraft.rendering.path_tracing.denoise import (
     guides_of,
 )
 from world2minecraft.rendering.path_tracing.film import new_film
+from world2minecraft.rendering.path_tracing.film_development import (
+    dodging,
+    irradiance,
+    picture_exposure,
+)
 from world2minecraft.rendering.path_tracing.rng import EVEN_USES, hash_uint32, sample_pair
 from world2minecraft.rendering.path_tracing.scattering import (
     evaluate_gloss,
@@ -216,3 +221,30 @@ def test_bands_of_rows_give_what_the_whole_gives():
     other = denoise_light(light, squares, count, guides(24, 32), SWEEPS, bands)
     assert np.array_equal(one, other)
     assert np.array_equal(one[4, 5], light[4, 5])
+
+
+def film_of_light(light: float, share: float):
+    """A film of one surface of a reflectance in an even light, and what it sends."""
+    film = new_film(6, 8)
+    film.far[:], film.samples[:], film.share[:] = 5, 4, 4 * share
+    return film, np.full((6, 8, 3), light * share, np.float32)
+
+
+@pytest.mark.parametrize("light", [0.05, 0.2, 0.8])
+def test_exposure_follows_light_and_not_the_colour_of_things(light):
+    found = []
+    for share in (0.05, 0.3, 0.9):
+        film, sent = film_of_light(light, share)
+        bright = irradiance(sent, film)
+        np.testing.assert_allclose(bright, light, rtol=1e-4)
+        found.append([picture_exposure(bright, film, daylight) for daylight in (1.0, 0.4, 0.05)])
+    np.testing.assert_allclose(found, [found[0]] * 3, rtol=1e-4)
+    assert found[0] == sorted(found[0], reverse=True) and found[0][2] < 0.5 * found[0][0]
+
+
+def test_what_is_lit_too_brightly_is_held_back_in_order():
+    bright = np.geomspace(0.01, 100, 60, dtype=np.float32)[None]
+    shown = bright * dodging(bright, 1.0)[..., 0]
+    assert (np.diff(shown) > 0).all()
+    np.testing.assert_allclose(shown[bright < 0.2], bright[bright < 0.2], rtol=0.01)
+    assert shown.max() < 12
