@@ -202,7 +202,7 @@ def test_no_sun_shines_where_it_jumps_across_the_sky():
     jumps = np.flatnonzero(np.linalg.norm(np.diff(toward, axis=0), axis=1) > 0.5)
     assert len(jumps) == 2
     for n in jumps:
-        assert max(max(skies[n].sun), max(skies[n + 1].sun)) < 0.06
+        assert max(*skies[n].sun, *skies[n + 1].sun) < 0.06
     light = np.array([sky.light[1] for sky in skies])
     assert (np.diff(light[hours >= 15.5]) <= 1e-12).all()
 
