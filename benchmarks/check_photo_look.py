@@ -56,7 +56,7 @@ def errors(scene: BlockScene, pose: np.ndarray, hour: float, truth: int) -> tupl
     light = LightSettings(hour=hour, exposure=whole.exposure)
     photo = render_photo(scene, small, pose, light=light, samples=SAMPLES)
     off = np.asarray(photo.colour, float) - np.asarray(whole.colour, float)
-    means = uniform_filter(off, (STAIN_PX, STAIN_PX, 0))
+    means = uniform_filter(off, STAIN_PX, axes=(0, 1))
     return float(np.sqrt((off**2).mean())), float(np.sqrt((means**2).mean()))
 
 
@@ -80,7 +80,7 @@ def main() -> None:
         print(f"house {seed}, {hour:4.1f} h", np.round(row, 2), flush=True)
         if chosen.pictures:
             chosen.pictures.mkdir(parents=True, exist_ok=True)
-            Image.fromarray(photo.colour).save(chosen.pictures / f"photo_{seed}_{hour}.png")
+            Image.fromarray(np.asarray(photo.colour)).save(chosen.pictures / f"photo_{seed}_{hour}.png")
     print("mean", np.round(np.mean(rows, axis=0), 2), "CPU s, error, error of means")
 
 
