@@ -80,7 +80,9 @@ def main() -> None:
         print(f"house {seed}, {hour:4.1f} h", np.round(row, 2), flush=True)
         if chosen.pictures:
             chosen.pictures.mkdir(parents=True, exist_ok=True)
-            Image.fromarray(np.asarray(photo.colour)).save(chosen.pictures / f"photo_{seed}_{hour}.png")
+            Image.fromarray(np.asarray(photo.colour)).save(
+                chosen.pictures / f"photo_{seed}_{hour}.png"
+            )
     print("mean", np.round(np.mean(rows, axis=0), 2), "CPU s, error, error of means")
 
 
