@@ -23,7 +23,7 @@ def test_a_file_is_checked_and_shown(tmp_path, capsys):
     assert cli.run(["palettes", str(path)]) == 0
     told = capsys.readouterr().out
     assert "restricted to 3 blocks" in told
-    assert "  wall        stone, oak_planks" in told
+    assert "  wall        oak_planks\n" in told and "  floor       oak_planks, stone\n" in told
     path.write_text("name: mine\nblocks: [oak_plank]\n")
     assert cli.run(["palettes", str(path)]) == 3
     assert "did you mean 'minecraft:oak_planks'?" in capsys.readouterr().err

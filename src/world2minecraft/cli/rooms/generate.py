@@ -124,10 +124,8 @@ def _write_room(
 
 
 def _print_room(made: "GeneratedRoom", out: Path) -> None:
-    from world2minecraft.procgen.rooms.recipes import room_title
-
     sides = " x ".join(f"{side:.1f}" for side in made.size_m)
-    print(f"\n{room_title(made.kind)}, {sides} m, {len(made.objects)} objects.")
+    print(f"\n{made.title}, {sides} m, {len(made.objects)} objects.")
     print(f"  look   {out / 'preview.png'}")
     print(f"  next   w2m rooms scan {out} --out capture")
 

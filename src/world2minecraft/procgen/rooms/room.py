@@ -23,7 +23,13 @@ from world2minecraft.procgen.rooms.openings import (
     hang_curtains,
 )
 from world2minecraft.procgen.rooms.placement import Item, Plan, Rug, paths_are_clear
-from world2minecraft.procgen.rooms.recipes import BASE_KINDS, KINDS, find_kind, random_size
+from world2minecraft.procgen.rooms.recipes import (
+    BASE_KINDS,
+    KINDS,
+    find_kind,
+    random_size,
+    room_title,
+)
 
 ATTEMPTS = 80  # A recipe fits on its first tries as a rule; the worst of 500 seeds is far below.
 
@@ -66,6 +72,11 @@ class Room:
     def objects(self) -> tuple[LayoutObject, ...]:
         """The objects of all layouts, in the order of their instances."""
         return tuple(item for layout in self.layouts for item in layout.objects)
+
+    @property
+    def title(self) -> str:
+        """What people call the room, such as ``A bedroom``."""
+        return room_title(self.kind)
 
     @property
     def size_m(self) -> np.ndarray:
