@@ -64,7 +64,7 @@ def _coarsened(mask: np.ndarray, size: int) -> np.ndarray:
     """Return which blocks of size x size x size cells of a mask bool [A, B, C] have any set."""
     padded = np.pad(mask, [(0, -length % size) for length in mask.shape])
     a, b, c = (length // size for length in padded.shape)
-    return padded.reshape(a, size, b, size, c, size).any(axis=(1, 3, 5))
+    return np.asarray(padded.reshape(a, size, b, size, c, size).any(axis=(1, 3, 5)))
 
 
 def _is_from_capture(out: Path, capture: Path) -> bool:

@@ -138,7 +138,7 @@ def eased_stances(moments: Sequence[Moment], rate_hz: float) -> tuple[list[Stanc
     smooth = np.stack([np.interp(times, knots, column) for column in rows.T], axis=1)
     smooth = gaussian_filter1d(smooth, EASE_S * rate_hz, axis=0, mode="nearest")
     numbers = np.minimum(np.searchsorted(ends, times, side="right"), len(moments) - 1)
-    return [Stance(*map(float, row)) for row in smooth], numbers.tolist()
+    return [Stance(*row) for row in np.asarray(smooth).tolist()], numbers.tolist()
 
 
 def compose(
