@@ -190,7 +190,7 @@ class BuildParameters:
                 )
 
     def _choose(self, name: str, known: tuple[str, ...]) -> None:
-        """Check that a value is one of some words; true and false mean the first two words."""
+        """Check that a value is one of the known words; true and false mean the first two."""
         given = getattr(self, name)
         value = given.lower() if isinstance(given, str) else given
         value = known[0] if value in _YES else known[1] if value in _NO else value

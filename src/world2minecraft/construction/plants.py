@@ -11,7 +11,7 @@ from world2minecraft.minecraft.block_states import complete, parse_state
 PLANT_NAMES = ("plant", "indoor tree", "flowers", "planter", "christmas tree")
 GREEN_HUE, HUE_REACH, GREEN_CHROMA = 125.0, 30.0, 0.03
 MIN_GREEN, SURE_GREEN = 0.25, 0.6  # Shares of cells, of a named plant and of an unnamed thing.
-MAX_FILL, MIN_CELLS = 0.4, 30  # What fills more of its box is no foliage.
+MAX_FILL, MIN_CELLS = 0.4, 30  # An object that fills more of its box is not foliage.
 LEAVES = tuple(
     str(complete(parse_state(f"minecraft:{kind}_leaves[persistent=true]")))
     for kind in ("oak", "spruce", "jungle", "dark_oak", "azalea")

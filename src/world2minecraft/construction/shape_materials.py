@@ -34,8 +34,8 @@ HANDICAPS = {
 }
 
 
-# A screen is no wood, and a panel of the right black there is none. On cushions, trapdoors look
-# like grilles, and planks like crates.
+# Screens are not made of wood, and no panel is black enough. On cushions, trapdoors look like
+# grilles and planks like crates.
 EXCLUDED_KINDS = {
     int(SemanticClass.TVS): frozenset(("trapdoor", "stairs")),
     int(SemanticClass.SOFA): frozenset(("trapdoor", "post")),

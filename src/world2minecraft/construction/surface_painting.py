@@ -31,7 +31,7 @@ MIN_BLOCKS = 3.0
 ROUNDS = 4
 SPECK_BLOCKS = 3  # Fewer connected blocks of a paint are noise.
 OKLAB_OF_CIEDE = 0.01  # Oklab distance that looks like a CIEDE2000 difference of 1.
-# Of walls and floors, more chroma is a worse fault than less: a dark floor came out purple.
+# On walls and floors, too much chroma looks worse than too little: a dark floor came out purple.
 MORE_CHROMA = 0.02
 DULL_CHROMA, STRONG_CHROMA = 0.035, 0.055  # From where on a grey for a colour is a fault.
 FADED = 0.05  # How great a fault, of an object; on walls and floors a calm grey is none.

@@ -130,7 +130,7 @@ def _at_wall(picture: _Picture, solid: np.ndarray, free: np.ndarray) -> tuple[_P
 
 
 def _lookup(grid: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Return the values of a bool grid at cells, int [N, 3], and False outside it."""
+    """Look up cells, int [N, 3], in a bool grid; cells outside the grid are False."""
     inside = ((cells >= 0) & (cells < grid.shape)).all(axis=1)
     found = np.zeros(len(cells), bool)
     found[inside] = grid[tuple(cells[inside].T)]

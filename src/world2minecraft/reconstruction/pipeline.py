@@ -116,7 +116,7 @@ def reconstruct(
 
 
 def _predictor(chosen: Parameters) -> Predictor:
-    """Return the predictor of the evidence, with saved predictions beside it if there are any."""
+    """Return the predictor of the evidence, combined with saved predictions if there are any."""
     network = predictor(chosen.predictor, chosen.occupy)
     if not chosen.predictions.path:
         return network

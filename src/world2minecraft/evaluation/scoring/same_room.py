@@ -15,9 +15,7 @@ from world2minecraft.reconstruction.run_folder import hash_capture
 
 COARSE = 4  # Fine cells of the truth on the side of a coarse one: 8 cm.
 NEAR_CELLS = 2  # Coarse cells between observed and true surface that count as near.
-MIN_NEAR = (
-    0.5  # Of runs and their own truth 0.9 and more, with the truth of another room below 0.3.
-)
+MIN_NEAR = 0.5  # Share of near cells: above 0.9 beside the own truth, below 0.3 beside another.
 
 
 def check_same_room(out: Path, truth: Truth, grid: OccupancyGrid, scan_to_room: np.ndarray) -> None:

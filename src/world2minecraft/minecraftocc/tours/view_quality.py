@@ -80,14 +80,14 @@ def assess_views(
         poses: Camera poses in the room, float64 [N, 4, 4].
         rule: Tour settings, which define the camera and the light.
     """
-    outputs = ("colour", "depth", "semantic", "block", "face")
+    outputs = ("colour", "depth", "semantic", "instance", "block", "face")
     seen = render_batch(
         scene, pinhole_camera(rule.camera, WIDE_PX), poses, outputs=outputs, light=rule.light
     )
     count = len(poses)
-    depth, semantic, block, face = (
+    depth, semantic, instance, block, face = (
         np.asarray(part).reshape(count, -1)
-        for part in (seen.depth_m, seen.semantic, seen.block_index, seen.face)
+        for part in (seen.depth_m, seen.semantic, seen.instance, seen.block_index, seen.face)
     )
     is_sky = depth == 0
     there = np.where(is_sky, np.float32(100.0), depth)
@@ -97,8 +97,7 @@ def assess_views(
     if not scene.semantic.any():
         known = volume.states.reshape(-1)[np.maximum(block, 0)].astype(np.int32)
     classes = _distinct(np.where(is_sky | (semantic == 255), -1, known))
-    owner = volume.instance.reshape(-1)[np.maximum(block, 0)].astype(np.int64)
-    owner = np.where(things & ~is_sky, owner, 0)
+    owner = np.where(things & ~is_sky, instance, 0)
     return ViewQuality(
         (there < NEAR_M).mean(axis=1),
         np.median(there, axis=1),

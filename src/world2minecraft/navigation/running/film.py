@@ -7,7 +7,6 @@ font does not contain are shown as question marks, and texts that do not fit are
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -17,6 +16,7 @@ from world2minecraft.navigation.agents.types import Decision, Observation
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 from world2minecraft.navigation.running.episode_runner import EpisodeWalk
 from world2minecraft.navigation.running.floor_map import PlanMap
+from world2minecraft.navigation.running.simulator import SceneSimulator
 from world2minecraft.navigation.scene import camera_of
 from world2minecraft.navigation.types import Episode, Move, Stance
 from world2minecraft.rendering.output.animation import animation_writer
@@ -49,7 +49,7 @@ class Moment:
 class Film:
     """An observer that writes the video of an episode when the walk has ended."""
 
-    def __init__(self, path: Path, ground: Any, plan: PlanMap, rate_hz: float = RATE_HZ):
+    def __init__(self, path: Path, ground: SceneSimulator, plan: PlanMap, rate_hz: float = RATE_HZ):
         self.path, self.ground, self.plan, self.rate_hz = path, ground, plan, rate_hz
         self._moments: list[Moment] = []
         self._episode: Episode | None = None
@@ -90,7 +90,7 @@ class Film:
         goal = self._episode.facing or self._episode.goals[0]
         with animation_writer(self.path, self.rate_hz) as write:
             for frame, (stance, number) in enumerate(zip(stances, numbers, strict=True)):
-                view = self.ground.scene.picture(stance, camera, outputs=("colour",)).colour
+                view = self.ground.view(stance, camera)
                 plan = self.plan.picture(stances[: frame + 1], (goal,), self._episode.goal_name)
                 caption = moments[number].caption
                 write(np.asarray(compose(view, plan, self._episode.instruction.text, caption)))

@@ -98,9 +98,9 @@ class SceneSimulator:
         """The length of a FORWARD move in metres of the room."""
         return forward_blocks(self.scene, self.move_set) * self.metres_per_block
 
-    def view(self, stance: Stance) -> np.ndarray:
-        """Return the view at a stance as uint8 [H, W, 3]."""
-        colour = self.scene.picture(stance, self.camera, outputs=("colour",)).colour
+    def view(self, stance: Stance, camera: Camera | None = None) -> np.ndarray:
+        """Return the view at a stance, by another camera if one is given, as uint8 [H, W, 3]."""
+        colour = self.scene.picture(stance, camera or self.camera, outputs=("colour",)).colour
         if colour is None:
             raise ValueError("the rendered view has no colour image")
         return colour
