@@ -112,7 +112,7 @@ def test_a_capture_becomes_a_room_that_opens(server, script, scanned):
     assert script.get("/api/scene").status_code == 404
     assert script.post("/api/start/open", json={"id": number}).status_code == 200
     assert script.get("/api/scene").status_code == 200
-    assert script.get(f"/api/start/captures/{number}/room.png").status_code == 200
+    assert script.get(f"/api/start/rooms/{number}/picture").status_code == 200
     refused = script.delete(f"/api/start/captures/{number}")
     assert "the room of this capture is open in the editor" in refused.json()["error"]
     script.post("/api/start/close")
@@ -280,7 +280,31 @@ def test_rooms_that_were_open_come_again(tmp_path):
         server.workspace.add_recent(tmp_path / "OUT")
         server.workspace.add_recent(tmp_path / "gone")
         recent = script.get("/api/start").json()["recent"]
-    assert [row["name"] for row in recent] == ["OUT"] and recent[0]["id"] == "recent-0"
+        assert [row["name"] for row in recent] == ["OUT"] and recent[0]["id"] == "recent-0"
+        assert not recent[0]["has_picture"]
+        missing = script.get("/api/start/rooms/recent-0/picture")
+        assert missing.status_code == 400 and "create the room first" in missing.json()["error"]
+        Image.new("RGB", (4, 3)).save(tmp_path / "OUT" / "preview.png")
+        assert script.get("/api/start").json()["recent"][0]["has_picture"]
+        picture = script.get("/api/start/rooms/recent-0/picture")
+        assert Image.open(io.BytesIO(picture.content)).size == (4, 3)
+
+
+def test_the_example_opens_at_once_with_its_picture(tmp_path):
+    with served(home=tmp_path / "home") as server, client(server) as script:
+        picture = script.get("/api/start/rooms/example/picture")
+        assert Image.open(io.BytesIO(picture.content)).format == "WEBP"
+        for _ in range(2):  # A second click finds it open.
+            opened = script.post("/api/start/open", json={"id": "example"})
+            assert opened.json()["name"] == "Demo room"
+        assert script.get("/api/scene").json()["objects"]
+        box = {"op": "fill_box", "low": [20, 20, 9], "high": [22, 22, 11], "class_id": 11}
+        assert script.post("/api/do", json=box).json()["rev"] == 1
+
+
+@pytest.mark.parametrize("number", ["recent-7", "recent-x", "example2", "..", "%2e%2e%2fx"])
+def test_pictures_of_unknown_rooms_are_refused(server, script, number):
+    assert script.get(f"/api/start/rooms/{number}/picture").status_code in (400, 404)
 
 
 def test_a_file_of_a_broken_capture_leaves_the_others(tmp_path):

@@ -136,7 +136,7 @@ def prepare_editor(
     allow_hosts: Sequence[str] = (),
     home: str | Path | None = None,
     capture: str | Path | None = None,
-    max_upload_mb: int = 512,
+    max_upload_mb: int = 4096,
 ) -> EditorSession:
     """Prepare SceneForge without starting it.
 

@@ -41,6 +41,7 @@ from world2minecraft.reconstruction.retrieval import place_templates
 MAX_CENTERS = 65535
 RUN_FILES = ("room.npz", "objects.json", "placements.json")
 DEMO_FOLDER = Path(__file__).parent / "demo_room"
+DEMO_PICTURE = "preview.webp"
 DEMO_OUT = Path("demo-room")
 
 

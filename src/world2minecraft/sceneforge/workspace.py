@@ -23,6 +23,7 @@ from world2minecraft.sceneforge.run_photos import (
     find_capture_of,
     read_photos,
 )
+from world2minecraft.sceneforge.scene_sources import DEMO_OUT
 from world2minecraft.sceneforge.session import NO_ROOM, Session
 from world2minecraft.sceneforge.uploads import MAX_UPLOAD_BYTES, CaptureFolder, CaptureStore
 
@@ -90,9 +91,20 @@ class Workspace:
             for one in self.captures.all():
                 if one.run == source:
                     editor.name = one.title
-            self._capture, self._photos, self.compared = None, None, None
-            await self.session.show(editor)
+            await self._show(editor)
         self.try_add_recent(source)
+
+    async def open_example(self) -> None:
+        """Open the demo room. Edits are saved in the home folder."""
+        place = self.home / DEMO_OUT
+        async with self._opening:
+            if self.session.editor is not None and self.session.editor.opened.is_demo:
+                return
+            await self._show(await asyncio.to_thread(Editor.open, None, out=place))
+
+    async def _show(self, editor: Editor) -> None:
+        self._capture, self._photos, self.compared = None, None, None
+        await self.session.show(editor)
 
     @property
     def exports(self) -> Path:

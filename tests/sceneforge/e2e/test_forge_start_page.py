@@ -116,7 +116,7 @@ def test_a_dropped_plan_becomes_a_room_and_closes_again(start, shot):
     layout = generate_room(3, kind="study").layout
     drop(page, {"Room.json": json.dumps(captured_room(layout)).encode()})
     page.locator(".choices [data-value='2']").click()
-    assert "Typical size of rooms" in page.locator(".choices").inner_text()
+    assert "as players usually build rooms" in page.locator(".choices").inner_text()
     page.locator("[data-do='start']").click()
     page.wait_for_selector(".progress-bar")
     until(page, "document.querySelector('.progress-foot .note')?.textContent.includes('left')")

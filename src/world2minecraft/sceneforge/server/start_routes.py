@@ -7,7 +7,8 @@ PUT    /api/start/captures/ID/files/N      ``?at=OFFSET``: upload the next bytes
 POST   /api/start/captures/ID/look         start a job that surveys the capture
 GET    /api/start/captures/ID              return the capture and its survey
 GET    /api/start/captures/ID/picture.png  return the image that ``w2m scan`` draws
-GET    /api/start/captures/ID/room.png     return an image of the reconstructed room
+GET    /api/start/rooms/ID/picture         return an image of a capture's room, of a recent room
+                                           ``recent-N`` or of the ``example``
 POST   /api/start/captures/ID/reconstruct  ``{blocks_per_metre, style, known}``: start a job
 DELETE /api/start/captures/ID              delete the capture and its room
 POST   /api/start/demo                     ``{kind, seed}``: start a job that generates a room, or
@@ -37,12 +38,15 @@ from world2minecraft.sceneforge.jobs.jobs import JobState
 from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of_choice
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
 from world2minecraft.sceneforge.jobs.time_left import demo_stage_seconds, reconstruct_stage_seconds
+from world2minecraft.sceneforge.scene_sources import DEMO_FOLDER, DEMO_PICTURE
 from world2minecraft.sceneforge.server.request_parsing import get_workspace, read_json_object
 from world2minecraft.sceneforge.uploads import PICTURE, CaptureFolder
 from world2minecraft.sceneforge.workspace import Workspace
 
 SCALES = (1, 2, 4, 12.5)
 DEFAULT_SCALE = 4
+EXAMPLE = "example"  # The id of the demo room, which is finished.
+ROOM_PICTURE = "preview.png"
 CHUNK_BYTES = 4 << 20  # Bytes per request; a lost connection loses at most one chunk.
 
 
@@ -57,7 +61,7 @@ def routes() -> list[BaseRoute]:
         Route(one, _capture),
         Route(one, _forget, methods=["DELETE"]),
         Route(one + "/picture.png", _picture),
-        Route(one + "/room.png", _room_picture),
+        Route("/api/start/rooms/{id}/picture", _room_picture),
         Route(one + "/reconstruct", _reconstruct, methods=["POST"]),
         Route("/api/start/demo", _demo, methods=["POST"]),
         Route("/api/start/open", _open, methods=["POST"]),
@@ -79,6 +83,7 @@ async def _overview(request: Request) -> Response:
                     "id": f"recent-{n}",
                     "name": place.name.removesuffix(SUFFIX),
                     "folder": str(place.parent),
+                    "has_picture": (place / ROOM_PICTURE).is_file(),
                 }
                 for n, place in enumerate(workspace.recent())
             ],
@@ -236,8 +241,11 @@ def _remember(workspace: Workspace) -> Any:
 
 
 async def _open(request: Request) -> Response:
-    workspace = get_workspace(request)
-    await workspace.open(workspace.room_named(str((await read_json_object(request)).get("id"))))
+    workspace, number = get_workspace(request), (await read_json_object(request)).get("id")
+    if number == EXAMPLE:
+        await workspace.open_example()
+    else:
+        await workspace.open(workspace.room_named(str(number)))
     return JSONResponse({"name": workspace.editor.name})
 
 
@@ -251,7 +259,10 @@ async def _picture(request: Request) -> Response:
 
 
 async def _room_picture(request: Request) -> Response:
-    return _file(_named(request).run / "preview.png")
+    number = request.path_params["id"]
+    if number == EXAMPLE:
+        return _file(DEMO_FOLDER / DEMO_PICTURE)
+    return _file(get_workspace(request).room_named(number) / ROOM_PICTURE)
 
 
 def _file(path: Path) -> Response:

@@ -19,7 +19,7 @@ export function makeChoices(told: StartTold, survey: Survey, changed: () => void
   const styleHint = h("p", { class: "note" });
   const scales = segment(
     words.size,
-    () => told.scales.map((one) => ({ value: String(one), label: String(one) })),
+    () => told.scales.map((one) => ({ value: String(one), label: words.sizeNames[String(one)] ?? String(one) })),
     (value) => {
       scale = Number(value);
       show();

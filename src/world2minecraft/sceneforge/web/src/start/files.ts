@@ -1,5 +1,7 @@
 // What a person dropped or chose: files with their paths, whatever folders they lie in.
 
+import { TEXT } from "../text";
+
 export interface Given {
   path: string;
   file: File;
@@ -20,12 +22,22 @@ export function filesOfInput(input: HTMLInputElement): Given[] {
   return [...(input.files ?? [])].map((file) => ({ path: file.webkitRelativePath || file.name, file }));
 }
 
-/** What a capture is called: its folder, its only file, or how many files there are. */
+const PICTURES = /\.(jpe?g|png|heic|heif|webp|tiff?)$/i;
+
+/** The title of a capture: its folder or only file, else what it consists of. */
 export function titleOf(given: readonly Given[]): string {
   const tops = new Set(given.map((one) => one.path.split("/")[0] ?? ""));
   const [top] = tops;
   if (tops.size === 1 && top) return given.length === 1 ? top.replace(/\.[^.]+$/, "") : top;
-  return `${given.length} files`;
+  const photos = given.filter((one) => PICTURES.test(one.path)).length;
+  return TEXT.start.untitled(photos === given.length ? "photos" : "files", given.length);
+}
+
+/** What is uploaded, such as "kitchen: 40 files". */
+export function contentsOf(given: readonly Given[]): string {
+  const title = titleOf(given);
+  const count = TEXT.start.countOf(given.length);
+  return title.includes(count) || given.length === 1 ? (given.length === 1 ? given[0]!.path : title) : `${title}: ${count}`;
 }
 
 async function walk(entry: FileSystemEntry, found: Given[]): Promise<void> {

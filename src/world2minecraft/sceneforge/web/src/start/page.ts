@@ -4,12 +4,12 @@ import { progressLine } from "../jobs/progress";
 import { TEXT } from "../text";
 import { fill, h } from "../ui/dom";
 import { plainButton } from "../ui/fields";
-import { icon } from "../ui/icons";
+import { icon, type IconName } from "../ui/icons";
 import { registerStartPage, type App } from "../ui/slots";
 import type { JobState } from "../wire";
 import { getJson, said, sendJson } from "./api";
 import { showCapture, type Jobs } from "./capture";
-import { filesOfDrop, filesOfInput, titleOf, type Given } from "./files";
+import { contentsOf, filesOfDrop, filesOfInput, titleOf, type Given } from "./files";
 import { roomsView } from "./rooms";
 import type { StartTold } from "./told";
 import { sendCapture } from "./upload";
@@ -69,7 +69,7 @@ class StartPage {
     for (const input of [files, folder]) {
       input.addEventListener("change", () => void this.take(filesOfInput(input)));
     }
-    const limit = `${Math.round((this.told?.most_bytes ?? 0) / 2 ** 20)} MB`;
+    const limit = words.megabytes((this.told?.most_bytes ?? 0) / 2 ** 20);
     fill(
       this.main,
       h(
@@ -83,6 +83,8 @@ class StartPage {
         files,
         folder,
       ),
+      h("h2", {}, words.works),
+      h("ul", { class: "works" }, ...words.kindsOfCapture.map(([mark, name, hint]) => workRow(mark, name, hint))),
     );
   }
 
@@ -106,7 +108,7 @@ class StartPage {
     this.leave();
     const stop = new AbortController();
     const line = progressLine(TEXT.start.sendingTitle, () => stop.abort());
-    fill(this.main, h("h2", {}, titleOf(given)), line.node);
+    fill(this.main, h("h2", {}, contentsOf(given)), line.node);
     const size = (bytes: number): string => TEXT.start.megabytes(bytes / 2 ** 20);
     const step = (done: number, total: number): void => {
       line.show({ stage: "", done: 0, total: 0, left_s: null, note: "", share: total ? done / total : 0 });
@@ -178,4 +180,8 @@ class StartPage {
       }
     });
   }
+}
+
+function workRow(mark: IconName, name: string, hint: string): HTMLElement {
+  return h("li", {}, icon(mark), h("div", {}, h("strong", {}, name), h("span", { class: "note" }, hint)));
 }

@@ -16,26 +16,46 @@ export function roomsView(told: StartTold, actions: RoomActions): HTMLElement {
   const words = TEXT.start;
   const rows = [
     ...told.captures.map((one) => captureRow(one, actions)),
-    ...told.recent.map(({ id, name, folder }) => row(name, folder, words.states.here, null, () => actions.open(id))),
+    ...told.recent.map(({ id, name, folder, has_picture }) =>
+      row(name, folder, words.states.here, has_picture ? pictureOf(id) : null, () => actions.open(id)),
+    ),
   ];
   const kinds = told.demos.map((kind) => plainButton(words.kinds[kind] ?? kind, () => actions.demo(kind)));
   for (const [at, kind] of told.demos.entries()) kinds[at]!.dataset.demo = kind;
   return h(
     "div",
     { class: "stack" },
-    h("h2", {}, words.rooms),
-    rows.length ? h("ul", { class: "room-list" }, ...rows) : h("p", { class: "note" }, words.noRooms),
+    rows.length > 0 && h("h2", {}, words.rooms),
+    rows.length > 0 && h("ul", { class: "room-list" }, ...rows),
+    exampleCard(actions),
     h("h2", {}, words.demo),
     h("p", { class: "note" }, words.demoLead),
     h("div", { class: "demo-kinds" }, ...kinds),
   );
 }
 
+/** A finished room, which opens at once. */
+function exampleCard(actions: RoomActions): HTMLElement {
+  const words = TEXT.start;
+  const card = h(
+    "button",
+    { type: "button", class: "example-card", data: { do: "example" } },
+    h("img", { src: pictureOf("example"), alt: "", width: 720, height: 540 }),
+    h("span", { class: "example-words" }, h("strong", {}, words.example), h("span", { class: "note" }, words.exampleLead)),
+  );
+  card.addEventListener("click", () => actions.open("example"));
+  return card;
+}
+
+function pictureOf(id: string): string {
+  return `api/start/rooms/${id}/picture`;
+}
+
 function captureRow(one: CaptureTold, actions: RoomActions): HTMLElement {
   const { states } = TEXT.start;
   const state = one.job ? states.working : one.has_room ? states.room : one.complete ? states.ready : states.partly;
   const about = one.elsewhere || TEXT.start.megabytes(one.bytes / 2 ** 20);
-  const picture = one.has_room ? `api/start/captures/${one.id}/room.png` : null;
+  const picture = one.has_room ? pictureOf(one.id) : null;
   return row(one.title, about, state, picture, () => actions.look(one.id));
 }
 

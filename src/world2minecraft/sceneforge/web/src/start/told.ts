@@ -31,7 +31,7 @@ export interface CaptureTold {
 export interface StartTold {
   home: string;
   captures: CaptureTold[];
-  recent: { id: string; name: string; folder: string }[];
+  recent: { id: string; name: string; folder: string; has_picture: boolean }[];
   demos: string[];
   most_bytes: number;
   chunk_bytes: number;
