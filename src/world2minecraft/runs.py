@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.precompile import compile_first
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.report import write_brief_report, write_report
-from world2minecraft.evaluation.report.jit_warmup import compile_pictures_meanwhile
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_plan
 from world2minecraft.reconstruction.opening import prepare_and_open
 from world2minecraft.reconstruction.parameters import Parameters
@@ -31,12 +31,12 @@ def run_capture(
     Raises:
         CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
     """
+    progress = compile_first(progress)
     if start == "report":
         as_before = resume_parameters(out, start, STAGES, chosen).parameters
         scan = read_registered(prepare_and_open(capture, out, as_before, labels, progress), out)
     else:
-        with compile_pictures_meanwhile():
-            scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
+        scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
     truth = capture if (capture / "truth.npz").is_file() else None
     return write_report(out, scan, truth=truth, progress=progress)
 
@@ -49,6 +49,7 @@ def run_plan(
     Raises:
         InputError: the plan cannot be read. OutputError: ``out`` cannot be written.
     """
+    progress = compile_first(progress)
     built = build_plan(place, out, chosen, progress, name)
     progress("report", 0, 1)
     write_brief_report(out, built.scan)

@@ -22,6 +22,7 @@ STAGE_TEXTS = {
     "build": "Building the world",
     "capture": "Scanning the room virtually",
     "check": "Checking the blocks",
+    "compile": "Compiling kernels",
     "count": "Counting cells",
     "export": "Exporting",
     "find": "Finding objects",

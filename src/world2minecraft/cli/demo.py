@@ -59,11 +59,12 @@ def run(
     from world2minecraft.api import demo
     from world2minecraft.api.progress import show_progress
     from world2minecraft.api.time_left import DEMO
-    from world2minecraft.cli.outcome import print_outcome, with_compile_note
+    from world2minecraft.cli.outcome import print_outcome
+    from world2minecraft.core.precompile import compile_first
 
     print_style_note(blocks_per_metre, style)
     with show_progress(stages=DEMO) as shown:
-        progress = with_compile_note(shown)
+        progress = compile_first(shown)
         made = demo(
             out,
             kind=kind,

@@ -17,6 +17,7 @@ import typer
 EXAMPLES = """\
 w2m doctor                  check this machine
 w2m doctor && w2m demo      check it, then build the demo room
+w2m doctor --warm           compile all kernels now, on all cores
 w2m doctor --json           print the checks as JSON, for a bug report
 """
 
@@ -43,13 +44,19 @@ class Check:
     advice: str = ""
 
 
-def run(as_json: Annotated[bool, typer.Option("--json", help="Print a JSON list.")] = False) -> int:
+def run(
+    warm: Annotated[
+        bool, typer.Option("--warm", help="Compile all kernels, so that no first run waits.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON list.")] = False,
+) -> int:
     """Check Python, the libraries, the cache folder, memory, disk and the optional extras.
 
     Exits with code 0 if the program can run, and with code 1 if something must be fixed first.
     Java, the game and a graphics card are not needed.
 
     Args:
+        warm: Compile all kernels after the checks.
         as_json: Print the checks as JSON instead of text.
     """
     checks = list(examine())
@@ -60,8 +67,20 @@ def run(as_json: Annotated[bool, typer.Option("--json", help="Print a JSON list.
         advice = f"; {check.advice}" if check.advice else ""
         print(f"{check.state:<5}{check.what:<14}{check.found}{advice}")
     bad = sum(check.state == "bad" for check in checks)
+    if warm and not bad:
+        compile_all()
     print(f"{bad} problem{'s' * (bad != 1)} to fix" if bad else "ready: try w2m demo")
     return int(bad > 0)
+
+
+def compile_all() -> None:
+    """Compile the kernels of all kinds of work."""
+    from world2minecraft.api.progress import show_progress
+    from world2minecraft.core.precompile import WORK, compile_kernels
+
+    with show_progress() as progress:
+        compiled = sum(compile_kernels(work, progress) for work in WORK)
+    print(f"{'ok':<5}{'kernels':<14}{compiled} compiled, the others were ready")
 
 
 def examine() -> Iterator[Check]:

@@ -54,7 +54,7 @@ def run(
     """
     from world2minecraft.api import join_rooms
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     changes = parse_settings(settings)
     print_style_note(blocks_per_metre, changes.get("build.style", style))
@@ -69,7 +69,7 @@ def run(
             formats=split_names(formats),
             mc_version=mc_version,
             settings=changes,
-            progress=with_compile_note(shown),
+            progress=compile_first(shown),
         )
     print_home(out, len(rooms))
 

@@ -87,7 +87,7 @@ def run(
     """
     from world2minecraft.api import predict_occupancy
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as progress:
         cells = predict_occupancy(
@@ -101,7 +101,7 @@ def run(
             labels=labels,
             fov_deg=fov,
             run_folder=keep,
-            progress=with_compile_note(progress),
+            progress=compile_first(progress),
         )
     for line in summary_lines(source, out, cells, grid):
         print(line)

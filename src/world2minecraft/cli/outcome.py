@@ -1,42 +1,7 @@
 """Print the result of a finished run and the next steps."""
 
-import sys
 from pathlib import Path
 from typing import Any
-
-from world2minecraft.core.progress import Progress
-
-
-def kernels_are_compiled() -> bool:
-    """Return whether an earlier run has compiled the kernels of this version."""
-    from world2minecraft.core.jit import KERNEL_CACHE
-
-    return any(KERNEL_CACHE.iterdir())
-
-
-def print_compile_note() -> None:
-    """Print on stderr why the first run after installation takes longer."""
-    if not kernels_are_compiled():
-        line = "First run: compiling the kernels takes about 30 s; later runs reuse them."
-        print(line, file=sys.stderr)
-
-
-def with_compile_note(progress: Progress) -> Progress:
-    """Return a progress callback that prints the note on compilation before its first step.
-
-    Errors in the arguments are reported before any step, so they appear without the note.
-    """
-    noted = False
-
-    def report(stage: str, done: int, total: int, note: str = "") -> None:
-        """Print the note before the first report and forward all of them."""
-        nonlocal noted
-        if not noted:
-            noted = True
-            print_compile_note()
-        progress(stage, done, total, note)
-
-    return report
 
 
 def print_outcome(out: Path, facts: dict[str, Any]) -> None:

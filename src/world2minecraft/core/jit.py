@@ -4,12 +4,14 @@ Import ``njit``, ``lean`` and similar decorators from this module and never from
 every kernel is cached, releases the GIL and computes identical bits on every run (no fast-math).
 """
 
-import hashlib
 import os
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+PASSING = "world2minecraft-kernels-"  # Begins the name of a temporary folder.
 
 
 def user_cache_dir() -> Path:
@@ -24,55 +26,55 @@ def user_cache_dir() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME", home / ".cache")) / "world2minecraft"
 
 
-def kernel_sources_digest() -> str:
-    """Return a digest of all files with kernels.
-
-    The cache of numba detects changes of a kernel's own file, but not of kernels it calls in other
-    files. Therefore, each state of the sources has a separate cache folder.
-    """
-    digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
-        source = path.read_bytes()
-        if b"world2minecraft.core.jit import" in source:
-            digest.update(path.name.encode() + source)
-    return digest.hexdigest()[:16]
-
-
 def kernel_cache_dir() -> Path:
     """Create and return the folder of compiled kernels, or a temporary one if it is read-only.
 
     The files in the folder are executed as code, so it is never a folder that others could have
     filled.
     """
-    folder = user_cache_dir() / "kernels" / kernel_sources_digest()
+    folder = user_cache_dir() / "kernels"
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
-        return Path(tempfile.mkdtemp(prefix="world2minecraft-kernels-"))
+        return Path(tempfile.mkdtemp(prefix=PASSING))
     if os.access(folder, os.W_OK):
         return folder
-    return Path(tempfile.mkdtemp(prefix="world2minecraft-kernels-"))
+    return Path(tempfile.mkdtemp(prefix=PASSING))
 
 
-def is_compiled(kernel: str) -> bool:
-    """Return whether an earlier run has cached a kernel, given as ``module.kernel``."""
-    return any(KERNEL_CACHE.rglob(f"{kernel}-*.nbi"))
+KERNEL_CACHE = Path(os.environ.get("NUMBA_CACHE_DIR") or kernel_cache_dir())
+CACHE_IS_KEPT = not KERNEL_CACHE.name.startswith(PASSING)
+
+import numba  # noqa: E402  # Slow to load; the folder is checked first.
+from numba.core.dispatcher import Dispatcher  # noqa: E402
+
+from world2minecraft.core.kernel_cache import KernelCache, KernelLocator  # noqa: E402
+
+KernelLocator.folder = KERNEL_CACHE
 
 
-KERNEL_CACHE = kernel_cache_dir()
-os.environ.setdefault("NUMBA_CACHE_DIR", str(KERNEL_CACHE))
+def _decorator(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Return a decorator that compiles a function at its first call and caches it."""
+    compile_options = numba.njit(nogil=True, **options)
 
-import numba  # noqa: E402  # The cache folder must be named before numba is loaded.
+    def decorate(function: Callable[..., Any]) -> Any:
+        kernel = compile_options(function)
+        if isinstance(kernel, Dispatcher):  # With NUMBA_DISABLE_JIT it stays a function.
+            kernel._cache = KernelCache(function)  # type: ignore[attr-defined]
+        return kernel
 
-njit = numba.njit(cache=True, nogil=True)
+    return decorate
+
+
+njit = _decorator()
 # For kernels that allocate nothing: without counting references to arrays, which at every call
 # inside takes as long as a ray. Such a kernel calls only its like. Division by 0 gives infinity.
-_LEAN: dict[str, Any] = {"cache": True, "nogil": True, "_nrt": False, "error_model": "numpy"}
-lean = numba.njit(**_LEAN)
+_LEAN: dict[str, Any] = {"_nrt": False, "error_model": "numpy"}
+lean = _decorator(**_LEAN)
 # The same for small functions that a kernel calls for every ray: a call costs more than they do.
-inlined = numba.njit(forceinline=True, **_LEAN)
+inlined = _decorator(forceinline=True, **_LEAN)
 # The same for what takes whole tables and is called by kernels alone: without the code by which
 # Python could call it, which takes longest to compile. Python that calls it all the same crashes.
 _INNER: dict[str, Any] = {**_LEAN, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-inner = numba.njit(forceinline=True, **_INNER)
-inner_call = numba.njit(**_INNER)
+inner = _decorator(forceinline=True, **_INNER)
+inner_call = _decorator(**_INNER)

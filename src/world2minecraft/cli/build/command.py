@@ -149,10 +149,11 @@ def _check_targets(
 def _build_folder(source: Path, out: Path, options: dict[str, Any], mc_version: str) -> None:
     from world2minecraft.api import build
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import print_play_steps, with_compile_note
+    from world2minecraft.cli.outcome import print_play_steps
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as shown:
-        progress = with_compile_note(shown)
+        progress = compile_first(shown)
         build(source, out, mc_version=mc_version, progress=progress, **options)
     print()
     print_play_steps(out / "build")
@@ -163,10 +164,10 @@ def _build_into(
 ) -> None:
     from world2minecraft.api import build_into_world
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as shown:
-        progress = with_compile_note(shown)
+        progress = compile_first(shown)
         done = build_into_world(source, world, at, progress=progress, **options)
     print()
     _print_change(done)
@@ -175,10 +176,10 @@ def _build_into(
 def _build_on_server(source: Path, server: str, options: dict[str, Any]) -> None:
     from world2minecraft.api import build_on_server
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as shown:
-        progress = with_compile_note(shown)
+        progress = compile_first(shown)
         done = build_on_server(source, server, progress=progress, **options)
     _print_server_build(done)
 

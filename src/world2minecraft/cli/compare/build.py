@@ -59,7 +59,7 @@ def run(
     """
     from world2minecraft.api.comparison import build_layouts
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as progress:
         found = build_layouts(
@@ -72,7 +72,7 @@ def run(
             task=task,
             assets=assets,
             blocks_per_metre=blocks_per_metre,
-            progress=with_compile_note(progress),
+            progress=compile_first(progress),
         )
     for one in found.built:
         print(f"{one.method}, {one.name}: {one.built} of {one.objects} objects, {one.folder}")

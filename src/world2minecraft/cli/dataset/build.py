@@ -79,11 +79,13 @@ def run(
     from world2minecraft.api import build_dataset
     from world2minecraft.api.datasets import worlds_in
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     places = [*(world or []), *(worlds_in(worlds) if worlds is not None else [])]
     with show_progress() as progress:
-        made = build_dataset(target, worlds=places, progress=with_compile_note(progress), **given)
+        made = build_dataset(
+            target, worlds=places, progress=compile_first(progress, "dataset"), **given
+        )
     _print_summary(made)
 
 

@@ -38,7 +38,7 @@ def run(
     from world2minecraft.api.datasets import build_photo_dataset
     from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.arguments import output_of, size_of
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     target = output_of(folder, out)
     with show_progress() as progress:
@@ -49,7 +49,7 @@ def run(
             test_share=test_share,
             size=size_of(size),
             seed=seed,
-            progress=with_compile_note(progress),
+            progress=compile_first(progress),
         )
     print(f"{images:,} images of {rooms:,} rooms written to {target}")
     print(f"next: w2m dataset show {target}")

@@ -79,8 +79,8 @@ def run(
     from world2minecraft.api.progress import show_progress
     from world2minecraft.api.tours import plan_tour, tour_of_screenshots
     from world2minecraft.cli.arguments import size_of
-    from world2minecraft.cli.outcome import with_compile_note
     from world2minecraft.core.errors import UsageError
+    from world2minecraft.core.precompile import compile_first
 
     if screenshots is None and (at or poses is not None or pattern is not None):
         raise UsageError("--at, --poses and --pattern require --screenshots DIR")
@@ -105,7 +105,7 @@ def run(
             camera=camera,
             size=size_of(size),
             reachable=reachable,
-            progress=with_compile_note(progress),
+            progress=compile_first(progress, "dataset"),
             **scene,
         )
     for note in tour.notes:

@@ -35,10 +35,10 @@ def run(
     """
     from world2minecraft.api.comparison import scannet_truths
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as progress:
-        made = scannet_truths(scene, out, progress=with_compile_note(progress))
+        made = scannet_truths(scene, out, progress=compile_first(progress))
     for one in made:
         print(summary_line(one.made))
     print(f"next: w2m reconstruct {made[0].scene} --out OUT")

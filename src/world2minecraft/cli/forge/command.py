@@ -86,7 +86,7 @@ def run(
     allow_host: AllowHost = None,
     home: Home = None,
     capture: PhotosOf = None,
-    max_upload: MaxUpload = 512,
+    max_upload: MaxUpload = 4096,
     no_browser: NoBrowser = False,
     walk: Walk = False,
 ) -> None:
@@ -121,11 +121,13 @@ def run(
 def _walk(source: Path | None, no_browser: bool) -> None:
     """Let the user walk through a world on a page that shows the view of an agent."""
     from world2minecraft.api.editor import prepare_walk
-    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.api.progress import show_progress
+    from world2minecraft.core.precompile import compile_kernels
 
     if source is None:
         raise UsageError("--walk requires a world, as in w2m forge OUT --walk")
-    print_compile_note()
+    with show_progress() as progress:
+        compile_kernels("navigation", progress)
     walk = prepare_walk(source)
     print(f"walk here: {walk.link}\nPress Ctrl+C to stop.", flush=True)
     if not no_browser:

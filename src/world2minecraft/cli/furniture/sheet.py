@@ -43,10 +43,10 @@ def run(
     """
     from world2minecraft.api.furniture import draw_furniture
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as progress:
-        noted = with_compile_note(progress)
+        noted = compile_first(progress)
         pages = draw_furniture(out, names or (), class_name=kind, progress=noted)
     for file, pieces in pages.items():
         print(f"{file}: {len(pieces)} designs")

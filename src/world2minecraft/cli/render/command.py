@@ -69,7 +69,7 @@ def run(
     """
     from world2minecraft.api import render_files
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     flags = {"orbit": orbit, "tour": tour, "turntable": turntable}
     view = option.view_of(flags, pose, poses)
@@ -83,7 +83,7 @@ def run(
             exposure=exposure, sun_shadow=sun_shadow, samples=samples, texture_px=textures,
             packs=pack or (), photo=photo, photo_samples=photo_samples, device=device,
             threads=threads, jobs=jobs,
-            progress=with_compile_note(progress),
+            progress=compile_first(progress),
         )  # fmt: skip
     if as_json:
         print(json.dumps(drawn.poses, indent=1))

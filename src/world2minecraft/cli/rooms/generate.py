@@ -103,10 +103,10 @@ def _write_room(
     from world2minecraft.api import generate_house, generate_room
     from world2minecraft.api.generation import save_room
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as shown:
-        progress = with_compile_note(shown)
+        progress = compile_first(shown)
         progress("room", 0, 1)
         if house is None:
             drawn = None if shape == "any" else shape
@@ -133,10 +133,10 @@ def _print_room(made: "GeneratedRoom", out: Path) -> None:
 def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> None:
     from world2minecraft.api.generation import generate_worlds
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as shown:
-        progress = with_compile_note(shown)
+        progress = compile_first(shown)
         written = generate_worlds(worlds, houses=houses, seed=seed, style=style, progress=progress)
     print(f"\n{len(written)} houses in {worlds}.")
     print(f"  look   w2m render {written[0]} --out house.png")

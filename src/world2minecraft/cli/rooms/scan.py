@@ -93,7 +93,7 @@ def run(
     """
     from world2minecraft.api.generation import scan_trial
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     figures = {
         "sensor": sensor, "frames": frames, "depth_scale_sigma": depth_scale_sigma,
@@ -104,7 +104,7 @@ def run(
         given["labels"] = True
     _check_source(room_dir, seed, kind, trial, given)
     with show_progress() as shown:
-        progress = with_compile_note(shown)
+        progress = compile_first(shown)
         if trial is not None:
             scan_trial(trial, out, progress)
         else:

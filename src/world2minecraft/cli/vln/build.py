@@ -136,7 +136,7 @@ def run(
     """
     from world2minecraft.api import build_navigation_set
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as progress:
         built = build_navigation_set(
@@ -158,7 +158,7 @@ def run(
             size=_size(size),
             seed=seed,
             workers=workers,
-            progress=with_compile_note(progress),
+            progress=compile_first(progress, "navigation"),
         )
     _print_summary(out, built)
 

@@ -148,7 +148,6 @@ def run(
     """
     from world2minecraft.api import run_agent
     from world2minecraft.cli.browser import open_link
-    from world2minecraft.cli.outcome import print_compile_note
     from world2minecraft.cli.vln.live_view import live_view
 
     def on_page(link: str) -> None:
@@ -156,7 +155,7 @@ def run(
         if not no_browser:
             open_link(link)
 
-    with live_view(on_begin=print_compile_note) as shown:
+    with live_view(on_begin=_compile) as shown:
         walked = run_agent(
             scene,
             instruction,
@@ -205,3 +204,12 @@ def _print_summary(walked: "AgentRun", video: bool) -> None:
         print(f"\n  look   {place / 'walk.mp4'}")
     print(f"  read   {place / 'trace.jsonl'}: all views, thoughts and moves")
     print(f"  next   w2m vln table {walked.folder}")
+
+
+def _compile() -> None:
+    """Compile what a walk needs, with progress on stderr."""
+    from world2minecraft.api.progress import show_progress
+    from world2minecraft.core.precompile import compile_kernels
+
+    with show_progress() as progress:
+        compile_kernels("navigation", progress)

@@ -18,12 +18,11 @@ from typing import Any
 
 from world2minecraft.core.errors import ConflictError, OutputError, UsageError
 from world2minecraft.core.files import write_json
-from world2minecraft.core.jit import is_compiled
 from world2minecraft.core.locks import Lock
+from world2minecraft.core.precompile import compile_kernels
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.building.cpu_clock import (
     STAGES,
-    StageClock,
     milliseconds_per_image,
 )
 from world2minecraft.minecraftocc.building.process_registry import remove_registry, wait_for_others
@@ -32,7 +31,6 @@ from world2minecraft.minecraftocc.building.shard_rendering import (
     in_order,
     index_shard,
     render_shard,
-    sample_renderer,
     shard_tasks,
 )
 from world2minecraft.minecraftocc.engine import Engine
@@ -58,7 +56,6 @@ from world2minecraft.minecraftocc.types import FineClass
 
 MAX_ROUNDS = 6
 CountViews = Callable[[list[SceneSpec]], Iterable[int]]  # Gives how many views each scene has.
-_LAST_KERNEL = "label_kernels.count_hits"  # A kernel that a sample needs last.
 EMPTY = FineClass("minecraft:air")
 
 
@@ -108,21 +105,6 @@ def _further_requests(
         for number, scene in enumerate(rich)
         if each + (number < more)
     ]
-
-
-def needs_warm_up() -> bool:
-    """Return whether the kernels for rendering a sample must still be compiled."""
-    return not is_compiled(_LAST_KERNEL)
-
-
-def warm_up(task: SceneTask, tick: Callable[[int], None]) -> None:
-    """Compile the kernels by surveying a scene and rendering one sample.
-
-    The survey is saved; the sample is discarded.
-    """
-    facts, _ = survey_scene(task, tick)
-    if facts.views:
-        sample_renderer(task.folder, task.spec, task.recipe).sample(0, StageClock())
 
 
 @dataclass(frozen=True)
@@ -253,9 +235,7 @@ class _Build:
     def run(self) -> BuildReport:
         """Survey the scenes, render the shards and write the index."""
         facts: dict[str, SceneFacts] = {}
-        if needs_warm_up():
-            first = SceneTask(str(self.folder), self.plan.scenes[0], self.plan.recipe)
-            list(self.engine.run(warm_up, [first], self._ticker("compile", 1)))
+        compile_kernels("dataset", self.progress)
         scenes = self._settled(allocate_views(self.plan.scenes, partial(self._look, facts)))
         _refuse_duplicate_worlds(scenes, facts)
         plan = replace(self.plan, scenes=scenes)
