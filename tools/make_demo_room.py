@@ -1,6 +1,7 @@
 """Make ``sceneforge/demo_room``: the files of ``w2m demo`` that SceneForge shows first.
 
-``python tools/make_demo_room.py`` runs the demo (about a minute) and copies what is needed, with a picture.
+``python tools/make_demo_room.py`` runs the demo (about a minute) and copies what is needed, with
+a picture.
 """
 
 import shutil

@@ -27,6 +27,19 @@ def test_json_lists_the_checks(capsys, monkeypatch, tmp_path):
     assert rows[0]["what"] == "Python"
 
 
+def test_warming_compiles_all_kinds_of_work_after_the_checks(capsys, monkeypatch):
+    works = []
+    compile_kernels = lambda work, progress: works.append(work) or 3  # noqa: E731
+    monkeypatch.setattr(doctor, "examine", list)
+    monkeypatch.setattr("world2minecraft.core.precompile.compile_kernels", compile_kernels)
+    assert cli.run(["doctor", "--warm"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "ok   kernels       12 compiled, the others were ready"
+    assert works == ["room", "photos", "dataset", "navigation"]
+    monkeypatch.setattr(doctor, "examine", lambda: [doctor.Check("x", "bad", "y")])
+    assert cli.run(["doctor", "--warm"]) == 1 and len(works) == 4
+
+
 @pytest.mark.parametrize("options", [[], ["--json"]])
 def test_a_problem_makes_the_exit_code_1(options, capsys, monkeypatch):
     monkeypatch.setattr(doctor, "examine", lambda: [doctor.Check("x", "bad", "y")])
