@@ -17,6 +17,7 @@ from world2minecraft.core.types import Corrections, FrameSigmas, Scan
 
 POSE_ARRAYS = ("names", "pose_change", "depth_scale")
 MAX_NAME_LENGTH = 60
+MAX_CAMERAS = 200
 
 
 def write_poses(path: str | Path, corrections: Corrections) -> None:
@@ -63,9 +64,31 @@ def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | N
             "scale_sigma": scan.scale_sigma,
             "depth_kind": scan.depth_kind,
             "notes": list(scan.notes),
+            "cameras": camera_rays(scan),
             "registration": dict(registration or {}),
         },
     )
+
+
+def camera_rays(scan: Scan) -> list[list[float]]:
+    """Return positions and viewing directions of at most ``MAX_CAMERAS`` frames, for displays.
+
+    Each row is x, y, z in metres and a unit vector, both in the room frame. Scans whose views do
+    not name their frames, such as plans, have none.
+    """
+    frames = getattr(scan.views, "frames", ())
+    used = set(scan.frames_used)
+    poses = [
+        scan.scan_to_room @ frame.camera_to_world
+        for frame in frames
+        if frame.camera_to_world is not None and frame.name in used
+    ]
+    chosen = np.unique(np.linspace(0, len(poses) - 1, min(len(poses), MAX_CAMERAS)).astype(int))
+    rows = [
+        np.concatenate([pose[:3, 3], pose[:3, 2] / np.linalg.norm(pose[:3, 2])])
+        for pose in (poses[index] for index in chosen)
+    ]
+    return [np.round(row, 3).tolist() for row in rows if np.isfinite(row).all()]
 
 
 def read_registration(path: str | Path) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import io
 import os
 import shutil
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -130,19 +131,20 @@ def stats_csv(editor: Editor) -> str:
 def games_here() -> dict[str, Game]:
     """Return the Minecraft installations of this machine, by ids that do not reveal their paths."""
     found = find_games(sys.platform, Path.home(), os.environ)
-    return {_id_of(game.saves): game for game in found}
+    return {id_of(game.saves): game for game in found}
 
 
-def worlds_here() -> dict[str, tuple[Game, Path]]:
-    """Return the Minecraft worlds of this machine by id, each with its installation."""
+def worlds_of(games: Iterable[Game]) -> dict[str, tuple[Game, Path]]:
+    """Return the worlds of installations by id, each with its installation."""
     found = {}
-    for game in games_here().values():
+    for game in games:
         folders = sorted(game.saves.iterdir()) if game.saves.is_dir() else []
         for folder in folders:
             if (folder / "level.dat").is_file() and not folder.is_symlink():
-                found[_id_of(folder)] = (game, folder)
+                found[id_of(folder)] = (game, folder)
     return found
 
 
-def _id_of(path: Path) -> str:
+def id_of(path: Path) -> str:
+    """Return an id of a path that does not reveal it."""
     return hashlib.sha256(str(path).encode("utf-8", "surrogateescape")).hexdigest()[:12]

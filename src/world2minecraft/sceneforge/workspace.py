@@ -3,11 +3,12 @@
 import asyncio
 import tempfile
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.sceneforge.comparison import find_truth_folder
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.export_options import write_snapshot
+from world2minecraft.sceneforge.game_folders import GameFolders
 from world2minecraft.sceneforge.photo_classes import PhotoClasses
 from world2minecraft.sceneforge.run_photos import (
     RunPhotos,
@@ -38,6 +40,13 @@ class Comparison:
     name: str
     labels: np.ndarray
     editor: Editor
+
+
+class BegunRun(NamedTuple):
+    """The run folder of a job and the time in seconds since 1970 at which the job began."""
+
+    run: Path
+    since_s: float
 
 
 class Workspace:
@@ -67,8 +76,10 @@ class Workspace:
         self._opening = asyncio.Lock()
         self._exports: tempfile.TemporaryDirectory[str] | None = None
         self.captures = CaptureStore(home, max_bytes)
+        self.game_folders = GameFolders(home)
         self.jobs = session.jobs
         self.wanted: str | None = None  # The capture that the start page shows first.
+        self._begun: dict[str, BegunRun] = {}
         self.running_jobs: dict[str, str] = {}  # Jobs by the id of a capture, or a demo's folder.
 
     @property
@@ -222,6 +233,21 @@ class Workspace:
         if not found.has_room:
             raise UsageError(f"{found.title!r} has no room yet; press Create room")
         return found.run
+
+    def note_job(self, number: str, what: str, run: Path) -> None:
+        """Remember that a job works on a capture's id or a demo's folder, and its run folder."""
+        self.running_jobs[what] = number
+        self._begun[number] = BegunRun(run, time.time())
+
+    def run_of_job(self, number: str) -> BegunRun:
+        """Return the run folder of a job of the start page.
+
+        Raises:
+            UnknownNameError: If no job that makes a room has this id.
+        """
+        if number not in self._begun:
+            raise UnknownNameError("job", number, self._begun)
+        return self._begun[number]
 
     def job_of(self, capture: CaptureFolder) -> str | None:
         """Return the id of the job that is running on a capture, or None."""

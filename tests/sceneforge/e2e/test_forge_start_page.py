@@ -121,6 +121,7 @@ def test_a_dropped_plan_becomes_a_room_and_closes_again(start, shot):
     page.wait_for_selector(".progress-bar")
     until(page, "document.querySelector('.progress-foot .note')?.textContent.includes('left')")
     keep(shot, start, "start-making")
+    page.locator("[data-do='open']").click(timeout=MOST_MS)
     until(page, "Boolean(window.__forge?.store.get().scene)")
     start.until("s.scene.objects.length > 0")
     start.idle()

@@ -5,6 +5,8 @@ GET  /api/exports                list formats, scales, styles, game versions, ga
 POST /api/exports                ``{form, blocks_per_metre, style, mc_version}``: start a job
 GET  /api/exports/files/ID       download an exported file
 POST /api/install                ``{game, name, ...}``: start a job; never overwrites a world
+POST /api/games                  ``{folder}``: offer the installation in a folder -> ``{id}``
+GET  /api/folders                ``?in=PATH``: list a folder, for the folder picker
 POST /api/build/world            ``{world, at, turns, air, ...}``: start a job; ``w2m undo`` reverts
 POST /api/build/server           ``{address, password, at, turns, air, ...}``: start a job
 ===============================  ==============================================================
@@ -25,6 +27,7 @@ from world2minecraft.editing.build_into_world import check_air
 from world2minecraft.minecraft.server.rcon import parse_address
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_versions
 from world2minecraft.sceneforge import export_options as exports
+from world2minecraft.sceneforge.game_folders import list_folder
 from world2minecraft.sceneforge.jobs.jobs import JobFunction, JobProgress
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
 from world2minecraft.sceneforge.server.request_parsing import get_workspace, read_json_object
@@ -43,13 +46,16 @@ def routes() -> list[BaseRoute]:
         Route("/api/exports", _export, methods=["POST"]),
         Route("/api/exports/files/{id}", _file),
         Route("/api/install", _install, methods=["POST"]),
+        Route("/api/games", _add_game, methods=["POST"]),
+        Route("/api/folders", _folders),
         Route("/api/build/world", _into_world, methods=["POST"]),
         Route("/api/build/server", _on_server, methods=["POST"]),
     ]
 
 
 async def _options(request: Request) -> Response:
-    games, worlds = await asyncio.to_thread(lambda: (exports.games_here(), exports.worlds_here()))
+    games = await asyncio.to_thread(get_workspace(request).game_folders.games)
+    worlds = await asyncio.to_thread(exports.worlds_of, games.values())
     return JSONResponse(
         {
             "forms": [vars(one) for one in exports.export_forms()],
@@ -106,7 +112,7 @@ def _is_export(folder: Path, number: str) -> bool:
 
 async def _install(request: Request) -> Response:
     workspace, body = get_workspace(request), await read_json_object(request)
-    games = await asyncio.to_thread(exports.games_here)
+    games = await asyncio.to_thread(workspace.game_folders.games)
     key, name = str(body.pop("game", "")), body.pop("name", "")
     if key not in games:
         raise UsageError("choose one of the listed Minecraft installations")
@@ -117,9 +123,35 @@ async def _install(request: Request) -> Response:
     return _start_subprocess_job(workspace, "install", choice=choice, game=place, name=name)
 
 
+async def _add_game(request: Request) -> Response:
+    require_this_machine(request)
+    folder = (await read_json_object(request)).get("folder")
+    if not isinstance(folder, str) or not folder:
+        raise UsageError("folder must be the path of a game's folder")
+    workspace = get_workspace(request)
+    return JSONResponse({"id": await asyncio.to_thread(workspace.game_folders.add, folder)})
+
+
+async def _folders(request: Request) -> Response:
+    require_this_machine(request)
+    return JSONResponse(await asyncio.to_thread(list_folder, request.query_params.get("in", "")))
+
+
+def require_this_machine(request: Request) -> None:
+    """Check that a request comes from a browser on this machine: folders are its user's.
+
+    Raises:
+        UsageError: It comes from another machine.
+    """
+    host = request.client.host if request.client else ""
+    if host not in ("127.0.0.1", "::1"):
+        raise UsageError("folders can be chosen only in a browser on the computer that runs w2m")
+
+
 async def _into_world(request: Request) -> Response:
     workspace, body = get_workspace(request), await read_json_object(request)
-    worlds = await asyncio.to_thread(exports.worlds_here)
+    games = await asyncio.to_thread(workspace.game_folders.games)
+    worlds = exports.worlds_of(games.values())
     key = str(body.pop("world", ""))
     if key not in worlds:
         raise UsageError("choose one of the listed worlds")

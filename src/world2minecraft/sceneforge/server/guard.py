@@ -43,6 +43,7 @@ ALONE = (
     (b"x-frame-options", b"DENY"),
 )
 FRAMED = ((b"content-security-policy", f"{POLICY}{NOTEBOOKS}".encode()),)
+POLICY_NAME = b"content-security-policy"
 NO_STORE = (b"cache-control", b"no-store")
 OPEN_THE_LINK = "open the link that w2m forge printed; it contains the access token"
 
@@ -200,16 +201,24 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, why: str) -> None:
 
 
 def _with_headers(scope: Scope, send: Send, headers: Iterable[tuple[bytes, bytes]]) -> Send:
-    """Return a ``send`` function that adds the security headers to every answer."""
+    """Return a ``send`` function that adds the security headers to every answer.
+
+    An answer may have a policy of its own if that puts the page into a sandbox.
+    """
     if scope["type"] != "http":
         return send
     always = [*headers, NO_STORE] if _never_kept(scope["path"]) else [*headers]
 
     async def adding(message: Message) -> None:
         if message["type"] == "http.response.start":
-            names = {name for name, _ in always}
-            kept = [pair for pair in message.get("headers", []) if pair[0].lower() not in names]
-            message = {**message, "headers": [*kept, *always]}
+            own = [(name.lower(), value) for name, value in message.get("headers", [])]
+            boxed = any(
+                name == POLICY_NAME and value.startswith(b"sandbox ") for name, value in own
+            )
+            added = [pair for pair in always if not (boxed and pair[0] == POLICY_NAME)]
+            names = {name for name, _ in added}
+            kept = [pair for pair in own if pair[0] not in names]
+            message = {**message, "headers": [*kept, *added]}
         await send(message)
 
     return adding

@@ -11,10 +11,14 @@ GET    /api/start/rooms/ID/picture         return an image of a capture's room, 
                                            ``recent-N`` or of the ``example``
 POST   /api/start/captures/ID/reconstruct  ``{blocks_per_metre, style, known}``: start a job
 DELETE /api/start/captures/ID              delete the capture and its room
+GET    /api/start/rooms/ID/report          return the report of a room
+POST   /api/start/rooms/ID/install         ``{game}``: start a job that copies its world into a game
 POST   /api/start/demo                     ``{kind, seed}``: start a job that generates a room, or
                                            return the running job with the same parameters
 POST   /api/start/open                     ``{id}``: open a room in the editor
 POST   /api/start/close                    close the room and return to the start page
+GET    /api/start/jobs/ID/layers           list what the reconstruction of a job has found so far
+GET    /api/start/jobs/ID/layers/LAYER     return a layer, as in ``live_layers``
 GET    /api/jobs                           list all jobs; POST /api/jobs/ID/cancel cancels one
 =========================================  ====================================================
 """
@@ -31,13 +35,15 @@ from starlette.routing import BaseRoute, Route
 from world2minecraft.capture.scale.known_lengths import LENGTHS_M
 from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import ConflictError, InputError, UsageError
+from world2minecraft.minecraft.worlds.installation import age_note, install_world
 from world2minecraft.procgen import BASE_KINDS
 from world2minecraft.procgen.rooms.recipes import room_title
 from world2minecraft.sceneforge.document.document_metadata import SUFFIX
-from world2minecraft.sceneforge.jobs.jobs import JobState
+from world2minecraft.sceneforge.jobs.jobs import JobProgress, JobState
 from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of_choice
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
 from world2minecraft.sceneforge.jobs.time_left import demo_stage_seconds, reconstruct_stage_seconds
+from world2minecraft.sceneforge.live_layers import finished_layers, layer_bytes
 from world2minecraft.sceneforge.scene_sources import DEMO_FOLDER, DEMO_PICTURE
 from world2minecraft.sceneforge.server.request_parsing import get_workspace, read_json_object
 from world2minecraft.sceneforge.uploads import PICTURE, CaptureFolder
@@ -47,6 +53,12 @@ SCALES = (1, 2, 4, 12.5)
 DEFAULT_SCALE = 4
 EXAMPLE = "example"  # The id of the demo room, which is finished.
 ROOM_PICTURE = "preview.png"
+# A report is a page of its own, from a folder that anyone may have written: it runs apart from the
+# editor, in an origin of its own, and reaches no server.
+REPORT_POLICY = (
+    "sandbox allow-scripts; default-src 'none'; img-src data: blob:; "
+    "style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+)
 CHUNK_BYTES = 4 << 20  # Bytes per request; a lost connection loses at most one chunk.
 
 
@@ -63,9 +75,13 @@ def routes() -> list[BaseRoute]:
         Route(one + "/picture.png", _picture),
         Route("/api/start/rooms/{id}/picture", _room_picture),
         Route(one + "/reconstruct", _reconstruct, methods=["POST"]),
+        Route("/api/start/rooms/{id}/report", _room_report),
+        Route("/api/start/rooms/{id}/install", _install_room, methods=["POST"]),
         Route("/api/start/demo", _demo, methods=["POST"]),
         Route("/api/start/open", _open, methods=["POST"]),
         Route("/api/start/close", _close, methods=["POST"]),
+        Route("/api/start/jobs/{id}/layers", _layers),
+        Route("/api/start/jobs/{id}/layers/{layer}", _layer),
         Route("/api/jobs", _jobs),
         Route("/api/jobs/{id}/cancel", _cancel, methods=["POST"]),
     ]
@@ -171,7 +187,8 @@ async def _survey(request: Request) -> Response:
     work = run_in_subprocess(
         "survey", one.source.parent, capture=str(one.source), folder=str(one.folder)
     )
-    workspace.running_jobs[one.id] = number = workspace.jobs.start(one.title, work, {"look": 4.0})
+    number = workspace.jobs.start(one.title, work, {"look": 4.0})
+    workspace.note_job(number, one.id, one.run)
     return JSONResponse({"job": number})
 
 
@@ -183,7 +200,7 @@ async def _reconstruct(request: Request) -> Response:
         "reconstruct", one.source.parent, capture=str(one.source), out=str(one.run), choice=choice
     )
     number = workspace.jobs.start(one.title, work, reconstruct_stage_seconds(one.survey()))
-    workspace.running_jobs[one.id] = number
+    workspace.note_job(number, one.id, one.run)
     return JSONResponse({"job": number})
 
 
@@ -224,12 +241,10 @@ async def _demo(request: Request) -> Response:
     name, title = f"demo/{kind}-{seed}", room_title(kind)
     if (running := workspace.job_at(name)) is not None:
         return JSONResponse({"job": running})  # Whoever asks again sees how far it is.
-    work = run_in_subprocess(
-        "demo", out=str(workspace.home / name), kind=kind, seed=seed, frames=frames
-    )
-    workspace.running_jobs[name] = number = workspace.jobs.start(
-        title, work, demo_stage_seconds(), _remember(workspace)
-    )
+    out = workspace.home / name
+    work = run_in_subprocess("demo", out=str(out), kind=kind, seed=seed, frames=frames)
+    number = workspace.jobs.start(title, work, demo_stage_seconds(), _remember(workspace))
+    workspace.note_job(number, name, out)
     return JSONResponse({"job": number})
 
 
@@ -265,10 +280,43 @@ async def _room_picture(request: Request) -> Response:
     return _file(get_workspace(request).room_named(number) / ROOM_PICTURE)
 
 
-def _file(path: Path) -> Response:
+async def _room_report(request: Request) -> Response:
+    place = get_workspace(request).room_named(request.path_params["id"]) / "report.html"
+    return _file(place, {"content-security-policy": REPORT_POLICY})
+
+
+async def _install_room(request: Request) -> Response:
+    workspace, body = get_workspace(request), await read_json_object(request)
+    room = workspace.room_named(request.path_params["id"])
+    games = await asyncio.to_thread(workspace.game_folders.games)
+    game = games.get(str(body.get("game", "")))
+    if game is None:
+        raise UsageError("choose one of the listed Minecraft installations")
+
+    def install(report: JobProgress) -> dict[str, str]:
+        report("install", 0, 1)
+        target = install_world(room / "build" / "world", game.saves)
+        report("install", 1, 1)
+        return {"name": target.name, "game": game.name, "note": age_note(target, game)}
+
+    return JSONResponse({"job": workspace.jobs.start(room.name, install, {"install": 1.0})})
+
+
+def _file(path: Path, headers: dict[str, str] | None = None) -> Response:
     if not path.is_file():
         raise InputError(path.name, "file not found; create the room first")
-    return FileResponse(path)
+    return FileResponse(path, headers=headers)
+
+
+async def _layers(request: Request) -> Response:
+    begun = get_workspace(request).run_of_job(request.path_params["id"])
+    return JSONResponse(await asyncio.to_thread(finished_layers, begun.run, begun.since_s))
+
+
+async def _layer(request: Request) -> Response:
+    begun = get_workspace(request).run_of_job(request.path_params["id"])
+    data = await asyncio.to_thread(layer_bytes, begun.run, request.path_params["layer"])
+    return Response(data, media_type="application/octet-stream")
 
 
 async def _jobs(request: Request) -> Response:

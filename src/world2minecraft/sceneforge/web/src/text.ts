@@ -1,7 +1,7 @@
 // All text of the page, in one place, ready for translation.
 
 import { CLASS_DISPLAY_NAMES } from "./commands";
-import { COMPARE_TEXT, EXPORT_TEXT, PHOTO_TEXT, START_TEXT } from "./text_start";
+import { COMPARE_TEXT, EXPORT_TEXT, FOLDER_TEXT, PHOTO_TEXT, START_TEXT } from "./text_start";
 
 export const TEXT = {
   compass: ["Right", "Back", "Top", "Left", "Front", "Bottom"], // sides +x +y +z -x -y -z
@@ -9,6 +9,7 @@ export const TEXT = {
   photos: PHOTO_TEXT,
   compare: COMPARE_TEXT,
   exports: EXPORT_TEXT,
+  folders: FOLDER_TEXT,
   app: "SceneForge",
   classes: CLASS_DISPLAY_NAMES,
   groups: {

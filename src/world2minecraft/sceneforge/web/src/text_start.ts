@@ -58,7 +58,13 @@ export const START_TEXT = {
   demoLead: "Generates a furnished room, scans it with a virtual camera and rebuilds it.",
   kinds: { living: "Living room", bed: "Bedroom", kitchen: "Kitchen", dining: "Dining room", study: "Study" } as Record<string, string>,
   states: { room: "Ready", working: "Running", ready: "Not started", partly: "Incomplete", here: "Opened" },
-  open: "Open in the editor",
+  finished: {
+    title: "Finished room",
+    alt: (title: string): string => `${title} as blocks`,
+    edit: "Open in the editor",
+    report: "See the report",
+    install: "Install in Minecraft",
+  },
   start: "Create room",
   again: "Create room again",
   back: "Back",
@@ -67,6 +73,8 @@ export const START_TEXT = {
   removeConfirm: "Delete capture and room?",
   sending: (done: string, total: string): string => `${done} of ${total}`,
   sendingTitle: "Uploading capture",
+  live: "The room so far",
+  layers: { cameras: "Cameras", points: "Points", cells: "Cells", things: "Things", blocks: "Blocks" },
   looking: "Inspecting capture",
   making: "Creating room",
   found: "Capture summary",
@@ -107,6 +115,14 @@ export const START_TEXT = {
   failed: "Failed",
   cancelled: "Cancelled",
   job: { done: "Done", cancel: "Cancel", close: "Close" },
+};
+
+export const FOLDER_TEXT = {
+  title: "Where is Minecraft?",
+  lead: "No installation was found. Choose the folder of the game, usually named .minecraft, or its saves folder.",
+  path: "Folder",
+  up: "Folder above",
+  choose: "Choose this folder",
 };
 
 export const PHOTO_TEXT = {
@@ -174,7 +190,8 @@ export const EXPORT_TEXT = {
   version: "Game version",
   install: "Install in Minecraft",
   installLead: "Copies the world to a Minecraft installation on this machine. Existing worlds are not changed.",
-  noGames: "No Minecraft installation found. Export the world and unzip it into the saves folder.",
+  noGames: "No Minecraft installation found.",
+  findGame: "Choose its folder…",
   name: "World name",
   game: "Installation",
   installed: (name: string): string => `Installed ${name}`,

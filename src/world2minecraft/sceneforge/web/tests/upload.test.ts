@@ -2,7 +2,7 @@
 
 import { describe, expect, it } from "vitest";
 
-import { titleOf } from "../src/start/files";
+import { contentsOf, titleOf } from "../src/start/files";
 import { matched } from "../src/start/upload";
 
 const given = (path: string, size = 3) => ({ path, file: new File([new Uint8Array(size)], path.split("/").pop()!) });
@@ -11,7 +11,14 @@ describe("titleOf", () => {
   it("is the folder, the file without its ending, or how many there are", () => {
     expect(titleOf([given("kitchen/a.jpg"), given("kitchen/b.jpg")])).toBe("kitchen");
     expect(titleOf([given("IMG_2041.MOV")])).toBe("IMG_2041");
-    expect(titleOf([given("a.jpg"), given("b.jpg")])).toBe("2 files");
+    expect(titleOf([given("a.jpg"), given("b.jpg")])).toBe("2 photos");
+    expect(titleOf([given("a.jpg"), given("b.txt")])).toBe("2 files");
+  });
+
+  it("is shown with the number of files while they are sent", () => {
+    expect(contentsOf([given("kitchen/a.jpg"), given("kitchen/b.jpg")])).toBe("kitchen: 2 files");
+    expect(contentsOf([given("a.jpg"), given("b.txt")])).toBe("2 files");
+    expect(contentsOf([given("IMG_2041.MOV")])).toBe("IMG_2041.MOV");
   });
 });
 

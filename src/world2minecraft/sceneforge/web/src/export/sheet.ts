@@ -2,6 +2,7 @@
 
 import { timeOf } from "../jobs/progress";
 import { getJson, said, sendJson } from "../start/api";
+import { pickGame } from "../start/folder_picker";
 import { TEXT } from "../text";
 import { fill, h } from "../ui/dom";
 import { plainButton } from "../ui/fields";
@@ -145,7 +146,17 @@ class ExportSheet {
       return [words.installed(made.name), words.steps(made.game, made.name), made.note].filter(Boolean).join(". ");
     };
     const fields = (): Fields => ({ game: game.value, name: name.value });
-    return this.part("install", words.install, told.games.length ? words.installLead : words.noGames, told.games.length ? [["", game], [words.name, name]] : [], "api/install", fields, done);
+    if (!told.games.length) return this.findGamePart();
+    return this.part("install", words.install, words.installLead, [["", game], [words.name, name]], "api/install", fields, done);
+  }
+
+  private findGamePart(): HTMLElement {
+    const words = TEXT.exports;
+    const find = plainButton(words.findGame, () => {
+      void pickGame().then((id) => (id ? this.open() : undefined));
+    });
+    find.dataset.do = "find-game";
+    return h("details", { class: "export-place", open: true }, h("summary", {}, words.install), h("p", { class: "note" }, words.noGames), find);
   }
 
   private worldPart(told: Told): HTMLElement {

@@ -7,7 +7,9 @@ import { plainButton } from "../ui/fields";
 import type { JobState } from "../wire";
 import { forget, getJson, said, sendJson } from "./api";
 import { makeChoices } from "./choices";
+import { finishedRoom } from "./finished";
 import { foundBody, foundHead } from "./found";
+import { LiveView } from "./live";
 import type { CaptureTold, StartTold } from "./told";
 
 export interface Jobs {
@@ -24,7 +26,9 @@ export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs
   const back = plainButton(words.back, leave, "button back");
   fill(host, h("div", { class: "capture-head" }, back, title), trouble, body);
   let looked: CaptureTold | null = null; // Its picture stays in view while the room is made.
-  let working: { id: string; line: ProgressLine; making: boolean } | null = null;
+  let working: { id: string; line: ProgressLine; live: LiveView | null } | null = null;
+
+  let stage = "";
 
   const complain = (text: string): void => {
     trouble.textContent = text;
@@ -33,8 +37,11 @@ export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs
 
   const watch = (job: string, name: string, making: boolean): void => {
     const line = progressLine(name, () => jobs.cancel(job));
-    working = { id: job, line, making };
-    fill(body, line.node, looked && foundBody(looked, looked.survey!));
+    working?.live?.dispose();
+    const live = making ? new LiveView(job) : null;
+    working = { id: job, line, live };
+    fill(body, line.node, live?.node, looked && foundBody(looked, looked.survey!));
+    void live?.refresh();
     complain("");
     changed();
   };
@@ -69,12 +76,13 @@ export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs
     if (!working || job.id !== working.id) return;
     if (job.state === "running") {
       working.line.show(job);
+      if (job.stage !== stage) void working.live?.refresh();
+      stage = job.stage;
       return;
     }
-    const { making } = working;
+    working.live?.dispose();
     working = null;
-    if (job.state === "done" && making) void open();
-    else void refresh(job.state === "failed" ? job.note : job.state === "cancelled" ? words.cancelled : "");
+    void refresh(job.state === "failed" ? job.note : job.state === "cancelled" ? words.cancelled : "");
   };
 
   const refresh = async (note = ""): Promise<void> => {
@@ -100,7 +108,7 @@ export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs
 
   const showReady = (one: CaptureTold): void => {
     const { survey } = one;
-    const start = plainButton(one.has_room ? words.again : words.start, () => begin(), "button is-main is-large");
+    const start = plainButton(one.has_room ? words.again : words.start, () => begin(), one.has_room ? "button is-large" : "button is-main is-large");
     start.dataset.do = "start";
     const choices = survey && makeChoices(told, survey, () => show());
     const show = (): void => {
@@ -110,12 +118,12 @@ export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs
     const begin = (): void => {
       if (choices) void ask("reconstruct", choices.choice(), words.making, true);
     };
-    const openIt = one.has_room && plainButton(words.open, () => void open(), "button is-large");
     fill(
       body,
+      one.has_room && finishedRoom(id, one.title, jobs, () => void open()),
       survey && foundHead(survey),
       choices?.node,
-      h("div", { class: "row" }, survey && start, openIt, remover(id, leave, complain)),
+      h("div", { class: "row" }, survey && start, remover(id, leave, complain)),
       survey && foundBody(one, survey),
     );
     show();
@@ -123,7 +131,10 @@ export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs
 
   const stop = jobs.on(hear);
   void refresh();
-  return stop;
+  return () => {
+    stop();
+    working?.live?.dispose();
+  };
 }
 
 function remover(id: string, leave: () => void, complain: (text: string) => void): HTMLElement {

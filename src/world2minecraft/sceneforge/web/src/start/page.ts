@@ -10,6 +10,8 @@ import type { JobState } from "../wire";
 import { getJson, said, sendJson } from "./api";
 import { showCapture, type Jobs } from "./capture";
 import { contentsOf, filesOfDrop, filesOfInput, titleOf, type Given } from "./files";
+import { finishedRoom } from "./finished";
+import { LiveView } from "./live";
 import { roomsView } from "./rooms";
 import type { StartTold } from "./told";
 import { sendCapture } from "./upload";
@@ -124,6 +126,16 @@ class StartPage {
     }
   }
 
+  /** Show a room that has just been made up. */
+  private finish(id: string, title: string): void {
+    this.leave();
+    this.leave = () => undefined;
+    const back = plainButton(TEXT.start.back, () => this.showDrop(), "button back");
+    const room = finishedRoom(id, title, this.jobs, () => void this.open(id));
+    fill(this.main, h("div", { class: "capture-head" }, back, h("h2", {}, title)), h("div", { class: "capture-body" }, room));
+    void this.refresh();
+  }
+
   private async open(id: string): Promise<void> {
     try {
       await sendJson("api/start/open", { id });
@@ -139,17 +151,26 @@ class StartPage {
       const { job } = await sendJson<{ job: string }>("api/start/demo", { kind });
       this.leave();
       const line = progressLine(TEXT.start.kinds[kind] ?? kind, () => this.jobs.cancel(job));
-      fill(this.main, line.node);
+      const live = new LiveView(job);
+      fill(this.main, line.node, live.node);
+      let stage = "";
       const hear = (state: JobState): void => {
         if (state.id !== job) return;
-        if (state.state === "running") line.show(state);
-        else if (state.state === "done") void this.open("recent-0");
+        if (state.state === "running") {
+          line.show(state);
+          if (state.stage !== stage) void live.refresh();
+          stage = state.stage;
+        } else if (state.state === "done") this.finish("recent-0", state.title);
         else {
           this.showDrop();
           this.complain(state.state === "failed" ? state.note : TEXT.start.cancelled);
         }
       };
-      this.leave = this.jobs.on(hear);
+      const stop = this.jobs.on(hear);
+      this.leave = () => {
+        stop();
+        live.dispose();
+      };
     } catch (error) {
       this.complain(said(error));
     }
