@@ -38,7 +38,7 @@ def test_types_without_a_text_are_refused():
             precompile.type_text(kind)
 
 
-def test_the_list_names_kernels_of_the_program_with_what_they_call():
+def test_the_list_names_kernels_with_what_they_call():
     import importlib
 
     calls = read_kernel_calls()
@@ -141,7 +141,7 @@ def test_kernels_are_compiled_once_and_at_the_first_report(cache, asked):
     assert not precompile.needs_compiling("room") and precompile.needs_compiling("photos")
 
 
-def test_a_change_of_the_list_compiles_again_and_drops_the_old_mark(cache, monkeypatch):
+def test_a_change_of_the_list_compiles_again(cache, monkeypatch):
     precompile.compile_kernels("room")
     monkeypatch.setattr(precompile, "_state_digest", lambda: "other")
     assert precompile.needs_compiling("room")

@@ -37,7 +37,7 @@ def unpack(data: bytes, magic: bytes = b"W2ML") -> tuple[dict, dict[str, np.ndar
     return header, arrays
 
 
-def test_layers_appear_with_their_stages_and_not_from_an_earlier_run(small_run, tmp_path):
+def test_layers_appear_with_the_stages_of_this_run(small_run, tmp_path):
     run = tmp_path / "OUT"
     assert finished_layers(run, 0) == []
     shutil.copytree(small_run, run)
