@@ -6,6 +6,9 @@ import shutil
 import numpy as np
 import pytest
 from forge_documents import Clock, edit, held, same_files, write_run
+from forge_serving import small_editor
+from hypothesis import given
+from hypothesis import strategies as st
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import ConflictError, OutputError
@@ -14,6 +17,7 @@ from world2minecraft.formats.world_labels import read_scene
 from world2minecraft.reconstruction.file_stages import build_stage
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.sceneforge.document import saving
+from world2minecraft.sceneforge.document.memory_document import SavedMark
 from world2minecraft.sceneforge.editor import Editor
 
 
@@ -207,3 +211,31 @@ def test_names_of_objects_are_kept_and_changed(run):
 def _named(run) -> tuple[str, float]:
     row = json.loads((run / "objects.json").read_text())[0]
     return row["name"], row["name_confidence"]
+
+
+@given(st.lists(st.sampled_from(["do", "undo", "redo", "save"]), max_size=40))
+def test_a_scene_is_saved_where_undo_leads_back_to_it(steps):
+    editor = small_editor()
+    contents = editor.draft.labels.copy()
+    number = 0
+    for step in steps:
+        if step == "do":
+            number += 1
+            editor.do("set_cells", cells=[[number, 1]], class_id=8)
+        elif step == "save":
+            editor.document.saved_mark = SavedMark()
+            contents = editor.draft.labels.copy()
+        elif editor.undo_kind if step == "undo" else editor.redo_kind:
+            getattr(editor, step)()
+        assert editor.is_saved == np.array_equal(editor.draft.labels, contents)
+
+
+def test_recovered_edits_are_unsaved_until_they_are_saved(run):
+    editor = Editor.open(run)
+    edit(editor, 1)
+    editor.close()
+    again = Editor.open(run)
+    assert not again.is_saved
+    again.save()
+    assert again.is_saved
+    again.close()

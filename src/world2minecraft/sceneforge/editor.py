@@ -106,6 +106,11 @@ class Editor:
         return self.document.saved_rev
 
     @property
+    def is_saved(self) -> bool:
+        """Whether the scene is as it was saved, also after undo."""
+        return self.document.saved_mark.is_here
+
+    @property
     def read_only(self) -> str:
         """The reason why the scene cannot be edited, or an empty string."""
         return self.document.read_only
@@ -184,7 +189,7 @@ class Editor:
                 "protocol": PROTOCOL,
                 "name": self.name,
                 "rev": self.rev,
-                "saved_rev": self.saved_rev,
+                "saved": self.is_saved,
                 "read_only": self.read_only,
                 "notes": list(self.notes),
                 "voxel_m": float(self.draft.voxel_m),

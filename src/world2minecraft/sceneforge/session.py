@@ -55,6 +55,7 @@ def change_message(editor: Editor, rev: int, step: str, operation: Operation) ->
         "counts": counts_json(draft.counts),
         "undo": editor.undo_kind,
         "redo": editor.redo_kind,
+        "saved": editor.is_saved,
     }
 
 

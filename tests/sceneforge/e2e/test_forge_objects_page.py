@@ -167,11 +167,15 @@ def test_two_tabs_stay_in_step_and_saving_writes_the_files(forge, open_tab, tmp_
     assert forge.state("s.objects.size") == other.state("s.objects.size")
     assert forge.state("s.mode") == "voxels", "a tab follows the mode of another"
     assert forge.state("s.scene.counts") == other.state("s.scene.counts")
+    assert other.page.locator(".saved").inner_text() == "Unsaved changes"
     forge.key("Control+z")
     other.until("s.scene.rev", 2)
+    assert other.page.locator(".saved").inner_text() == "Saved", "all is undone"
+    forge.key("Control+Shift+z")
+    other.until("s.scene.rev", 3)
     assert other.page.locator(".saved").inner_text() == "Unsaved changes"
     other.key("Control+s")
-    forge.until("s.scene.saved_rev", 2)
+    forge.until("s.scene.saved", True)
     assert forge.page.locator(".saved").inner_text() == "Saved"
     assert (tmp_path / "room.npz").is_file() and (tmp_path / "centers.json").is_file()
     assert other.mistakes == []

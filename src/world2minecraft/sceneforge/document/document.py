@@ -33,7 +33,7 @@ from world2minecraft.sceneforge.document.document_metadata import (
     write_identity,
 )
 from world2minecraft.sceneforge.document.effort_log import EffortLog
-from world2minecraft.sceneforge.document.memory_document import MemoryDocument
+from world2minecraft.sceneforge.document.memory_document import MemoryDocument, SavedMark
 from world2minecraft.sceneforge.document.recovery import (
     JOURNAL_FILE,
     RecoveredScene,
@@ -79,6 +79,7 @@ class Document(MemoryDocument):
         self.saved_rev = saving.saved_rev(folder)
         found = recover(folder)
         self.recovered = max(found.rev - self.saved_rev, 0)
+        self.saved_mark = SavedMark(None if self.recovered else 0)
         if self.recovered:
             edits = "1 unsaved edit" if self.recovered == 1 else f"{self.recovered} unsaved edits"
             self.notes.append(f"Recovered {edits}.")
@@ -147,7 +148,7 @@ class Document(MemoryDocument):
         state = self.state()
         known = self.identity.inputs.values()
         saving.save(self.folder, self.opened.source, self.opened.folder, state, known)
-        self.saved_rev = state.rev
+        self.saved_rev, self.saved_mark = state.rev, SavedMark()
         self._snapshot()
         return self.identity.target
 
@@ -210,6 +211,7 @@ class Document(MemoryDocument):
 
     def _stepped(self, step: str, operation: Operation, actor: str, time_s: float) -> Operation:
         self.rev += 1
+        self.saved_mark.step(step)
         if self._effort is not None:
             self._effort.step(self.rev, step, operation, actor, time_s)
         if self._journal.file.end > 2 * self.history_bytes:

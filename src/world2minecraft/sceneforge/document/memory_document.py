@@ -11,11 +11,38 @@ from world2minecraft.sceneforge.document.snapshots import State
 from world2minecraft.sceneforge.scene_sources import OpenedScene
 
 
+class SavedMark:
+    """The distance of a scene from its saved state, in steps of undo and redo.
+
+    Args:
+        away: Steps applied since the last save, negative after undoing past it. None if undo and
+            redo cannot reach the saved state, or if the distance is not known.
+    """
+
+    def __init__(self, away: int | None = 0):
+        self.away = away
+
+    @property
+    def is_here(self) -> bool:
+        """Whether the scene is as it was saved."""
+        return self.away == 0
+
+    def step(self, step: str) -> None:
+        """Count a step: ``do``, ``undo`` or ``redo``."""
+        if self.away is None:
+            return
+        if step == "do" and self.away < 0:  # What would lead to the saved state is discarded.
+            self.away = None
+        else:
+            self.away += -1 if step == "undo" else 1
+
+
 class MemoryDocument:
     """A scene that is edited in memory. ``Document`` is the subclass for a scene on disk.
 
     ``draft`` is the scene, and ``history`` changes it. ``rev`` counts the steps so far, including
-    undo and redo. ``saved_rev`` is the value of ``rev`` at the last save. ``read_only`` is the
+    undo and redo. ``saved_rev`` is the value of ``rev`` at the last save, and ``saved_mark`` tells
+    whether the scene is as it was saved. ``read_only`` is the
     reason why the scene cannot be edited, or empty. ``notes`` are messages for the user. ``opened``
     is the scene as it was first opened.
     """
@@ -30,6 +57,7 @@ class MemoryDocument:
         self.draft = SceneDraft(opened.grid, opened.objects)
         self.history = SceneHistory(self.draft, MemoryLog())
         self.rev = self.saved_rev = 0
+        self.saved_mark = SavedMark()
         self.read_only, self.notes = "", []
 
     def do(self, operation: Operation) -> Operation:
@@ -87,7 +115,7 @@ class MemoryDocument:
         """
         self.check_writable()
         write_scene_files(self.opened.folder, self.state())
-        self.saved_rev = self.rev
+        self.saved_rev, self.saved_mark = self.rev, SavedMark()
         return self.opened.folder
 
     def close(self) -> None:
@@ -105,4 +133,5 @@ class MemoryDocument:
 
     def _stepped(self, step: str, operation: Operation, actor: str, time_s: float) -> Operation:
         self.rev += 1
+        self.saved_mark.step(step)
         return operation

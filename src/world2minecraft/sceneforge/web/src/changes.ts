@@ -11,9 +11,9 @@ export function applyChange(store: Store, change: Change): void {
   const now = new Map(objects);
   for (const id of change.gone) now.delete(id);
   for (const one of change.objects) now.set(one.id, one);
-  const { rev, counts, undo, redo } = change;
+  const { rev, counts, undo, redo, saved } = change;
   store.set({
-    scene: { ...scene, rev, counts, undo, redo, objects: [...now.values()] },
+    scene: { ...scene, rev, counts, undo, redo, saved, objects: [...now.values()] },
     labels,
     instance,
     confidence,

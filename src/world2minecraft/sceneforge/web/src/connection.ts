@@ -127,7 +127,7 @@ export class Connection {
   private hear(message: ServerMessage): void {
     if (message.type === "hello") this.greet(message);
     else if (message.type === "change") this.take(message);
-    else if (message.type === "saved") this.saved(message.rev);
+    else if (message.type === "saved") this.saved();
     else if (message.type === "job") this.jobListeners.forEach((call) => call(message));
     else this.answer(message);
   }
@@ -164,9 +164,9 @@ export class Connection {
     this.changeListeners.forEach((call) => call(change));
   }
 
-  private saved(rev: number): void {
+  private saved(): void {
     const scene = this.store.get().scene;
-    if (scene) this.store.set({ scene: { ...scene, saved_rev: rev } });
+    if (scene) this.store.set({ scene: { ...scene, saved: true } });
   }
 
   private answer(message: Done | Refused): void {

@@ -50,7 +50,7 @@ export interface Scene {
   document: number; // another one, another document
   name: string;
   rev: number;
-  saved_rev: number;
+  saved: boolean; // as it was saved, also after undo
   read_only: string; // why, empty where the scene may be edited
   notes: string[]; // for the person: what was recovered, what could not be written
   voxel_m: number;
@@ -79,6 +79,7 @@ export interface Change {
   counts: number[];
   undo: string;
   redo: string;
+  saved: boolean;
 }
 
 /**

@@ -11,7 +11,7 @@ function object(id: number): SceneObject {
 
 function change(fields: Partial<Change>): Change {
   const told = { type: "change", rev: 1, kind: "paint", counts_as: "add", actor: "", step: "do" } as const;
-  return { ...told, cells: [], objects: [], gone: [], counts: [], undo: "paint", redo: "", ...fields };
+  return { ...told, cells: [], objects: [], gone: [], counts: [], undo: "paint", redo: "", saved: false, ...fields };
 }
 
 test("a change writes its runs, and forgets objects that are gone", () => {

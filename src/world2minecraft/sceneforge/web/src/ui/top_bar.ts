@@ -52,7 +52,7 @@ function showSaved(node: HTMLElement, { scene, online }: Readonly<State>): void 
   } else if (scene?.read_only) {
     node.title = scene.read_only;
     fill(node, TEXT.top.readOnly);
-  } else if (scene && scene.rev !== scene.saved_rev) {
+  } else if (scene && !scene.saved) {
     node.classList.add("is-unsaved");
     node.title = TEXT.top.unsavedHint;
     fill(node, TEXT.top.unsaved);
