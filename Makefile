@@ -62,7 +62,7 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(call install,dev)
 
 demo: $(if $(wildcard $(STAMP)),$(STAMP),$(TRIAL))  ## Scan a generated room and build it as a Minecraft world in OUT/.
-	@$(BIN)/python -m world2minecraft.cli demo
+	@$(BIN)/python -m world2minecraft demo
 
 docs: $(STAMP)  ## Build the documentation site in site/; warnings are errors.
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet --strict
@@ -72,7 +72,7 @@ forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
 	@cd src/world2minecraft/sceneforge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
 
 test: $(STAMP)  ## Run the tests, one file per core (TESTS=tests/reconstruction/fusion for a part).
-	@$(BIN)/python -m world2minecraft.cli doctor --warm > /dev/null
+	@$(BIN)/python -m world2minecraft doctor --warm > /dev/null
 	@$(BIN)/python -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
 
 coverage: $(STAMP)  ## Run the tests and report the lines that no test reaches (90 % coverage is required).

@@ -20,7 +20,7 @@ def run() -> list[Row]:
 
 
 def _median_s(*words: str) -> float:
-    code = ["-m", "world2minecraft.cli", *words] if words else ["-c", "pass"]
+    code = ["-m", "world2minecraft", *words] if words else ["-c", "pass"]
     return statistics.median(_seconds([sys.executable, *code]) for _ in range(RUNS))
 
 

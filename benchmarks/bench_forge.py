@@ -67,7 +67,7 @@ def served(labels: np.ndarray, folder: Path) -> Iterator[httpx.URL]:
     write_objects(folder / "objects.json", ())
     write_placements(folder / "placements.json", ())
     words = ["forge", str(folder), "--no-browser", "--port", "0"]
-    command = [sys.executable, "-m", "world2minecraft.cli", *words]
+    command = [sys.executable, "-m", "world2minecraft", *words]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         assert server.stdout
         try:

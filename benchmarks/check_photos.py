@@ -265,7 +265,7 @@ def json_poses(folder: Path) -> dict[str, np.ndarray]:
 def run(words: list[str], stereo: str) -> tuple[float, float, float] | None:
     """Run ``w2m`` in a process of its own; return CPU s, wall s and peak MB, None on failure."""
     before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    module = "benchmarks.rival_sgbm" if stereo == "sgbm" else "world2minecraft.cli"
+    module = "benchmarks.rival_sgbm" if stereo == "sgbm" else "world2minecraft"
     command = [sys.executable, "-m", module, *words]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     wall = time.perf_counter() - begun

@@ -54,7 +54,7 @@ def _path(capture: Path | None, out: Path, say: str) -> int:
 def _timed(command: list[str], out: Path) -> bool:
     begin, before = time.monotonic(), _cpu_s()
     out.mkdir(parents=True, exist_ok=True)
-    words = [sys.executable, "-m", "world2minecraft.cli", *command]
+    words = [sys.executable, "-m", "world2minecraft", *command]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     print(
         f"w2m {' '.join(command[:2])}: {time.monotonic() - begin:.0f} s, "

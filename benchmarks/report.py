@@ -264,7 +264,7 @@ IDLE_LOAD = 0.5  # A core, as ``make bench`` asks.
 LAST_CHARACTERS = 600  # Of what a run that broke has printed.
 PROGRAMS = {
     "python": [sys.executable],
-    "w2m": [sys.executable, "-m", "world2minecraft.cli"],
+    "w2m": [sys.executable, "-m", "world2minecraft"],
     "git": ["git"],
     "make": ["make"],
 }

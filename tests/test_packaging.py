@@ -1,5 +1,6 @@
 """What is said twice is said alike: versions, pins, and what the set-up needs."""
 
+import json
 import re
 import tomllib
 from importlib import metadata
@@ -7,8 +8,12 @@ from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
+import yaml
 
 import world2minecraft
+from world2minecraft import cli
+from world2minecraft.api import editor
+from world2minecraft.core.errors import UsageError
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
@@ -80,3 +85,62 @@ def test_the_wheel_holds_the_built_page_and_not_its_sources(tmp_path, monkeypatc
     assert page == {str(one.relative_to(static)) for one in static.rglob("*") if one.is_file()}
     assert "world2minecraft/sceneforge/server/app.py" in names
     assert not [name for name in names if "/web/" in name or "node_modules" in name]
+
+
+def test_the_program_starts_by_the_name_of_its_package():
+    """As ``pipx run world2minecraft`` and ``uvx world2minecraft`` start it."""
+    scripts = PROJECT["scripts"]
+    assert scripts["world2minecraft"] == scripts["w2m"]
+
+
+DOCKER = [
+    line for line in (ROOT / "Dockerfile").read_text().replace("\\\n", "").splitlines()
+    if line and not line.startswith("#")
+]  # fmt: skip
+
+
+def arguments_of(word):
+    return [line.split(maxsplit=1)[1] for line in DOCKER if line.split()[0] == word]
+
+
+def test_the_container_is_slim_and_runs_as_a_user():
+    (base,) = arguments_of("FROM")
+    assert re.fullmatch(r"python:3\.1[1-4]-slim", base)
+    assert arguments_of("USER") == ["w2m"]
+    assert "useradd" in arguments_of("RUN")[0] and DOCKER[-1].startswith("CMD")
+    assert DOCKER.index("USER w2m") > max(n for n, line in enumerate(DOCKER) if "COPY" in line)
+
+
+def test_the_container_installs_the_pinned_versions_of_what_it_copies():
+    (install, warm) = arguments_of("RUN")
+    assert "--constraint constraints.txt" in install and "doctor --warm" in warm
+    allowed = [line[1:] for line in (ROOT / ".dockerignore").read_text().split() if line[0] == "!"]
+    copied = [name for words in arguments_of("COPY") for name in words.split()[:-1]]
+    assert sorted(name.removeprefix("./") for name in copied) == sorted(allowed)
+    assert all((ROOT / name).exists() for name in allowed)
+
+
+def test_the_container_serves_the_editor_on_its_port(monkeypatch):
+    given = {}
+
+    def prepare(source, **options):
+        given.update(options)
+        raise UsageError("enough")
+
+    monkeypatch.setattr(editor, "prepare_editor", prepare)
+    (command,) = arguments_of("CMD")
+    assert cli.run(json.loads(command)) == 2
+    assert given["host"] == "0.0.0.0" and [str(given["port"])] == arguments_of("EXPOSE")
+    assert str(given["home"]).startswith(arguments_of("VOLUME")[0])
+
+
+def test_the_conda_recipe_needs_what_the_package_needs():
+    recipe = yaml.safe_load((ROOT / "tools/release/conda/recipe.yaml").read_text())
+    names = {"openexr": "openexr-python"}  # Another name on conda-forge.
+    needed = [re.split(r"(?=>=)", one.lower()) for one in PROJECT["dependencies"]]
+    expected = [f"python {PROJECT['requires-python']}"]
+    expected += [f"{names.get(name, name)} {bound}" for name, bound in needed]
+    assert recipe["requirements"]["run"] == expected
+    assert recipe["context"]["version"] == PROJECT["version"]
+    scripts = {one.split(" = ")[0] for one in recipe["build"]["python"]["entry_points"]}
+    assert scripts == set(PROJECT["scripts"])

@@ -29,7 +29,7 @@ def labels(tmp_path):
 @contextmanager
 def forge(*words):
     """The process and the link that it printed; it is ended whatever happens."""
-    command = [sys.executable, "-u", "-m", "world2minecraft.cli", "forge", *map(str, words)]
+    command = [sys.executable, "-u", "-m", "world2minecraft", "forge", *map(str, words)]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     with subprocess.Popen([*command, "--no-browser"], **pipes) as process:
         try:

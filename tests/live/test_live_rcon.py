@@ -43,7 +43,7 @@ np.save(sys.argv[1], room.labels[::stride, ::stride, ::stride])
     return folder / "run"
 
 
-W2M = [sys.executable, "-m", "world2minecraft.cli"]
+W2M = [sys.executable, "-m", "world2minecraft"]
 
 
 def address_of(server: dict) -> str:

@@ -81,7 +81,7 @@ def test_the_same_bytes_with_another_hash_seed_and_thread_count(out, capture, tm
     }
     words = ["reconstruct", str(capture), "--out", str(tmp_path)]
     subprocess.run(
-        [sys.executable, "-m", "world2minecraft.cli", *words],
+        [sys.executable, "-m", "world2minecraft", *words],
         env=environment,
         check=True,
         capture_output=True,

@@ -1,4 +1,4 @@
-"""Run ``w2m`` with ``python -m world2minecraft.cli``."""
+"""Run ``w2m`` with ``python -m world2minecraft``."""
 
 from world2minecraft.cli import main
 
