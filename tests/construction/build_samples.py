@@ -7,7 +7,7 @@ from world2minecraft.core.types import OccupancyGrid, Placement
 VOXEL_M = 0.08
 PAD = 2
 WHITE, WOOD, RED, DARK = (230, 228, 224), (162, 131, 79), (150, 35, 40), (40, 40, 45)
-CEILING, FLOOR, WALL, WINDOW, CHAIR, TABLE, FURN, OBJS = 1, 2, 3, 4, 5, 8, 10, 11
+CEILING, FLOOR, WALL, WINDOW, CHAIR, TABLE, TVS, FURN, OBJS = 1, 2, 3, 4, 5, 8, 9, 10, 11
 
 
 class Sketch:

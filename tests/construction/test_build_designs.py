@@ -2,7 +2,19 @@
 
 import numpy as np
 import pytest
-from build_samples import CHAIR, FURN, OBJS, RED, TABLE, WOOD, Sketch, placement
+from build_samples import (
+    CHAIR,
+    FURN,
+    OBJS,
+    RED,
+    TABLE,
+    TVS,
+    VOXEL_M,
+    WALL,
+    WOOD,
+    Sketch,
+    placement,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -114,3 +126,19 @@ def test_handles_protrude_and_the_body_stays_at_the_wall(turns):
 def test_a_small_thing_stays_small_at_two_blocks_per_metre(size_m, word):
     blocks = block_design(placement("box", OBJS, (0, 0, 0), size_m), 2.0).blocks
     assert all(word in block.state for block in blocks)
+
+
+@pytest.mark.parametrize(("scale", "let_in"), [(1.0, True), (2.0, True), (4.0, False)])
+@pytest.mark.parametrize("turns", range(4))
+def test_a_wall_screen_is_let_into_an_outer_wall(scale, let_in, turns):
+    size = np.array(Sketch().size[:2]) * VOXEL_M
+    center = size / 2
+    axis = turns % 2
+    center[axis] = 0.05 if turns < 2 else size[axis] - 0.05
+    screen = placement("wall_tv", TVS, (*center, 1.3), (0.1, 1.2, 0.7), turns)
+    volume, empty = (_built(Sketch(), those, scale) for those in ([screen], []))
+    own = volume.semantic == TVS
+    assert own.any()
+    assert (empty.semantic[own] == WALL).all() == let_in
+    names = {volume.palette[number].partition("[")[0] for number in volume.states[own]}
+    assert names <= {"minecraft:black_concrete", "minecraft:polished_blackstone_stairs"}

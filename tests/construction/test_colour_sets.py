@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.construction.colour_sets import unify_sets
+from world2minecraft.construction.colour_sets import darken_screens, unify_sets
 from world2minecraft.construction.plants import LEAVES, POT, is_green, is_plant, leafy_states
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OBSERVED, ObjectInstance, OccupancyGrid
@@ -113,3 +113,17 @@ def test_only_green_and_loose_things_are_plants_without_a_name():
     assert not is_plant(thing(loose, objs), clay)
     assert not is_plant(thing(loose, int(SemanticClass.CHAIR)), green)
     assert is_plant(thing(box, objs, name="plant"), green)
+
+
+@pytest.mark.parametrize(("light", "dark"), [(0.3, True), (0.7, True), (0.95, False)])
+def test_a_screen_is_black_unless_it_is_lit(light, dark):
+    tvs = int(SemanticClass.TVS)
+    grid, things = room(((0, 8), (20, 28)), tvs, [(1, "television"), (2, "television")])
+    colours = np.where(grid.labels[..., None] > 0, OAK, 0).astype(np.float32)
+    colours[:8] = light, 0.04, 0.06
+    found = darken_screens(grid, things, colours, grid.occupied)
+    own = found[tuple(things[0].cells.T)]
+    assert (own[:, 0] < 0.3).all() == dark
+    assert (own == colours[tuple(things[0].cells.T)]).all() == (not dark)
+    assert np.ptp(found[tuple(things[1].cells.T)], axis=0).max() == 0
+    assert (found[~grid.occupied] == colours[~grid.occupied]).all()

@@ -1,8 +1,9 @@
-"""Objects of one make: cupboards side by side and the curtains of a room share their colours.
+"""Colours of objects that are known better than photos show them: sets, and screens.
 
-Each is scanned in other light, so that a row of cupboards would come out in two woods and the
+Cupboards side by side and the curtains of a room share their colours. Each is scanned in other light, so that a row of cupboards would come out in two woods and the
 curtains of a window in two cloths. The cells of such objects take the colour of the set, each as
-far as it looks like its object's main colour: a dark worktop stays.
+far as it looks like its object's main colour: a dark worktop stays. Screens reflect the room, so
+that they come out brown or beige; they are black unless they shine.
 """
 
 from collections.abc import Sequence
@@ -21,6 +22,9 @@ OWN_PAINT = 0.12  # Oklab distance of a cell that shows its object's main colour
 BESIDE_CELLS = 2
 LIGHT = 0.7  # Lightness differs by light.
 MIN_CELLS = 20
+# Oklab lightness above which a screen is lit, or a white sheet to project on, and the black of one
+# that is off. Guesses.
+LIT_SCREEN, DARK_SCREEN = 0.8, 0.2
 
 
 def unify_sets(
@@ -50,6 +54,28 @@ def unify_sets(
             for number, held in zip(group, own, strict=True):
                 mine = _distance(held, paints[number]) <= OWN_PAINT
                 result[tuple(cells[number][mine].T)] = shared
+    return result
+
+
+def darken_screens(
+    grid: OccupancyGrid,
+    instances: Sequence[ObjectInstance],
+    colours: np.ndarray,
+    usable: np.ndarray,
+) -> np.ndarray:
+    """Return Oklab colours, float32 [X, Y, Z, 3], in which screens that are not lit are black.
+
+    The arguments are those of ``unify_sets``.
+    """
+    result = colours.copy()
+    cells = usable & (grid.labels == SemanticClass.TVS)
+    for one in instances:
+        if one.class_id != SemanticClass.TVS:
+            continue
+        at = tuple(one.cells[usable[tuple(one.cells.T)]].T)
+        if len(at[0]) and np.median(colours[at][:, 0]) > LIT_SCREEN:
+            cells[at] = False
+    result[cells] = DARK_SCREEN, 0.0, 0.0
     return result
 
 

@@ -60,6 +60,7 @@ from world2minecraft.construction.template_blocks import (
     within_storeys,
 )
 from world2minecraft.construction.template_substitution import substitute_templates
+from world2minecraft.construction.wall_screens import let_into_wall
 from world2minecraft.construction.worktops import PlateBuilder
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import UNSEEN, ObjectInstance, Placement
@@ -363,7 +364,10 @@ class ObjectBuilder:
     ) -> bool:
         """Place a vanilla design; at fine scales, guessed designs are not placed in free space."""
         low, size = design_box(found, placement, self.lattice)
-        if self.lattice.blocks_per_metre >= FINE_SCALE:
+        within = self.within
+        if self.lattice.blocks_per_metre < FINE_SCALE:
+            found, low, within = let_into_wall(found, low, placement, self.canvas, within)
+        else:
             filled = filled_blocks(found)
             guessed = not forced and placement.iou < SURE_IOU
             if guessed and self._open_in(filled, low) > self._limit(placement):
@@ -377,7 +381,7 @@ class ObjectBuilder:
         )
         own_colours = ObjectColours(*seen, self.paints.get(thing.instance))
         place_design(
-            self.canvas, found, low, thing, own_colours, self.palette, self.within, self.parameters
+            self.canvas, found, low, thing, own_colours, self.palette, within, self.parameters
         )
         self.fitted[tuple(cells.T)] = True
         return True

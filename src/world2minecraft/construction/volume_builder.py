@@ -8,7 +8,7 @@ from world2minecraft.construction.block_lattice import is_exact, lattice_over, s
 from world2minecraft.construction.block_updates import apply_block_updates
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import cell_colours, coloured_cells, unify_paints
-from world2minecraft.construction.colour_sets import unify_sets
+from world2minecraft.construction.colour_sets import darken_screens, unify_sets
 from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.display.builder import DisplayBuilder
 from world2minecraft.construction.door_leaves import find_leaves, without_leaves
@@ -116,6 +116,7 @@ def _put_room(
     painted = colours.copy()
     painted[things] = unify_paints(colours[things])
     painted = unify_sets(grid, instances, painted, things)
+    painted = darken_screens(grid, instances, painted, things)
     object_source = source._replace(grid=grid, colours=painted)
     if parameters.style == "display":
         DisplayBuilder(canvas, object_source, instances).put_all(placements)

@@ -1,8 +1,11 @@
 """Screen families: screens on a wall or on a foot.
 
-A screen is a plate of panels. A wide one at many blocks per metre is a slab of whole blocks, since
-panels are brown and screens are black.
+A television is dark: trapdoors are thin, but none of them is darker than brown. So it is a slab of
+whole blocks, or stairs, which leave out a part of its back, if it is one block high. A white screen
+of few blocks per metre is a plate of trapdoors.
 """
+
+from typing import Literal
 
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import lay_legs, part, slab
@@ -10,8 +13,7 @@ from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 from world2minecraft.furniture.template_parameters import Look
 
-FINE = 3.0  # Blocks per metre from which a block is thin beside a wide screen.
-WIDE = 3  # Blocks.
+FINE = 3.0  # Blocks per metre from which a block is thin beside a screen.
 
 
 def _wall_screen(depth: float, width: float, height: float, look: Look) -> list[Part]:
@@ -20,17 +22,19 @@ def _wall_screen(depth: float, width: float, height: float, look: Look) -> list[
 
 def _wall_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size._replace(depth=1), look)
-    _lay_screen(plan, 0)
+    _lay_screen(plan, 0, "top")
     return plan.blocks
 
 
-def _lay_screen(plan: Plan, bottom: int) -> None:
+def _lay_screen(plan: Plan, bottom: int, thick: Literal["bottom", "top"] = "bottom") -> None:
+    """Place a screen whose ``thick`` half is a block deep if it is one block high."""
     above = range(bottom, max(plan.size.height, bottom + 1))
-    wide = plan.size.width >= WIDE and plan.size.per_metre >= FINE
-    if wide or not plan.look.has("screen", "trapdoor"):
-        plan.put("screen", 0, plan.width, above)
-    else:
+    if plan.size.per_metre < FINE and plan.look.has("screen", "trapdoor"):
         plan.panel("screen", 0, plan.width, above, "back")
+    elif len(above) == 1 and plan.look.has("screen", "stairs"):
+        plan.stairs("screen", 0, plan.width, above, "front", thick)
+    else:
+        plan.put("screen", 0, plan.width, above)
 
 
 WALL_SCREEN = Family(build=_wall_screen, design=_wall_blocks, roles=("screen",))
@@ -76,10 +80,7 @@ def _box_screen(depth: float, width: float, height: float, look: Look) -> list[P
 def _box_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
     plan.put("body", plan.depth, plan.width, plan.height)
-    if size.depth == 1 and look.has("screen", "trapdoor"):
-        plan.panel("screen", size.depth, plan.width, plan.height, "back")
-    else:
-        plan.put("screen", size.depth - 1, plan.width, plan.height)
+    plan.put("screen", size.depth - 1, plan.width, plan.height)
     return plan.blocks
 
 
