@@ -5,7 +5,7 @@
 """
 
 from world2minecraft.procgen.houses.house import generate_house
-from world2minecraft.procgen.preview import room_picture
+from world2minecraft.procgen.preview import room_picture, room_view
 from world2minecraft.procgen.room_files import read_generated, write_generated
 from world2minecraft.procgen.rooms.floor_shapes import SHAPES
 from world2minecraft.procgen.rooms.recipes import BASE_KINDS, KINDS
@@ -24,6 +24,7 @@ __all__ = [
     "generate_room",
     "read_generated",
     "room_picture",
+    "room_view",
     "room_views",
     "scan_room",
     "write_generated",

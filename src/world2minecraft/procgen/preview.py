@@ -16,6 +16,7 @@ FOV_DEG = 24.0
 RIM_M = 0.3  # What stays of the near walls of a room,
 CUT_M = 1.5  # and of everything in a house.
 NEAR_M = 0.16  # What hangs on a near wall goes with it.
+NEAR = (1, -1)  # Signs of x and y: the camera looks from high x and low y.
 BACKGROUND = np.array([238, 238, 235], np.uint8)
 SUPERSAMPLE = 2
 
@@ -38,19 +39,41 @@ def room_picture(room: Room, width_px: int = 1280, height_px: int | None = None)
     )
 
 
+def room_view(
+    room: Room, camera: Camera, camera_to_room: np.ndarray, near: tuple[int, int] = NEAR
+) -> np.ndarray:
+    """Render a room or a house of one storey without its ceiling and near walls from a pose.
+
+    Args:
+        room: The room or house.
+        camera: A pinhole camera.
+        camera_to_room: The pose of the camera, float64 [4, 4].
+        near: The near sides of a room: signs of x and y.
+
+    Returns:
+        The image as uint8 [height, width, 3].
+    """
+    return _draw(_open_storey(room, room.layouts[0].floor_z_m, near), camera, camera_to_room)
+
+
 def _storey_picture(room: Room, floor_z_m: float, width_px: int, height_px: int) -> np.ndarray:
-    opened = _open_storey(room, floor_z_m)
-    scene = prepare_photos(opened)
-    size = (width_px * SUPERSAMPLE, height_px * SUPERSAMPLE)
-    camera, pose = _camera(opened, "house" if len(room.layouts) > 1 else "room", *size)
-    photo = take_photo(scene, camera, pose)
+    opened = _open_storey(room, floor_z_m, NEAR)
+    kind = "house" if len(room.layouts) > 1 else "room"
+    return _draw(opened, *_camera(opened, kind, width_px, height_px))
+
+
+def _draw(opened: Room, camera: Camera, camera_to_room: np.ndarray) -> np.ndarray:
+    """Render an opened storey as uint8 [height, width, 3]."""
+    width_px, height_px = camera.width_px, camera.height_px
+    large = camera.resized(width_px * SUPERSAMPLE, height_px * SUPERSAMPLE)
+    photo = take_photo(prepare_photos(opened), large, camera_to_room)
     picture = np.where((photo.voxel_index < 0)[..., None], BACKGROUND, photo.colour)
     blocks = picture.reshape(height_px, SUPERSAMPLE, width_px, SUPERSAMPLE, 3).astype(np.uint16)
     return ((blocks.sum(axis=(1, 3)) + 2) // 4).astype(np.uint8)
 
 
-def _open_storey(room: Room, floor_z_m: float) -> Room:
-    """Return one storey without the parts that hide its interior."""
+def _open_storey(room: Room, floor_z_m: float, near: tuple[int, int]) -> Room:
+    """Return one storey without the parts that hide its interior from the near sides."""
     storey = [layout for layout in room.layouts if layout.floor_z_m == floor_z_m]
     slab = round(-room.origin_m[2] / room.voxel_m)
     low = round((floor_z_m - room.origin_m[2]) / room.voxel_m) - slab
@@ -58,8 +81,12 @@ def _open_storey(room: Room, floor_z_m: float) -> Room:
     high = low + slab + round(height / room.voxel_m)
     labels = room.labels[:, :, low:high].copy()
     if len(room.layouts) == 1:
-        _drop_near_roofs(labels)
-        _drop_near_walls(room, labels, slab)
+        near_x, near_y = near
+        # Views, of which x = max and y = 0 are near.
+        turned = labels[::near_x, ::-near_y]
+        instance = room.instance[::near_x, ::-near_y, low:high]
+        _drop_near_roofs(turned)
+        _drop_near_walls(room, turned, instance, slab)
     origin = np.array([*room.origin_m[:2], room.origin_m[2] + low * room.voxel_m])
     return replace(
         room,
@@ -78,15 +105,20 @@ def _drop_near_roofs(labels: np.ndarray) -> None:
         part[part == int(SemanticClass.CEILING)] = 0
 
 
-def _drop_near_walls(room: Room, labels: np.ndarray, slab: int) -> None:
-    """Remove the walls at x = max and y = 0, near the camera, down to a rim."""
+def _drop_near_walls(room: Room, labels: np.ndarray, instance: np.ndarray, slab: int) -> None:
+    """Remove the walls at x = max and y = 0, near the camera, down to a rim, and what hangs there.
+
+    Things that reach higher than a metre hang there, or lean there as a curtain or a door does.
+    """
     rim, deep = slab + round(RIM_M / room.voxel_m), slab + round(NEAR_M / room.voxel_m)
     labels[-slab:, :, rim:] = 0
     labels[:, :slab, rim:] = 0
     hung = slab + round(1.0 / room.voxel_m)
     objects = int(SemanticClass.OBJS)
-    for part in (labels[-deep:, :, hung:], labels[:, :deep, hung:]):
-        part[part == objects] = 0
+    for part in (np.s_[-deep:], np.s_[:, :deep]):
+        things = np.where(labels[part] == objects, instance[part], 0)
+        high = np.unique(things[:, :, hung:])
+        labels[part][np.isin(things, high[high > 0])] = 0
 
 
 def _camera(room: Room, kind: str, width_px: int, height_px: int) -> tuple[Camera, np.ndarray]:

@@ -149,7 +149,7 @@ def write_truth(
 ) -> None:
     """Write the ground truth of a capture as ``truth.npz`` and ``truth.json``.
 
-    ``truth.npz`` contains ``labels``, ``instance``, ``voxel_m``, ``origin_m`` and
+    ``truth.npz`` contains ``labels``, ``instance``, ``colour``, ``voxel_m``, ``origin_m`` and
     ``truth_room_to_scan``, and for each frame ``frame_names``, ``camera_to_truth`` (the true camera
     pose in the room, float64 [F, 4, 4]) and ``depth_scale`` (the factor applied to the true depth,
     float64 [F]). ``truth.json`` contains the kind, the seed, the objects and the layouts.
@@ -162,6 +162,7 @@ def write_truth(
         {
             "labels": room.labels,
             "instance": room.instance,
+            "colour": room.colour,
             "voxel_m": np.array(room.voxel_m),
             "origin_m": room.origin_m,
             "truth_room_to_scan": truth_room_to_scan,

@@ -200,8 +200,11 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
     stands = np.isin(volume.instance, inside[inside > 0])
     hangs = np.isin(semantic, (*_WALLS, int(SemanticClass.OBJS))) & flush[:, None, :] & ~stands
     high = floor_level(semantic) + 1 + round(WALL_MOUNT_HEIGHT_M * volume.blocks_per_metre)
-    hangs[:, :high, :] &= np.isin(semantic[:, :high, :], _WALLS)
-    hangs[:, :level, :] = False
+    # What reaches so high hangs or leans there as a whole, such as a curtain or a door.
+    above = np.unique(volume.instance[:, high:, :][hangs[:, high:, :]])
+    tall = np.isin(volume.instance[:, :high, :], above[above > 0])
+    hangs[:, :high, :] &= np.isin(semantic[:, :high, :], _WALLS) | tall
+    hangs[:, :level, :] &= volume.instance[:, :level, :] > 0
     return _remove_blocks(volume, drop | hangs)
 
 

@@ -1,6 +1,7 @@
 """Views that show a whole room at once: an oblique dollhouse view and a floor plan."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,6 +33,24 @@ SUPERSAMPLE = 2
 CORNERS = ((-1, 1), (1, 1), (1, -1), (-1, -1))
 
 
+class PreviewView(NamedTuple):
+    """What a preview shows, and from where.
+
+    Attributes:
+        cut: The volume without its ceiling and near walls, with storeys side by side.
+        near: The sides without walls: signs of room x and of room y.
+        storeys: The number of storeys.
+        camera: The camera.
+        camera_to_room: Its pose, float64 [4, 4].
+    """
+
+    cut: BlockVolume
+    near: tuple[int, int]
+    storeys: int
+    camera: Camera
+    camera_to_room: np.ndarray
+
+
 def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> np.ndarray:
     """Return an oblique cutaway image of a room from above, uint8 [height, width, 3].
 
@@ -47,13 +66,30 @@ def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> 
     Raises:
         ValueError: If the image would be too large.
     """
+    return render_preview(preview_view(volume, width_px, height_px))
+
+
+def preview_view(
+    volume: BlockVolume, width_px: int = 1280, height_px: int = 960
+) -> PreviewView:
+    """Return what ``preview`` shows, and from where; the arguments and errors are the same."""
     _check_size(width_px, height_px)
     opened = [without_partitions(without_ceiling(one)) for one in split_storeys(volume)]
     side = _best_corner(opened)
     cut = arrange_side_by_side([without_near_walls(one, *side) for one in opened])
     camera, pose = dollhouse_camera(cut, *side, width_px, height_px)
+    return PreviewView(cut, (side[0], -side[1]), len(opened), camera, pose)  # Block z is room -y.
+
+
+def render_preview(view: PreviewView) -> np.ndarray:
+    """Render a preview as uint8 [height, width, 3]."""
     picture = render_volume(
-        cut, camera, pose, outputs=("colour",), light=NEUTRAL, samples=SUPERSAMPLE
+        view.cut,
+        view.camera,
+        view.camera_to_room,
+        outputs=("colour",),
+        light=NEUTRAL,
+        samples=SUPERSAMPLE,
     )
     return _colour_of(picture)
 

@@ -34,6 +34,7 @@ from world2minecraft.evaluation.report.photo_section import (
     crop_objects,
     worst_first,
 )
+from world2minecraft.evaluation.report.truth_picture import truth_picture
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
 from world2minecraft.evaluation.scoring.truth_files import read_truth
 from world2minecraft.formats.layout import read_layouts
@@ -41,7 +42,7 @@ from world2minecraft.formats.objects_and_placements import read_placements
 from world2minecraft.formats.scan_record import read_registration
 from world2minecraft.furniture.layout_checks import category_integrity
 from world2minecraft.reconstruction.repair_run import REPAIRS
-from world2minecraft.rendering.preview import plan_view, preview
+from world2minecraft.rendering.preview import plan_view, preview, preview_view, render_preview
 from world2minecraft.rendering.scene import prepare_scene
 
 PLAN_PX = 720
@@ -159,11 +160,13 @@ def write_report(
     ]
     across = max(scene.volume.states.shape[0], scene.volume.states.shape[2])
     plan = plan_view(scene.volume, px_per_block=max(PLAN_PX // across, 2))
-    outside = preview(scene.volume)
+    view = preview_view(scene.volume)
+    outside = render_preview(view)
+    true = None if truth is None else truth_picture(folder, truth, view)
     progress("report", 2, 3, "page")
     write_bytes(folder / "preview.png", as_png(outside))
     write_json(folder / "report.json", facts)
-    write_text(folder / "report.html", _page(facts, pairs, crops, as_data_uri(outside), plan))
+    write_text(folder / "report.html", _page(facts, pairs, crops, outside, true, plan))
     progress("report", 3, 3)
     return facts
 
@@ -188,7 +191,12 @@ def _scan_facts(scan: Scan, folder: Path) -> dict[str, Any]:
 
 
 def _page(
-    facts: dict[str, Any], pairs: list[Pair], crops: list[Crop], outside: str, plan: Any
+    facts: dict[str, Any],
+    pairs: list[Pair],
+    crops: list[Crop],
+    outside: np.ndarray,
+    true: np.ndarray | None,
+    plan: np.ndarray,
 ) -> str:
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     source = (
@@ -198,7 +206,8 @@ def _page(
         facts=facts,
         names=NAMES,
         version=__version__,
-        outside=outside,
+        outside=as_data_uri(outside),
+        true_room=None if true is None else as_data_uri(true),
         plan=as_data_uri(plan, lossless=True),
         agreeing=[pair.depth_agrees for pair in pairs if pair.depth_agrees is not None],
         pairs=[
