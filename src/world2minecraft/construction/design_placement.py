@@ -54,6 +54,7 @@ OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A 
 # Oklab: up to this far off a fixed block keeps its own look; lightness counts less. Guesses.
 OWN_LOOK, OWN_LIGHT = 0.1, 0.63
 CLEAR_CHROMA, CLEAR_SHARE = 0.06, 0.3
+SOLID_SHAPES = ("full", "slab", "stairs")
 PLAIN_PAINTS = 3  # Blocks of one plain role: a front, its trim and one thing in it.
 _KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
 LIFTED_UNDER, HIGH_M = (
@@ -145,6 +146,9 @@ def recolour_design(
             renewed = [_cube_of(colour, own[0], cubes, parameters)] * len(own)
         elif material.kind not in (PLAIN, FIXED):
             renewed = _change_material(own, material.kind, colour, parameters)
+            armchair = class_id == SemanticClass.CHAIR and material.kind == "stone"
+            if class_id == SemanticClass.SOFA or armchair:
+                renewed = _upholster(renewed, material.kind, colour, parameters)
         elif material.kind == FIXED and not _is_far(material, colour):
             renewed = own
         elif own_colours.paint is None and all(map(is_full_cube, own)):
@@ -232,6 +236,24 @@ def _change_material(
         else:
             renewed.append(state)
     return renewed
+
+
+def _upholster(
+    states: list[str], kind: str, colour: np.ndarray, parameters: BuildParameters
+) -> list[str]:
+    """Return states of wood or stone, or of wool if that is closer to the colour.
+
+    White leather is made of stone, and brown leather of wood: in no green would either be right.
+    """
+    solid = [shape_of(state, PLAIN) in SOLID_SHAPES for state in states]
+    if kind not in ("wood", "stone") or not any(solid):
+        return states
+    wool = _change_material(["minecraft:white_wool"], "cloth", colour, parameters)[0]
+    offered, none = [states[solid.index(True)], wool], np.zeros(2)
+    costs = colour_costs(colour[None], offered, parameters.lightness_weight, none, FADED)[0]
+    if costs[0] <= costs[1]:
+        return states
+    return [wool if one else state for state, one in zip(states, solid, strict=True)]
 
 
 def _nearest(

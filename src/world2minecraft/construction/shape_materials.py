@@ -25,13 +25,9 @@ WEIGHTS = np.array([1.0, 1.6, 1.6])  # Red made brown is worse than red made dar
 FAINT, FADED = 0.015, 2.2  # Chroma that is noise, and what fading weighs above twice that.
 OWN = 0.1  # How far a shape of a block's own material may look off it.
 SAME = 0.04  # A shape of a block's own material, or of one that looks the same.
-# Trapdoors with holes, and of loud grain, are taken only where they are clearly nearer.
-HANDICAPS = {
-    "oak_trapdoor": 0.02,
-    "jungle_trapdoor": 0.03,
-    "acacia_trapdoor": 0.03,
-    "iron_trapdoor": 0.02,
-}
+# Trapdoors with holes: as tops and sides, they look like grilles.
+HOLED = ("oak_trapdoor", "jungle_trapdoor", "acacia_trapdoor", "cherry_trapdoor")
+HANDICAPS = {"iron_trapdoor": 0.02}  # Taken only where it is clearly nearer.
 
 
 # Screens are not made of wood, and no panel is black enough. On cushions, trapdoors look like
@@ -153,6 +149,7 @@ def materials_of(palette: Palette, *, wood: bool = True) -> Materials:
         "post": fences,
         "carpet": {b: b.replace("_wool", "_carpet") for b in full if b.endswith("_wool")},
     }
+    own["trapdoor"] = {b: name for b, name in own["trapdoor"].items() if name not in HOLED}
     known = {kind: _alike(_known(names)) for kind, names in own.items()}
     more = {"trapdoor": ["minecraft:iron_trapdoor"]} if wood else {}
     blocks = {

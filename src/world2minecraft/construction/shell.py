@@ -24,7 +24,7 @@ from world2minecraft.construction.surface_painting import (
     place_painted,
 )
 from world2minecraft.geometry.connected_components import label_components
-from world2minecraft.geometry.morphology import dilate
+from world2minecraft.geometry.morphology import dilate, nearest_set_cells
 
 ROUNDS = 4
 SCALE = 0.05  # Oklab distance at which a block counts half in the fit.
@@ -32,6 +32,7 @@ MIN_BLOCKS = 12  # A fit of six numbers to fewer blocks says nothing.
 MAX_SHARE = 0.6  # Maximum share of a surface; larger parts are the surface itself.
 SURE_SHARE = 0.3  # Of a part that stands out. A guess: a picture's rim is half wall.
 MIN_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.
+MIN_SEEN = 0.1  # Share of a patch with a colour; what furniture hides continues the wall above.
 
 
 class PaintThresholds(NamedTuple):
@@ -145,8 +146,10 @@ def put_shell(
         limit = source.parameters.structure_colours
         choice = BlockChoice(class_id, palette, source.parameters, limit)
         used: frozenset[str] = frozenset()
-        for patch in sorted(_patches(mask, shell.patches), key=lambda patch: -int(patch.sum())):
+        patches = _patches(mask, shell.patches, known)
+        for patch in sorted(patches, key=lambda patch: -int(patch.sum())):
             used |= _put_surface(canvas, patch, tinted, known & mask, choice, used)
+        _continue_surfaces(canvas, mask, choice)
     _put_windows(canvas, shell.windows, palette)
     _name_foundations(canvas)
 
@@ -188,15 +191,30 @@ def _put_surface(
     return around
 
 
-def _patches(mask: np.ndarray, numbers: np.ndarray):
-    """Yield the surfaces of a mask; small surfaces are combined into one."""
-    held = numbers[mask]
-    counts = np.bincount(held, minlength=int(numbers.max()) + 1)
-    small = counts < MIN_PATCH
-    if (small[held]).any():
-        yield mask & small[numbers]
-    for number in np.flatnonzero(~small):
+def _patches(mask: np.ndarray, numbers: np.ndarray, known: np.ndarray):
+    """Yield the surfaces of a mask that have a colour; small ones are combined into one."""
+    most = int(numbers.max()) + 1
+    counts, seen = (np.bincount(numbers[part], minlength=most) for part in (mask, mask & known))
+    whole = (counts >= MIN_PATCH) & (seen >= MIN_SEEN * counts)
+    rest = mask & known & ~whole[numbers]
+    if rest.any():
+        yield rest
+    for number in np.flatnonzero(whole):
         yield mask & (numbers == number)
+
+
+def _continue_surfaces(canvas: Canvas, mask: np.ndarray, choice: BlockChoice) -> None:
+    """Set the blocks of surfaces without a colour like the nearest block of another."""
+    rest = mask & (canvas.states == 0)
+    if not rest.any():
+        return
+    done = mask & ~rest
+    if not done.any():
+        default = choice.palette.defaults[choice.class_id]
+        canvas.put(rest, canvas.id_of(default), choice.class_id)
+        return
+    nearest, _ = nearest_set_cells(done)
+    canvas.put(rest, canvas.states[tuple(axis[rest] for axis in nearest)], choice.class_id)
 
 
 def _name_foundations(canvas: Canvas) -> None:

@@ -43,7 +43,7 @@ MIN_HUE_CHROMA, MIN_HUE_SHARE = (
     0.03,
     0.3,
 )  # Over sensor noise; grey cushions leave so much of a frame.
-NEW_PAINT = 0.03  # What a block must be nearer by to come in beside those that the room has.
+NEW_PAINT = 0.05  # What a block must be nearer by to come in beside those that the room has.
 DISTINGUISHABLE = 0.06  # Oklab distance of two blocks that one tells apart at a glance; a guess.
 
 

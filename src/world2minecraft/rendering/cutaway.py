@@ -161,7 +161,7 @@ def without_partitions(volume: BlockVolume) -> BlockVolume:
     semantic = volume.semantic
     bpm = volume.blocks_per_metre
     side = max(round(MIN_PASSAGE_M * bpm), 1)
-    floor = ndimage.binary_opening(room_columns(semantic, bpm), np.ones((side, side)))
+    floor = ndimage.binary_opening(_room_columns_without_doors(volume), np.ones((side, side)))
     reach = max(2, round(0.5 * bpm))
     walls = np.isin(semantic, _WALLS).any(axis=1)  # A lintel too, over the floor of its doorway.
     between = walls & (
@@ -188,7 +188,7 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
         near_z: Near side along block z: +1 for its end, -1 for its start.
     """
     semantic = volume.semantic
-    floor = room_columns(semantic, volume.blocks_per_metre)
+    floor = _room_columns_without_doors(volume)
     outside = _beyond_floor(floor, 0, near_x) | _beyond_floor(floor, 1, near_z)
     level = floor_level(semantic) + 1 + round(WALL_RIM_M * volume.blocks_per_metre)
     drop = np.zeros(semantic.shape, bool)
@@ -206,6 +206,19 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
     hangs[:, :high, :] &= np.isin(semantic[:, :high, :], _WALLS) | tall
     hangs[:, :level, :] &= volume.instance[:, :level, :] > 0
     return _remove_blocks(volume, drop | hangs)
+
+
+def _room_columns_without_doors(volume: BlockVolume) -> np.ndarray:
+    """Return a mask of the columns that are rooms, bool [X, Z], to which doors do not belong.
+
+    A door is part of its wall, and so the step before it is no room.
+    """
+    doors = [n for n, state in enumerate(volume.palette) if "_door[" in state]
+    blocks = np.isin(volume.states, doors)
+    things = np.unique(volume.instance[blocks])
+    columns = (blocks | np.isin(volume.instance, things[things > 0])).any(axis=1)
+    semantic = np.where(columns[:, None, :], np.uint8(0), volume.semantic)
+    return room_columns(semantic, volume.blocks_per_metre)
 
 
 def floor_level(semantic: np.ndarray) -> int:

@@ -144,8 +144,7 @@ OPENINGS = {
         openings.glass,
         "#d2e8ee",
         options={"stained": NO_YES},
-        holes=("stained=0",),
-        translucent=("stained=1",),
+        translucent=("*",),
     ),
     "door": Generator(
         openings.door,

@@ -17,7 +17,7 @@ from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import bevel, box, bricks, rim, stones
 from world2minecraft.rendering.textures.wood import fibre
 
-MARK = 1.0  # Sixteenths: how long the marks in the corners of clear glass are.
+CLEAR_ALPHA = 0.07  # So little of its own colour does clear glass show.
 CHAIN = """
 ......ml........ ......ml........ .....m..l....... .....m..l.......
 .....m..l....... .....d..m....... ......dm........ ......ml........
@@ -33,17 +33,17 @@ RAIL = """
 
 
 def glass(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Return the glass texture: stained with a faint border, or clear with marks in its corners."""
-    texel = SIDE / canvas.size_px
-    border = rim(canvas) < texel
+    """Return the glass texture: stained with a faint border, or a clear film, the same all over.
+
+    Marks on clear glass would be a grid of dots or bars on windows of several blocks.
+    """
+    if recipe.word("stained") != "1":
+        return Surface(0.0, alpha=CLEAR_ALPHA, roughness=0.08, translucent=True)
+    border = rim(canvas) < SIDE / canvas.size_px
     lit = canvas.x + canvas.y < SIDE
     tone = np.where(border, np.where(lit, 0.1, -0.08), 0.0)
-    if recipe.word("stained") == "1":
-        alpha = 0.5 + 0.1 * border
-        return Surface(tone, 0.3 * border, alpha=alpha, roughness=0.05, translucent=True)
-    across, down = np.abs(canvas.x - SIDE / 2), np.abs(canvas.y - SIDE / 2)
-    corner = border & (np.minimum(across, down) > SIDE / 2 - MARK)
-    return Surface(tone, 0.3 * corner, alpha=corner, roughness=0.08)
+    alpha = 0.5 + 0.1 * border
+    return Surface(tone, 0.3 * border, alpha=alpha, roughness=0.05, translucent=True)
 
 
 def door(canvas: Canvas, recipe: Recipe) -> Surface:
