@@ -37,6 +37,7 @@ from world2minecraft.furniture.materials import (
     list_swatches,
     shape_of,
     with_swatch,
+    without_holes,
 )
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.morphology import dilate_faces
@@ -149,6 +150,8 @@ def recolour_design(
             armchair = class_id == SemanticClass.CHAIR and material.kind == "stone"
             if class_id == SemanticClass.SOFA or armchair:
                 renewed = _upholster(renewed, material.kind, colour, parameters)
+            if class_id != SemanticClass.CHAIR:  # Tops and arms would look like grilles.
+                renewed = [without_holes(state) for state in renewed]
         elif material.kind == FIXED and not _is_far(material, colour):
             renewed = own
         elif own_colours.paint is None and all(map(is_full_cube, own)):

@@ -15,7 +15,6 @@ from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.door_leaves import FoundLeaves, Leaf
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.furniture.materials import kinds
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 
@@ -63,8 +62,7 @@ def put_doors(
             continue
         wood = _nearest_wood(leaf, found, source, woods)
         view.fill_frame(place)
-        panel = kinds()["wood"].blocks[wood]["trapdoor"]  # Without holes.
-        view.put_leaf(place, wood, panel if source.palette.allows(panel) else "")
+        view.put_leaf(place, wood, source.palette.allows(f"minecraft:{wood}_trapdoor"))
         storey = canvas.lattice.grounds.index(view.ground)
         view.clear_way(place, floor, footprints[storey])
 
@@ -159,13 +157,13 @@ class _View:
         states[gaps] = np.bincount(wall).argmax()
         self.semantic[place.layer][frame][gaps] = WALL
 
-    def put_leaf(self, place: Place, wood: str, trapdoor: str) -> None:
-        """Set the doors, and around them trapdoors, or planks if there are none."""
+    def put_leaf(self, place: Place, wood: str, has_trapdoor: bool) -> None:
+        """Set the doors, and panels of the same wood around them."""
         leaf, layer = self.leaf, place.layer
         facing = SIDES[leaf.axis, leaf.sign]
         panel = f"minecraft:{wood}_planks"
-        if trapdoor:
-            panel = f"{trapdoor}[facing={facing},half=bottom,open=true]"
+        if has_trapdoor:
+            panel = f"minecraft:{wood}_trapdoor[facing={facing},half=bottom,open=true]"
         whole = (layer, slice(place.columns.start, place.columns.stop))
         self._put((*whole, slice(self.ground, place.rows.stop)), panel, OBJS, leaf.instance)
         state = f"minecraft:{wood}_door[facing={facing},open={str(leaf.is_open).lower()}"

@@ -13,6 +13,7 @@ import numpy as np
 from world2minecraft.construction.fitting.shapes import Shape
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.furniture.materials import without_holes
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 from world2minecraft.minecraft.block_table import block_table
@@ -25,8 +26,6 @@ WEIGHTS = np.array([1.0, 1.6, 1.6])  # Red made brown is worse than red made dar
 FAINT, FADED = 0.015, 2.2  # Chroma that is noise, and what fading weighs above twice that.
 OWN = 0.1  # How far a shape of a block's own material may look off it.
 SAME = 0.04  # A shape of a block's own material, or of one that looks the same.
-# Trapdoors with holes: as tops and sides, they look like grilles.
-HOLED = ("oak_trapdoor", "jungle_trapdoor", "acacia_trapdoor", "cherry_trapdoor")
 HANDICAPS = {"iron_trapdoor": 0.02}  # Taken only where it is clearly nearer.
 
 
@@ -149,7 +148,7 @@ def materials_of(palette: Palette, *, wood: bool = True) -> Materials:
         "post": fences,
         "carpet": {b: b.replace("_wool", "_carpet") for b in full if b.endswith("_wool")},
     }
-    own["trapdoor"] = {b: name for b, name in own["trapdoor"].items() if name not in HOLED}
+    own["trapdoor"] = {b: name for b, name in own["trapdoor"].items() if not has_holes(name)}
     known = {kind: _alike(_known(names)) for kind, names in own.items()}
     more = {"trapdoor": ["minecraft:iron_trapdoor"]} if wood else {}
     blocks = {
@@ -166,6 +165,12 @@ def materials_of(palette: Palette, *, wood: bool = True) -> Materials:
             for kind, names in blocks.items()
         },
     )
+
+
+def has_holes(name: str) -> bool:
+    """Return whether a trapdoor has holes: as tops and sides, such look like grilles."""
+    full = name if ":" in name else f"minecraft:{name}"
+    return without_holes(full) != full
 
 
 def is_wooden(block: str) -> bool:

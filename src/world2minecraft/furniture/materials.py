@@ -17,6 +17,8 @@ from world2minecraft.minecraft.block_states import known_blocks
 
 PLAIN, FIXED = "plain", "fixed"
 PLAIN_KINDS = ("paint", "stone", "wood")
+# Woods whose trapdoors have holes, and the wood of the nearest one without.
+HOLED_TRAPDOORS = {"oak": "spruce", "jungle": "spruce", "acacia": "mangrove", "cherry": "birch"}
 
 
 class Swatch(NamedTuple):
@@ -140,3 +142,12 @@ def with_swatch(state: str, shape: str, swatch: Swatch) -> str:
     """Return a block state in another material, with its shape and properties unchanged."""
     _, bracket, properties = state.partition("[")
     return f"{kinds()[swatch.kind].blocks[swatch.value][shape]}{bracket}{properties}"
+
+
+def without_holes(state: str) -> str:
+    """Return a block state, with a trapdoor without holes in place of one with holes."""
+    name, bracket, properties = state.partition("[")
+    wood = name.removeprefix("minecraft:").removesuffix("_trapdoor")
+    if not name.endswith("_trapdoor") or wood not in HOLED_TRAPDOORS:
+        return state
+    return f"minecraft:{HOLED_TRAPDOORS[wood]}_trapdoor{bracket}{properties}"
