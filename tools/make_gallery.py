@@ -78,10 +78,10 @@ SCENES = (
         (
             render("house-1", "Two storeys, opened", "houses/house_0001 --orbit --frames 4"),
             render("house-2", "One, opened", "houses/house_0002 --orbit --frames 4"),
-            render("room-1", "A living room", "houses/house_0001 --tour --frames 8", 3),
-            render("room-2", "Another", "houses/house_0002 --tour --frames 8", 4),
-            render("room-3", "and one in lime", "houses/house_0003 --tour --frames 8", 1),
-            render("room-4", "A dining room", "houses/house_0004 --tour --frames 8", 2),
+            render("room-1", "A bedroom", "houses/house_0001 --tour --frames 8", 5),
+            render("room-2", "Another, in stone", "houses/house_0002 --tour --frames 8", 5),
+            render("room-3", "A living room", "houses/house_0003 --tour --frames 8", 1),
+            render("room-4", "and one in green", "houses/house_0004 --tour --frames 8", 6),
         ),
     ),
     Scene(

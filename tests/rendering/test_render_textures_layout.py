@@ -110,7 +110,7 @@ GOLDEN = {
     "own:cobble#7f7f7f": "58f9d530cc0eaa9f",
     "own:books#7a6146": "77f7fa13a2d63b70",
     "own:flower#874a2b?shape=tulip": "a8de86b5bb984d77",
-    "own:glass#d2e8ee": "0318149420f2d0fb",
+    "own:glass#d2e8ee": "c301c0fb39bed673",
 }
 
 

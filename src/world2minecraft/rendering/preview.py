@@ -69,9 +69,7 @@ def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> 
     return render_preview(preview_view(volume, width_px, height_px))
 
 
-def preview_view(
-    volume: BlockVolume, width_px: int = 1280, height_px: int = 960
-) -> PreviewView:
+def preview_view(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> PreviewView:
     """Return what ``preview`` shows, and from where; the arguments and errors are the same."""
     _check_size(width_px, height_px)
     opened = [without_partitions(without_ceiling(one)) for one in split_storeys(volume)]

@@ -50,7 +50,9 @@ def truth_picture(folder: Path, truth: Path, view: PreviewView) -> np.ndarray | 
         voxel_m=known.voxel_m,
         origin_m=known.origin_m,
     )
-    return room_view(room, view.camera, room_to_truth @ view.camera_to_room, _near(view, room_to_truth))
+    return room_view(
+        room, view.camera, room_to_truth @ view.camera_to_room, _near(view, room_to_truth)
+    )
 
 
 def _near(view: PreviewView, room_to_truth: np.ndarray) -> tuple[int, int]:

@@ -17,7 +17,8 @@ from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import bevel, box, bricks, rim, stones
 from world2minecraft.rendering.textures.wood import fibre
 
-CLEAR_ALPHA = 0.07  # So little of its own colour does clear glass show.
+# What clear glass shows of its colour; marks would be a grid of dots on windows of many blocks.
+CLEAR_ALPHA = 0.07
 CHAIN = """
 ......ml........ ......ml........ .....m..l....... .....m..l.......
 .....m..l....... .....d..m....... ......dm........ ......ml........
@@ -33,12 +34,10 @@ RAIL = """
 
 
 def glass(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Return the glass texture: stained with a faint border, or a clear film, the same all over.
-
-    Marks on clear glass would be a grid of dots or bars on windows of several blocks.
-    """
+    """Return the glass texture: stained with a faint border, or a clear film, the same all over."""
     if recipe.word("stained") != "1":
-        return Surface(0.0, alpha=CLEAR_ALPHA, roughness=0.08, translucent=True)
+        tone = 0.1 * fractal(canvas, 4, 4, 1)
+        return Surface(tone, alpha=CLEAR_ALPHA, roughness=0.08, translucent=True)
     border = rim(canvas) < SIDE / canvas.size_px
     lit = canvas.x + canvas.y < SIDE
     tone = np.where(border, np.where(lit, 0.1, -0.08), 0.0)
