@@ -1,9 +1,10 @@
 """Colours of objects that are known better than photos show them: sets, and screens.
 
-Cupboards side by side and the curtains of a room share their colours. Each is scanned in other light, so that a row of cupboards would come out in two woods and the
-curtains of a window in two cloths. The cells of such objects take the colour of the set, each as
-far as it looks like its object's main colour: a dark worktop stays. Screens reflect the room, so
-that they come out brown or beige; they are black unless they shine.
+Cupboards side by side and the curtains of a room share their colours. Each is scanned in other
+light, so that a row of cupboards would come out in two woods and the curtains of a window in two
+cloths. The cells of such objects take the colour of the set, each as far as it looks like its
+object's main colour: a dark worktop stays. Screens reflect the room, so that they come out brown or
+beige; they are black unless they shine.
 """
 
 from collections.abc import Sequence

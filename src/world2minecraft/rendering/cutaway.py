@@ -216,8 +216,8 @@ def _room_columns_without_doors(volume: BlockVolume) -> np.ndarray:
     doors = [n for n, state in enumerate(volume.palette) if "_door[" in state]
     blocks = np.isin(volume.states, doors)
     things = np.unique(volume.instance[blocks])
-    columns = (blocks | np.isin(volume.instance, things[things > 0])).any(axis=1)
-    semantic = np.where(columns[:, None, :], np.uint8(0), volume.semantic)
+    columns = np.any(blocks | np.isin(volume.instance, things[things > 0]), axis=1)
+    semantic = np.where(np.asarray(columns)[:, None, :], np.uint8(0), volume.semantic)
     return room_columns(semantic, volume.blocks_per_metre)
 
 
