@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from world2minecraft.api.repairs import repair
     from world2minecraft.api.results import Room, Run, load
     from world2minecraft.api.rooms import build, reconstruct
+    from world2minecraft.api.sharing import share
     from world2minecraft.api.worlds import convert, install_world, undo_build
 
 __all__ = [
@@ -80,6 +81,7 @@ __all__ = [
     "run_agent",
     "scan_room",
     "settings",
+    "share",
     "show_progress",
     "train_network",
     "undo_build",
@@ -143,6 +145,7 @@ _MODULES = {
         "build",
         "reconstruct",
     ),
+    "sharing": ("share",),
     "worlds": (
         "convert",
         "install_world",

@@ -59,6 +59,8 @@ STAGE_TEXTS = {
     "verify": "Verifying checksums",
     "views": "Planning views",
     "walks": "Planning walks",
+    "ways": "Planning ways to things",
+    "film": "Drawing the film",
     "words": "Rephrasing instructions",
     "write": "Writing files",
 }

@@ -30,6 +30,7 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
         "scan": "Show what a capture contains, without reconstructing it.",
         "reconstruct": "Convert a capture to a Minecraft world with a report.",
         "install": "Copy a built world into the game's saves folder.",
+        "share": "Write a room as one file to send: a page or a film.",
         "doctor": "Check that this machine can run the program.",
     },
     "Reconstruct": {

@@ -46,7 +46,7 @@ _BLOCK_NOUNS = {
     "brewing_stand": "brewing stand",
 }
 _FURNITURE = "piece of furniture"  # Of the class, which has no singular.
-_UNSPECIFIC_NOUNS = (_FURNITURE, "object")  # They say nothing, whatever else is said of a thing.
+UNSPECIFIC_NOUNS = (_FURNITURE, "object")  # They say nothing, whatever else is said of a thing.
 _NAME = re.compile(r"[^\W_][\w' -]*")  # Names that a sentence can contain: no marks, no lines.
 _COLOURS = {
     "white": (235, 235, 235),
@@ -166,14 +166,14 @@ def assign_unique_names(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
     """Assign unique names to landmarks, from the noun, colour and neighbour, or a number."""
     nouns = Counter(one.noun for one in landmarks)
     coloured = Counter((one.colour, one.noun) for one in landmarks)
-    specific = [one for one in landmarks if one.noun not in _UNSPECIFIC_NOUNS]
+    specific = [one for one in landmarks if one.noun not in UNSPECIFIC_NOUNS]
     anchors = [one for one in specific if nouns[one.noun] == 1]
     phrases = [_phrase(one, nouns, coloured, anchors) for one in landmarks]
     total, seen, result = Counter(phrases), Counter[str](), []
     for one, phrase in zip(landmarks, phrases, strict=True):
         if total[phrase] == 1:
             result.append(
-                replace(one, name=phrase, is_unambiguous=one.noun not in _UNSPECIFIC_NOUNS)
+                replace(one, name=phrase, is_unambiguous=one.noun not in UNSPECIFIC_NOUNS)
             )
             continue
         seen[phrase] += 1

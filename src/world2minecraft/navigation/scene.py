@@ -6,7 +6,7 @@ graph by columns, for fast lookups of positions between its nodes.
 """
 
 from collections import OrderedDict
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -229,11 +229,7 @@ class VlnScene:
     @cached_property
     def landmarks(self) -> tuple[Landmark, ...]:
         """The landmarks of the scene, with unique names."""
-        designs = self.source.designs()
-        names = nouns_of_names(self.source.names())
-        return landmarks_of(
-            self.volume, designs, _titles(designs[1]), self._room_of_point, names=names
-        )
+        return source_landmarks(self.source, self.volume, self._room_of_point)
 
     @cached_property
     def main_places(self) -> np.ndarray:
@@ -314,6 +310,15 @@ class VlnScene:
         if len(self._fields) > MAX_FIELDS:
             self._fields.popitem(last=False)
         return field
+
+    def turning_places(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
+        """Return where the shortest path from each node of ``corner_graph`` to a goal turns first.
+
+        The path leads straight to that node, and from there on to its own, up to a node that leads
+        to itself, which is a goal. -1 stands for nodes without a path. The result is int32 [N].
+        """
+        places = np.array(sorted({self.corner_graph.nearest(goal) for goal in goals}))
+        return straight_distances_m(self.corner_graph, self._lattice, places)[1]
 
     def distance_m(
         self, feet: tuple[float, float, float], goals: Sequence[tuple[float, float, float]]
@@ -436,6 +441,21 @@ def open_scene(
     if body is not None and not 0.1 <= body <= 2:
         raise UsageError(f"body must be 0.1 to 2 times human size, got {body}")
     return VlnScene(open_scene_source(path, box=box, blocks_per_metre=blocks_per_metre), body)
+
+
+def source_landmarks(
+    source: SceneSource, volume: BlockVolume, room_of: Callable[[np.ndarray], int]
+) -> tuple[Landmark, ...]:
+    """Return the landmarks of a source with unique names.
+
+    Args:
+        source: The source, which states the names and designs of objects.
+        volume: Its blocks, with doors open or as they are.
+        room_of: A function from a position in metres, float64 [3], to the index of its room.
+    """
+    designs = source.designs()
+    names = nouns_of_names(source.names())
+    return landmarks_of(volume, designs, _titles(designs[1]), room_of, names=names)
 
 
 def camera_of(width_px: int, height_px: int, hfov_deg: float) -> Camera:

@@ -19,8 +19,9 @@ from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.minecraft.physics import BlockWorld, find_standing_place
 from world2minecraft.reconstruction.file_stages import corner_m
-from world2minecraft.rendering.mesh import BlockMesh, mesh_of
+from world2minecraft.rendering.mesh import mesh_of
 from world2minecraft.sceneforge.array_messages import pack_arrays
+from world2minecraft.sceneforge.block_arrays import mesh_arrays
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.scene_sources import read_source_rooms
 
@@ -129,7 +130,7 @@ class BlockBuild:
             "texture_px": mesh.atlas.side_px,
             "blocks": int((self.volume.states > 0).sum()),
         }
-        return pack_arrays(MAGIC, header, _arrays(mesh))
+        return pack_arrays(MAGIC, header, mesh_arrays(mesh))
 
     def facts(self) -> dict[str, Any]:
         """Return the header fields for the page: revision, transform and start position."""
@@ -141,37 +142,3 @@ class BlockBuild:
             "feet": list(feet),
             "yaw_deg": yaw_deg,
         }
-
-
-def _arrays(mesh: BlockMesh) -> dict[str, np.ndarray]:
-    """Return the mesh arrays with a row per corner, and the click data with a row per quad."""
-    emission = np.repeat(mesh.emission[:, None], 4, axis=1)[..., None]
-    colour = np.concatenate([mesh.tint, mesh.shade[:, None]], axis=1)
-    facts = mesh.semantic + mesh.cuts * np.uint16(256)
-    kind = np.stack([mesh.layer, facts, mesh.cover, np.zeros_like(facts)], axis=1)
-    return {
-        "position": mesh.position.reshape(-1, 3),
-        "uv": mesh.uv.reshape(-1, 2),
-        "light": np.concatenate([mesh.light, emission], axis=2).reshape(-1, 4),
-        "colour": np.repeat(colour, 4, axis=0),
-        "kind": np.repeat(kind, 4, axis=0),
-        "state": mesh.state,
-        "instance": mesh.instance,
-        "texels": filled_texels(mesh),
-    }
-
-
-def filled_texels(mesh: BlockMesh) -> np.ndarray:
-    """Return the finest level of each texture with transparent texels coloured.
-
-    The result is uint8 [L, N, N, 4]. Graphics cards average textures that are drawn small.
-    Transparent texels get the mean colour of their texture, so that leaves and glass panes do not
-    get dark or pink edges.
-    """
-    side = mesh.atlas.side_px
-    texels = mesh.atlas.texels[:, : side * side].copy()
-    for texture in texels:
-        solid = texture[:, 3] >= 128
-        if solid.any() and not solid.all():
-            texture[~solid & (texture[:, 3] == 0), :3] = texture[solid, :3].mean(axis=0)
-    return texels.reshape(-1, side, side, 4)

@@ -11,7 +11,7 @@ from world2minecraft.core.classes import SemanticClass, display_name
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.vocabulary import read_vocabulary
 from world2minecraft.navigation.episodes import target_of
-from world2minecraft.navigation.landmarks import Landmark
+from world2minecraft.navigation.landmarks import UNSPECIFIC_NOUNS, Landmark
 from world2minecraft.navigation.moves import wrap_yaw
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.types import Episode, Instruction, Stance
@@ -103,7 +103,7 @@ def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
         UsageError: If the sentence names no landmark, or an ambiguous one.
     """
     text = " ".join(sentence.lower().split())
-    named = _phrases(scene.landmarks)
+    named = phrases_of(scene.landmarks)
     spans = [
         (found.end(), -found.start(), phrase)
         for phrase in named
@@ -124,7 +124,7 @@ def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
     return named[phrase][0]
 
 
-def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
+def phrases_of(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
     """Map phrases to landmarks.
 
     Full names come first, then nouns, their last words, classes, and the words of the vocabulary
@@ -140,7 +140,8 @@ def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
         names.setdefault(one.name.lower(), []).append(one)
         nouns.setdefault(one.noun.lower(), []).append(one)
         entry = vocabulary.find(one.noun) or vocabulary.of_template(one.design)
-        if entry is not None:
+        # The class of objects has the labels of hundreds of things, which this one need not be.
+        if entry is not None and one.noun not in UNSPECIFIC_NOUNS:
             for word in (entry.name, *entry.labels):
                 words_of.setdefault(word, []).append(one)
         if one.class_id in NAMED_CLASSES:

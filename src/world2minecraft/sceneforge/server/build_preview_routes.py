@@ -23,6 +23,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.minecraft.physics import BlockWorld, find_standing_place
 from world2minecraft.sceneforge.array_messages import pack_arrays
+from world2minecraft.sceneforge.block_arrays import collision_arrays
 from world2minecraft.sceneforge.build_preview import BlockBuild, BuildOptions, SceneSnapshot
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.jobs.jobs import JobState, describe_error
@@ -35,7 +36,8 @@ NOTIFY_AFTER_S = 1.0  # What is ready by then needs no word.
 
 def build_collision(build: BlockBuild) -> bytes:
     """Return the collision boxes of a build, in cells of its volume."""
-    return _bytes(BlockWorld.of_volume(build.volume), build.facts())
+    world = BlockWorld.of_volume(build.volume)
+    return pack_arrays(MAGIC, build.facts(), collision_arrays(world))
 
 
 def voxel_collision(scene: SceneSnapshot) -> bytes:
@@ -51,17 +53,7 @@ def voxel_collision(scene: SceneSnapshot) -> bytes:
         "feet": list(feet),
         "yaw_deg": yaw_deg,
     }
-    return _bytes(world, facts)
-
-
-def _bytes(world: BlockWorld, facts: dict[str, Any]) -> bytes:
-    starts = np.cumsum([0, *(len(shape) for shape in world.shapes)])
-    arrays = {
-        "kinds": world.kinds,
-        "boxes": np.concatenate(world.shapes).astype(np.float32),
-        "starts": starts.astype(np.int32),
-    }
-    return pack_arrays(MAGIC, facts, arrays)
+    return pack_arrays(MAGIC, facts, collision_arrays(world))
 
 
 def _block_axes_to_room(grid: OccupancyGrid) -> np.ndarray:

@@ -1,5 +1,6 @@
 // The page's table of contents: what hangs itself in, then the start.
 
+import "./theme.css";
 import "./style.css";
 import "./style_controls.css";
 import "./style_stage.css";

@@ -36,7 +36,7 @@ function wall(cover = 65535): BlockMesh {
   const corners = (of: (quad: number) => number[]): number[] => [0, 1].flatMap((q) => [0, 1, 2, 3].flatMap(() => of(q)));
   const entry = (dtype: string, shape: number[], values: Float32Array | Uint16Array | Uint8Array) => ({ dtype, shape, data: raw(values) });
   const kinds = [[0, 3 + 256, 65535, 0], [0, 8, cover, 0]];
-  return new BlockMesh(
+  return BlockMesh.read(
     packed("W2MB", { palette: ["minecraft:air", "minecraft:stone"], clear_from: 2, texture_px: 1 }, {
       position: entry("f4", [8, 3], new Float32Array([...face(2), ...face(5)])),
       uv: entry("f4", [8, 2], new Float32Array(16)),

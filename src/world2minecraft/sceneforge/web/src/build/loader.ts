@@ -62,7 +62,7 @@ export class Loader {
     try {
       const answer = await fetch(`api/build?blocks_per_metre=${size}&style=${style}`, running);
       if (!answer.ok) throw new Error(((await answer.json()) as { error: string }).error);
-      const mesh = new BlockMesh(await answer.arrayBuffer());
+      const mesh = BlockMesh.read(await answer.arrayBuffer());
       if (running.signal.aborted) return;
       this.mesh = mesh;
       const [document, , ...rest] = key.split(",");

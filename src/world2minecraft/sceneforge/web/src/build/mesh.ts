@@ -32,31 +32,56 @@ export interface BuildFacts {
   yaw_deg: number;
 }
 
-export class BlockMesh {
-  readonly facts: BuildFacts;
-  readonly position: Float32Array; // four corners a quad, in cells of the build
+export interface MeshArrays {
+  position: Float32Array; // four corners a quad, in cells of the build
+  uv: Float32Array;
+  light: Uint8Array;
+  colour: Uint8Array;
+  kind: Uint16Array; // texture; class + 256 * cuts, its own and of what lies on it; 0
+  state: Uint16Array; // by quad
+  instance: Uint16Array; // by quad
+  texels: Uint8Array;
+}
+
+export class BlockMesh implements MeshArrays {
+  readonly position: Float32Array;
   readonly uv: Float32Array;
   readonly light: Uint8Array;
   readonly colour: Uint8Array;
-  readonly kind: Uint16Array; // texture; class + 256 * cuts, its own and of what lies on it; 0
-  readonly state: Uint16Array; // by quad
-  readonly instance: Uint16Array; // by quad
+  readonly kind: Uint16Array;
+  readonly state: Uint16Array;
+  readonly instance: Uint16Array;
   readonly texels: Uint8Array;
-  readonly layers: number;
 
-  constructor(data: ArrayBuffer) {
+  constructor(
+    readonly facts: BuildFacts,
+    arrays: MeshArrays,
+    readonly layers: number,
+  ) {
+    this.position = arrays.position;
+    this.uv = arrays.uv;
+    this.light = arrays.light;
+    this.colour = arrays.colour;
+    this.kind = arrays.kind;
+    this.state = arrays.state;
+    this.instance = arrays.instance;
+    this.texels = arrays.texels;
+  }
+
+  static read(data: ArrayBuffer): BlockMesh {
     const packet = Packet.read(data, "W2MB");
-    this.facts = packet.told as unknown as BuildFacts;
     const take = <T>(name: string): T => packet.array(name).values as T;
-    this.position = take("position");
-    this.uv = take("uv");
-    this.light = take("light");
-    this.colour = take("colour");
-    this.kind = take("kind");
-    this.state = take("state");
-    this.instance = take("instance");
-    this.texels = take("texels");
-    this.layers = packet.array("texels").shape[0] ?? 0;
+    const arrays = {
+      position: take<Float32Array>("position"),
+      uv: take<Float32Array>("uv"),
+      light: take<Uint8Array>("light"),
+      colour: take<Uint8Array>("colour"),
+      kind: take<Uint16Array>("kind"),
+      state: take<Uint16Array>("state"),
+      instance: take<Uint16Array>("instance"),
+      texels: take<Uint8Array>("texels"),
+    };
+    return new BlockMesh(packet.told as unknown as BuildFacts, arrays, packet.array("texels").shape[0] ?? 0);
   }
 
   get quads(): number {

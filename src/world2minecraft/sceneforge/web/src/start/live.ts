@@ -103,7 +103,7 @@ export class LiveView {
   }
 
   private takeBlocks(data: ArrayBuffer): THREE.Object3D {
-    this.blocks.show(new BlockMesh(data));
+    this.blocks.show(BlockMesh.read(data));
     this.blocks.group.visible = true;
     return this.blocks.group;
   }

@@ -1,5 +1,5 @@
 // Mouse, pen and touch turn the camera: drag orbits, Shift+drag and middle drag pan, the wheel
-// zooms to what is under the pointer, right drag orbits whatever the tool.
+// zooms to what is under the pointer, right drag orbits whatever the tool. Two fingers pan and zoom.
 
 import { panned, turned, zoomed, type Orbit } from "./camera";
 import type { Vec3 } from "../wire";
@@ -17,6 +17,7 @@ export class Controls {
   /** Tools set this: whether a left drag that starts here is theirs. */
   claims: (event: PointerEvent) => boolean = () => false;
   private drag: { id: number; x: number; y: number; pan: boolean } | null = null;
+  private readonly fingers = new Map<number, { x: number; y: number }>();
   private readonly ends: (() => void)[] = [];
 
   constructor(
@@ -49,6 +50,7 @@ export class Controls {
   }
 
   private down(event: PointerEvent): void {
+    if (event.pointerType === "touch") this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     if (this.drag || event.button > 2) return;
     if (event.button === 0 && this.claims(event)) return;
     const pan = event.button === 1 || (event.button === 0 && event.shiftKey);
@@ -62,6 +64,7 @@ export class Controls {
   }
 
   private move(event: PointerEvent): void {
+    if (this.drag && this.fingers.size === 2 && this.fingers.has(event.pointerId)) return this.pinch(event);
     const drag = this.drag;
     if (!drag || event.pointerId !== drag.id) return;
     const dx = (event.clientX - drag.x) / this.canvas.clientHeight;
@@ -73,7 +76,23 @@ export class Controls {
   }
 
   private up(event: PointerEvent): void {
-    if (event.pointerId === this.drag?.id) this.drag = null;
+    const paired = this.fingers.size === 2 && this.fingers.has(event.pointerId);
+    this.fingers.delete(event.pointerId);
+    if (event.pointerId === this.drag?.id || paired) this.drag = null;
+  }
+
+  /** Two fingers: their middle pans, their distance zooms to what is under it. */
+  private pinch(event: PointerEvent): void {
+    const old = this.fingers.get(event.pointerId)!;
+    const [otherId, other] = [...this.fingers].find(([id]) => id !== event.pointerId)!;
+    const now = { x: event.clientX, y: event.clientY };
+    this.fingers.set(event.pointerId, now);
+    this.fingers.set(otherId, other);
+    const box = this.canvas.getBoundingClientRect();
+    const apart = (a: { x: number; y: number }): number => Math.max(Math.hypot(a.x - other.x, a.y - other.y), 1);
+    const moved = panned(this.holder.orbit, (now.x - old.x) / 2 / box.height, (old.y - now.y) / 2 / box.height);
+    const middle = this.holder.pointAt((now.x + other.x) / 2 - box.left, (now.y + other.y) / 2 - box.top);
+    this.holder.orbit = zoomed(moved, apart(old) / apart(now), middle);
   }
 
   private wheel(event: WheelEvent): void {

@@ -19,7 +19,7 @@ const FARTHEST_M = 1000;
 
 export class Sight {
   private orbiting: Orbit;
-  private flight: { from: Orbit; to: Orbit; start: number } | null = null;
+  private flight: { from: Orbit; to: Orbit; start: number; lasts: number } | null = null;
   private posed: Pose | null = null;
   private wide = 1;
   private tall = 1;
@@ -89,16 +89,16 @@ export class Sight {
     this.tall = Math.max(tall, 1);
   }
 
-  fly(to: Orbit, now: number, calm: boolean): void {
-    this.flight = calm ? null : { from: { ...this.orbiting, ortho: to.ortho }, to, start: now };
+  fly(to: Orbit, now: number, calm: boolean, lasts = FLIGHT_MS): void {
+    this.flight = calm ? null : { from: { ...this.orbiting, ortho: to.ortho }, to, start: now, lasts };
     if (calm) this.orbiting = to;
   }
 
   /** Go on with the flight. */
   step(now: number): void {
     if (!this.flight) return;
-    const { from, to, start } = this.flight;
-    const share = Math.min(Math.max((now - start) / FLIGHT_MS, 0), 1);
+    const { from, to, start, lasts } = this.flight;
+    const share = Math.min(Math.max((now - start) / lasts, 0), 1);
     this.orbiting = between(from, to, share);
     if (share === 1) this.flight = null;
   }

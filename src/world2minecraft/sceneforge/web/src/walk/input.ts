@@ -22,6 +22,13 @@ const TURN_DEG_S = 110; // by arrows
 const DEG_PX = 0.15; // by the mouse, as the game at its usual setting
 const TWICE_MS = 300; // W twice within: a sprint
 
+/** Another way to walk and look, beside keys and mouse. */
+export interface Extra {
+  readonly keys: Keys;
+  /** Degrees to the right and down since this was last asked. */
+  look(): [number, number];
+}
+
 export class Input {
   private readonly down = new Set<string>();
   private lastForward = -Infinity;
@@ -32,6 +39,7 @@ export class Input {
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly calls: { leave(): void; moved(): void },
+    private readonly extra: Extra | null = null,
   ) {}
 
   start(): void {
@@ -61,6 +69,8 @@ export class Input {
     const keys = { ...NO_KEYS };
     for (const code of this.down) if (HELD[code]) keys[HELD[code]] = true;
     keys.sprint ||= this.runs && keys.forward;
+    const more = this.extra?.keys ?? NO_KEYS;
+    for (const name of Object.keys(keys) as (keyof Keys)[]) keys[name] ||= more[name];
     return keys;
   }
 
@@ -69,7 +79,8 @@ export class Input {
     const [right, down] = this.turned;
     this.turned = [0, 0];
     const by = (TURN_DEG_S * milliseconds) / 1000;
-    let [x, y] = [right, down];
+    const [moreX, moreY] = this.extra?.look() ?? [0, 0];
+    let [x, y] = [right + moreX, down + moreY];
     for (const code of this.down) {
       x += (ARROWS[code]?.[0] ?? 0) * by;
       y += (ARROWS[code]?.[1] ?? 0) * by;

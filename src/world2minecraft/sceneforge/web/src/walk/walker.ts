@@ -79,6 +79,13 @@ export class Walker {
     [this.yawDeg, this.pitchDeg] = [other.yawDeg, other.pitchDeg];
   }
 
+  /** Stand at a place, in blocks, and look that way: someone else does the walking. */
+  put(place: Vec3, yawDeg: number, pitchDeg: number): void {
+    this.body = this.before = { ...bodyAt(place), onGround: true };
+    this.rest = 0;
+    [this.yawDeg, this.pitchDeg] = [yawDeg, pitchDeg];
+  }
+
   private get isStill(): boolean {
     const { before, body } = this;
     return before.crouched === body.crouched && before.position.every((v, i) => v === body.position[i]);
