@@ -13,12 +13,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
-from world2minecraft.core.classes import CLASS_COLOURS, SemanticClass
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.files import write_bytes
-from world2minecraft.core.types import BlockVolume, OccupancyGrid
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.evaluation.report.finished_run import read_built
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.navigation.moves import get_move_set
@@ -28,20 +27,16 @@ from world2minecraft.navigation.scene import open_scene
 from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.picture import render_volume
+from world2minecraft.rendering.presentation.film import PAPER, SUPERSAMPLE, RoomStage, joined
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild
 from world2minecraft.rendering.views.cameras import camera_of
-from world2minecraft.rendering.views.orbit import orbit_shots
 from world2minecraft.rendering.views.walk_through import plan_tour
-from world2minecraft.rendering.voxel_camera import cast_voxels
 
 SIZE, RATE_HZ, QUALITY = (960, 540), 10, 62
 PHOTOS_S, CELLS_S, BLOCKS_S, WALK_S, WAY_S = 1.3, 1.4, 1.4, 2.4, 1.5
-FADE = 4  # Frames between two parts.
-TURN_DEG, ELEVATION_DEG, ORBIT_FOV_DEG, WALK_FOV_DEG = 24.0, 38.0, 36.0, 62.0
+TURN_DEG, WALK_FOV_DEG = 24.0, 62.0
 HOURS = (15.0, 18.6)
-PAPER, INK, TRAIL = (242, 242, 238), (28, 30, 34), (240, 96, 32)
-SHADES = np.array([0.80, 0.80, 0.90, 0.90, 1.0, 0.6])  # Of faces along x, y and z.
-SUPERSAMPLE = 2
+TRAIL = (240, 96, 32)
 
 
 def frames_of(seconds: float) -> int:
@@ -75,56 +70,6 @@ def _cropped(path: Path, width: int, height: int) -> Image.Image:
     left, top = (size[0] - width) // 2, (size[1] - height) // 2
     resized = whole.resize(size, Image.Resampling.LANCZOS)
     return resized.crop((left, top, left + width, top + height))
-
-
-def turning_poses(build: OpenedBuild) -> list[np.ndarray]:
-    """Return the poses of a slow orbit for the cells, the blocks and the way of the agent."""
-    camera = camera_of(*SIZE, vertical_fov_deg=ORBIT_FOV_DEG)
-    start = build.best_start_deg(ELEVATION_DEG)
-    count = frames_of(CELLS_S + BLOCKS_S + WAY_S)
-    every = round(count * 360 / TURN_DEG)
-    shots = orbit_shots(
-        build.whole, camera, every, elevation_deg=ELEVATION_DEG, start_deg=start - TURN_DEG / 2
-    )
-    return [shot.camera_to_room for shot in shots[:count]]
-
-
-def cell_frame(grid: OccupancyGrid, build: OpenedBuild, pose: np.ndarray) -> np.ndarray:
-    """Return the cells in the colours of their classes, without ceiling and near walls."""
-    camera = camera_of(*SIZE, vertical_fov_deg=ORBIT_FOV_DEG)
-    forward = pose[:3, 2]
-    labels = np.where(grid.labels == 255, 0, grid.labels).astype(np.uint8)
-    labels[labels == SemanticClass.CEILING] = 0
-    occupied = np.argwhere(labels > 0)
-    low, high = occupied.min(axis=0), occupied.max(axis=0)
-    wall = np.isin(labels, (SemanticClass.WALL, SemanticClass.WINDOW))
-    for axis in (0, 1):
-        layer = np.arange(labels.shape[axis])
-        near = layer < low[axis] + 4 if forward[axis] > 0 else layer > high[axis] - 4
-        shape = [-1 if n == axis else 1 for n in range(3)]
-        labels[wall & near.reshape(shape)] = 0
-    hits = cast_voxels(labels, camera, pose, voxel_m=grid.voxel_m, origin_m=grid.origin_m)
-    hit = hits.voxel_index >= 0
-    classes = labels.reshape(-1)[np.where(hit, hits.voxel_index, 0)]
-    colours = np.array(CLASS_COLOURS, np.float64)[classes]
-    shaded = colours * SHADES[np.where(hit, hits.face, 0)][..., None]
-    return np.where(hit[..., None], shaded, np.array(PAPER)).astype(np.uint8)
-
-
-def block_frame(build: OpenedBuild, pose: np.ndarray, scenes: dict[int, object]) -> np.ndarray:
-    """Return the blocks from a pose outside, opened towards it."""
-    seen = build.seen_by(pose)
-    scene = scenes.setdefault(id(seen), prepare_scene(seen))
-    camera = camera_of(*SIZE, vertical_fov_deg=ORBIT_FOV_DEG)
-    picture = render_volume(
-        scene,
-        camera,
-        pose,
-        outputs=("colour", "depth"),
-        samples=SUPERSAMPLE,  # type: ignore[arg-type]
-    )
-    sky = picture.depth_m == 0
-    return np.where(sky[..., None], np.array(PAPER, np.uint8), picture.colour)
 
 
 def walk_frames(volume: BlockVolume) -> Iterator[np.ndarray]:
@@ -167,15 +112,15 @@ def agent_way(build_folder: Path) -> tuple[str, np.ndarray]:
     return best
 
 
-def with_way(frame: np.ndarray, pose: np.ndarray, way_m: np.ndarray, share: float) -> np.ndarray:
-    """Return a frame with the first part of a way drawn on the floor."""
-    camera = camera_of(*SIZE, vertical_fov_deg=ORBIT_FOV_DEG)
+def with_way(stage: RoomStage, pose: np.ndarray, way_m: np.ndarray, share: float) -> np.ndarray:
+    """Return a frame of the blocks with the first part of a way drawn on the floor."""
+    camera = stage.camera
     seen = apply(invert_rigid(pose), way_m + np.array([0, 0, 0.06]))
     pixels = [
         (camera.fx_px * x / z + camera.cx_px, camera.fy_px * y / z + camera.cy_px)
         for x, y, z in seen[: max(2, round(share * len(seen)))]
     ]
-    image = Image.fromarray(frame)
+    image = Image.fromarray(stage.blocks(pose)[0])
     draw = ImageDraw.Draw(image)
     draw.line(pixels, TRAIL, 5, "curve")
     x, y = pixels[-1]
@@ -183,54 +128,25 @@ def with_way(frame: np.ndarray, pose: np.ndarray, way_m: np.ndarray, share: floa
     return np.asarray(image)
 
 
-def with_caption(frame: np.ndarray, text: str) -> np.ndarray:
-    """Return a frame with a text in its lower left corner."""
-    image = Image.fromarray(frame)
-    draw, font = ImageDraw.Draw(image), ImageFont.load_default(26)
-    width = font.getlength(text)
-    draw.rounded_rectangle((18, SIZE[1] - 62, 46 + width, SIZE[1] - 18), 8, INK)
-    draw.text((32, SIZE[1] - 55), text, PAPER, font)
-    return np.asarray(image)
-
-
 def film(run: Path) -> list[np.ndarray]:
     """Return all frames of the film of a run."""
     volume, (grid, _) = read_built(run / "build"), read_room(run / "room.npz")
-    build, scenes = OpenedBuild(volume), {}
-    poses = turning_poses(build)
+    stage = RoomStage(OpenedBuild(volume), grid, SIZE)
+    poses = stage.turning_poses(frames_of(CELLS_S + BLOCKS_S + WAY_S), TURN_DEG)
     cells, blocks = frames_of(CELLS_S), frames_of(BLOCKS_S)
     instruction, way_m = agent_way(run)
     last = poses[cells + blocks :]
     parts = [
         ("photos", list(photo_frames(run))),
-        ("semantic occupancy", [cell_frame(grid, build, pose) for pose in poses[:cells]]),
-        ("blocks", [block_frame(build, p, scenes) for p in poses[cells : cells + blocks]]),
+        ("semantic occupancy", [stage.cells(p, stage.opened_labels(p))[0] for p in poses[:cells]]),
+        ("blocks", [stage.blocks(pose)[0] for pose in poses[cells : cells + blocks]]),
         ("walk in it", list(walk_frames(volume))),
         (
             instruction,
-            [
-                with_way(block_frame(build, pose, scenes), pose, way_m, (n + 1) / len(last))
-                for n, pose in enumerate(last)
-            ],
+            [with_way(stage, pose, way_m, (n + 1) / len(last)) for n, pose in enumerate(last)],
         ),
     ]
     return joined(parts)
-
-
-def joined(parts: list[tuple[str, list[np.ndarray]]]) -> list[np.ndarray]:
-    """Return the frames of all parts, with captions.
-
-    Each part fades in over the last frame of the one before.
-    """
-    result: list[np.ndarray] = []
-    before: np.ndarray | None = None
-    for text, frames in parts:
-        for number, frame in enumerate(frames):
-            share = min((number + 1) / (FADE + 1), 1.0)
-            mixed = frame if before is None else before * (1 - share) + frame * share
-            result.append(with_caption(np.asarray(mixed, np.uint8), text))
-        before = frames[-1].astype(np.float32)
-    return result
 
 
 def animated(frames: list[np.ndarray]) -> bytes:
