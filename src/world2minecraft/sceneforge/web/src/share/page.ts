@@ -177,6 +177,7 @@ export class RoomPage {
     this.stroll?.hide();
     this.photos?.open();
     this.pictures?.setAttribute("aria-pressed", "true");
+    this.host.dataset.photos = "on";
   }
 
   private show(): void {
@@ -184,6 +185,7 @@ export class RoomPage {
     this.host.dataset.mode = this.mode;
     this.host.dataset.light = this.light;
     this.pictures?.setAttribute("aria-pressed", "false");
+    this.host.dataset.photos = "off";
     this.canvas.setAttribute("aria-label", this.mode === "walk" ? TEXT.walkHint : TEXT.canvas);
     this.view.invalidate();
   }

@@ -82,7 +82,7 @@ export class Route {
 }
 
 export function yawTo(from: Vec3, to: Vec3): number {
-  return (Math.atan2(-(to[0] - from[0]), to[2] - from[2]) * 180) / Math.PI;
+  return (Math.atan2(from[0] - to[0], to[2] - from[2]) * 180) / Math.PI;
 }
 
 /** Turn towards a yaw by at most some degrees, the short way. */

@@ -6,7 +6,7 @@ export const TEXT = {
   day: "Day",
   night: "Night",
   light: "Time of day",
-  whole: "Whole room",
+  whole: "Reset view",
   photos: "Photos",
   things: "Things",
   thingsCount: (count: number): string => `${count} ${count === 1 ? "thing" : "things"}`,
