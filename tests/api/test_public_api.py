@@ -14,7 +14,7 @@ from world2minecraft import api
 
 ROOT = Path(__file__).resolve().parents[2]
 CLI = ROOT / "src" / "world2minecraft" / "cli"
-MAX_NAMES = 40
+MAX_NAMES = 42
 HEAVY = ("numpy", "numba", "scipy", "PIL", "torch", "rich", "typing", "inspect", "tempfile")
 # What verbs may use beside the API: errors, progress, files, the kernels' cache, the machine.
 ALLOWED = ("api", "cli", "core")

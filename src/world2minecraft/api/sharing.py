@@ -38,6 +38,7 @@ def share(
     *,
     title: str = "",
     photos: int = 0,
+    capture: str | Path | None = None,
     force: bool = False,
     progress: Progress = no_progress,
 ) -> SharedFile:
@@ -54,6 +55,7 @@ def share(
         title: Heading of the page. Derived from the name of the folder by default.
         photos: Maximum number of photos of the capture to put into the page, for comparison with
             the room. None by default, because photos show more of a home than its blocks.
+        capture: Path of the capture with the photos, if the run does not contain it.
         force: Replace an existing file.
         progress: Callback that reports the progress.
 
@@ -84,7 +86,8 @@ def share(
     from world2minecraft.sceneforge.share.room_data import SharedRoom
 
     room = SharedRoom.read(path_of(source), title)
-    page, count = room_page(room, photos, progress)
+    place = None if capture is None else Path(capture)
+    page, count = room_page(room, photos, place, progress)
     write_bytes(target, page)
     return SharedFile(target, len(page), things=len(room.landmarks), photos=count)
 

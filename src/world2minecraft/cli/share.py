@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from world2minecraft.cli.panels import OutFile
+from world2minecraft.cli.panels import OutFile, more_option
 
 EXAMPLES = """\
 w2m share OUT -o room.html                  a page to walk in; opens from disk
@@ -31,6 +31,10 @@ def run(
             "--photos", metavar="N", help="Put up to N photos of the capture into the page."
         ),
     ] = 0,
+    capture: Annotated[
+        Path | None,
+        more_option("--capture", help="Capture with the photos, if the run does not contain it."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
     """Write a room as one file to send: a page to walk in, or a film of it coming together.
@@ -49,7 +53,13 @@ def run(
 
     with show_progress() as shown:
         made = share(
-            source, out, title=title, photos=photos, force=force, progress=with_compile_note(shown)
+            source,
+            out,
+            title=title,
+            photos=photos,
+            capture=capture,
+            force=force,
+            progress=with_compile_note(shown),
         )
     if made.frames:
         print(f"{made.path}: {made.frames} frames, {made.bytes / 1e6:.1f} MB")

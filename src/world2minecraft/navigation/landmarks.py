@@ -134,7 +134,7 @@ def landmarks_of(
     order = owned[np.argsort(volume.instance.reshape(-1)[owned], kind="stable")]
     numbers, firsts = np.unique(volume.instance.reshape(-1)[order], return_index=True)
     found = []
-    for number, cells in zip(numbers, np.split(order, firsts[1:]), strict=True):
+    for number, cells in zip(numbers, np.split(order, firsts[1:]), strict=False):  # One, of none.
         class_id = _mode(volume.semantic.reshape(-1)[cells])
         if class_id not in OBJECT_CLASSES:
             continue

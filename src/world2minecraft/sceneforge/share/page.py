@@ -44,13 +44,17 @@ PAGE = """\
 
 
 def room_page(
-    room: SharedRoom, max_photos: int = 0, progress: Progress = no_progress
+    room: SharedRoom,
+    max_photos: int = 0,
+    capture: Path | None = None,
+    progress: Progress = no_progress,
 ) -> tuple[bytes, int]:
     """Return the page of a room, and the number of photos on it.
 
     Args:
         room: The room.
         max_photos: Maximum number of photos of the run. There are fewer where more do not fit.
+        capture: Path of the capture with the photos, if the run does not contain it.
         progress: Callback that reports the progress.
 
     Raises:
@@ -68,7 +72,8 @@ def room_page(
             "blocks (w2m build OUT -o SMALL --blocks-per-metre 2) and share SMALL",
         )
     left = (MAX_PAGE_BYTES - len(page)) * 3 // 4  # In base64 they are larger.
-    photos = choose_photos(Path(room.source.path), max_photos, left - PHOTO_FACTS_BYTES)
+    run, budget = Path(room.source.path), left - PHOTO_FACTS_BYTES
+    photos = choose_photos(run, capture, max_photos, budget) if max_photos else ()
     if photos:
         facts = [one.facts for one in photos]
         page = _assemble(room.title, packet.compressed(facts), photos)

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.evaluation.scoring.used_frames import computed
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.sceneforge.run_photos import (
     PlacedPhoto,
     RunPhotos,
-    find_capture_of,
     read_photos,
 )
 
@@ -29,13 +30,16 @@ class PagePhoto:
     jpeg: bytes
 
 
-def choose_photos(run: Path, most: int, budget_bytes: int) -> tuple[PagePhoto, ...]:
+def choose_photos(
+    run: Path, capture: Path | None, most: int, budget_bytes: int
+) -> tuple[PagePhoto, ...]:
     """Return up to ``most`` photos of a run that fit into a budget, in the order of the capture.
 
     They are made smaller until they fit, and fewer where that does not suffice.
 
     Args:
         run: Run folder.
+        capture: Path of its capture, if the run does not contain it.
         most: Maximum number of photos.
         budget_bytes: Size of all JPEG files together.
 
@@ -46,7 +50,13 @@ def choose_photos(run: Path, most: int, budget_bytes: int) -> tuple[PagePhoto, .
     if most <= 0:
         return ()
     _, scan_to_room = read_room(run / "room.npz")
-    taken = read_photos(run, find_capture_of(run, None), scan_to_room)
+    place = computed(run) or capture
+    if place is None:
+        raise UsageError(
+            f"{run.name} does not record where its photos are; add --capture DIR, the capture "
+            "that it was made of"
+        )
+    taken = read_photos(run, place, scan_to_room)
     chosen = spread_out([one.camera_to_room for one in taken.photos], most)
     while chosen:
         for longest_px, quality in SIZES:
@@ -71,10 +81,11 @@ def spread_out(poses: list[np.ndarray], most: int) -> list[int]:
         return []
     places = np.array([[*pose[:3, 3], *(pose[:3, 2] * TURN_M / np.sqrt(2))] for pose in poses])
     chosen = [0]
-    away = np.linalg.norm(places - places[0], axis=1)
+    away = np.full(len(poses), np.inf)
     while len(chosen) < min(most, len(poses)):
-        chosen.append(int(away.argmax()))
         away = np.minimum(away, np.linalg.norm(places - places[chosen[-1]], axis=1))
+        away[chosen[-1]] = -1.0  # Not twice, even where all are at one place.
+        chosen.append(int(away.argmax()))
     return chosen
 
 

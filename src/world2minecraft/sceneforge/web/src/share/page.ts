@@ -45,7 +45,7 @@ export class RoomPage {
 
   constructor(
     private readonly host: HTMLElement,
-    private readonly room: RoomData,
+    readonly room: RoomData,
   ) {
     const { facts, mesh } = room;
     host.append(this.stage);
@@ -145,7 +145,7 @@ export class RoomPage {
     this.choose(this.thingAt(clientX - box.left, clientY - box.top));
   }
 
-  private thingAt(x: number, y: number): Thing | null {
+  thingAt(x: number, y: number): Thing | null {
     const met = this.view.meetAt(x, y);
     const id = met ? this.room.mesh.instance[met.quad] : 0;
     return this.room.facts.things.find((thing) => thing.id === id) ?? null;

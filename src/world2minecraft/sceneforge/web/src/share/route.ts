@@ -67,7 +67,8 @@ export class Route {
 
   /** Where one is after a length, and where one looks. */
   at(gone: number): Stand {
-    const i = Math.max(this.ends.findIndex((end) => end >= gone), 1);
+    const ahead = this.ends.findIndex((end) => end >= gone);
+    const i = ahead < 0 ? this.corners.length - 1 : Math.max(ahead, 1);
     const [from, to] = [this.corners[i - 1]!, this.corners[i] ?? this.corners[i - 1]!];
     const piece = apart(from, to);
     const share = piece ? Math.min(Math.max((gone - this.ends[i - 1]!) / piece, 0), 1) : 1;
