@@ -115,7 +115,7 @@ worlds = st.builds(
 def test_blocks_of_small_worlds_come_back_from_the_page(volume, title):
     mesh = mesh_of(volume)
     packet = SharedPacket({"title": title}, compact_mesh_arrays(mesh)).compressed()
-    page = pages._assemble(title, packet, ())
+    page = pages.assemble(title, {"room-data": packet})
     got = unpacked(block(page, "room-data"))
     assert got["title"] == title
     assert np.abs(quads(got["corners"], 3) - mesh.position).max(initial=0) <= 2 / UNIT
@@ -153,6 +153,7 @@ def test_the_page_may_run_its_own_script_and_fetch_nothing(page):
         assert rules[name] == f"'sha256-{digest}'"
     links = [attrs.get("href") or attrs.get("src") for _, attrs in elements.found]
     assert [link for link in links if link] == [pages.ICON]
+    assert "Copyright © 2010-2026 three.js authors" in page.decode()  # As its licence demands.
     assert not any(name.startswith("on") for _, attrs in elements.found for name in attrs)
 
 
@@ -161,7 +162,7 @@ def test_hostile_names_stay_names(room):
     hostile = replace(room, title=HOSTILE, landmarks=things)
     page, _ = pages.room_page(hostile)
     elements = Elements(page)
-    assert len(elements.of("script")) == 2 and not elements.of("img")
+    assert len(elements.of("script")) == 4 and not elements.of("img")
     assert [html.unescape(text) for _, text in elements.of("title")] == [HOSTILE]
     assert HOSTILE.encode() not in page
     got = unpacked(block(page, "room-data"))
@@ -169,7 +170,7 @@ def test_hostile_names_stay_names(room):
 
 
 def test_ways_end_at_their_things_on_the_shortest_path(room):
-    got, scene = unpacked(room.prepare().compressed()), room.scene
+    got, scene = unpacked(room.floor_packet().compressed()), room.scene
     feet, turns = got["feet_of_ways"].astype(float), got["turns"]
     assert len(turns) == len(room.landmarks) > 3
     rng = np.random.default_rng(0)
@@ -193,9 +194,9 @@ def test_a_generated_house_fits_into_the_limit(tmp_path, monkeypatch):
     [house] = write_worlds(tmp_path, 1, 1)
     page, _ = pages.room_page(SharedRoom.read(house))
     assert len(page) < 3_000_000
-    got = unpacked(block(page, "room-data"))
-    assert len(got["things"]) > 100 and len(got["turns"]) > 10
-    assert sum(thing["way"] >= 0 for thing in got["things"]) == len(got["turns"])
+    got, turns = (unpacked(block(page, name)) for name in ("room-data", "floor-data"))
+    assert len(got["things"]) > 100 and len(turns["turns"]) > 10
+    assert sum(thing["way"] >= 0 for thing in got["things"]) == len(turns["turns"])
 
 
 def test_a_page_over_the_limit_says_what_to_do(room, monkeypatch):
@@ -237,7 +238,8 @@ def test_a_volume_without_floor_can_still_be_looked_at(tmp_path):
     page = tmp_path / "pieces.html"
     assert w2m.share(tmp_path / "pieces.schem", page).bytes == page.stat().st_size
     got = unpacked(block(page.read_bytes(), "room-data"))
-    assert not got["can_walk"] and got["turns"].size == 0 and got["title"] == "Pieces"
+    assert not got["can_walk"] and got["title"] == "Pieces"
+    assert unpacked(block(page.read_bytes(), "floor-data"))["turns"].size == 0
 
 
 FAULTS = [

@@ -7,11 +7,12 @@ Whatever comes from the user's files is either in a base64 block, or escaped.
 import base64
 import hashlib
 import html
+from collections.abc import Mapping
 from pathlib import Path
 
 from world2minecraft.core.errors import LimitError
 from world2minecraft.core.progress import Progress, no_progress
-from world2minecraft.sceneforge.share.photos import PagePhoto, choose_photos
+from world2minecraft.sceneforge.share.photos import choose_photos
 from world2minecraft.sceneforge.share.room_data import SharedRoom
 
 STATIC = Path(__file__).parents[1] / "static"
@@ -37,6 +38,7 @@ PAGE = """\
 <noscript>This page draws a room in 3D, for which it needs JavaScript.</noscript>
 <div id="room"></div>
 {blocks}
+<script type="text/plain" id="licences">{licences}</script>
 <script>{script}</script>
 </body>
 </html>
@@ -62,8 +64,8 @@ def room_page(
         UsageError: If photos are wanted and the run does not record where they are.
         CaptureError: If the photos cannot be read.
     """
-    packet = room.prepare(progress)
-    page = _assemble(room.title, packet.compressed(), ())
+    drawn, floor = room.room_packet(), room.floor_packet(progress).compressed()
+    page = assemble(room.title, {"room-data": drawn.compressed(), "floor-data": floor})
     if len(page) > MAX_PAGE_BYTES:
         size, limit = len(page) / 1e6, MAX_PAGE_BYTES / 1e6
         raise LimitError(
@@ -75,22 +77,29 @@ def room_page(
     run, budget = Path(room.source.path), left - PHOTO_FACTS_BYTES
     photos = choose_photos(run, capture, max_photos, budget) if max_photos else ()
     if photos:
-        facts = [one.facts for one in photos]
-        page = _assemble(room.title, packet.compressed(facts), photos)
+        blocks = {"room-data": drawn.compressed(photos=[one.facts for one in photos])}
+        blocks |= {"floor-data": floor}
+        blocks |= {f"photo-{number}": one.jpeg for number, one in enumerate(photos)}
+        page = assemble(room.title, blocks)
     return page, len(photos)
 
 
-def _assemble(title: str, packet: bytes, photos: tuple[PagePhoto, ...]) -> bytes:
+def assemble(title: str, blocks: Mapping[str, bytes]) -> bytes:
+    """Return a page.
+
+    Args:
+        title: Its heading.
+        blocks: The data that its script reads, by the name of the block.
+    """
     script = (STATIC / "share.js").read_text("utf-8").strip()
     style = (STATIC / "share.css").read_text("utf-8").strip()
-    blocks = [_block("room-data", packet)]
-    blocks += [_block(f"photo-{number}", one.jpeg) for number, one in enumerate(photos)]
     return PAGE.format(
         policy=html.escape(content_policy(script, style)),
         icon=ICON,
         title=html.escape(title),
         style=style,
-        blocks="\n".join(blocks),
+        blocks="\n".join(_block(name, data) for name, data in blocks.items()),
+        licences=(STATIC.parent / "NOTICE-three.txt").read_text("utf-8").partition("\n")[2].strip(),
         script=script,
     ).encode()
 

@@ -1,13 +1,13 @@
-"""What a shared page contains of a room: its blocks, things, names and ways, as one packet.
+"""What a shared page contains of a room, as two packets.
 
-The packet is that of ``array_messages`` with the magic ``W2MS``, compressed by zlib. Its arrays are
-those of ``compact_mesh_arrays`` and ``collision_arrays``, and the ways of the planner:
-``feet_of_ways`` float32 [N, 3] (positions in cells) and ``turns`` uint16 [T, N]. Row t contains
-where the shortest path from each position to thing t turns first, or 65535 without a path.
+The packets are those of ``array_messages`` with the magic ``W2MS``, compressed by zlib. That of the
+room has the arrays of ``compact_mesh_arrays``. That of the floor has those of ``collision_arrays``,
+and the ways of the planner: ``feet_of_ways`` float32 [N, 3] (positions in cells) and ``turns``
+uint16 [T, N]. Row t contains where the shortest path from each position to thing t turns first, or
+65535 without a path.
 """
 
 import zlib
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -104,40 +104,42 @@ class SharedRoom:
         feet = np.array(place) - self.volume.corner
         return (float(feet[0]), float(feet[1]), float(feet[2])), yaw_deg
 
-    def prepare(self, progress: Progress = no_progress) -> "SharedPacket":
-        """Return the packet of the page without photos: its mesh, boxes, things and ways.
-
-        Args:
-            progress: Callback that reports the ways of the planner, by thing.
-        """
+    def room_packet(self) -> "SharedPacket":
+        """Return the mesh with the things and their words: all that the first picture needs."""
         mesh = mesh_of(self.volume)
-        ways = self._ways(progress)
-        place, yaw_deg = self.start
-        body = 1.0 if self.scene is None else self.scene.body
+        phrases = phrases_of(self.landmarks)
         header = {
             "title": self.title,
             "size_m": self._room_size(),
             "unit": COMPACT_UNIT,
-            "rev": 0,
-            "blocks_per_metre": self.volume.blocks_per_metre * body,  # Of the walker's size.
-            "style": "blocks",
-            "palette": [],
             "clear_from": mesh.clear_from,
             "texture_px": mesh.atlas.side_px,
-            "blocks": int((self.volume.states > 0).sum()),
             "grid_to_room": self.grid_to_room.ravel().tolist(),
-            "feet": list(place),
-            "yaw_deg": yaw_deg,
             "azimuth": _best_azimuth(self.volume),
             "can_walk": self.scene is not None,
             "things": self._things(),
-            "phrases": {
-                phrase: [one.number for one in found]
-                for phrase, found in phrases_of(self.landmarks).items()
-            },
+            "phrases": {words: [one.number for one in found] for words, found in phrases.items()},
+            "photos": [],
         }
-        arrays = compact_mesh_arrays(mesh) | collision_arrays(BlockWorld.of_volume(self.volume))
-        return SharedPacket(header, arrays | ways)
+        return SharedPacket(header, compact_mesh_arrays(mesh))
+
+    def floor_packet(self, progress: Progress = no_progress) -> "SharedPacket":
+        """Return what stops a walker, and the ways of the planner.
+
+        Args:
+            progress: Callback that reports the ways, by thing.
+        """
+        place, yaw_deg = self.start
+        body = 1.0 if self.scene is None else self.scene.body
+        header = {
+            "rev": 0,
+            "blocks_per_metre": self.volume.blocks_per_metre * body,  # Of the walker's size.
+            "grid_to_room": self.grid_to_room.ravel().tolist(),
+            "feet": list(place),
+            "yaw_deg": yaw_deg,
+        }
+        boxes = collision_arrays(BlockWorld.of_volume(self.volume))
+        return SharedPacket(header, boxes | self._ways(progress))
 
     def _things(self) -> list[dict[str, Any]]:
         """Return the things for the list of the page, sorted by name.
@@ -205,15 +207,14 @@ class SharedRoom:
 
 @dataclass(frozen=True, eq=False)
 class SharedPacket:
-    """The data of a page, before it is compressed."""
+    """A packet before it is compressed."""
 
     header: dict[str, Any]
     arrays: dict[str, np.ndarray]
 
-    def compressed(self, photos: Sequence[dict[str, Any]] = ()) -> bytes:
-        """Return the packet as bytes, with descriptions of the photos that go with the page."""
-        header = self.header | {"photos": list(photos)}
-        return zlib.compress(pack_arrays(MAGIC, header, self.arrays), 9)
+    def compressed(self, **more: Any) -> bytes:
+        """Return the packet as bytes, with further facts in its header."""
+        return zlib.compress(pack_arrays(MAGIC, self.header | more, self.arrays), 9)
 
 
 def _nearest_place(scene: VlnScene, thing: Landmark) -> tuple[tuple[float, float, float], ...]:

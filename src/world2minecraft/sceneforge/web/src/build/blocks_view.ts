@@ -4,18 +4,18 @@ import * as THREE from "three";
 
 import type { Vec3 } from "../wire";
 import { BlockMaterial } from "./material";
-import type { BlockMesh, Hidden, Met } from "./mesh";
+import type { BlockMesh, DrawnFacts, Hidden, Met } from "./mesh";
 
 const OUTLINE = { object: 0xffd23f, block: 0x000000 };
 const GROWN = 0.004; // cells: outlines lie just outside what they are around
 
 const SIZE = new THREE.Vector2();
 
-export class BlocksView {
+export class BlocksView<Facts extends DrawnFacts = DrawnFacts> {
   readonly group = new THREE.Group();
   readonly material = new BlockMaterial();
   hidden: Hidden = { classes: 0, cuts: 0 };
-  mesh: BlockMesh | null = null;
+  mesh: BlockMesh<Facts> | null = null;
   private drawn: THREE.Mesh | null = null;
   private readonly outlines = new Map<string, THREE.LineSegments>();
   private toGrid = new THREE.Matrix4();
@@ -25,7 +25,7 @@ export class BlocksView {
     this.group.visible = false;
   }
 
-  show(mesh: BlockMesh): void {
+  show(mesh: BlockMesh<Facts>): void {
     this.mesh = mesh;
     this.group.matrix.fromArray(mesh.facts.grid_to_room).transpose();
     this.group.updateMatrixWorld(true);
@@ -35,6 +35,7 @@ export class BlocksView {
     this.drawn?.removeFromParent();
     this.drawn = new THREE.Mesh(geometryOf(mesh), [this.material.solid, this.material.clear]);
     this.drawn.frustumCulled = false;
+    this.drawn.geometry.boundingSphere = new THREE.Sphere(); // Not asked for, and slow to work out.
     this.drawn.onBeforeRender = (renderer) => {
       this.material.uniforms.tall.value = renderer.getDrawingBufferSize(SIZE).y;
     };

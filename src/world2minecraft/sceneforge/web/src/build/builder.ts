@@ -9,7 +9,7 @@ import type { Picked, SceneView } from "../view/view";
 import type { Vec3 } from "../wire";
 import { BlocksView } from "./blocks_view";
 import { Loader } from "./loader";
-import { CEILING_CUT, cutsFrom, type Met } from "./mesh";
+import { CEILING_CUT, cutsFrom, type BuildFacts, type Met } from "./mesh";
 
 const CEILING = 1;
 const CLASSES = 12;
@@ -21,7 +21,7 @@ export interface Clicked {
 }
 
 export class Builder {
-  readonly blocks = new BlocksView();
+  readonly blocks = new BlocksView<BuildFacts>();
   readonly loader: Loader;
   readonly view: SceneView;
   cutOpen = true;

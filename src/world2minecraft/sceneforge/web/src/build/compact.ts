@@ -1,11 +1,11 @@
 // The mesh of a build as compact_mesh_arrays (block_arrays.py) packs it, restored: three corners of
 // each quad as planes of bytes, a column per quad.
 
-import { BlockMesh, type BuildFacts } from "./mesh";
+import { BlockMesh, type DrawnFacts } from "./mesh";
 import type { Packet } from "./packet";
 
 export function expanded(packet: Packet): BlockMesh {
-  const facts = packet.told as unknown as BuildFacts & { unit: number };
+  const facts = packet.told as unknown as DrawnFacts & { unit: number };
   const lights = packet.array("lights");
   const kinds = packet.array("kinds_of_quads").values as Uint16Array;
   const colours = packet.array("colours").values as Uint8Array;

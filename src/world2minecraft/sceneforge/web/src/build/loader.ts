@@ -2,7 +2,7 @@
 
 import type { App } from "../ui/slots";
 import { TEXT } from "../text";
-import { BlockMesh } from "./mesh";
+import { BlockMesh, type BuildFacts } from "./mesh";
 
 export interface BuildWish {
   size: number; // blocks a metre
@@ -13,7 +13,7 @@ const QUIET_MS = 300; // after the last edit: strokes come in a row
 
 export class Loader {
   wish: BuildWish = { size: 4, style: "blocks" };
-  mesh: BlockMesh | null = null;
+  mesh: BlockMesh<BuildFacts> | null = null;
   busy = false;
   private got = "";
   private running: AbortController | null = null;

@@ -19,15 +19,19 @@ export interface Met {
   cell: Vec3; // of the build
 }
 
-export interface BuildFacts {
+/** What drawing needs to know. */
+export interface DrawnFacts {
+  clear_from: number; // the first quad that is drawn over what is behind it
+  texture_px: number;
+  grid_to_room: number[]; // 4 x 4, row by row
+}
+
+export interface BuildFacts extends DrawnFacts {
   rev: number;
   blocks_per_metre: number;
   style: string;
   palette: string[];
-  clear_from: number; // the first quad that is drawn over what is behind it
-  texture_px: number;
   blocks: number;
-  grid_to_room: number[]; // 4 x 4, row by row
   feet: Vec3;
   yaw_deg: number;
 }
@@ -43,7 +47,7 @@ export interface MeshArrays {
   texels: Uint8Array;
 }
 
-export class BlockMesh implements MeshArrays {
+export class BlockMesh<Facts extends DrawnFacts = DrawnFacts> implements MeshArrays {
   readonly position: Float32Array;
   readonly uv: Float32Array;
   readonly light: Uint8Array;
@@ -54,7 +58,7 @@ export class BlockMesh implements MeshArrays {
   readonly texels: Uint8Array;
 
   constructor(
-    readonly facts: BuildFacts,
+    readonly facts: Facts,
     arrays: MeshArrays,
     readonly layers: number,
   ) {
@@ -68,7 +72,7 @@ export class BlockMesh implements MeshArrays {
     this.texels = arrays.texels;
   }
 
-  static read(data: ArrayBuffer): BlockMesh {
+  static read(data: ArrayBuffer): BlockMesh<BuildFacts> {
     const packet = Packet.read(data, "W2MB");
     const take = <T>(name: string): T => packet.array(name).values as T;
     const arrays = {

@@ -2,7 +2,7 @@
 // photos beside it.
 
 import { expanded } from "../build/compact";
-import type { BlockMesh, BuildFacts } from "../build/mesh";
+import type { BlockMesh, DrawnFacts } from "../build/mesh";
 import { Packet } from "../build/packet";
 import type { Frame } from "../photos/place";
 import type { Vec3 } from "../wire";
@@ -16,7 +16,7 @@ export interface Thing {
   way: number; // its row of the ways; -1 where one cannot walk to it
 }
 
-export interface RoomFacts extends BuildFacts {
+export interface RoomFacts extends DrawnFacts {
   title: string;
   size_m: Vec3 | null; // of the room, where it is known
   can_walk: boolean;
@@ -29,14 +29,21 @@ export interface RoomFacts extends BuildFacts {
 export interface RoomData {
   facts: RoomFacts;
   mesh: BlockMesh;
-  packet: Packet;
 }
 
 export async function readRoom(): Promise<RoomData> {
-  const bytes = fromBase64(blockText("room-data"));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const packet = Packet.read(await new Response(stream).arrayBuffer(), "W2MS");
-  return { facts: packet.told as unknown as RoomFacts, mesh: expanded(packet), packet };
+  const packet = await readPacket("room-data");
+  return { facts: packet.told as unknown as RoomFacts, mesh: expanded(packet) };
+}
+
+/** What stops a walker, and the ways of the planner: larger, and not needed for the first picture. */
+export function readFloor(): Promise<Packet> {
+  return readPacket("floor-data");
+}
+
+async function readPacket(id: string): Promise<Packet> {
+  const stream = new Blob([fromBase64(blockText(id))]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return Packet.read(await new Response(stream).arrayBuffer(), "W2MS");
 }
 
 /** The address of a photo of the page: its bytes themselves. */

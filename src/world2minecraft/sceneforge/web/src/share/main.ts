@@ -10,19 +10,22 @@ import { TEXT } from "./text";
 
 const host = document.getElementById("room") ?? document.body.appendChild(h("div", { id: "room" }));
 
-function refuse(why: string, error: unknown): void {
+function refuse(why: string, error: unknown): never {
   host.replaceChildren(h("p", { class: "refused", role: "alert" }, why));
   throw error;
 }
 
-void readRoom()
-  .catch((error: unknown) => refuse(TEXT.broken, error))
-  .then((room) => {
-    if (!room) return;
-    try {
-      const page = new RoomPage(host, room);
-      Object.assign(window, { __room: { page, idle: () => page.idle() } });
-    } catch (error) {
-      refuse(TEXT.noView, error);
-    }
-  });
+async function start(): Promise<void> {
+  const room = await readRoom().catch((error: unknown) => refuse(TEXT.broken, error));
+  let page: RoomPage;
+  try {
+    page = new RoomPage(host, room);
+  } catch (error) {
+    return refuse(TEXT.noView, error);
+  }
+  await page.idle(); // The picture comes first.
+  await page.readFloor();
+  Object.assign(window, { __room: { page, idle: () => page.idle() } });
+}
+
+void start();

@@ -7,7 +7,7 @@ import { icon } from "../ui/icons";
 import { turned, zoomed } from "../view/camera";
 import { Thumbs } from "../walk/thumbs";
 import type { Vec3 } from "../wire";
-import type { RoomData, Thing } from "./data";
+import { readFloor, type RoomData, type Thing } from "./data";
 import { coloursOf } from "./colours";
 import { findThing, subjectOf } from "./finder";
 import { Photos } from "./photos";
@@ -25,7 +25,7 @@ type Way = "look" | "walk";
 
 export class RoomPage {
   readonly view: RoomView;
-  readonly stroll: Stroll | null;
+  stroll: Stroll | null = null; // once the floor has been read
   chosen: Thing | null = null;
   mode: Way = "look";
   light: Light = "day";
@@ -56,7 +56,6 @@ export class RoomPage {
     this.more = h("button", { class: "button more", type: "button", "aria-expanded": "false", on: { click: () => this.unfold() } }, TEXT.thingsCount(facts.things.length), icon("down"));
     host.append(this.head(), this.side());
     this.view = new RoomView(this.canvas, mesh, facts.azimuth);
-    this.stroll = facts.can_walk ? new Stroll(this.view, room, this.thumbs, { leave: () => this.set("look"), arrived: (thing) => this.arrive(thing), broken: () => this.go.say("") }) : null;
     this.photos = facts.photos.length ? new Photos(this.view, facts.photos, () => this.show()) : null;
     if (this.photos) this.stage.append(this.photos.over);
     this.stage.append(this.thumbs.node, this.over(), this.label.node, this.bar());
@@ -66,6 +65,14 @@ export class RoomPage {
     this.followTheme();
     this.setLight("day");
     this.show();
+  }
+
+  /** Read the floor when the room is in the picture: walking is possible from then on. */
+  async readFloor(): Promise<void> {
+    if (!this.room.facts.can_walk) return;
+    const calls = { leave: () => this.set("look"), arrived: (thing: Thing) => this.arrive(thing), broken: () => this.go.say("") };
+    this.stroll = new Stroll(this.view, this.room, await readFloor(), this.thumbs, calls);
+    this.stroll.dim(this.light === "night");
   }
 
   /** Go to what a sentence names. */
@@ -80,7 +87,7 @@ export class RoomPage {
 
   set(mode: Way): void {
     if (!this.stroll && mode === "walk") {
-      this.go.say(TEXT.noWalk);
+      this.go.say(this.room.facts.can_walk ? TEXT.soon : TEXT.noWalk);
       mode = "look";
     }
     this.photos?.close();
@@ -102,7 +109,7 @@ export class RoomPage {
     this.show();
   }
 
-  choose(thing: Thing | null, canGo = this.stroll !== null): void {
+  choose(thing: Thing | null, canGo = this.room.facts.can_walk): void {
     this.chosen = thing;
     this.list.mark(thing);
     this.label.show(thing, canGo);
@@ -125,7 +132,7 @@ export class RoomPage {
   }
 
   private walkTo(thing: Thing, of: number): void {
-    if (!this.stroll) return this.go.say(TEXT.noWalk);
+    if (!this.stroll) return this.go.say(this.room.facts.can_walk ? TEXT.soon : TEXT.noWalk);
     this.fold();
     this.photos?.close();
     const away = this.stroll.lead(thing);

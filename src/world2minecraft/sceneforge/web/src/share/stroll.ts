@@ -1,6 +1,7 @@
 // Walking through a shared room: oneself, with keys or thumbs, or led by the planner while one
 // watches from above or looks out of the walker's eyes.
 
+import type { Packet } from "../build/packet";
 import type { Pose } from "../view/sight";
 import { HEIGHT } from "../walk/body";
 import { Input } from "../walk/input";
@@ -40,11 +41,12 @@ export class Stroll {
   constructor(
     private readonly view: RoomView,
     private readonly room: RoomData,
+    floor: Packet,
     thumbs: Thumbs,
     private readonly calls: StrollCalls,
   ) {
-    this.walker = new Walker(room.packet);
-    this.ways = new Ways(room.packet);
+    this.walker = new Walker(floor);
+    this.ways = new Ways(floor);
     this.figure = new Figure(HEIGHT * this.walker.scale);
     const matrix = room.facts.grid_to_room;
     this.cellsPerMetre = 1 / Math.hypot(matrix[0]!, matrix[4]!, matrix[8]!);

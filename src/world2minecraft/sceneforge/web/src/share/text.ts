@@ -28,6 +28,7 @@ export const TEXT = {
   noWay: (name: string): string => `No way leads to the ${name} from here.`,
   noWalk: "There is nowhere to stand in this room.",
   unknown: (text: string): string => `There is no “${text}” here. Try one of these:`,
+  soon: "The floor is still being read. Try again in a moment.",
   ask: "Type what to go to, such as the sofa.",
   walkHint: "W A S D to walk, click to look around, Esc to leave.",
   thumbs: { stick: "Stick for the left thumb: walk", look: "Drag to look around", jump: "Jump" },
