@@ -389,6 +389,7 @@ export const TEXT = {
       ["Esc", "leave"],
     ] as [string, string][],
     hint: "Click to look around with the mouse, or use the arrow keys. Esc leaves.",
+    thumbs: { stick: "Stick for the left thumb: walk", look: "Drag to look around", jump: "Jump" },
     ahead: (block: string, object?: string): string => (object ? `${block} · ${object}` : block),
   },
   help: {

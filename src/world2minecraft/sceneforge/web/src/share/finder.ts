@@ -49,8 +49,13 @@ function alike(text: string, phrases: Record<string, number[]>, things: readonly
     return names.map((name) => ({ name, far: distance(wanted, phrase) / Math.max(wanted.length, phrase.length, 1) }));
   });
   const near = scored.filter(({ far }) => wanted && far <= LIKE).sort((a, b) => a.far - b.far);
-  const names = near.length ? near.map(({ name }) => name) : things.map(({ name }) => name);
+  const short = [...things].sort((a, b) => words(a.name) - words(b.name)); // What a person would say.
+  const names = (near.length ? near : short).map(({ name }) => name);
   return [...new Set(names)].slice(0, MOST_NEAR);
+}
+
+function words(text: string): number {
+  return text.split(" ").length;
 }
 
 /** How many letters must be changed, added or taken to get from one word to another. */

@@ -92,6 +92,7 @@ export class RoomPage {
     }
     this.photos?.close();
     if (mode !== this.mode) {
+      if (!this.stroll?.isLed) this.go.say("");
       if (mode === "walk") {
         this.choose(null);
         this.stroll?.enter();
@@ -179,6 +180,7 @@ export class RoomPage {
 
   private openPhotos(): void {
     this.set("look");
+    this.go.say("");
     this.choose(null);
     this.setLight("day"); // As photos are.
     this.stroll?.hide();

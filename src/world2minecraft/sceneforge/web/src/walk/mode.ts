@@ -13,6 +13,7 @@ import { segment } from "../ui/fields";
 import { registerMode, registerPanel, registerStagePart, type App } from "../ui/slots";
 import type { SceneView } from "../view/view";
 import { Input } from "./input";
+import { Thumbs } from "./thumbs";
 import { Walker } from "./walker";
 
 type Ground = "blocks" | "voxels";
@@ -22,6 +23,7 @@ const TOLD_MS = 250; // between two looks at what is ahead
 export class Walking {
   walker: Walker | null = null;
   ground: Ground = "blocks";
+  readonly thumbs = new Thumbs(TEXT.walk.thumbs, { moved: () => undefined, tapped: () => undefined });
   private readonly input: Input;
   private readonly view: SceneView;
   private back: Mode = "inspect";
@@ -35,7 +37,7 @@ export class Walking {
 
   constructor(private readonly app: App) {
     this.view = app.view as unknown as SceneView;
-    this.input = new Input(app.canvas, { leave: () => this.app.store.set({ mode: this.back }), moved: () => undefined });
+    this.input = new Input(app.canvas, { leave: () => this.app.store.set({ mode: this.back }), moved: () => undefined }, this.thumbs);
     app.store.watch(["mode"], ({ mode }) => {
       if (mode !== "walk") this.back = mode;
     });
@@ -181,7 +183,7 @@ function mountOver(host: HTMLElement, app: App): void {
   const ahead = h("div", { class: "walk-ahead" });
   const hint = h("div", { class: "walk-hint" }, TEXT.walk.hint);
   const over = h("div", { class: "walk-over", hidden: true }, h("div", { class: "walk-cross" }), ahead, hint);
-  host.append(over);
+  host.append(walking.thumbs.node, over);
   app.store.watch(["mode"], ({ mode }) => (over.hidden = mode !== "walk"));
   walking.watch(() => {
     if (!walking.isOn) return;

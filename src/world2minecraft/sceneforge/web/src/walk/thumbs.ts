@@ -1,5 +1,6 @@
 // Thumbs of one who walks on a touch screen: the left one holds a stick, the right one looks around.
 
+import "./thumbs.css";
 import { h } from "../ui/dom";
 import { NO_KEYS, type Keys } from "./body";
 import type { Extra } from "./input";
