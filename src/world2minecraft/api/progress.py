@@ -52,6 +52,7 @@ STAGE_TEXTS = {
     "score": "Scoring predictions",
     "seen": "Finding visible cells",
     "segment": "Segmenting images",
+    "share": "Reading the room",
     "shrink": "Resizing photos",
     "stereo": "Estimating depth",
     "train": "Training",

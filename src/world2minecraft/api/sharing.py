@@ -85,7 +85,9 @@ def share(
     from world2minecraft.sceneforge.share.page import room_page
     from world2minecraft.sceneforge.share.room_data import SharedRoom
 
+    progress("share", 0, 1)  # Before any work: kernels are compiled now, if they are not yet.
     room = SharedRoom.read(path_of(source), title)
+    progress("share", 1, 1)
     place = None if capture is None else Path(capture)
     page, count = room_page(room, photos, place, progress)
     write_bytes(target, page)

@@ -49,7 +49,7 @@ def run(
     """
     from world2minecraft.api import share
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import with_compile_note
+    from world2minecraft.core.precompile import compile_first
 
     with show_progress() as shown:
         made = share(
@@ -59,7 +59,7 @@ def run(
             photos=photos,
             capture=capture,
             force=force,
-            progress=with_compile_note(shown),
+            progress=compile_first(shown, "navigation"),
         )
     if made.frames:
         print(f"{made.path}: {made.frames} frames, {made.bytes / 1e6:.1f} MB")

@@ -59,13 +59,13 @@ def write_film(run: Path, out: Path, progress: Progress = no_progress) -> int:
     if not (run / "room.npz").is_file():
         raise InputError(run, "has no room.npz; a film needs a reconstruction, a page does not")
     film = RoomFilm.read(run)
+    progress("film", 0, film.length)
     count = 0
     with animation_writer(out, RATE_HZ) as write:
         for frame in film.frames():
-            progress("film", count, film.length)
             write(frame)
             count += 1
-    progress("film", film.length, film.length)
+            progress("film", count, film.length)
     return count
 
 
@@ -142,8 +142,9 @@ class RoomFilm:
         points = cell_centers_m(cells, grid.origin_m, grid.voxel_m)
         points += rng.uniform(-0.5, 0.5, points.shape) * grid.voxel_m
         at = tuple(cells.T)
-        colours, seen = grid.colour[at], grid.colour[at].any(axis=1)
-        colours = np.where(seen[:, None], colours, np.array(CLASS_COLOURS)[self._labels[at]])
+        colours = grid.colour[at].reshape(-1, 3)
+        seen = colours.max(axis=1, keepdims=True, initial=0) > 0
+        colours = np.where(seen, colours, np.array(CLASS_COLOURS)[self._labels[at]])
         away = points - points.mean(axis=0) if len(points) else points
         angle = np.arctan2(away[:, 1], away[:, 0]) + rng.normal(0, 0.25, len(points))
         order = np.argsort(angle)
