@@ -111,7 +111,7 @@ def test_the_container_is_slim_and_runs_as_a_user():
     assert DOCKER.index("USER w2m") > max(n for n, line in enumerate(DOCKER) if "COPY" in line)
 
 
-def test_the_container_installs_the_pinned_versions_of_what_it_copies():
+def test_the_container_installs_pinned_versions():
     (install, warm) = arguments_of("RUN")
     assert "--constraint constraints.txt" in install and "doctor --warm" in warm
     allowed = [line[1:] for line in (ROOT / ".dockerignore").read_text().split() if line[0] == "!"]

@@ -107,3 +107,14 @@ def test_other_folders_are_refused_with_the_advice(tmp_path, user):
         folders.add(str(tmp_path))
     (tmp_path / "home" / "games.json").write_text('["/none such", 7]')
     assert folders.games() == {}
+
+
+def test_a_room_is_shared_as_one_page(finished):
+    answer = finished.post("/api/start/rooms/recent-0/share", json={"title": "Den & kitchen"})
+    state = finished.jobs.wait(answer.json()["job"], 300)
+    assert state.state == "done", state.note
+    page = finished.get(f"/api/exports/files/{state.result['id']}")
+    assert len(page.content) == state.result["bytes"] < 5_000_000
+    assert 'filename="room.html"' in page.headers["content-disposition"]
+    assert page.text.startswith("<!doctype html>") and "connect-src" in page.text
+    assert "<title>Den &amp; kitchen" in page.text

@@ -13,6 +13,7 @@ from PIL import Image
 
 from world2minecraft.construction import WORLD_NAME, write_build
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
+from world2minecraft.core.files import write_bytes
 from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.editing.build_into_world import affected_mask, build_into_world
@@ -30,8 +31,11 @@ from world2minecraft.reconstruction.file_stages import built_volume, scene_name
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.rendering.preview import preview
 from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of_choice
+from world2minecraft.sceneforge.share.page import room_page
+from world2minecraft.sceneforge.share.room_data import SharedRoom
 
 WORLD, PICTURE = "world", "png"
+SHARED = "room.html"
 
 
 def export(
@@ -88,6 +92,20 @@ def _zipped(folder: Path, path: Path) -> Path:
     shutil.make_archive(str(path.with_suffix("")), "zip", folder.parent, folder.name)
     shutil.rmtree(folder)
     return path
+
+
+def share(room: str, title: str, target: str, progress: Progress) -> dict[str, Any]:
+    """Write a finished run as one page into the folder ``target``, without photos.
+
+    Returns:
+        A dict with ``file``, the file name, and ``bytes``, its size.
+    """
+    progress("share", 0, 1)
+    page, _ = room_page(SharedRoom.read(Path(room), title), 0, None, progress)
+    Path(target).mkdir(parents=True, exist_ok=True)
+    write_bytes(Path(target) / SHARED, page)
+    progress("share", 1, 1)
+    return {"file": SHARED, "bytes": len(page)}
 
 
 def install(

@@ -22,6 +22,7 @@ TASKS = Registry(
         "reconstruct": "world2minecraft.sceneforge.jobs.reconstruct_tasks:reconstruct",
         "demo": "world2minecraft.sceneforge.jobs.reconstruct_tasks:demo",
         "export": "world2minecraft.sceneforge.jobs.export_tasks:export",
+        "share": "world2minecraft.sceneforge.jobs.export_tasks:share",
         "install": "world2minecraft.sceneforge.jobs.export_tasks:install",
         "into_world": "world2minecraft.sceneforge.jobs.export_tasks:into_world",
         "on_server": "world2minecraft.sceneforge.jobs.export_tasks:on_server",

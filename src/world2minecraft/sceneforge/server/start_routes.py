@@ -12,6 +12,8 @@ GET    /api/start/rooms/ID/picture         return an image of a capture's room, 
 POST   /api/start/captures/ID/reconstruct  ``{blocks_per_metre, style, known}``: start a job
 DELETE /api/start/captures/ID              delete the capture and its room
 GET    /api/start/rooms/ID/report          return the report of a room
+POST   /api/start/rooms/ID/share           start a job that writes the room as one page, which
+                                           ``/api/exports/files`` returns
 POST   /api/start/rooms/ID/install         ``{game}``: start a job that copies its world into a game
 POST   /api/start/demo                     ``{kind, seed}``: start a job that generates a room, or
                                            return the running job with the same parameters
@@ -24,6 +26,7 @@ GET    /api/jobs                           list all jobs; POST /api/jobs/ID/canc
 """
 
 import asyncio
+import secrets
 from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
@@ -76,6 +79,7 @@ def routes() -> list[BaseRoute]:
         Route("/api/start/rooms/{id}/picture", _room_picture),
         Route(one + "/reconstruct", _reconstruct, methods=["POST"]),
         Route("/api/start/rooms/{id}/report", _room_report),
+        Route("/api/start/rooms/{id}/share", _share_room, methods=["POST"]),
         Route("/api/start/rooms/{id}/install", _install_room, methods=["POST"]),
         Route("/api/start/demo", _demo, methods=["POST"]),
         Route("/api/start/open", _open, methods=["POST"]),
@@ -283,6 +287,19 @@ async def _room_picture(request: Request) -> Response:
 async def _room_report(request: Request) -> Response:
     place = get_workspace(request).room_named(request.path_params["id"]) / "report.html"
     return _file(place, {"content-security-policy": REPORT_POLICY})
+
+
+async def _share_room(request: Request) -> Response:
+    workspace = get_workspace(request)
+    body, number = await read_json_object(request), secrets.token_hex(8)
+    room, target = workspace.room_named(request.path_params["id"]), workspace.exports / number
+    title = str(body.get("title") or room.name)[:100]
+    work = run_in_subprocess("share", room, room=str(room), title=title, target=str(target))
+
+    def shared(report: JobProgress) -> dict[str, Any]:
+        return {"id": number} | work(report)
+
+    return JSONResponse({"job": workspace.jobs.start(title, shared, {"share": 4.0})})
 
 
 async def _install_room(request: Request) -> Response:

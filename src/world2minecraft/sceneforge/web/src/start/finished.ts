@@ -22,13 +22,31 @@ export function finishedRoom(id: string, title: string, jobs: Jobs, open: () => 
   const report = h("a", { class: "button is-large", href: `api/start/rooms/${id}/report`, target: "_blank", rel: "noopener" }, words.report);
   const install = plainButton(words.install, () => void installRoom(id, jobs, say), "button is-large");
   install.dataset.do = "install";
+  const share = plainButton(words.share, () => void shareRoom(id, title, jobs, note), "button is-large");
+  share.dataset.do = "share";
   return h(
     "section",
     { class: "finished", "aria-label": words.title },
     h("img", { class: "finished-picture", src: `api/start/rooms/${id}/picture`, alt: words.alt(title) }),
-    h("div", { class: "row" }, edit, report, install),
+    h("div", { class: "row" }, edit, report, share, install),
     note,
   );
+}
+
+async function shareRoom(id: string, title: string, jobs: Jobs, note: HTMLElement): Promise<void> {
+  const words = TEXT.start.finished;
+  try {
+    fill(note, words.sharing);
+    const { job } = await sendJson<{ job: string }>(`api/start/rooms/${id}/share`, { title });
+    const state = await ended(job, jobs);
+    if (state.state !== "done") throw new Error(state.note || TEXT.start.cancelled);
+    const made = state.result as { id: string; file: string; bytes: number };
+    const link = h("a", { href: `api/exports/files/${made.id}`, download: made.file }, words.shared(made.file, TEXT.start.megabytes(made.bytes / 2 ** 20)));
+    fill(note, link);
+    link.click();
+  } catch (error) {
+    fill(note, said(error));
+  }
 }
 
 async function installRoom(id: string, jobs: Jobs, say: (text: string) => void): Promise<void> {
