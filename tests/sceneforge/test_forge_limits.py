@@ -66,6 +66,18 @@ BAD = [
 ]
 
 
+@pytest.mark.parametrize("chunked", [False, True])
+def test_too_large_a_body_is_answered_and_not_reset(server, chunked):
+    body = b" " * (MAX_JSON_BYTES + (1 << 20))
+    parts = (body[start : start + 65536] for start in range(0, len(body), 65536))
+    for _ in range(3):
+        with client(server) as script:
+            answer = script.post("/api/do", content=parts if chunked else body)
+        assert answer.status_code == 413
+        assert answer.json()["error"] == "the request is larger than 8 MB"
+        parts = iter([body])
+
+
 @pytest.mark.parametrize(("body", "why"), BAD, ids=range(len(BAD)))
 def test_bad_json_is_refused_over_http(server, body, why):
     code, error = posted(server, body)

@@ -4,6 +4,8 @@ Sizes are checked before any data is stored, by the ``Content-Length`` header if
 by counting the received bytes.
 """
 
+import asyncio
+import contextlib
 import json
 import re
 from typing import Any
@@ -16,6 +18,8 @@ from world2minecraft.core.errors import UsageError
 MAX_JSON_BYTES = 8 << 20  # 200,000 runs of a 64 M cell grid as text take 4 MB.
 MAX_JSON_DEPTH = 32  # Commands have at most five.
 MAX_UPLOAD_BYTES = 512 << 20
+MAX_DRAINED_BYTES = 32 << 20  # Larger bodies are refused unread, at the price of a reset.
+MAX_DRAIN_S = 20.0
 UPLOADS = "/api/upload"  # Paths that begin so take files.
 STRINGS = re.compile(rb'"(?:[^"\\]|\\.)*"', re.DOTALL)
 
@@ -51,7 +55,10 @@ class BodyLimit:
         if headers.get(b"content-encoding", b"identity").lower() not in (b"", b"identity"):
             await _answer(send, 415, "compressed bodies are not supported; upload a ZIP file")
             return
-        if _length(headers.get(b"content-length")) > most:
+        length = _length(headers.get(b"content-length"))
+        if length > most:
+            if length <= MAX_DRAINED_BYTES:
+                await _drain(receive)
             await _answer(send, 413, _too_large(most))
             return
         await self._counted(scope, receive, send, most)
@@ -76,7 +83,20 @@ class BodyLimit:
             await self.app(scope, counting, noting)
         except TooLargeError:
             if not began:
+                await _drain(receive)
                 await _answer(send, 413, _too_large(most))
+
+
+async def _drain(receive: Receive) -> None:
+    """Read the rest of a body and discard it, up to a size and for a limited time.
+
+    A client that is still sending when the connection closes sees a reset in place of the answer.
+    """
+    left = MAX_DRAINED_BYTES
+    with contextlib.suppress(TimeoutError):
+        async with asyncio.timeout(MAX_DRAIN_S):
+            while left > 0 and (message := await receive()).get("more_body", False):
+                left -= len(message["body"])
 
 
 def parse_json(data: bytes | str) -> Any:
