@@ -35,6 +35,8 @@ COMMANDS = {
         "build run --out fine --blocks-per-metre 2 --style display",
         "convert run room.glb",
         "convert run room.litematic",
+        "share run --out room.html",
+        "share run --out room.gif",
         "rooms generate --house --rooms 4 --out house",
     ),
     "photos": (
