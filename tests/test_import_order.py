@@ -31,6 +31,7 @@ ORDER = (
     "sceneforge",
     "api",
     "cli",
+    "__main__",
 )
 # Stages of a reconstruction never import each other; pipeline.py joins them. Semantics may read
 # the layout: both are the paper's labels of cells.
@@ -42,7 +43,7 @@ TORCH_USERS = (
     "reconstruction.occupancy.hf_segmenter",
 )
 HEAVY_FOR_HELP = ("numpy", "numba", "scipy", "sklearn", "PIL", "rich", "jinja2", "pydantic")
-MAX_TOP_ENTRIES = 24
+MAX_TOP_ENTRIES = 25
 
 Edges = dict[str, set[str]]
 

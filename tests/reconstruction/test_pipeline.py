@@ -169,6 +169,6 @@ def test_build_at_another_scale_and_from_a_bare_array(out, tmp_path):
 def test_the_report_stands_alone(out):
     page = (out / "report.html").read_text()
     crops = len(re.findall(r'alt="Object \d+ in the world"', page))
-    assert crops > 0 and page.count("data:image/") == 14 + 2 * crops
+    assert crops > 0 and page.count("data:image/") == 15 + 2 * crops
     assert "://" not in page.split("</style>")[1]
     assert "Photos and built world" in page and "Comparison with ground truth" in page

@@ -43,7 +43,6 @@ def furniture(placements) -> list[tuple[int, str, int]]:
     ("name", "changes"),
     [
         pytest.param("armchair", {"template": "stool", "parameters": {}}, id="template"),
-        pytest.param("sofa", {"template": "sofa_leather"}, id="material"),
         pytest.param("armchair", {"quarter_turns": 0}, id="turn"),
     ],
 )

@@ -163,7 +163,8 @@ def test_two_tabs_stay_in_step_and_saving_writes_the_files(forge, open_tab, tmp_
     other = open_tab()
     forge.key("Shift+Digit3", "ArrowRight", "Shift+Digit2", "b")
     other.key("Shift+Digit3", "ArrowRight", "Delete")
-    forge.until("s.scene.rev", 1)
+    for tab in (forge, other):
+        tab.until("s.scene.rev", 1)
     assert forge.state("s.objects.size") == other.state("s.objects.size")
     assert forge.state("s.mode") == "voxels", "a tab follows the mode of another"
     assert forge.state("s.scene.counts") == other.state("s.scene.counts")
