@@ -82,7 +82,7 @@ def test_folders_are_for_the_user_of_this_machine_alone(finished, monkeypatch):
         assert "on the computer that runs w2m" in answer.json()["error"]
 
 
-@pytest.mark.parametrize("text", ["\0", "~none such", "/proc/1/root/x", "a" * 5000])
+@pytest.mark.parametrize("text", ["\0", "~none such", "/none such/x", "a" * 5000])
 def test_paths_that_are_no_folders_are_refused(text):
     with pytest.raises(UsageError, match="cannot read the folder"):
         list_folder(text)

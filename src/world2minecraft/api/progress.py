@@ -25,6 +25,7 @@ STAGE_TEXTS = {
     "compile": "Compiling kernels",
     "count": "Counting cells",
     "export": "Exporting",
+    "film": "Drawing the film",
     "find": "Finding objects",
     "follow": "Following the capture",
     "frames": "Reading frames",
@@ -61,7 +62,6 @@ STAGE_TEXTS = {
     "views": "Planning views",
     "walks": "Planning walks",
     "ways": "Planning ways to things",
-    "film": "Drawing the film",
     "words": "Rephrasing instructions",
     "write": "Writing files",
 }

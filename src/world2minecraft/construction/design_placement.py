@@ -246,7 +246,7 @@ def _upholster(
 ) -> list[str]:
     """Return states of wood or stone, or of wool if that is closer to the colour.
 
-    White leather is made of stone, and brown leather of wood: in no green would either be right.
+    White leather is built of stone and brown leather of wood. Neither has a green or a blue.
     """
     solid = [shape_of(state, PLAIN) in SOLID_SHAPES for state in states]
     if kind not in ("wood", "stone") or not any(solid):

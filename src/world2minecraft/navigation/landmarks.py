@@ -132,9 +132,11 @@ def landmarks_of(
     named = names or {}
     owned = np.flatnonzero((volume.instance.reshape(-1) > 0) & (volume.states.reshape(-1) > 0))
     order = owned[np.argsort(volume.instance.reshape(-1)[owned], kind="stable")]
+    if not len(order):
+        return ()
     numbers, firsts = np.unique(volume.instance.reshape(-1)[order], return_index=True)
     found = []
-    for number, cells in zip(numbers, np.split(order, firsts[1:]), strict=False):  # One, of none.
+    for number, cells in zip(numbers, np.split(order, firsts[1:]), strict=True):
         class_id = _mode(volume.semantic.reshape(-1)[cells])
         if class_id not in OBJECT_CLASSES:
             continue

@@ -135,7 +135,7 @@ def games_here() -> dict[str, Game]:
 
 
 def worlds_of(games: Iterable[Game]) -> dict[str, tuple[Game, Path]]:
-    """Return the worlds of installations by id, each with its installation."""
+    """Return the worlds in the saves folders of installations: installation and folder by id."""
     found = {}
     for game in games:
         folders = sorted(game.saves.iterdir()) if game.saves.is_dir() else []

@@ -27,6 +27,7 @@ from world2minecraft.core.files import read_json
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.evaluation.report.finished_run import read_built
 from world2minecraft.formats.run_arrays import read_evidence, read_room
+from world2minecraft.geometry.morphology import erode_faces
 from world2minecraft.sceneforge.array_messages import pack_arrays
 from world2minecraft.sceneforge.build_preview import BlockBuild, BuildOptions
 
@@ -104,12 +105,7 @@ def _open_cells(grid: OccupancyGrid) -> tuple[dict[str, Any], dict[str, np.ndarr
     walls = np.isin(grid.labels, (SemanticClass.WALL, SemanticClass.WINDOW))
     shown = grid.occupied & (grid.labels != SemanticClass.CEILING)
     shown &= ~(walls & (height > WALL_HEIGHT_M))
-    padded = np.pad(shown, 1)
-    inner = np.ones(shown.shape, bool)
-    for axis in range(3):
-        for step in (-1, 1):
-            inner &= np.roll(padded, step, axis)[1:-1, 1:-1, 1:-1]
-    cells = np.argwhere(shown & ~inner)
+    cells = np.argwhere(shown & ~erode_faces(shown))
     at = tuple(cells.T)
     arrays = {
         "position": (grid.origin_m + (cells + 0.5) * grid.voxel_m).astype(np.float32),

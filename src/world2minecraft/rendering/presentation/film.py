@@ -100,7 +100,9 @@ class RoomStage:
     def blocks(self, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return a frame of the blocks, uint8 [H, W, 3], and their depth in metres, 0 for none."""
         seen = self.build.seen_by(pose)
-        scene = self._scenes.setdefault(id(seen), prepare_scene(seen))
+        if id(seen) not in self._scenes:  # The build keeps the few volumes that it returns.
+            self._scenes[id(seen)] = prepare_scene(seen)
+        scene = self._scenes[id(seen)]
         picture = render_volume(
             scene, self.camera, pose, outputs=("colour", "depth"), samples=SUPERSAMPLE
         )

@@ -20,6 +20,7 @@ from world2minecraft.core.vocabulary import object_title
 from world2minecraft.evaluation.report.finished_run import read_built
 from world2minecraft.formats.objects_and_placements import read_objects
 from world2minecraft.formats.run_arrays import read_room
+from world2minecraft.geometry.morphology import erode_faces
 from world2minecraft.rendering.output.animation import animation_writer
 from world2minecraft.rendering.presentation.film import PAPER, RoomStage, with_caption
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild
@@ -137,7 +138,8 @@ class RoomFilm:
         A sweep around the middle of the room, as of someone who turns with a phone.
         """
         grid, rng = self.stage.grid, np.random.default_rng(0)
-        cells = np.argwhere(_surface(self._labels > 0))
+        filled = self._labels > 0
+        cells = np.argwhere(filled & ~erode_faces(filled))
         cells = np.repeat(cells, POINTS_PER_CELL, axis=0)
         points = cell_centers_m(cells, grid.origin_m, grid.voxel_m)
         points += rng.uniform(-0.5, 0.5, points.shape) * grid.voxel_m
@@ -241,16 +243,6 @@ def heights_m(depth_m: np.ndarray, camera: Camera, pose: np.ndarray) -> np.ndarr
     across = (columns + 0.5 - camera.cx_px) / camera.fx_px
     down = (rows + 0.5 - camera.cy_px) / camera.fy_px
     return (pose[2, 0] * across + pose[2, 1] * down + pose[2, 2]) * depth_m + pose[2, 3]
-
-
-def _surface(filled: np.ndarray) -> np.ndarray:
-    """Return the cells that have an empty neighbour, bool [X, Y, Z]."""
-    padded = np.pad(filled, 1)
-    inner = np.ones_like(filled)
-    for axis in range(3):
-        for step in (-1, 1):
-            inner &= np.roll(padded, step, axis)[1:-1, 1:-1, 1:-1]
-    return filled & ~inner
 
 
 def _frames_of(seconds: float) -> int:
