@@ -84,7 +84,7 @@ class ViewPlanner:
         self._pitch = float(np.radians(PITCHES_DEG[row]))
         return self._yaw, self._pitch
 
-    def _look_around(self, eye_m: np.ndarray):
+    def _look_around(self, eye_m: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the patch, the value of seeing it and its side, [P, Y] by pitch and yaw."""
         pitch, yaw = np.meshgrid(self._pitches, self._yaws, indexing="ij")
         cosine = np.cos(pitch)
@@ -102,7 +102,7 @@ class ViewPlanner:
         worth *= np.minimum(far_m * np.radians(RAY_DEG), PATCH_M) ** 2 * cosine
         worth *= np.interp(far_m, [NEAR_M, NEAR_M, GOOD_M, FAR_M, FAR_M], [0, 1, 1, FAR_WORTH, 0])
         side = (yaw * SIDES / (2 * np.pi)).astype(np.int64) % SIDES
-        return patch.reshape(pitch.shape), worth, side
+        return np.reshape(patch, pitch.shape), worth, side
 
     def _freshness(self, patch: np.ndarray, side: np.ndarray) -> np.ndarray:
         seen = self._seen[patch]
