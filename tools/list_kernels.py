@@ -12,27 +12,31 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections import defaultdict
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from numba.core.dispatcher import Dispatcher
 
 from world2minecraft.cli import main as run_command
+from world2minecraft.core import precompile
 from world2minecraft.core.jit import KERNEL_CACHE
 from world2minecraft.core.kernel_cache import called_kernels, kernel_digest
 from world2minecraft.core.precompile import LIST, WORK, read_kernel_calls, type_text
 
+# Commands of ``w2m`` by kind of work. Those in parentheses prepare files and are not recorded.
 COMMANDS = {
     "room": (
         "demo --out demo --frames 12",
         "rooms scan --kind kitchen --seed 3 --out scan --frames 8",
         "reconstruct scan --out run",
-        "evaluate reconstruction run scan",
+        "build run --out fine --blocks-per-metre 2 --style display",
+    ),
+    "pictures": (
+        "(demo --out run --frames 12)",
+        "evaluate reconstruction run run/capture",
         "render run --out picture.png",
         "render run --out photo.png --photo --size 64x48",
         "render run --out orbit --orbit --frames 2 --outputs all",
-        "build run --out fine --blocks-per-metre 2 --style display",
         "convert run room.glb",
         "convert run room.litematic",
         "share run --out room.html",
@@ -56,45 +60,63 @@ RECORD = "W2M_KERNEL_RECORD"  # Names the file for the kernels of a process.
 def main() -> None:
     """Run the commands and write the list."""
     chosen = sys.argv[1:] or list(WORK)
-    found: dict[str, set[str]] = defaultdict(set)  # Kinds of work of each call, as JSON.
-    for call in read_kernel_calls() if LIST.exists() else ():
-        found[json.dumps([call.kernel, call.types])].update(set(call.work) - set(chosen))
+    found = {
+        (call.kernel, json.dumps(call.types)): Found(set(call.work) - set(chosen), call.size)
+        for call in (read_kernel_calls() if LIST.exists() else ())
+    }
     for work in chosen:
-        for line in record(COMMANDS[work]):
-            found[line].add(work)
-    write_list({line: work for line, work in found.items() if work})
+        for kernel, types, size in record(COMMANDS[work]):
+            entry = found.setdefault((kernel, json.dumps(types)), Found(set(), size))
+            entry.work.add(work)
+    write_list({call: entry for call, entry in found.items() if entry.work})
 
 
-def record(commands: tuple[str, ...]) -> set[str]:
-    """Run commands one after the other and return the calls of their processes, as JSON."""
+class Found(NamedTuple):
+    """The kinds of work that make a call, and the size of its code in kB."""
+
+    work: set[str]
+    size: int
+
+
+def record(commands: tuple[str, ...]) -> list[tuple[str, list[Any], int]]:
+    """Run commands one after the other and return the calls of their processes.
+
+    They begin with an empty cache: of a kernel that is loaded, those it calls are not seen.
+    """
     with tempfile.TemporaryDirectory() as folder:
         for number, command in enumerate(commands):
             sys.stderr.write(f"w2m {command}\n")
-            environment = {**os.environ, RECORD: str(Path(folder) / f"{number}.calls")}
-            words = f"{sys.executable} {__file__} -- {command}"
+            kind = "prepared" if command.startswith("(") else "calls"
+            environment = {
+                **os.environ,
+                RECORD: str(Path(folder) / f"{number}.{kind}"),
+                "NUMBA_CACHE_DIR": str(Path(folder) / f"{kind}-cache"),
+            }
+            words = f"{sys.executable} {__file__} -- {command.strip('()')}"
             subprocess.run(words, shell=True, cwd=folder, env=environment, check=True)
-        return {
-            line for file in Path(folder).glob("*.calls") for line in file.read_text().splitlines()
-        }
+        files = sorted(Path(folder).glob("*.calls"))
+        return [tuple(row) for file in files for row in json.loads(file.read_text())]
 
 
 def run_recorded() -> None:
     """Run a command of ``w2m`` and write the kernels that it called."""
     file = Path(os.environ[RECORD])
-    atexit.register(lambda: file.write_text("\n".join(sorted(loaded_calls()))))
+    precompile.needs_compiling = lambda work: False
+    atexit.register(lambda: file.write_text(json.dumps(loaded_calls())))
     del sys.argv[1]
     run_command()
 
 
-def loaded_calls() -> set[str]:
-    """Return the compiled calls of all kernels of this process, as JSON."""
-    result = set()
+def loaded_calls() -> list[tuple[str, list[Any], int]]:
+    """Return the compiled calls of all kernels of this process, with the size of their code."""
+    result = []
     for name, kernel in loaded_kernels().items():
         for signature in kernel.overloads:
             try:
-                result.add(json.dumps([name, [type_text(kind) for kind in signature]]))
+                types = [type_text(kind) for kind in signature]
             except ValueError:  # Compiled with what calls it.
                 continue
+            result.append((name, types, compiled_size(kernel)))
     return result
 
 
@@ -109,35 +131,29 @@ def loaded_kernels() -> dict[str, Dispatcher]:
     }
 
 
-def write_list(found: dict[str, set[str]]) -> None:
+def write_list(found: dict[tuple[str, str], Found]) -> None:
     """Write the calls with what they call, the work that needs them and their size."""
-    for line in found:
-        importlib.import_module(f"world2minecraft.{json.loads(line)[0].partition(':')[0]}")
+    for name, _ in found:
+        importlib.import_module(f"world2minecraft.{name.partition(':')[0]}")
     kernels = loaded_kernels()
     names = {kernel.py_func: name for name, kernel in kernels.items()}
     called = {
         name: {names[one] for one in called_kernels(kernel.py_func) if one in names} - {name}
         for name, kernel in kernels.items()
     }
-    work: dict[str, set[str]] = defaultdict(set)
-    for line, kinds in found.items():
-        name = json.loads(line)[0]
-        for one in {name, *called[name]}:
-            work[one] |= kinds
     rows: list[dict[str, Any]] = [
         {
             "kernel": name,
-            "types": types,
+            "types": json.loads(types),
             "calls": sorted(called[name]),
-            "work": [kind for kind in WORK if kind in work[name]],
-            "size": compiled_size(kernels[name]),
+            "work": [work for work in WORK if work in entry.work],
+            "size": entry.size,
         }
-        for name, types in sorted(json.loads(line) for line in found)
+        for (name, types), entry in sorted(found.items())
     ]
     listed = ",\n".join(json.dumps(row) for row in rows)
     LIST.write_text(f"[\n{listed}\n]\n")
-    kernels_listed = len({row["kernel"] for row in rows})
-    sys.stderr.write(f"{LIST}: {len(rows)} calls of {kernels_listed} kernels\n")
+    sys.stderr.write(f"{LIST}: {len(rows)} calls of {len({name for name, _ in found})} kernels\n")
 
 
 def compiled_size(kernel: Dispatcher) -> int:

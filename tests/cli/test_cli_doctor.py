@@ -34,10 +34,10 @@ def test_warming_compiles_all_kinds_of_work_after_the_checks(capsys, monkeypatch
     monkeypatch.setattr("world2minecraft.core.precompile.compile_kernels", compile_kernels)
     assert cli.run(["doctor", "--warm"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "ok   kernels       12 compiled, the others were ready"
-    assert works == ["room", "photos", "dataset", "navigation"]
+    assert lines[0] == "ok   kernels       15 compiled, the others were ready"
+    assert works == ["room", "pictures", "photos", "dataset", "navigation"]
     monkeypatch.setattr(doctor, "examine", lambda: [doctor.Check("x", "bad", "y")])
-    assert cli.run(["doctor", "--warm"]) == 1 and len(works) == 4
+    assert cli.run(["doctor", "--warm"]) == 1 and len(works) == 5
 
 
 @pytest.mark.parametrize("options", [[], ["--json"]])

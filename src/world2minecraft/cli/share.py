@@ -59,7 +59,7 @@ def run(
             photos=photos,
             capture=capture,
             force=force,
-            progress=compile_first(shown),
+            progress=compile_first(shown, "pictures"),
         )
     if made.frames:
         print(f"{made.path}: {made.frames} frames, {made.bytes / 1e6:.1f} MB")

@@ -33,7 +33,7 @@ from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.progress import Progress, no_progress
 
 LIST = Path(__file__).parent / "data" / "kernels.json"
-WORK = ("room", "photos", "dataset", "navigation")
+WORK = ("room", "pictures", "photos", "dataset", "navigation")
 STAGE = "compile"
 NOTE = "once for this version"
 WAIT_S = 0.5  # Between two looks at the lock.

@@ -72,7 +72,7 @@ def run(
             task=task,
             assets=assets,
             blocks_per_metre=blocks_per_metre,
-            progress=compile_first(progress),
+            progress=compile_first(progress, "pictures"),
         )
     for one in found.built:
         print(f"{one.method}, {one.name}: {one.built} of {one.objects} objects, {one.folder}")

@@ -46,7 +46,7 @@ def run(
     from world2minecraft.core.precompile import compile_first
 
     with show_progress() as progress:
-        noted = compile_first(progress)
+        noted = compile_first(progress, "pictures")
         pages = draw_furniture(out, names or (), class_name=kind, progress=noted)
     for file, pieces in pages.items():
         print(f"{file}: {len(pieces)} designs")

@@ -83,7 +83,7 @@ def run(
             exposure=exposure, sun_shadow=sun_shadow, samples=samples, texture_px=textures,
             packs=pack or (), photo=photo, photo_samples=photo_samples, device=device,
             threads=threads, jobs=jobs,
-            progress=compile_first(progress),
+            progress=compile_first(progress, "pictures"),
         )  # fmt: skip
     if as_json:
         print(json.dumps(drawn.poses, indent=1))

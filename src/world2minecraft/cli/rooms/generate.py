@@ -106,7 +106,7 @@ def _write_room(
     from world2minecraft.core.precompile import compile_first
 
     with show_progress() as shown:
-        progress = compile_first(shown)
+        progress = compile_first(shown, "pictures")
         progress("room", 0, 1)
         if house is None:
             drawn = None if shape == "any" else shape
@@ -136,7 +136,7 @@ def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> No
     from world2minecraft.core.precompile import compile_first
 
     with show_progress() as shown:
-        progress = compile_first(shown)
+        progress = compile_first(shown, "pictures")
         written = generate_worlds(worlds, houses=houses, seed=seed, style=style, progress=progress)
     print(f"\n{len(written)} houses in {worlds}.")
     print(f"  look   w2m render {written[0]} --out house.png")
