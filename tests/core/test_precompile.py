@@ -141,6 +141,14 @@ def test_kernels_are_compiled_once_and_at_the_first_report(cache, asked):
     assert not precompile.needs_compiling("room") and precompile.needs_compiling("photos")
 
 
+def test_callbacks_that_compile_do_not_wait_for_themselves(cache, asked, monkeypatch):
+    monkeypatch.setattr(precompile.time, "sleep", lambda seconds: pytest.fail("waits for itself"))
+    steps = []
+    inner = precompile.compile_first(lambda *step: steps.append(step[0]))
+    precompile.compile_first(inner)("fuse", 0, 1)
+    assert len(asked) == 4 and steps[-1] == "fuse" and set(steps[:-1]) == {"compile"}
+
+
 def test_a_change_of_the_list_compiles_again(cache, monkeypatch):
     precompile.compile_kernels("room")
     monkeypatch.setattr(precompile, "_state_digest", lambda: "other")

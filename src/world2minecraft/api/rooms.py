@@ -199,9 +199,11 @@ def _follow(
     progress: Progress,
 ) -> None:
     """Reconstruct a capture that is still being recorded until it is complete."""
+    from world2minecraft.core.precompile import compile_first
     from world2minecraft.reconstruction import online
 
-    online.follow(capture, out, chosen, labels=labels, idle_s=idle_s, progress=progress)
+    compiled = compile_first(progress)
+    online.follow(capture, out, chosen, labels=labels, idle_s=idle_s, progress=compiled)
 
 
 def build(

@@ -153,12 +153,10 @@ def run(
     """
     from world2minecraft.api import reconstruct
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.core.precompile import compile_first
 
     changes = parse_settings(settings)
     print_style_note(blocks_per_metre, changes.get("build.style", style))
-    with show_progress() as shown:
-        progress = compile_first(shown)
+    with show_progress() as progress:
         made = reconstruct(
             capture, out, labels=labels, method=method, voxel_m=voxel,
             blocks_per_metre=blocks_per_metre, style=style, palette=palette,

@@ -37,6 +37,7 @@ WORK = ("room", "pictures", "photos", "dataset", "navigation")
 STAGE = "compile"
 NOTE = "once for this version"
 WAIT_S = 0.5  # Between two looks at the lock.
+_this_thread = threading.local()
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def compile_kernels(work: str, progress: Progress = no_progress) -> int:
     Returns:
         The number of kernels that were compiled.
     """
-    if not needs_compiling(work):
+    if _this_thread.__dict__.get("compiles") or not needs_compiling(work):
         return 0
     lock = Lock(KERNEL_CACHE / "compile.lock", "filled")
     while True:
@@ -83,6 +84,7 @@ def compile_kernels(work: str, progress: Progress = no_progress) -> int:
         except ConflictError:
             progress(STAGE, 0, 0, "in another process")
             time.sleep(WAIT_S)
+    _this_thread.compiles = True  # A callback that compiles must not wait for its caller.
     try:
         if not needs_compiling(work):  # The other process did it.
             return 0
@@ -94,6 +96,7 @@ def compile_kernels(work: str, progress: Progress = no_progress) -> int:
                 former.unlink(missing_ok=True)
             _done_file(work).write_bytes(b"")
     finally:
+        _this_thread.compiles = False
         lock.release()
     return compilation.compiled
 
