@@ -15,6 +15,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.reconstruction.instances.change_points import change_points
 from world2minecraft.reconstruction.instances.object_voxels import (
     ObjectVoxels,
     cells_by_owner,
@@ -51,7 +52,6 @@ MIN_COLUMNS = 6
 MIN_UNIT_M = 0.32  # The narrowest unit of a row.
 MIN_RUN_M = 0.9  # A run that is shorter is one unit.
 COLOUR_STEP = 0.05  # In Oklab: a front that differs by less looks the same; light alone gives 0.03.
-SEAM_PENALTY = 5.0  # What a seam costs, in squared steps summed over the slices of a run.
 # Arms with more of their tops seen are units of their own. Of the kitchen's counter 0.43 and 0.51
 # are seen; of the two units at each corner of generated kitchens, one has 0.8 or more.
 MAX_TOP_SHARE = 0.7
@@ -269,9 +269,10 @@ def split_at_seams(voxels: ObjectVoxels) -> list[np.ndarray]:
     if (last - first) * voxels.voxel_m < MIN_RUN_M:
         return [voxels.own]
     colours = _front_colours(voxels, axis)[first:last]
+    step = _colour_step(colours)
     cuts = [
         first,
-        *(first + cut for cut in _change_points(colours, voxels.cells_of(MIN_UNIT_M))),
+        *(first + cut for cut in change_points(colours / step, voxels.cells_of(MIN_UNIT_M))),
         last,
     ]
     pieces = []
@@ -361,32 +362,6 @@ def _front_colours(voxels: ObjectVoxels, axis: int) -> np.ndarray:
 def _count_front_cells(own: np.ndarray, free: np.ndarray) -> int:
     """Count the object's cells with free air in front, on the side of index 0."""
     return int((own[:, 1:] & free[:, :-1]).sum())
-
-
-def _change_points(colours: np.ndarray, least: int) -> list[int]:
-    """Return the cuts of a run with the least squared change, each worth its penalty."""
-    known = np.asarray(np.isfinite(colours).all(axis=1))
-    values = np.where(known[:, None], colours, 0.0) / _colour_step(colours)
-    total = np.vstack([np.zeros(3), np.cumsum(values, axis=0)])
-    square = np.concatenate([[0.0], np.cumsum((values**2).sum(axis=1))])
-    count = np.concatenate([[0], np.cumsum(known)])
-    best = np.full(len(colours) + 1, np.inf)
-    best[0] = -SEAM_PENALTY
-    before = np.zeros(len(colours) + 1, np.int64)
-    for end in range(least, len(colours) + 1):
-        for begin in [0, *range(least, end - least + 1)]:
-            seen = max(int(count[end] - count[begin]), 1)
-            spread = square[end] - square[begin]
-            spread -= float(((total[end] - total[begin]) ** 2).sum()) / seen
-            cost = best[begin] + SEAM_PENALTY + spread
-            if cost < best[end] - 1e-9:
-                best[end], before[end] = cost, begin
-    cuts: list[int] = []
-    at = int(before[len(colours)])
-    while at > 0:
-        cuts.append(at)
-        at = int(before[at])
-    return cuts[::-1]
 
 
 def _colour_step(colours: np.ndarray) -> float:

@@ -42,6 +42,7 @@ from world2minecraft.reconstruction.instances.object_extent import (
 from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 from world2minecraft.reconstruction.instances.split_by_colour import split_by_colour
 from world2minecraft.reconstruction.instances.split_by_support import split_by_support
+from world2minecraft.reconstruction.instances.split_by_votes import split_by_votes
 from world2minecraft.reconstruction.instances.split_chairs import (
     merge_chair_backs,
     split_touching_chairs,
@@ -132,6 +133,7 @@ def find_objects(
         binary &= ~lumps
         before = owners
         if votes is not None:
+            owners = split_by_votes(owners, grid, *votes)
             owners, labels = merge_same_names(owners, grid, _votes_of(owners, *votes))
             grid = replace(grid, labels=labels)
         merged, labels = merge_flush_pieces(owners, grid, fixed)

@@ -7,11 +7,7 @@ import numpy as np
 from world2minecraft.core.types import Layout, LayoutObject, ObjectInstance
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.reconstruction.naming.name_model import ObjectTraits, name_objects
-from world2minecraft.reconstruction.naming.room_context import (
-    CONFIDENCE,
-    WASHBASIN,
-    find_washbasin,
-)
+from world2minecraft.reconstruction.naming.room_context import name_by_context
 
 FAR_M = 9.0  # Of walls and ceilings where there is no layout.
 
@@ -46,10 +42,7 @@ def name_instances(
         mine = [number for number, own in enumerate(rooms) if own == room]
         layout = None if room < 0 else layouts[room]
         traits = traits_of([instances[n] for n in mine], layout, votes[mine])
-        named = name_objects(traits)
-        basin = find_washbasin(traits, named)
-        if basin is not None:
-            named[basin] = (WASHBASIN, CONFIDENCE)
+        named = name_by_context(traits, name_objects(traits))
         for number, one in zip(mine, named, strict=True):
             result[number] = one
     return result

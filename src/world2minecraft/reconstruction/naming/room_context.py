@@ -1,51 +1,107 @@
 """What the other objects of a room say of an object: the cabinet beside a toilet is a washbasin.
 
-The segmentation network calls the body of a washstand a cabinet and its top a counter, as NYUv2's
-annotators do, so votes alone never name one.
+The segmentation network votes for the 40 classes of NYUv2, which lack ovens and showers, and calls
+the body of a washstand a cabinet and its top a counter, as NYUv2's annotators do. So votes alone
+name no washstand and no stove, and take any dark box for a shower.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
+from world2minecraft.core.classes import CLASS_DISPLAY_NAMES
 from world2minecraft.core.vocabulary import nyu40_names
 from world2minecraft.reconstruction.naming.name_model import ObjectTraits
+from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT, class_votes
 
-WASHBASIN = "washbasin"
-BATHROOM = ("toilet", "bathtub", "shower")
+Named = Sequence[tuple[str, float]]
+
+SURE = 0.6  # Of the name of the object that tells the kind of the room.
+CONFIDENCE = 0.7  # Of the fitting: 14 bathrooms of NYUv2 and 20 generated ones, docs/names.md.
+BATHROOM = ("toilet", "bathtub", "shower curtain")
+KITCHEN = ("refrigerator", "dishwasher", "oven", "stove")
 BASINS = ("washbasin", "sink")
-SURE = 0.6  # Of the name of the object that makes the room a bathroom.
-CONFIDENCE = 0.7  # Of the washbasin: 14 bathrooms of NYUv2 and 20 generated ones, docs/names.md.
+STOVES = ("stove", "oven")
+
 BODY = ("cabinet", "counter", "sink", "dresser", "night stand", "other furniture")
 TOP = ("counter", "sink")
 BODY_SHARE, TOP_SHARE = 0.6, 0.01  # Of the votes of a washstand.
+SINK_SHARE = 0.03  # Of the votes of a kitchen's sink counter; other counters have 0.01.
 TOP_M, WIDTH_M = (0.6, 1.2), (0.35, 2.2)
+# NYUv2 labels stoves as other structure. Other cupboards of kitchens have 0.1 of such votes.
+STOVE_SHARE = 0.13
+STOVE_TOP_M, STOVE_WIDTH_M = (0.7, 1.15), (0.4, 1.1)
 
 
-def find_washbasin(
-    objects: Sequence[ObjectTraits], names: Sequence[tuple[str, float]]
-) -> int | None:
-    """Return the object that is the washbasin of a bathroom without one, or None.
+def name_by_context(objects: Sequence[ObjectTraits], names: Named) -> list[tuple[str, float]]:
+    """Return the names of the objects of one room, corrected by what the others are.
 
-    It is as high as a washstand, and most of its votes are for cabinets and what
-    is on them. Of several, it is the one with most votes for counters and sinks.
+    A room with a toilet, bath or shower curtain is a bathroom, and its basin a washbasin. A room
+    with a refrigerator, oven or dishwasher and no toilet is a kitchen, and its basin a sink. One
+    object without such a name becomes the basin of a bathroom or kitchen that has none, and the
+    stove of a kitchen that has none. Showers stand in bathrooms only.
 
     Args:
         objects: Objects of one room.
         names: Their names and probabilities.
     """
-    if any(name in BASINS for name, _ in names):
-        return None
-    if not any(name in BATHROOM and sure >= SURE for name, sure in names):
-        return None
+    result = list(names)
+    bathroom = _has(names, BATHROOM, SURE)
+    kitchen = not bathroom and _has(names, KITCHEN, SURE)
+    for number, (name, sure) in enumerate(names):
+        if name == "shower" and not bathroom and not _is_labelled(objects[number]):
+            result[number] = (CLASS_DISPLAY_NAMES[objects[number].class_id], sure)
+        if name == "washbasin" and kitchen:
+            result[number] = ("sink", sure)
+    if (bathroom or kitchen) and not _has(result, BASINS):
+        least = TOP_SHARE if bathroom else SINK_SHARE
+        _give(result, "washbasin" if bathroom else "sink", objects, lambda one: _basin(one, least))
+    if kitchen and not _has(result, STOVES):
+        _give(result, "stove", objects, _stove)
+    return result
+
+
+def _has(names: Named, wanted: Sequence[str], least: float = 0.0) -> bool:
+    return any(name in wanted and sure >= least for name, sure in names)
+
+
+def _is_labelled(item: ObjectTraits) -> bool:
+    """Return whether label images that state names vote for the object."""
+    return bool(item.votes[NYU40_COUNT:].any())
+
+
+def _give(
+    names: list[tuple[str, float]],
+    name: str,
+    objects: Sequence[ObjectTraits],
+    score: Callable[[ObjectTraits], float],
+) -> None:
+    """Name the object with the highest score over 0; what is sure to be something else stays."""
+    kept = (*BATHROOM, *KITCHEN, *BASINS)
+    scores = [
+        0.0 if names[number][0] in kept else score(item) for number, item in enumerate(objects)
+    ]
+    if max(scores, default=0.0) > 0:
+        names[scores.index(max(scores))] = (name, CONFIDENCE)
+
+
+def _basin(item: ObjectTraits, least: float) -> float:
+    """Return the votes for a basin's top, or 0 for what is no washstand."""
+    if not _fits(item, TOP_M, WIDTH_M) or _share(item, BODY) < BODY_SHARE:
+        return 0.0
+    top = _share(item, TOP if least == TOP_SHARE else BASINS[1:])
+    return top * item.vote_count if top >= least else 0.0
+
+
+def _stove(item: ObjectTraits) -> float:
+    """Return the share of the votes for a stove, or 0 for what is none."""
+    share = _share(item, ("other structure",))
+    return share if _fits(item, STOVE_TOP_M, STOVE_WIDTH_M) and share >= STOVE_SHARE else 0.0
+
+
+def _fits(item: ObjectTraits, top_m: tuple[float, float], width_m: tuple[float, float]) -> bool:
+    high_m, across = item.bottom_m + item.size_m[2], max(item.size_m[:2])
+    return top_m[0] <= high_m <= top_m[1] and width_m[0] <= across <= width_m[1]
+
+
+def _share(item: ObjectTraits, classes: Sequence[str]) -> float:
     ids = nyu40_names()
-    body, top = ([ids[name] - 1 for name in part] for part in (BODY, TOP))
-    best, most = None, 0.0
-    for number, item in enumerate(objects):
-        across = max(item.size_m[:2])
-        high_m = item.bottom_m + item.size_m[2]
-        fits = TOP_M[0] <= high_m <= TOP_M[1] and WIDTH_M[0] <= across <= WIDTH_M[1]
-        if not fits or item.votes[body].sum() < BODY_SHARE:
-            continue
-        share = float(item.votes[top].sum())
-        if share >= TOP_SHARE and share * item.vote_count > most:
-            best, most = number, share * item.vote_count
-    return best
+    return float(class_votes(item.votes)[[ids[name] - 1 for name in classes]].sum())
