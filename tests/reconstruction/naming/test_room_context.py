@@ -84,6 +84,18 @@ def test_the_basin_beside_a_refrigerator_is_a_sink():
     assert named([FRIDGE, cabinet(), TOILET], [*names, IN_BATHROOM])[1] == "washbasin"
 
 
+def test_kitchens_have_cabinets_in_place_of_wardrobes():
+    assert named([FRIDGE, cabinet()], [IN_KITCHEN, ("wardrobe", 0.7)])[1] == "cabinet"
+    assert named([cabinet()], [("wardrobe", 0.7)]) == ["wardrobe"]
+
+
+def test_wall_cabinets_make_a_kitchen_but_no_stove():
+    objects = [cabinet(), cabinet(other_structure=0.15)]
+    names = [("wall cabinet", 0.9), CABINET]
+    assert named(objects, names)[1] == "cabinet"
+    assert named(objects, [names[0], ("washbasin", 0.6)])[1] == "sink"
+
+
 def test_the_counter_with_votes_for_a_sink_is_the_sink():
     counters = [cabinet(counter=0.1), cabinet(sink=0.04), cabinet(sink=0.02)]
     names = [IN_KITCHEN, CABINET, CABINET, CABINET]

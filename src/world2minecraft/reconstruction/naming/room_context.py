@@ -18,6 +18,8 @@ SURE = 0.6  # Of the name of the object that tells the kind of the room.
 CONFIDENCE = 0.7  # Of the fitting: 14 bathrooms of NYUv2 and 20 generated ones, docs/names.md.
 BATHROOM = ("toilet", "bathtub", "shower curtain")
 KITCHEN = ("refrigerator", "dishwasher", "oven", "stove")
+CUPBOARDS = ("wall cabinet", "kitchen island")
+IN_KITCHENS = {"washbasin": "sink", "wardrobe": "cabinet", "dresser": "cabinet"}
 BASINS = ("washbasin", "sink")
 STOVES = ("stove", "oven")
 
@@ -35,9 +37,10 @@ def name_by_context(objects: Sequence[ObjectTraits], names: Named) -> list[tuple
     """Return the names of the objects of one room, corrected by what the others are.
 
     A room with a toilet, bath or shower curtain is a bathroom, and its basin a washbasin. A room
-    with a refrigerator, oven or dishwasher and no toilet is a kitchen, and its basin a sink. One
-    object without such a name becomes the basin of a bathroom or kitchen that has none, and the
-    stove of a kitchen that has none. Showers stand in bathrooms only.
+    with wall cabinets, a refrigerator, oven or dishwasher and no toilet is a kitchen, whose basin
+    is a sink and whose wardrobes are cabinets. One object without such a name becomes the basin of
+    a bathroom or kitchen that has none, and the stove of a kitchen with a refrigerator but no
+    stove. Showers stand in bathrooms only.
 
     Args:
         objects: Objects of one room.
@@ -45,16 +48,16 @@ def name_by_context(objects: Sequence[ObjectTraits], names: Named) -> list[tuple
     """
     result = list(names)
     bathroom = _has(names, BATHROOM, SURE)
-    kitchen = not bathroom and _has(names, KITCHEN, SURE)
+    kitchen = not bathroom and _has(names, (*KITCHEN, *CUPBOARDS), SURE)
     for number, (name, sure) in enumerate(names):
         if name == "shower" and not bathroom and not _is_labelled(objects[number]):
             result[number] = (CLASS_DISPLAY_NAMES[objects[number].class_id], sure)
-        if name == "washbasin" and kitchen:
-            result[number] = ("sink", sure)
+        if kitchen and name in IN_KITCHENS:
+            result[number] = (IN_KITCHENS[name], sure)
     if (bathroom or kitchen) and not _has(result, BASINS):
         least = TOP_SHARE if bathroom else SINK_SHARE
         _give(result, "washbasin" if bathroom else "sink", objects, lambda one: _basin(one, least))
-    if kitchen and not _has(result, STOVES):
+    if kitchen and _has(names, KITCHEN, SURE) and not _has(result, STOVES):
         _give(result, "stove", objects, _stove)
     return result
 
