@@ -92,6 +92,22 @@ def test_a_port_that_is_taken_is_one_line(labels, capsys):
     assert told.endswith("omit the port (--port) to use a free one\n")
 
 
+@POSIX
+def test_a_phone_page_is_served_beside_the_editor(tmp_path):
+    words = ("--phone", "--host", "127.0.0.1", "--port", 0, "--home", tmp_path)
+    with forge(*words) as (process, link, _):
+        said = [process.stdout.readline() for _ in range(4)]
+        phone = re.search(r"phone: +(http://127\.0\.0\.1:\d+/)#[\w-]{22}\n", said[0])
+        assert phone and "lets one phone in, within ten minutes" in said[1]
+        assert "the phone page is not encrypted" in said[2]
+        assert httpx.get(link, follow_redirects=True).status_code in (200, 403)
+        assert "phone.js" in httpx.get(phone[1]).text
+        assert httpx.get(phone[1] + "api/phone").status_code == 401
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=30) == 0
+        assert "Traceback" not in process.stdout.read()
+
+
 @pytest.mark.parametrize(
     ("words", "code", "why"),
     [
@@ -100,6 +116,15 @@ def test_a_port_that_is_taken_is_one_line(labels, capsys):
         (["--walk"], 2, "--walk requires a world, as in w2m forge OUT --walk"),
         (["none", "--walk"], 3, "none"),
         (["--host", "no.such.host.invalid", "--demo"], 2, "cannot listen on no.such.host.invalid"),
+        (["--walk", "--phone"], 2, "--phone is part of the editor, not of --walk"),
+        (["--tls", "cert.pem", "key.pem"], 2, "--tls is for the phone page; add --phone"),
+        (["--phone", "--host", "0.0.0.0"], 2, "such as --host 192.168.1.5"),
+        (["--phone", "--host", "203.0.113.7"], 2, "cannot listen on 203.0.113.7"),
+        (
+            ["--phone", "--host", "127.0.0.1", "--tls", "none.pem", "key.pem"],
+            3,
+            "none.pem: not found; --tls needs the files of a certificate and its key",
+        ),
     ],
 )
 def test_what_cannot_be_opened_is_one_line(words, code, why, capsys, tmp_path, monkeypatch):

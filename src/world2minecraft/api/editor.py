@@ -67,6 +67,18 @@ class EditorSession:
         """The address that the server listens on."""
         return self.server.host
 
+    @property
+    def phone_link(self) -> str:
+        """The link that lets one phone scan a room. Empty without a phone page, or once used."""
+        return "" if self.server.phone is None else self.server.phone.access.link
+
+    @property
+    def phone_code(self) -> str:
+        """The QR code of ``phone_link`` as lines for a terminal."""
+        from world2minecraft.sceneforge.phone_access import qr_text
+
+        return qr_text(self.phone_link) if self.phone_link else ""
+
     def run(self, ready: Callable[[], None] = lambda: None) -> None:
         """Serve in this thread until Ctrl+C is pressed, if the server is not running yet.
 
@@ -137,6 +149,9 @@ def prepare_editor(
     home: str | Path | None = None,
     capture: str | Path | None = None,
     max_upload_mb: int = 4096,
+    phone: bool = False,
+    phone_host: str | None = None,
+    tls: tuple[Path, Path] | None = None,
 ) -> EditorSession:
     """Prepare SceneForge without starting it.
 
@@ -153,10 +168,16 @@ def prepare_editor(
             user's data folder.
         capture: Capture of the run, if the run folder does not record it. The path is remembered.
         max_upload_mb: Maximum size of an uploaded capture in MiB.
+        phone: Serve, beside the editor, a page on the local network to scan a room with a phone.
+        phone_host: Address of this machine for the phone page. Defaults to its address on the
+            local network.
+        tls: Files of a certificate and its key (PEM), with which the phone page is served over
+            HTTPS.
 
     Raises:
-        UsageError: If ``demo`` is combined with a source, or if the port is in use.
-        InputError: If the source does not contain a room.
+        UsageError: If ``demo`` is combined with a source, if the port is in use, or if there is no
+            local network for the phone page.
+        InputError: If the source does not contain a room, or the certificate cannot be used.
 
     Example:
         >>> from world2minecraft.api.editor import prepare_editor
@@ -166,6 +187,7 @@ def prepare_editor(
     from world2minecraft.sceneforge.document.document_metadata import document_folder
     from world2minecraft.sceneforge.editor import Editor
     from world2minecraft.sceneforge.scene_sources import DEMO_OUT
+    from world2minecraft.sceneforge.server.local_address import lan_address
     from world2minecraft.sceneforge.server.server_process import ForgeServer
     from world2minecraft.sceneforge.uploads import is_capture, user_home
 
@@ -184,7 +206,11 @@ def prepare_editor(
         home=None if home is None else Path(home),
         capture=None if capture is None else Path(capture),
         max_upload_bytes=max_upload_mb << 20,
+        phone=(phone_host or lan_address()) if phone else None,
+        tls=tls,
     )
+    if server.phone is not None:
+        server.phone.access.new_code()
     first = place or (document_folder(None, demo_out) if demo else None)
     if first is not None:
         server.workspace.begin_with(first, is_dropped)

@@ -18,6 +18,7 @@ from world2minecraft.sceneforge.comparison import find_truth_folder
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.export_options import write_snapshot
 from world2minecraft.sceneforge.game_folders import GameFolders
+from world2minecraft.sceneforge.phone_access import PhoneAccess
 from world2minecraft.sceneforge.photo_classes import PhotoClasses
 from world2minecraft.sceneforge.run_photos import (
     RunPhotos,
@@ -78,6 +79,7 @@ class Workspace:
         self.captures = CaptureStore(home, max_bytes)
         self.game_folders = GameFolders(home)
         self.jobs = session.jobs
+        self.phone: PhoneAccess | None = None  # Only where a phone page is served.
         self.wanted: str | None = None  # The capture that the start page shows first.
         self._begun: dict[str, BegunRun] = {}
         self.running_jobs: dict[str, str] = {}  # Jobs by the id of a capture, or a demo's folder.

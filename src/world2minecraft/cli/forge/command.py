@@ -1,5 +1,7 @@
 """View every stage of a room in the browser, and edit the room: ``w2m forge``."""
 
+import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,6 +14,7 @@ from world2minecraft.core.errors import UsageError
 if TYPE_CHECKING:
     from world2minecraft.api.editor import EditorSession
 
+LOOPBACK = "127.0.0.1"
 EXAMPLES = """\
 w2m forge OUT                   edit a run: its room, objects, photos, blocks
 w2m forge room.npz              edit an occupancy file, or occ.json
@@ -21,13 +24,29 @@ w2m forge IMG_2041.MOV          inspect a capture, then reconstruct the room
 w2m forge OUT --capture scan    edit a run with the photos of its capture
 w2m forge OUT --no-browser      print the link without opening a browser
 w2m forge OUT --walk            walk with the view and steps of an agent
+w2m forge --phone               scan a room with a phone on the same Wi-Fi
 """
 
 Host = Annotated[
-    str,
+    str | None,
     typer.Option(
         "--host",
-        help="Address to listen on; non-local addresses admit other machines.",
+        help="Address to listen on; non-local addresses admit other machines. With --phone, the "
+        "address of the phone page alone.",
+        show_default="127.0.0.1",
+        rich_help_panel=MORE,
+    ),
+]
+Phone = Annotated[
+    bool,
+    typer.Option("--phone", help="Also serve a page on the local network to scan with a phone."),
+]
+Tls = Annotated[
+    tuple[Path, Path] | None,
+    typer.Option(
+        "--tls",
+        metavar="CERT KEY",
+        help="Certificate and key (PEM), to serve the phone page over HTTPS.",
         rich_help_panel=MORE,
     ),
 ]
@@ -81,12 +100,14 @@ def run(
         typer.Argument(metavar="[OUT_OR_FILE]", help="Run folder, occupancy file or capture."),
     ] = None,
     demo: Annotated[bool, typer.Option("--demo", help="Open the demo room.")] = False,
-    host: Host = "127.0.0.1",
+    phone: Phone = False,
+    host: Host = None,
     port: Port = None,
     allow_host: AllowHost = None,
     home: Home = None,
     capture: PhotosOf = None,
     max_upload: MaxUpload = 4096,
+    tls: Tls = None,
     no_browser: NoBrowser = False,
     walk: Walk = False,
 ) -> None:
@@ -94,25 +115,33 @@ def run(
 
     Every edit is recorded next to the room immediately and can be undone. The files of the room
     change when you save in the editor. Only this machine can open the editor, and only with the
-    printed link.
+    printed link. With --phone, one phone can scan a room on a page of its own, with the printed
+    code.
 
     Raises:
-        UsageError: If options exclude each other or the port is in use.
+        UsageError: If options exclude each other, the port is in use or there is no local network.
         InputError: If the source does not contain a room.
     """
     from world2minecraft.api.editor import prepare_editor
 
+    if tls and not phone:
+        raise UsageError("--tls is for the phone page; add --phone, or omit --tls")
+    if walk and phone:
+        raise UsageError("--phone is part of the editor, not of --walk; omit one of them")
     if walk:
         return _walk(source, no_browser)
     session = prepare_editor(
         source,
         demo=demo,
-        host=host,
+        host=LOOPBACK if phone else host or LOOPBACK,
         port=port,
         allow_hosts=allow_host or (),
         home=home,
         capture=capture,
         max_upload_mb=max_upload,
+        phone=phone,
+        phone_host=host,
+        tls=tls,
     )
     _print_link(session)
     session.run(lambda: None if no_browser else open_link(session.link))
@@ -149,4 +178,24 @@ def _print_link(session: "EditorSession") -> None:
     if session.read_only:
         print(f"note: opened read-only: {session.read_only}")
     print(f"SceneForge: {session.link}", flush=True)
+    if session.phone_link:
+        _print_phone(session)
     print("Press Ctrl+C to stop; every edit is saved.", flush=True)
+
+
+def _print_phone(session: "EditorSession") -> None:
+    """Print the link for a phone, as a code where the terminal can show one."""
+    print(f"phone:      {session.phone_link}")
+    code = session.phone_code
+    with suppress(UnicodeEncodeError):
+        code.encode(sys.stdout.encoding or "ascii")
+        if sys.stdout.isatty():
+            print(code)
+    print(
+        "Scan the code with a phone in the same Wi-Fi. It lets one phone in, within ten minutes; "
+        "the start page shows new ones."
+    )
+    if session.phone_link.startswith("http:"):
+        print(
+            "note: the phone page is not encrypted: use a Wi-Fi that you trust, or --tls CERT KEY"
+        )

@@ -68,6 +68,10 @@ class JobProgress(Protocol):
         """Register a function to call when the job is cancelled, or call it if it already is."""
         ...
 
+    def expect(self, usual_s: Mapping[str, float]) -> None:
+        """Replace the stages and their typical durations in seconds, which are known only now."""
+        ...
+
 
 JobFunction = Callable[[JobProgress], Any]
 
@@ -206,6 +210,10 @@ class _Job:
         self._stop = stop
         if self._cancelled.is_set():
             stop()
+
+    def expect(self, usual_s: Mapping[str, float]) -> None:
+        """Replace the stages to come. See ``JobProgress.expect``."""
+        self._left = TimeLeft(usual_s)
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
         """Report one step. See ``JobProgress``."""

@@ -15,7 +15,7 @@ notebook has another port, so browsers report such visits as ``same-site``.
 import json
 import re
 import secrets
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from hmac import compare_digest
 from http.cookies import CookieError, SimpleCookie
 from ipaddress import ip_address
@@ -45,6 +45,7 @@ ALONE = (
 FRAMED = ((b"content-security-policy", f"{POLICY}{NOTEBOOKS}".encode()),)
 POLICY_NAME = b"content-security-policy"
 NO_STORE = (b"cache-control", b"no-store")
+OWN_SITES = frozenset({"same-origin", "none"})
 OPEN_THE_LINK = "open the link that w2m forge printed; it contains the access token"
 
 
@@ -84,32 +85,24 @@ class Guard:
         if scope["type"] == "lifespan":
             await self.app(scope, receive, send)
             return
-        headers = _headers(scope)
-        send = _with_headers(scope, send, self.headers)
+        headers = headers_of(scope)
+        send = with_headers(scope, send, self.headers)
         refusal = self._foreign(headers, is_visit=_is_visit(scope))
         if not refusal and self._brings_token(scope):
             await _welcome(send, f"{self.cookie}={self.session}")
             return
         refusal = refusal or self._unknown(headers)
         if refusal:
-            await _refuse(scope, receive, send, refusal)
+            await refuse(scope, receive, send, refusal)
             return
         await self.app(scope, receive, send)
 
     def _foreign(self, headers: dict[str, list[str]], *, is_visit: bool = False) -> str:
         """Return why a request is neither from the server's page nor from a program, or ""."""
-        hosts = headers.get("host", [])
-        if len(hosts) != 1 or not self._is_ours(hosts[0].lower()):
-            return "unknown host name; use the link that w2m forge printed"
-        own = {f"{scheme}://{hosts[0].lower()}" for scheme in ("http", "https")}
-        if any(origin.lower() not in own for origin in headers.get("origin", [])):
-            return "requests from other sites are not allowed"
-        allowed = {"same-origin", "none"}
+        allowed = OWN_SITES
         if self.in_notebook and is_visit and headers.get("sec-fetch-mode") == ["navigate"]:
-            allowed.add("same-site")
-        if not allowed.issuperset(headers.get("sec-fetch-site", [])):
-            return "links from other sites are not allowed; paste the link into the address bar"
-        return ""
+            allowed = allowed | {"same-site"}
+        return foreign_reason(headers, self._is_ours, allowed=allowed)
 
     def _is_ours(self, host: str) -> bool:
         found = HOST.fullmatch(host)
@@ -122,18 +115,44 @@ class Guard:
         if not _is_visit(scope):
             return False
         brought = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
-        return len(brought) == 1 and _same(brought[0], self.token)
+        return len(brought) == 1 and is_same(brought[0], self.token)
 
     def _unknown(self, headers: dict[str, list[str]]) -> str:
         """Return why the sender is not authenticated, or an empty string."""
         for value in headers.get("authorization", []):
             scheme, _, given = value.partition(" ")
-            if scheme.lower() == "bearer" and _same(given.strip(), self.token):
+            if scheme.lower() == "bearer" and is_same(given.strip(), self.token):
                 return ""
         for value in headers.get("cookie", []):
-            if _same(_cookie(value, self.cookie), self.session):
+            if is_same(cookie_value(value, self.cookie), self.session):
                 return ""
         return OPEN_THE_LINK
+
+
+def foreign_reason(
+    headers: dict[str, list[str]],
+    is_ours: Callable[[str], bool],
+    *,
+    schemes: Iterable[str] = ("http", "https"),
+    allowed: frozenset[str] = OWN_SITES,
+) -> str:
+    """Return why a request comes from another site or names another host, or an empty string.
+
+    Args:
+        headers: Values of the headers by name in lower case.
+        is_ours: Function that returns whether a ``Host`` in lower case is this server.
+        schemes: Schemes of the server's own origin.
+        allowed: Allowed values of ``Sec-Fetch-Site``.
+    """
+    hosts = headers.get("host", [])
+    if len(hosts) != 1 or not is_ours(hosts[0].lower()):
+        return "unknown host name; use the link that w2m forge printed"
+    own = {f"{scheme}://{hosts[0].lower()}" for scheme in schemes}
+    if any(origin.lower() not in own for origin in headers.get("origin", [])):
+        return "requests from other sites are not allowed"
+    if not allowed.issuperset(headers.get("sec-fetch-site", [])):
+        return "links from other sites are not allowed; paste the link into the address bar"
+    return ""
 
 
 def new_token() -> str:
@@ -146,14 +165,16 @@ def _is_visit(scope: Scope) -> bool:
     return scope["type"] == "http" and scope["method"] == "GET" and scope["path"] == "/"
 
 
-def _headers(scope: Scope) -> dict[str, list[str]]:
+def headers_of(scope: Scope) -> dict[str, list[str]]:
+    """Return the values of a request's headers by name in lower case."""
     found: dict[str, list[str]] = {}
     for name, value in scope["headers"]:
         found.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))
     return found
 
 
-def _cookie(header: str, name: str) -> str:
+def cookie_value(header: str, name: str) -> str:
+    """Return the value of a cookie in a ``Cookie`` header, or an empty string."""
     try:
         morsel = SimpleCookie(header).get(name)
     except CookieError:
@@ -161,7 +182,8 @@ def _cookie(header: str, name: str) -> str:
     return morsel.value if morsel else ""
 
 
-def _same(given: str, wanted: str) -> bool:
+def is_same(given: str, wanted: str) -> bool:
+    """Return whether two secrets are equal, in a time that does not depend on them."""
     return compare_digest(given.encode(), wanted.encode())
 
 
@@ -185,8 +207,8 @@ async def _welcome(send: Send, cookie: str) -> None:
     await send({"type": "http.response.body", "body": b""})
 
 
-async def _refuse(scope: Scope, receive: Receive, send: Send, why: str) -> None:
-    """Answer with status 403, or reject a websocket before it is opened."""
+async def refuse(scope: Scope, receive: Receive, send: Send, why: str, status: int = 403) -> None:
+    """Answer with a status and a reason, or reject a websocket before it is opened."""
     if scope["type"] == "websocket":
         await receive()
         await send({"type": "websocket.close", "code": 1008, "reason": why})
@@ -196,11 +218,11 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, why: str) -> None:
     kind = b"application/json" if is_api else b"text/plain; charset=utf-8"
     headers = [(b"content-type", kind), (b"content-length", str(len(body)).encode())]
     headers.append((b"connection", b"close"))  # What follows in the stream is not read.
-    await send({"type": "http.response.start", "status": 403, "headers": headers})
+    await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": body})
 
 
-def _with_headers(scope: Scope, send: Send, headers: Iterable[tuple[bytes, bytes]]) -> Send:
+def with_headers(scope: Scope, send: Send, headers: Iterable[tuple[bytes, bytes]]) -> Send:
     """Return a ``send`` function that adds the security headers to every answer.
 
     An answer may have a policy of its own if that puts the page into a sandbox.

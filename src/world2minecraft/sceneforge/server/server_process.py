@@ -3,9 +3,10 @@
 import asyncio
 import os
 import socket
+import ssl
 import threading
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager, suppress
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Self
@@ -13,17 +14,22 @@ from typing import Self
 import uvicorn
 from starlette.types import ASGIApp
 
-from world2minecraft.core.errors import UsageError
+from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.phone_access import PhoneAccess
 from world2minecraft.sceneforge.server.app import build_app
 from world2minecraft.sceneforge.server.guard import new_token
 from world2minecraft.sceneforge.server.limits import MAX_JSON_BYTES
+from world2minecraft.sceneforge.server.phone_routes import phone_app
 from world2minecraft.sceneforge.session import Session
 from world2minecraft.sceneforge.uploads import MAX_UPLOAD_BYTES, user_home
 from world2minecraft.sceneforge.workspace import Workspace
 
 LOOPBACK = "127.0.0.1"
 PORT = 8484  # The same each time, so that the page's own settings are found again.
+PHONE_PORT = 8485
+EVERY_ADDRESS = ("0.0.0.0", "::")
+MAX_PHONE_CONNECTIONS = 64  # A browser opens six.
 STOPPING_S = 3
 
 
@@ -35,9 +41,13 @@ class PageServer:
         host: Address to listen on. Use an address other than loopback to allow remote connections.
         port: Port to listen on. None uses 8484, or any free port if 8484 is taken.
         token: Access token in the link. None creates a new one.
+        usual_port: Port that None tries first, in place of 8484.
+        tls: Files of a certificate chain and its private key (PEM). None serves plain HTTP.
+        max_connections: Maximum number of connections at a time. None sets no limit.
 
     Raises:
         UsageError: If the port is taken, or if this machine does not have the address.
+        InputError: If the certificate or its key cannot be used.
     """
 
     def __init__(
@@ -47,8 +57,14 @@ class PageServer:
         host: str = LOOPBACK,
         port: int | None = None,
         token: str | None = None,
+        usual_port: int = PORT,
+        tls: tuple[Path, Path] | None = None,
+        max_connections: int | None = None,
     ):
-        self.socket = _listening(host, port)
+        if tls is not None:
+            _check_certificate(*tls)
+        self.scheme = "http" if tls is None else "https"
+        self.socket = _listening(host, port, usual_port)
         self.host, self.port = host, int(self.socket.getsockname()[1])
         self.token = token or new_token()
         self.is_open = not _is_loopback(host)
@@ -61,6 +77,9 @@ class PageServer:
             ws_max_size=MAX_JSON_BYTES,
             ws_per_message_deflate=False,  # So nothing that comes in can unfold.
             timeout_graceful_shutdown=STOPPING_S,
+            limit_concurrency=max_connections,
+            ssl_certfile=None if tls is None else tls[0],
+            ssl_keyfile=None if tls is None else tls[1],
         )
         self._server = uvicorn.Server(config)
         self._thread: threading.Thread | None = None
@@ -68,8 +87,7 @@ class PageServer:
     @property
     def url(self) -> str:
         """The URL of the page, without the token."""
-        name = f"[{self.host}]" if ":" in self.host else self.host
-        return f"http://{name if name not in ('0.0.0.0', '[::]') else LOOPBACK}:{self.port}/"
+        return page_url(self.scheme, self.host, self.port)
 
     @property
     def link(self) -> str:
@@ -120,6 +138,65 @@ class PageServer:
         """Release the resources of the application after the last request."""
 
 
+class _SignallessServer(uvicorn.Server):
+    """A server that leaves Ctrl+C to the server beside it."""
+
+    @contextmanager
+    def capture_signals(self) -> Generator[None, None, None]:
+        yield
+
+
+class PhoneServer(PageServer):
+    """The web server of the phone page, which runs beside the server of a workspace.
+
+    ``access`` holds its codes and sessions.
+
+    Args:
+        workspace: The workspace that takes the captures.
+        host: Address of this machine on the local network.
+        tls: Certificate and key, as for ``PageServer``.
+
+    Raises:
+        UsageError: If this machine does not have the address.
+        InputError: If the certificate or its key cannot be used.
+    """
+
+    def __init__(self, workspace: Workspace, host: str, tls: tuple[Path, Path] | None = None):
+        if host in EVERY_ADDRESS:
+            raise UsageError(
+                f"--phone serves one address, not {host}; name the one that phones see, "
+                "such as --host 192.168.1.5"
+            )
+
+        made: list[PhoneAccess] = []
+
+        def build(token: str, port: int) -> ASGIApp:
+            made.append(PhoneAccess(page_url("http" if tls is None else "https", host, port)))
+            return phone_app(made[0], workspace)
+
+        super().__init__(
+            build,
+            host=host,
+            usual_port=PHONE_PORT,
+            tls=tls,
+            max_connections=MAX_PHONE_CONNECTIONS,
+        )
+        self._server = _SignallessServer(self._server.config)
+        (self.access,) = made
+        workspace.phone = self.access
+
+    async def serve(self) -> None:
+        """Serve in the running event loop until ``end`` is called."""
+        try:
+            await self._server.serve(sockets=[self.socket])
+        finally:
+            self.socket.close()
+
+    def end(self) -> None:
+        """Let ``serve`` return."""
+        self._server.should_exit = True
+
+
 class ForgeServer(PageServer):
     """A web server that edits one document.
 
@@ -135,9 +212,13 @@ class ForgeServer(PageServer):
         capture: Path of the capture with the room's photos. None uses the path recorded in the
             room's folder.
         in_notebook: Whether notebooks of this machine may show the page in a frame.
+        phone: Address of this machine on the local network, where a phone page is served besides.
+            None serves none.
+        tls: Certificate and key of the phone page, as for ``PageServer``.
 
     Raises:
         UsageError: If the port is taken, or if this machine does not have the address.
+        InputError: If the certificate or its key cannot be used.
     """
 
     def __init__(
@@ -152,6 +233,8 @@ class ForgeServer(PageServer):
         max_upload_bytes: int = MAX_UPLOAD_BYTES,
         capture: Path | None = None,
         in_notebook: bool = False,
+        phone: str | None = None,
+        tls: tuple[Path, Path] | None = None,
     ):
         self.session = Session(editor)
         self.workspace = Workspace(
@@ -172,17 +255,50 @@ class ForgeServer(PageServer):
             )
 
         super().__init__(build, host=host, port=port, token=token)
+        self.phone = None if phone is None else PhoneServer(self.workspace, phone, tls)
+
+    async def _serve(self, ready: Callable[[], None]) -> None:
+        if self.phone is None:
+            await super()._serve(ready)
+            return
+        beside = asyncio.create_task(self.phone.serve())
+        try:
+            await super()._serve(ready)
+        finally:
+            self.phone.end()
+            await beside
 
     async def close(self) -> None:
         """Close the document."""
         await self.session.close()
 
 
-def _listening(host: str, port: int | None) -> socket.socket:
+def page_url(scheme: str, host: str, port: int) -> str:
+    """Return the URL of a page, without a token."""
+    shown = LOOPBACK if host in EVERY_ADDRESS else host
+    return f"{scheme}://{f'[{shown}]' if ':' in shown else shown}:{port}/"
+
+
+def _check_certificate(certificate: Path, key: Path) -> None:
+    for path in (certificate, key):
+        if not path.is_file():
+            raise InputError(path, "not found; --tls needs the files of a certificate and its key")
+    try:
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        context.load_cert_chain(certificate, key, password=lambda: "")  # Nobody is asked.
+    except (ssl.SSLError, OSError) as error:
+        raise InputError(
+            certificate,
+            f"cannot be used with {key} ({error}); --tls needs a PEM certificate and its PEM key "
+            "without a password",
+        ) from error
+
+
+def _listening(host: str, port: int | None, usual_port: int) -> socket.socket:
     if port is not None:
         return _bound(host, port)
     with suppress(UsageError):
-        return _bound(host, PORT)
+        return _bound(host, usual_port)
     return _bound(host, 0)
 
 

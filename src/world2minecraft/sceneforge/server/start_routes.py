@@ -17,6 +17,8 @@ POST   /api/start/rooms/ID/share           start a job that writes the room as o
 POST   /api/start/rooms/ID/install         ``{game}``: start a job that copies its world into a game
 POST   /api/start/demo                     ``{kind, seed}``: start a job that generates a room, or
                                            return the running job with the same parameters
+GET    /api/start/phone                    return the code of the phone page (``w2m forge --phone``)
+POST   /api/start/phone                    make a new code
 POST   /api/start/open                     ``{id}``: open a room in the editor
 POST   /api/start/close                    close the room and return to the start page
 GET    /api/start/jobs/ID/layers           list what the reconstruction of a job has found so far
@@ -27,11 +29,10 @@ GET    /api/jobs                           list all jobs; POST /api/jobs/ID/canc
 
 import asyncio
 import secrets
-from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
 
-from starlette.requests import ClientDisconnect, Request
+from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
@@ -47,7 +48,13 @@ from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of_choi
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
 from world2minecraft.sceneforge.jobs.time_left import demo_stage_seconds, reconstruct_stage_seconds
 from world2minecraft.sceneforge.live_layers import finished_layers, layer_bytes
+from world2minecraft.sceneforge.phone_access import PhoneAccess, qr_svg_uri
 from world2minecraft.sceneforge.scene_sources import DEMO_FOLDER, DEMO_PICTURE
+from world2minecraft.sceneforge.server.capture_requests import (
+    CHUNK_BYTES,
+    check_ready,
+    receive_part,
+)
 from world2minecraft.sceneforge.server.request_parsing import get_workspace, read_json_object
 from world2minecraft.sceneforge.uploads import PICTURE, CaptureFolder
 from world2minecraft.sceneforge.workspace import Workspace
@@ -62,7 +69,6 @@ REPORT_POLICY = (
     "sandbox allow-scripts; default-src 'none'; img-src data: blob:; "
     "style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 )
-CHUNK_BYTES = 4 << 20  # Bytes per request; a lost connection loses at most one chunk.
 
 
 def routes() -> list[BaseRoute]:
@@ -82,6 +88,8 @@ def routes() -> list[BaseRoute]:
         Route("/api/start/rooms/{id}/share", _share_room, methods=["POST"]),
         Route("/api/start/rooms/{id}/install", _install_room, methods=["POST"]),
         Route("/api/start/demo", _demo, methods=["POST"]),
+        Route("/api/start/phone", _phone),
+        Route("/api/start/phone", _new_phone_code, methods=["POST"]),
         Route("/api/start/open", _open, methods=["POST"]),
         Route("/api/start/close", _close, methods=["POST"]),
         Route("/api/start/jobs/{id}/layers", _layers),
@@ -114,6 +122,7 @@ async def _overview(request: Request) -> Response:
             "scale": DEFAULT_SCALE,
             "styles": list(STYLES),
             "known": known,
+            "phone": None if workspace.phone is None else _phone_json(workspace.phone),
             "wanted": workspace.wanted,
         }
     )
@@ -143,21 +152,7 @@ async def _announce(request: Request) -> Response:
 
 
 async def _receive(request: Request) -> Response:
-    one = _named(request)
-    offset = request.query_params.get("at", "0")
-    if not offset.isdecimal() or len(offset) > 15:
-        raise UsageError(f"at must be the number of bytes already uploaded, got {offset[:20]!r}")
-    number = request.path_params["number"]
-    try:
-        held = await one.receive(number, int(offset), _body(request))
-    except ClientDisconnect:  # What came stays; the page asks how much that is and goes on.
-        return Response(status_code=400)
-    return JSONResponse({"held": held, "size": one.files[number].size})
-
-
-async def _body(request: Request) -> AsyncIterator[bytes]:
-    async for chunk in request.stream():
-        yield chunk
+    return await receive_part(request, _named(request))
 
 
 async def _capture(request: Request) -> Response:
@@ -187,7 +182,7 @@ def _delete_capture(workspace: Workspace, capture: str, job: str | None) -> None
 
 async def _survey(request: Request) -> Response:
     workspace, one = get_workspace(request), _named(request)
-    _check_ready(workspace, one)
+    check_ready(workspace, one)
     work = run_in_subprocess(
         "survey", one.source.parent, capture=str(one.source), folder=str(one.folder)
     )
@@ -199,7 +194,7 @@ async def _survey(request: Request) -> Response:
 async def _reconstruct(request: Request) -> Response:
     workspace, one = get_workspace(request), _named(request)
     choice = check_choice(await read_json_object(request))
-    _check_ready(workspace, one)
+    check_ready(workspace, one)
     work = run_in_subprocess(
         "reconstruct", one.source.parent, capture=str(one.source), out=str(one.run), choice=choice
     )
@@ -223,13 +218,6 @@ def check_choice(body: dict[str, Any]) -> dict[str, Any]:
     except (TypeError, ValueError) as error:
         raise UsageError(f"an option has the wrong type: {error}") from error
     return body
-
-
-def _check_ready(workspace: Workspace, one: CaptureFolder) -> None:
-    if not one.complete:
-        raise UsageError(f"{one.title!r} is incomplete; upload its files first")
-    if workspace.job_of(one) is not None:
-        raise ConflictError(one.title, "a job is running; wait for it or cancel it")
 
 
 async def _demo(request: Request) -> Response:
@@ -257,6 +245,35 @@ def _remember(workspace: Workspace) -> Any:
         workspace.add_recent(Path(state.result["out"]))
 
     return ended
+
+
+async def _phone(request: Request) -> Response:
+    return JSONResponse(_phone_json(_phone_access(request)))
+
+
+async def _new_phone_code(request: Request) -> Response:
+    access = _phone_access(request)
+    access.new_code()
+    return JSONResponse(_phone_json(access))
+
+
+def _phone_access(request: Request) -> PhoneAccess:
+    access = get_workspace(request).phone
+    if access is None:
+        raise UsageError("this server has no phone page; run w2m forge --phone")
+    return access
+
+
+def _phone_json(access: PhoneAccess) -> dict[str, Any]:
+    """Return the current code as a link and a picture, and what phones have sent."""
+    link = access.link
+    return {
+        "link": link,
+        "code": qr_svg_uri(link) if link else "",
+        "left_s": round(access.left_s),
+        "phones": len(access.phones),
+        "captures": sum(len(one.captures) for one in access.phones),
+    }
 
 
 async def _open(request: Request) -> Response:
