@@ -52,7 +52,7 @@ class ComparePanel {
     this.file.addEventListener("change", () => {
       const [chosen] = this.file.files ?? [];
       const name = encodeURIComponent(chosen?.name ?? "");
-      if (chosen) void this.take(() => sendBytes<Told>(`api/upload/compare?name=${name}`, chosen, "POST"));
+      if (chosen) void this.take(() => sendBytes<Told>(`api/upload/compare?name=${name}`, chosen, { method: "POST" }));
       this.file.value = "";
     });
     host.append(

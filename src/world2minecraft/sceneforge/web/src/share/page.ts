@@ -1,6 +1,7 @@
 // A shared room: what hangs together on the page, and what a person does on it.
 
 import type { Light } from "../build/material";
+import { followTheme } from "../theme";
 import { h, takesText } from "../ui/dom";
 import { segment } from "../ui/fields";
 import { icon } from "../ui/icons";
@@ -62,7 +63,10 @@ export class RoomPage {
     if (this.photos) this.stage.append(this.photos.bar);
     this.view.onFrame.push((now) => this.putWords(now));
     this.listen();
-    this.followTheme();
+    followTheme((theme) => {
+      this.view.ground = GROUND[theme];
+      this.view.invalidate();
+    });
     this.setLight("day");
     this.show();
   }
@@ -220,18 +224,6 @@ export class RoomPage {
     const top: Vec3 = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2]];
     const at = this.view.project(top);
     this.label.put(at && [at[0], at[1] - 10], this.canvas.clientWidth);
-  }
-
-  private followTheme(): void {
-    const light = matchMedia("(prefers-color-scheme: light)");
-    const take = (): void => {
-      const theme = light.matches ? "light" : "dark";
-      document.documentElement.dataset.theme = theme;
-      this.view.ground = GROUND[theme];
-      this.view.invalidate();
-    };
-    light.addEventListener("change", take);
-    take();
   }
 
   private listen(): void {

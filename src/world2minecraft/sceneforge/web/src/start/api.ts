@@ -11,8 +11,8 @@ export async function sendJson<T>(path: string, body: unknown = {}, method = "PO
   return answer<T>(await reached(fetch(path, { method, headers, body: JSON.stringify(body) })));
 }
 
-export async function sendBytes<T>(path: string, body: Blob, method = "PUT"): Promise<T> {
-  return answer<T>(await reached(fetch(path, { method, body })));
+export async function sendBytes<T>(path: string, body: Blob, how: { method?: string; signal?: AbortSignal } = {}): Promise<T> {
+  return answer<T>(await reached(fetch(path, { method: "PUT", body, ...how })));
 }
 
 export async function forget(path: string): Promise<void> {
@@ -21,6 +21,16 @@ export async function forget(path: string): Promise<void> {
 
 /** The server could not be reached: worth another try. */
 export class Unreached extends Error {}
+
+/** The server answered, and says why it will not. */
+export class Refused extends Error {
+  constructor(
+    readonly status: number,
+    why: string,
+  ) {
+    super(why);
+  }
+}
 
 async function reached(asked: Promise<Response>): Promise<Response> {
   try {
@@ -32,7 +42,7 @@ async function reached(asked: Promise<Response>): Promise<Response> {
 
 async function answer<T>(response: Response): Promise<T> {
   const told = (await response.json().catch(() => ({}))) as T & { error?: string };
-  if (!response.ok) throw new Error(told.error ?? `${response.status} ${response.statusText}`);
+  if (!response.ok) throw new Refused(response.status, told.error ?? `${response.status} ${response.statusText}`);
   return told;
 }
 

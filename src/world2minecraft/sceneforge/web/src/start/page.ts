@@ -12,6 +12,7 @@ import { showCapture, type Jobs } from "./capture";
 import { contentsOf, filesOfDrop, filesOfInput, titleOf, type Given } from "./files";
 import { finishedRoom } from "./finished";
 import { LiveView } from "./live";
+import { phonePanel } from "./phone_panel";
 import { roomsView } from "./rooms";
 import type { StartTold } from "./told";
 import { sendCapture } from "./upload";
@@ -72,21 +73,24 @@ class StartPage {
       input.addEventListener("change", () => void this.take(filesOfInput(input)));
     }
     const limit = words.megabytes((this.told?.most_bytes ?? 0) / 2 ** 20);
+    const phone = this.told?.phone;
+    const drop = h(
+      "div",
+      { class: "drop" },
+      icon("export"),
+      h("strong", {}, words.drop),
+      h("p", {}, words.dropHint),
+      h("div", { class: "row" }, plainButton(words.chooseFiles, () => files.click(), "button is-main"), plainButton(words.chooseFolder, () => folder.click())),
+      h("p", { class: "note" }, words.limit(limit)),
+      files,
+      folder,
+    );
+    const works = phone ? words.kindsOfCapture : [...words.kindsOfCapture, ["scan", ...words.phone.off] as const];
     fill(
       this.main,
-      h(
-        "div",
-        { class: "drop" },
-        icon("export"),
-        h("strong", {}, words.drop),
-        h("p", {}, words.dropHint),
-        h("div", { class: "row" }, plainButton(words.chooseFiles, () => files.click(), "button is-main"), plainButton(words.chooseFolder, () => folder.click())),
-        h("p", { class: "note" }, words.limit(limit)),
-        files,
-        folder,
-      ),
+      h("div", { class: "start-ways" }, drop, phone && phonePanel(phone, () => void this.refresh())),
       h("h2", {}, words.works),
-      h("ul", { class: "works" }, ...words.kindsOfCapture.map(([mark, name, hint]) => workRow(mark, name, hint))),
+      h("ul", { class: "works" }, ...works.map(([mark, name, hint]) => workRow(mark, name!, hint!))),
     );
   }
 
@@ -116,8 +120,9 @@ class StartPage {
       line.show({ stage: "", done: 0, total: 0, left_s: null, note: "", share: total ? done / total : 0 });
       line.say(TEXT.start.sending(size(done), size(total)));
     };
+    const how = { base: "api/start/captures", chunkBytes: this.told.chunk_bytes, tries: 6 };
     try {
-      const id = await sendCapture(titleOf(given), given, this.told.chunk_bytes, step, stop.signal);
+      const id = await sendCapture(titleOf(given), given, how, step, stop.signal);
       await this.refresh();
       this.show(id);
     } catch (error) {

@@ -39,7 +39,16 @@ export interface StartTold {
   scale: number;
   styles: string[];
   known: Record<string, [number, number]>;
+  phone: PhoneCode | null; // where a phone page is served
   wanted: string | null; // the capture that the server was started with
+}
+
+export interface PhoneCode {
+  link: string; // empty once it is used, or too old
+  code: string; // its picture, as a data URI
+  left_s: number;
+  phones: number;
+  captures: number;
 }
 
 export interface Choice {

@@ -1,0 +1,75 @@
+// The words of the phone page: short ones.
+
+import { START_TEXT } from "../text_start";
+
+export const TEXT = {
+  steps: ["Take", "Build", "Walk"],
+  take: {
+    title: "Scan your room",
+    lead: "Film slowly along all walls, for one to three minutes. Or take 30 to 100 photos.",
+    film: "Film the room",
+    photo: "Take photos",
+    choose: "Choose from this phone",
+    tips: ["Lights on, curtains open", "Walk sideways, do not only turn", "Show each corner more than once"],
+    interrupted: "The last upload was interrupted. Choose the files again.",
+  },
+  chosen: {
+    photos: (count: number): string => `${count} ${count === 1 ? "photo" : "photos"}`,
+    video: "Your video",
+    few: (count: number): string => `${count} more make a good room. 30 to 100 are best.`,
+    enough: "That is enough for a good room.",
+    videoHint: "Only your computer gets it.",
+    more: "Take more",
+    morePick: "Add from this phone",
+    build: "Build the room",
+    over: "Start over",
+    others: (count: number): string => `+${count}`,
+  },
+  wrong: {
+    kind: (name: string): string => `“${name}” is neither a photo nor a video. Choose another file.`,
+    empty: (name: string): string => `“${name}” is empty. Choose it again.`,
+    mixed: "Send photos, or one video, not both. Start over to change.",
+    tooLarge: (size: string, limit: string): string => `That is ${size}; the limit is ${limit}. Film a shorter video or take fewer photos.`,
+    tooMany: (limit: number): string => `More than ${limit} photos. Choose fewer.`,
+  },
+  send: {
+    title: "Sending your scan",
+    stage: (done: string, total: string): string => `${done} of ${total}`,
+    note: "Keep this page open until all is sent.",
+    lost: "Connection lost. It goes on by itself; stay near the Wi-Fi.",
+  },
+  build: {
+    title: "Building your room",
+    note: "You may lock the phone. Your computer goes on.",
+    waiting: "Getting ready",
+    lost: "Your computer does not answer. Is it awake, and in the same Wi-Fi?",
+    cancel: "Cancel",
+  },
+  done: {
+    title: "Your room is ready",
+    lead: (count: number): string => `${count} ${count === 1 ? "thing" : "things"} in it. Walk with your thumbs.`,
+    walk: "Walk in it",
+    keep: "Save the page",
+    again: "Scan another room",
+    alt: "The room, as blocks",
+    noPage: "The room is on your computer: open it there.",
+  },
+  failed: {
+    title: "That did not work",
+    cancelled: "You stopped it.",
+    gone: "The computer no longer knows this room.",
+    help: "What helps",
+    tips: ["Film slowly, with the lights on", "Walk along the walls; do not only turn", "Avoid bare white walls filling the picture"],
+    again: "Try again",
+    fresh: "Scan again",
+  },
+  scan: {
+    title: "Scan the code",
+    lead: "This phone is not connected. On your computer, open the start page of SceneForge, press New code, and scan it with the camera.",
+  },
+  refused: "Your computer refused this:",
+  loading: "Connecting",
+  stages: START_TEXT.stages,
+  left: START_TEXT.left,
+  size: (bytes: number): string => START_TEXT.megabytes(bytes / 2 ** 20),
+};
