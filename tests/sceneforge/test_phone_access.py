@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from world2minecraft.core.errors import UsageError
@@ -112,6 +113,19 @@ def test_a_code_is_drawn_dark_on_light_everywhere():
     lines = qr_text(URL + "#" + "x" * 22).splitlines()
     assert all(line.startswith("\x1b[38;5;231;48;5;16m") for line in lines)
     assert len(lines) <= 21 and max(map(len, lines)) < 80
+
+
+HALVES = {"█": (255, 255), "▀": (255, 0), "▄": (0, 255), " ": (0, 0)}
+
+
+def test_the_code_of_a_terminal_is_read_by_a_scanner():
+    cv2 = pytest.importorskip("cv2")
+    link = "http://192.168.100.100:65535/#" + "aB-_9" * 4 + "xy"
+    lines = [re.sub(r"\x1b\[[0-9;]*m", "", line) for line in qr_text(link).splitlines()]
+    halves = np.array([[HALVES[one] for one in line] for line in lines], np.uint8)
+    rows = halves.transpose(0, 2, 1).reshape(2 * len(lines), -1)
+    picture = np.pad(rows.repeat(8, 0).repeat(8, 1), 40, constant_values=255)
+    assert cv2.QRCodeDetector().detectAndDecode(picture)[0] == link
 
 
 @pytest.mark.parametrize(

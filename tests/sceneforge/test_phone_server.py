@@ -98,6 +98,13 @@ def test_what_changes_something_says_that_the_page_asks(server, phone, path):
     assert answer.status_code == 403 and "outside the phone page" in answer.json()["error"]
 
 
+def test_a_phone_that_sends_without_a_session_is_told_so(server):
+    with phone_browser(server) as stranger:
+        for _ in range(5):  # An answer, and never a reset.
+            answer = stranger.put(f"{ONE}/x/files/0?at=0", content=bytes(1 << 20))
+            assert answer.status_code == 401 and answer.json() == {"error": SCAN_AGAIN}
+
+
 def test_two_hosts_are_none(server):
     host = f"127.0.0.1:{server.phone.port}"
     asked = f"GET / HTTP/1.1\r\nHost: {host}\r\nHost: evil.example\r\n\r\n".encode()
@@ -262,9 +269,10 @@ def test_the_start_page_shows_the_code_and_makes_new_ones(server):
         renewed = script.post("/api/start/phone").json()
         assert renewed["link"] != told["link"] and 590 < renewed["left_s"] <= 600
         with paired(server) as phone:
-            announced(phone, ("a.jpg", 1))
+            number = announced(phone, ("a.jpg", 1)).json()["id"]
             told = script.get("/api/start/phone").json()
-            assert (told["link"], told["phones"], told["captures"]) == ("", 1, 1)
+            assert (told["link"], told["phones"]) == ("", 1)
+            assert told["captures"] == [[number, False, False, False]]
             assert script.get("/api/start").json()["captures"][0]["title"].startswith("Phone scan")
 
 

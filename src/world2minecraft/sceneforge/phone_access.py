@@ -76,7 +76,7 @@ class PhoneAccess:
     @property
     def phones(self) -> list[Phone]:
         """The phones that are let in."""
-        return list(self._phones.values())
+        return list(self._current().values())
 
     def pair(self, token: str, address: str) -> str:
         """Exchange the token of the current code for a session, and end the code.
@@ -105,12 +105,16 @@ class PhoneAccess:
 
     def phone(self, session: str) -> Phone | None:
         """Return the phone of a session, or None if there is none or it has ended."""
-        now = self._clock()
-        self._phones = {key: one for key, one in self._phones.items() if one.until_s > now}
-        for key, one in self._phones.items():
+        for key, one in self._current().items():
             if compare_digest(session.encode(errors="replace"), key.encode()):
                 return one
         return None
+
+    def _current(self) -> dict[str, Phone]:
+        """Forget sessions that have ended, and return the others."""
+        now = self._clock()
+        self._phones = {key: one for key, one in self._phones.items() if one.until_s > now}
+        return self._phones
 
     def _note_wrong(self, address: str, wrong: deque[float], now: float) -> None:
         wrong.append(now)

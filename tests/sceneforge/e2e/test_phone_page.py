@@ -72,7 +72,7 @@ def quick(monkeypatch, example_run):
             while not (within / "go").exists():
                 report("fuse", 2, 3)
                 time.sleep(0.05)
-            return {"objects": 7}
+            return {"objects": 15}
 
         def page(report):
             return share(**needs, progress=report)
@@ -126,7 +126,7 @@ def test_a_phone_sends_photos_and_walks_in_the_room(held, server, photos, quick)
     keep(driver, "phone-take")
     pick(page, "Take photos", photos[:1])
     assert heading(page) == "1 photo"
-    pick(page, "Add from this phone", photos[1:])
+    pick(page, "Choose more", photos[1:])
     assert heading(page) == "3 photos" and fits(page)
     keep(driver, "phone-chosen")
     page.route("**/files/1?at=*", lambda route: route.abort())
@@ -215,6 +215,10 @@ def test_the_start_page_shows_a_code_until_it_is_used(held, server, browser):
     keep_start(driver, "start-phone")
     held()
     page.get_by_text("1 phone is connected").wait_for(timeout=MOST_MS)
+    (phone,) = server.phone.access.phones
+    sent = server.workspace.captures.create("Phone scan", [{"path": "a.jpg", "size": 1}])
+    phone.captures.append(sent.id)
+    page.locator(".room-row").get_by_text("Phone scan").wait_for(timeout=MOST_MS)
     keep_start(driver, "start-phone-used")
     page.get_by_role("button", name="New code").click()
     code.wait_for(timeout=MOST_MS)

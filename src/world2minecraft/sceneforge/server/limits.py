@@ -58,7 +58,7 @@ class BodyLimit:
         length = _length(headers.get(b"content-length"))
         if length > most:
             if length <= MAX_DRAINED_BYTES:
-                await _drain(receive)
+                await drain(receive)
             await _answer(send, 413, _too_large(most))
             return
         await self._counted(scope, receive, send, most)
@@ -83,11 +83,11 @@ class BodyLimit:
             await self.app(scope, counting, noting)
         except TooLargeError:
             if not began:
-                await _drain(receive)
+                await drain(receive)
                 await _answer(send, 413, _too_large(most))
 
 
-async def _drain(receive: Receive) -> None:
+async def drain(receive: Receive) -> None:
     """Read the rest of a body and discard it, up to a size and for a limited time.
 
     A client that is still sending when the connection closes sees a reset in place of the answer.

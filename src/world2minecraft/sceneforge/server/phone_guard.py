@@ -20,6 +20,7 @@ from world2minecraft.sceneforge.server.guard import (
     refuse,
     with_headers,
 )
+from world2minecraft.sceneforge.server.limits import drain
 
 PAIR = "/api/phone/pair"
 PUBLIC = frozenset({"/", "/phone.js", "/phone.css", PAIR})  # What a phone sees before it is let in.
@@ -44,15 +45,16 @@ class PhoneGuard:
         """Pass a request on to the application, or refuse it with a status and a reason."""
         headers = headers_of(scope)
         send = with_headers(scope, send, (*HEADERS, *ALONE))
-        refusal = self._foreign(scope, headers)
-        if refusal:
-            await refuse(scope, receive, send, refusal)
+        refusal, status = self._foreign(scope, headers), 403
+        phone = None if refusal else self._phone(headers)
+        if not refusal and phone is None and scope["path"] not in PUBLIC:
+            refusal, status = SCAN_AGAIN, 401
+        if not refusal:
+            await self.app({**scope, "phone": phone}, receive, send)
             return
-        phone = self._phone(headers)
-        if phone is None and scope["path"] not in PUBLIC:
-            await refuse(scope, receive, send, SCAN_AGAIN, 401)
-            return
-        await self.app({**scope, "phone": phone}, receive, send)
+        if scope["type"] == "http":
+            await drain(receive)  # A phone that still sends would see a reset, and try again.
+        await refuse(scope, receive, send, refusal, status)
 
     def _foreign(self, scope: Scope, headers: dict[str, list[str]]) -> str:
         if scope["type"] != "http":

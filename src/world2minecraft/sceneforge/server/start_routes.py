@@ -122,7 +122,7 @@ async def _overview(request: Request) -> Response:
             "scale": DEFAULT_SCALE,
             "styles": list(STYLES),
             "known": known,
-            "phone": None if workspace.phone is None else _phone_json(workspace.phone),
+            "phone": workspace.phone and _phone_json(workspace, workspace.phone),
             "wanted": workspace.wanted,
         }
     )
@@ -248,13 +248,13 @@ def _remember(workspace: Workspace) -> Any:
 
 
 async def _phone(request: Request) -> Response:
-    return JSONResponse(_phone_json(_phone_access(request)))
+    return JSONResponse(_phone_json(get_workspace(request), _phone_access(request)))
 
 
 async def _new_phone_code(request: Request) -> Response:
     access = _phone_access(request)
     access.new_code()
-    return JSONResponse(_phone_json(access))
+    return JSONResponse(_phone_json(get_workspace(request), access))
 
 
 def _phone_access(request: Request) -> PhoneAccess:
@@ -264,15 +264,19 @@ def _phone_access(request: Request) -> PhoneAccess:
     return access
 
 
-def _phone_json(access: PhoneAccess) -> dict[str, Any]:
-    """Return the current code as a link and a picture, and what phones have sent."""
-    link = access.link
+def _phone_json(workspace: Workspace, access: PhoneAccess) -> dict[str, Any]:
+    """Return the current code as a link and a picture, and the state of what phones have sent."""
+    link, sent = access.link, {number for one in access.phones for number in one.captures}
     return {
         "link": link,
         "code": qr_svg_uri(link) if link else "",
         "left_s": round(access.left_s),
         "phones": len(access.phones),
-        "captures": sum(len(one.captures) for one in access.phones),
+        "captures": [
+            [one.id, one.complete, workspace.job_of(one) is not None, one.has_room]
+            for one in (workspace.captures.all() if sent else ())
+            if one.id in sent
+        ],
     }
 
 

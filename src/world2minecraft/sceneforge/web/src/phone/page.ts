@@ -66,7 +66,7 @@ export class PhonePage {
     const stop = new AbortController();
     const work = workScreen(TEXT.send.title, TEXT.send.note, () => stop.abort());
     this.show(work.node);
-    const step = (done: number, total: number): void => work.show(total ? done / total : 0, TEXT.send.stage(TEXT.size(done), TEXT.size(total)), "");
+    const step = (done: number, total: number): void => work.show(done / Math.max(total, 1), TEXT.send.stage(TEXT.size(done), TEXT.size(total)), "");
     const how = {
       base: CAPTURES,
       chunkBytes: this.told!.chunk_bytes,
@@ -109,7 +109,7 @@ export class PhonePage {
   }
 
   private report(work: WorkScreen, { job }: CaptureTold): void {
-    if (job) work.show(job.share ?? null, stageOf(job), leftOf(job));
+    if (job) work.show(job.share ?? 0, stageOf(job), leftOf(job));
   }
 
   private end(one: CaptureTold): void {

@@ -110,7 +110,7 @@ async function thumb(file: File): Promise<HTMLCanvasElement> {
 
 export interface WorkScreen {
   node: HTMLElement;
-  show(share: number | null, stage: string, left: string): void;
+  show(share: number, stage: string, left: string): void;
   warn(text: string): void;
 }
 
@@ -132,9 +132,8 @@ export function workScreen(title: string, note: string, cancel: () => void): Wor
   return {
     node,
     show(share, name, rest) {
-      fill(number, share === null ? "" : `${Math.floor(share * 100)} %`);
-      if (share === null) bar.removeAttribute("value");
-      else bar.value = share;
+      fill(number, `${Math.floor(share * 100)} %`);
+      bar.value = share;
       fill(stage, name);
       fill(left, rest);
     },

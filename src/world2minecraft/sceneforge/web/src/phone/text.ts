@@ -20,7 +20,7 @@ export const TEXT = {
     enough: "That is enough for a good room.",
     videoHint: "Only your computer gets it.",
     more: "Take more",
-    morePick: "Add from this phone",
+    morePick: "Choose more",
     build: "Build the room",
     over: "Start over",
     others: (count: number): string => `+${count}`,

@@ -10,15 +10,16 @@ import type { PhoneCode } from "./told";
 
 const POLL_MS = 2000;
 
-/** The panel. It looks again and again while it is on the page; `sent` is called for each capture. */
+/** The panel. It looks again and again while it is on the page; `sent` is called when what phones sent changes. */
 export function phonePanel(first: PhoneCode, sent: () => void): HTMLElement {
   const node = h("section", { class: "phone-panel", "aria-label": TEXT.start.phone.title });
   let shown = "";
-  let captures = first.captures;
+  let captures = JSON.stringify(first.captures);
 
   const show = (told: PhoneCode): void => {
-    if (told.captures !== captures) sent();
-    captures = told.captures;
+    const now = JSON.stringify(told.captures);
+    if (now !== captures) sent();
+    captures = now;
     const left = told.link ? TEXT.start.phone.left(timeOf(told.left_s)) : "";
     const state = JSON.stringify([told.code, told.phones, left]);
     if (state !== shown) fill(node, ...contents(told, left, renew));

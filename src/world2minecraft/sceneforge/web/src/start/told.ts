@@ -48,7 +48,7 @@ export interface PhoneCode {
   code: string; // its picture, as a data URI
   left_s: number;
   phones: number;
-  captures: number;
+  captures: [string, boolean, boolean, boolean][]; // id, whether complete, running, a room
 }
 
 export interface Choice {
