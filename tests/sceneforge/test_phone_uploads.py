@@ -15,9 +15,13 @@ from hypothesis import strategies as st
 from phone_serving import ONE, announced, paired, phone_served, put_head
 from starlette.requests import ClientDisconnect
 
-from world2minecraft.core.errors import ConflictError, UsageError
+from world2minecraft.core.errors import ConflictError, MissingExtraError, UsageError
 from world2minecraft.sceneforge import phone_captures
-from world2minecraft.sceneforge.phone_captures import check_phone_files, start_phone_room
+from world2minecraft.sceneforge.phone_captures import (
+    check_phone_files,
+    check_phone_libraries,
+    start_phone_room,
+)
 from world2minecraft.sceneforge.server import capture_requests
 from world2minecraft.sceneforge.session import Session
 from world2minecraft.sceneforge.uploads import CaptureStore
@@ -135,6 +139,12 @@ def test_a_silent_connection_gives_its_file_back(server, phone, monkeypatch):
 def test_what_phones_take_is_accepted(names):
     files = [{"path": name, "size": 1} for name in names]
     assert [one.path for one in check_phone_files(files, 100)] == names
+
+
+def test_a_missing_library_is_told_before_anyone_films(monkeypatch):
+    monkeypatch.setattr(phone_captures, "find_spec", lambda name: name != "pycolmap")
+    with pytest.raises(MissingExtraError, match=r"--phone needs an extra: .*\[capture\]"):
+        check_phone_libraries()
 
 
 def test_folders_of_a_phone_are_refused_before_the_suffix():

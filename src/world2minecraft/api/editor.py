@@ -176,7 +176,7 @@ def prepare_editor(
 
     Raises:
         UsageError: If ``demo`` is combined with a source, if the port is in use, or if there is no
-            local network for the phone page.
+            local network or no library for the phone page.
         InputError: If the source does not contain a room, or the certificate cannot be used.
 
     Example:
@@ -186,11 +186,14 @@ def prepare_editor(
     """
     from world2minecraft.sceneforge.document.document_metadata import document_folder
     from world2minecraft.sceneforge.editor import Editor
+    from world2minecraft.sceneforge.phone_captures import check_phone_libraries
     from world2minecraft.sceneforge.scene_sources import DEMO_OUT
     from world2minecraft.sceneforge.server.local_address import lan_address
     from world2minecraft.sceneforge.server.server_process import ForgeServer
     from world2minecraft.sceneforge.uploads import is_capture, user_home
 
+    if phone:
+        check_phone_libraries()
     if demo and source is not None:
         raise UsageError("--demo opens the demo room; omit either --demo or the file")
     place = None if source is None else path_of(source)

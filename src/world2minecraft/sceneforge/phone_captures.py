@@ -5,12 +5,19 @@ room as one page (``room.html``) beside it; it goes on while the phone is locked
 """
 
 import time
+from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 from world2minecraft.capture.images import HEIF_SUFFIXES
 from world2minecraft.capture.readers.video import SUFFIXES as VIDEO_SUFFIXES
-from world2minecraft.core.errors import InputError, LimitError, UsageError, World2MinecraftError
+from world2minecraft.core.errors import (
+    InputError,
+    LimitError,
+    MissingExtraError,
+    UsageError,
+    World2MinecraftError,
+)
 from world2minecraft.sceneforge.jobs.export_tasks import SHARED
 from world2minecraft.sceneforge.jobs.jobs import JobFunction, JobProgress
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
@@ -23,6 +30,17 @@ MAX_PHOTOS = 600  # More than anyone takes of a room by hand.
 MAX_CAPTURES = 20  # Captures of one phone.
 VIDEO_FRAMES = 60  # What is guessed until the survey has counted them.
 LOOK_S, SHARE_S = 4.0, 4.0
+LIBRARIES = ("av", "pillow_heif", "pycolmap")  # For videos, photos of iPhones, and poses.
+
+
+def check_phone_libraries() -> None:
+    """Check that photos and videos can be read and posed, before anyone takes them.
+
+    Raises:
+        MissingExtraError: If a library is not installed.
+    """
+    if not all(map(find_spec, LIBRARIES)):
+        raise MissingExtraError("--phone", "capture")
 
 
 def check_phone_files(data: Any, max_bytes: int) -> tuple[UploadFile, ...]:
