@@ -49,6 +49,17 @@ def test_an_offer_is_taken_by_a_command(editor):
     assert the(editor, 6).placements[0].template == "double_bed"
 
 
+def test_turning_furniture_measures_its_fit_again(editor):
+    bed = the(editor, 6)
+    fits = [bed.placements[0].iou]
+    for _ in range(4):
+        editor.do("turn_objects", ids=[bed.id], quarter_turns=1)
+        fits.append(the(editor, 6).placements[0].iou)
+    assert fits[0] == fits[4] > 0.9 and fits[1] < 0.8
+    editor.undo()
+    assert the(editor, 6).placements[0].iou == fits[3]
+
+
 def test_centers_are_previewed_and_change_nothing(editor):
     figures = {"density_kernel": 3, "density_threshold": 0.2, "cluster_radius": 2}
     rows = editor.ask("centers", **figures)

@@ -17,6 +17,7 @@ from world2minecraft.reconstruction.retrieval import (
     RetrievalParameters,
     fit_template,
     place_templates,
+    score_placements,
 )
 
 
@@ -29,7 +30,7 @@ def tools_of(rooms: Sequence[Layout] = ()) -> Tools:
     def fit(grid: OccupancyGrid, one: ObjectInstance, name: str, turns: int | None) -> Placement:
         return fit_template(grid, one, name, turns, rooms)
 
-    return Tools(match, find_instances, fit, measure_object)
+    return Tools(match, find_instances, fit, measure_object, score_placements)
 
 
 def find_instances(

@@ -24,6 +24,13 @@ def unavailable_tool(*_given: Any) -> Any:
     raise UsageError("this edit requires a reconstruction stage; open the scene with Editor")
 
 
+def keep_fit(
+    _grid: OccupancyGrid, _one: ObjectInstance, placements: tuple[Placement, ...]
+) -> tuple[Placement, ...]:
+    """Return placements as they are, in place of a tool that was not provided."""
+    return placements
+
+
 class Tools(NamedTuple):
     """Functions of the reconstruction stages that commands use.
 
@@ -31,13 +38,16 @@ class Tools(NamedTuple):
     cell and the objects, for given ``InstanceParameters``. ``fit`` returns one template fitted to
     an object, with a given or the best rotation, regardless of its surroundings. ``measure``
     returns the object with an id and a class that consists of cells int32 [N, 3], with its bounding
-    box and front.
+    box and front. ``score`` returns the furniture of an object with its IoU where it stands now.
     """
 
     match: Callable[[OccupancyGrid, ObjectInstance], tuple[Placement, ...]]
     find: Callable[[OccupancyGrid, dict[str, Any]], tuple[np.ndarray, tuple[ObjectInstance, ...]]]
     fit: Callable[[OccupancyGrid, ObjectInstance, str, int | None], Placement] = unavailable_tool
     measure: Callable[[OccupancyGrid, int, int, np.ndarray], ObjectInstance] = unavailable_tool
+    score: Callable[
+        [OccupancyGrid, ObjectInstance, tuple[Placement, ...]], tuple[Placement, ...]
+    ] = keep_fit
 
 
 class Command(BaseModel):

@@ -4,6 +4,7 @@ Cells move with their object by whole cells, onto free cells inside the grid.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
@@ -27,6 +28,7 @@ from world2minecraft.editing.scene.object_boxes import (
     rotate_object,
     translate_object,
 )
+from world2minecraft.editing.scene.object_conversion import instance_of
 from world2minecraft.editing.scene.scene_draft import ARRAYS, SceneDraft
 
 Id = Annotated[int, Field(ge=1, le=65535)]
@@ -150,7 +152,8 @@ class TurnObjects(Command):
 
     Their furniture and yaw are rotated. The cells of objects built from their own cells are also
     rotated, and cells that would overlap structure or other objects are dropped. The cells of
-    objects with a furniture template are kept, because they record what was observed.
+    objects with a furniture template are kept, because they record what was observed; the IoU of
+    the template with them is computed again.
     """
 
     op: Literal["turn_objects"] = "turn_objects"
@@ -167,9 +170,16 @@ class TurnObjects(Command):
             if is_of_cells(one):
                 cells = draft.cells_of(one.id)
                 put_cells(draft, patch, one, cells, self._rotated_cells(draft, one, cells))
-        objects = [rotate_object(one, self.quarter_turns) for one in ones]
+        objects = [self._turned(draft, tools, one) for one in ones]
         details = {"counts_as": "orient", "class_id": common_class(ones)}
         return patch.plan_operation("turn_objects", objects=objects, **details)
+
+    def _turned(self, draft: SceneDraft, tools: Tools, one: SceneObject) -> SceneObject:
+        turned = rotate_object(one, self.quarter_turns)
+        if is_of_cells(one):
+            return turned
+        found = instance_of(turned, draft.cells_of(one.id))
+        return replace(turned, placements=tools.score(draft.grid(), found, turned.placements))
 
     def _rotated_cells(self, draft: SceneDraft, one: SceneObject, cells: np.ndarray) -> np.ndarray:
         result = rotate_cells(cells, one.center_m, self.quarter_turns, draft)

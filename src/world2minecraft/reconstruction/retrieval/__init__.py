@@ -4,7 +4,17 @@ This is the paper's argmax of the intersection of O_k and Rot(T_j, delta) over t
 """
 
 from world2minecraft.reconstruction.retrieval.furniture_placement import place_templates
-from world2minecraft.reconstruction.retrieval.manual_placement import fit_template, ranked_matches
+from world2minecraft.reconstruction.retrieval.manual_placement import (
+    fit_template,
+    ranked_matches,
+    score_placements,
+)
 from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 
-__all__ = ["RetrievalParameters", "fit_template", "place_templates", "ranked_matches"]
+__all__ = [
+    "RetrievalParameters",
+    "fit_template",
+    "place_templates",
+    "ranked_matches",
+    "score_placements",
+]

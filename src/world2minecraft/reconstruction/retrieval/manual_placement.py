@@ -1,11 +1,14 @@
 """Placement of a furniture template that a person chose for an object."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
-from world2minecraft.furniture import Template, template, templates_of_class
+from world2minecraft.furniture import Template, template, template_cells, templates_of_class
+from world2minecraft.furniture.rasterization import size_in_cells
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 from world2minecraft.reconstruction.retrieval.placement_settling import floor_under_m, within_rooms
@@ -67,6 +70,44 @@ def ranked_matches(
         row = (one.trial.template.name, one.trial.quarter_turns, round(one.iou, 4))
         best.setdefault(row[0], row)
     return tuple(best.values())[:count]
+
+
+def score_placements(
+    grid: OccupancyGrid, instance: ObjectInstance, placements: Sequence[Placement]
+) -> tuple[Placement, ...]:
+    """Return the placements of an object with the IoU of its templates where they stand.
+
+    The IoU is that of the matching: covered cells of the object, over its cells and the covered
+    cells that are known to be empty or structure. Several pieces of one object share one value.
+    Placements of own cells, and those of an object without cells, keep theirs.
+
+    Args:
+        grid: Grid with the object's cells.
+        instance: The object.
+        placements: Its placements.
+    """
+    pieces = [one for one in placements if one.template != OWN_CELLS]
+    if not pieces or not len(instance.cells):
+        return tuple(placements)
+    own = np.zeros(grid.shape, np.bool_)
+    own[tuple(instance.cells.T)] = True
+    covered = np.zeros(grid.shape, np.bool_)
+    for one in pieces:
+        covered[tuple(_covered_cells(grid, one).T)] = True
+    against = covered & ~own & (grid.labels <= SemanticClass.WINDOW)
+    iou = float((covered & own).sum() / (len(instance.cells) + against.sum()))
+    scored = {id(one): replace(one, iou=round(iou, 4)) for one in pieces}
+    return tuple(scored.get(id(one), one) for one in placements)
+
+
+def _covered_cells(grid: OccupancyGrid, one: Placement) -> np.ndarray:
+    """Return the cells of the grid that a placed template covers, int [N, 3]."""
+    counts = size_in_cells(one.size_m, grid.voxel_m)
+    middle = (one.center_m - grid.origin_m) / grid.voxel_m
+    corner = np.floor(middle - _along(np.array(counts), one.quarter_turns) / 2 + 0.5)
+    values = (dict(one.parameters), one.quarter_turns, corner.astype(int).tolist(), grid.voxel_m)
+    cells = template_cells(template(one.template), one.size_m, *values)
+    return cells[((cells >= 0) & (cells < grid.shape)).all(axis=1)]
 
 
 def _matches(
