@@ -1,22 +1,46 @@
 """Another occupancy is laid on the document's cells, and nothing else is compared with."""
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from forge_serving import client, served, small_editor
 
+from world2minecraft.editing.scene.scene_draft import ARRAYS
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
+from world2minecraft.evaluation.scoring.score import (
+    cell_facts,
+    scored_beyond,
+    scored_labels,
+    see_truth,
+)
+from world2minecraft.evaluation.scoring.used_frames import truth_of_run, used_frames
+from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.sceneforge.array_messages import HEADER
-from world2minecraft.sceneforge.comparison import read_file_labels
+from world2minecraft.sceneforge.comparison import Reference, read_file_labels
 from world2minecraft.sceneforge.editor import Editor
 
 
 def test_the_truth_is_masked_as_in_evaluate(small_run):
     editor = Editor.open(small_run)
-    scored = evaluate_reconstruction(small_run, small_run / "capture")["occupancy"]["iou"]
-    assert editor.ask("compare", path="truth")["iou"] == pytest.approx(scored, abs=0.01)
+    scored = evaluate_reconstruction(small_run, small_run / "capture")["occupancy"]
+    found = editor.ask("compare", path="truth")
+    assert found["iou"] == round(scored["iou"], 4)
+    assert found["class_iou"] == {name: round(x, 4) for name, x in scored["class_iou"].items()}
     editor.close()
+
+
+def test_true_cells_outside_the_scene_are_missed(small_run):
+    truth = truth_of_run(small_run, small_run / "capture")
+    grid, scan_to_room = read_room(small_run / "room.npz")
+    room = see_truth(truth, used_frames(small_run, truth), scan_to_room, grid.voxel_m)
+    cut = replace(grid, **{name: getattr(grid, name)[:, :-12] for name in ARRAYS})
+    place = (cut.shape, cut.origin_m)
+    reference = Reference(scored_labels(room, *place), scored_beyond(room, *place))
+    assert reference.beyond[1:].sum() > 0
+    scored = cell_facts(cut, room)["occupancy"]
+    assert reference.counts(cut.labels).figures() == scored
 
 
 def npy(labels) -> bytes:
@@ -30,10 +54,10 @@ def test_a_file_is_compared_over_http(tmp_path):
     labels = editor.draft.labels.copy()
     labels[3, 3, 3] = 8
     with served(editor, home=tmp_path / "home") as server, client(server) as script:
-        assert script.get("/api/compare").json() == {"name": "", "has_truth": False}
+        assert script.get("/api/compare").json() == {"name": "", "has_truth": False, "beyond": []}
         assert "no comparison is open" in script.get("/api/compare/labels").json()["error"]
         sent = script.post("/api/upload/compare?name=a/pred.npy", content=npy(labels))
-        assert sent.json() == {"name": "pred.npy", "has_truth": False}
+        assert sent.json() == {"name": "pred.npy", "has_truth": False, "beyond": [0] * 12}
         body = script.get("/api/compare/labels").content
         assert np.array_equal(np.frombuffer(body[HEADER.size :], np.uint8), labels.ravel())
         assert script.delete("/api/compare").json()["name"] == ""

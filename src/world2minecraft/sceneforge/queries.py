@@ -33,7 +33,6 @@ from world2minecraft.editing.scene.repair import (
     hole_cells,
     plane_gaps,
 )
-from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
 from world2minecraft.reconstruction.instances import InstanceParameters
 from world2minecraft.reconstruction.instances.density_clustering import (
@@ -45,9 +44,10 @@ from world2minecraft.reconstruction.instances.density_clustering import (
 )
 from world2minecraft.reconstruction.retrieval import ranked_matches
 from world2minecraft.sceneforge.comparison import (
+    Reference,
     find_truth_folder,
     read_file_labels,
-    read_truth_labels,
+    read_truth,
 )
 from world2minecraft.sceneforge.scene_sources import OpenedScene
 
@@ -164,24 +164,24 @@ class Compare(Query):
         """Return ``added``, ``removed`` and ``changed`` runs, their ``cells``, and the IoUs."""
         return compare_draft(scene.draft, self._other(scene))
 
-    def _other(self, scene: QueriedScene) -> np.ndarray:
+    def _other(self, scene: QueriedScene) -> Reference:
         if self.path == OPENED:
             labels = scene.opened.grid.labels
-            return np.where(labels == UNKNOWN, 0, labels).astype(np.uint8)
+            return Reference(np.where(labels == UNKNOWN, 0, labels).astype(np.uint8))
         folder = scene.opened.folder
         if self.path != TRUTH:
-            return read_file_labels(file_within(folder, self.path), scene.draft)
+            return Reference(read_file_labels(file_within(folder, self.path), scene.draft))
         place = find_truth_folder(folder, None)
         if place is None:
             raise UsageError("no ground truth in the scene's folder; only generated rooms have one")
-        return read_truth_labels(folder, place, scene.draft, scene.opened.scan_to_room)
+        return read_truth(folder, place, scene.draft, scene.opened.scan_to_room)
 
 
-def compare_draft(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:
-    """Return the answer of ``compare`` for reference labels uint8 [X, Y, Z] in scene cells."""
-    found = compare_labels(draft.labels, other)
+def compare_draft(draft: SceneDraft, other: Reference) -> dict[str, Any]:
+    """Return the answer of ``compare`` for a reference in the cells of the scene."""
+    found = compare_labels(draft.labels, other.labels)
     masks = {"added": found.added, "removed": found.removed, "changed": found.changed}
-    counts = count_occupancy(draft.labels, other)
+    counts = other.counts(draft.labels)
     classes = zip(CLASS_NAMES[1:], counts.class_iou[1:].tolist(), strict=True)
     return {
         **{name: runs_of_mask(mask, draft) for name, mask in masks.items()},

@@ -10,11 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from world2minecraft.core.errors import InputError, OutputError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.sceneforge.comparison import find_truth_folder
+from world2minecraft.sceneforge.comparison import Reference, find_truth_folder
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.export_options import write_snapshot
 from world2minecraft.sceneforge.game_folders import GameFolders
@@ -36,10 +34,10 @@ PLACES = "captures.json"  # Where the capture of each run lies, as the user said
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """An occupancy to compare with: labels uint8 [X, Y, Z] in the cells of an editor's scene."""
+    """An occupancy to compare with, in the cells of an editor's scene."""
 
     name: str
-    labels: np.ndarray
+    reference: Reference
     editor: Editor
 
 

@@ -265,6 +265,23 @@ def scored_labels(room: TrueRoom, shape: tuple[int, int, int], origin_m: np.ndar
     return _copied(labels, start, shape, UNKNOWN)
 
 
+def scored_beyond(room: TrueRoom, shape: tuple[int, int, int], origin_m: np.ndarray) -> np.ndarray:
+    """Return how many scored cells outside a grid have each true label, as int64 [12].
+
+    They count as missed, or as rightly empty, since a grid holds nothing outside its bounds.
+
+    Args:
+        room: The ground truth in the frame of the grid, with the cell size of the grid.
+        shape: The shape [X, Y, Z] of the grid.
+        origin_m: The minimum corner of the grid, as float [3].
+    """
+    every = room.labels[room.reached.scored & (room.labels != UNKNOWN)]
+    inside = scored_labels(room, shape, origin_m)
+    return np.bincount(every, minlength=CLASS_COUNT) - np.bincount(
+        inside[inside != UNKNOWN], minlength=CLASS_COUNT
+    )
+
+
 def _copied(values: np.ndarray, start: np.ndarray, shape: tuple[int, ...], fill: int) -> np.ndarray:
     """Copy a box of cells [X, Y, Z] whose first cell has index ``start`` in the result."""
     result = np.full(shape, fill, values.dtype)

@@ -1,7 +1,8 @@
 """The ``/api/compare`` routes, which compare the document with another occupancy of its room.
 
 ====================================  ========================================================
-GET    /api/compare                   ``{name, has_truth}``: name of the open comparison, if any
+GET    /api/compare                   ``{name, has_truth, beyond}``: name of the open comparison,
+                                      if any, and its cells outside the document by class
 POST   /api/compare/truth             compare with the ground truth of a generated room
 POST   /api/compare/opened            compare with the scene as it was first opened
 POST   /api/upload/compare?name=NAME  compare with an uploaded room.npz, occ.json, .npz or .npy
@@ -21,9 +22,10 @@ from starlette.routing import BaseRoute, Route
 from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.sceneforge.array_messages import labels_bytes
 from world2minecraft.sceneforge.comparison import (
+    Reference,
     check_suffix,
     read_file_labels,
-    read_truth_labels,
+    read_truth,
 )
 from world2minecraft.sceneforge.server.request_parsing import get_workspace
 from world2minecraft.sceneforge.workspace import Comparison, Workspace
@@ -58,16 +60,17 @@ async def _truth(request: Request) -> Response:
         raise UsageError("this room has no ground truth; only generated rooms have one")
     editor = workspace.editor
     scan_to_room = editor.opened.scan_to_room
-    labels = await asyncio.to_thread(
-        read_truth_labels, workspace.run, folder, editor.draft, scan_to_room
+    reference = await asyncio.to_thread(
+        read_truth, workspace.run, folder, editor.draft, scan_to_room
     )
-    workspace.compared = Comparison("truth", labels, editor)
+    workspace.compared = Comparison("truth", reference, editor)
     return _answer(workspace)
 
 
 async def _opened(request: Request) -> Response:
     workspace = get_workspace(request)
-    workspace.compared = Comparison("opened", workspace.editor.opened.grid.labels, workspace.editor)
+    reference = Reference(workspace.editor.opened.grid.labels)
+    workspace.compared = Comparison("opened", reference, workspace.editor)
     return _answer(workspace)
 
 
@@ -86,7 +89,7 @@ async def _file(request: Request) -> Response:
         except World2MinecraftError as error:
             message = str(error).replace(str(place), Path(name).name[:80])
             raise UsageError(message) from error
-    workspace.compared = Comparison(Path(name).name[:80], labels, editor)
+    workspace.compared = Comparison(Path(name).name[:80], Reference(labels), editor)
     return _answer(workspace)
 
 
@@ -94,7 +97,7 @@ async def _labels(request: Request) -> Response:
     workspace = get_workspace(request)
     if workspace.compared is None or workspace.compared.editor is not workspace.session.editor:
         raise UsageError("no comparison is open; choose a file or the ground truth first")
-    data = labels_bytes(workspace.editor.draft, workspace.compared.labels)
+    data = labels_bytes(workspace.editor.draft, workspace.compared.reference.labels)
     return Response(data, media_type="application/octet-stream", headers={"X-Rev": "0"})
 
 
@@ -105,5 +108,8 @@ def _answer(workspace: Workspace) -> Response:
         {
             "name": compared.name if compared is not None and is_here else "",
             "has_truth": workspace.truth_folder() is not None,
+            "beyond": compared.reference.beyond.tolist()
+            if compared is not None and is_here
+            else [],
         }
     )

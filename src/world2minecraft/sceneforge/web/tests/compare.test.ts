@@ -28,6 +28,12 @@ describe("compare", () => {
     expect(found.miou).toBeCloseTo(vector.miou, 12);
   });
 
+  it("counts what lies outside the scene as missed", () => {
+    const now = Uint8Array.from([2, 0]);
+    const found = compare(now, now, [5, 0, 1]);
+    expect([found.iou, found.miou]).toEqual([0.5, 0.5]);
+  });
+
   it("gives runs that name each differing cell once, in order", () => {
     const now = Uint8Array.from([0, 3, 3, 3, 0, 0, 5, 6]);
     const other = Uint8Array.from([0, 0, 0, 3, 4, 4, 6, 255]);

@@ -15,8 +15,10 @@ export interface Compared {
 const UNKNOWN = 255;
 const CLASSES = 12;
 
-export function compare(now: Uint8Array, other: Uint8Array): Compared {
+/** `beyond` is how many cells of each class the other one has where the scene has no cells. */
+export function compare(now: Uint8Array, other: Uint8Array, beyond: readonly number[] = []): Compared {
   const table = new Float64Array(CLASSES * CLASSES); // [truth, now]
+  beyond.forEach((cells, truth) => (table[truth * CLASSES]! += cells));
   const runs = { added: [] as Run[], removed: [] as Run[], changed: [] as Run[] };
   let open: { run: Run; kind: keyof typeof runs } | null = null;
   for (let flat = 0; flat < other.length; flat++) {

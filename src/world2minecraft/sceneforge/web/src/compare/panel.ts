@@ -13,6 +13,7 @@ import { compare, type Compared } from "./count";
 interface Told {
   name: string;
   has_truth: boolean;
+  beyond: number[]; // cells outside the scene, by class
 }
 
 const SOON_MS = 40; // Several changes of one gesture are counted once.
@@ -32,6 +33,7 @@ export function registerCompare(): void {
 
 class ComparePanel {
   private other: Uint8Array | null = null;
+  private beyond: readonly number[] = [];
   private name = "";
   private due = 0;
   private before: ColourBy = "class";
@@ -82,9 +84,9 @@ class ComparePanel {
 
   private async take(choose: () => Promise<Told>): Promise<void> {
     try {
-      const { name } = await choose();
+      const { name, beyond } = await choose();
       this.other = await readVolumeAt("api/compare/labels");
-      this.name = name;
+      [this.name, this.beyond] = [name, beyond];
       const { scene, view } = this.app.store.get();
       if (view.colourBy !== "difference") this.before = view.colourBy;
       if (scene) this.app.store.set({ scene: { ...scene, has: { ...scene.has, truth: true } } });
@@ -115,7 +117,7 @@ class ComparePanel {
   private count(): void {
     const { labels } = this.app.store.get();
     if (!this.other || this.other.length !== labels.length) return;
-    const found = compare(labels, this.other);
+    const found = compare(labels, this.other, this.beyond);
     const { hidden } = this.app.store.get().view;
     this.app.view.setDifference({ ...found, removed: shownRuns(found.removed, this.other, hidden) });
     this.show(found);
