@@ -66,7 +66,7 @@ def class_id(name: str) -> int:
     if name in CLASS_DISPLAY_NAMES:
         return CLASS_DISPLAY_NAMES.index(name)
     if name not in CLASS_NAMES:
-        raise UnknownNameError("class", name, CLASS_NAMES)
+        raise UnknownNameError("class", name, CLASS_DISPLAY_NAMES)
     return CLASS_NAMES.index(name)
 
 

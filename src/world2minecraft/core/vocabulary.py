@@ -15,7 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id, display_name
+from world2minecraft.core.classes import (
+    CLASS_DISPLAY_NAMES,
+    CLASS_NAMES,
+    UNKNOWN,
+    class_id,
+    display_name,
+)
 from world2minecraft.core.errors import DamagedFileError, UnknownNameError
 from world2minecraft.core.files import load_plain_yaml, read_bytes, read_json
 
@@ -238,8 +244,8 @@ def _entry(path: Path, key: str, value: Mapping[str, Any]) -> ThingName:
 
 
 def _class_of(path: Path, name: str) -> int:
-    if name not in CLASS_NAMES[1:]:
-        error = UnknownNameError("class", name, (*CLASS_NAMES[1:], NOTHING))
+    if name not in (*CLASS_NAMES[1:], *CLASS_DISPLAY_NAMES[1:]):
+        error = UnknownNameError("class", name, (*CLASS_DISPLAY_NAMES[1:], NOTHING))
         raise DamagedFileError(path, str(error))
     return class_id(name)
 

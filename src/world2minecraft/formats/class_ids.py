@@ -162,7 +162,7 @@ def _class_set(path: Path, names: Mapping[int, str]) -> ClassSet:
     for number, name in names.items():
         word = name.strip().lower()
         if word not in (*_NAMES, "unknown"):
-            known = ", ".join((*CLASS_NAMES, "unknown"))
+            known = ", ".join((*CLASS_DISPLAY_NAMES, "unknown"))
             raise ValueError(f"{name!r} is not a class; known: {known}")
         table[number] = _NAMES.get(word, UNKNOWN)
     if 0 not in table:

@@ -72,6 +72,8 @@ def score_table(facts: dict[str, Any]) -> "Table":
 
 def score_rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
     """Return the names and values of the scores in print order."""
+    from world2minecraft.core.classes import class_id, display_name
+
     surface, cells, objects = (
         facts[name] for name in ("surface_within_one_voxel", "occupancy", "objects")
     )
@@ -93,7 +95,10 @@ def score_rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
     rows += [(f"poses, {name}", _pose_text(poses)) for name, poses in facts["poses"].items()]
     rows.append(("object F1 (precision, recall)", _f1_text(objects)))
     rows += [
-        (f"  {name}", f"{row['matched']} of {row['true']}, {row['found']} found")
+        (
+            f"  {display_name(class_id(name))}",
+            f"{row['matched']} of {row['true']}, {row['found']} found",
+        )
         for name, row in objects["by_class"].items()
     ]
     asked, right = objects["orientation_asked"], objects["orientation_hits"]

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.archives import AnyPath
-from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id
+from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, CLASS_NAMES, UNKNOWN, class_id
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.vocabulary import nyu40_classes
@@ -123,7 +123,7 @@ def _classes_from_map(map_path: AnyPath) -> np.ndarray:
             raise CaptureError(
                 map_path,
                 f"contains the unknown class name {str(name)[:40]!r}; known names: "
-                f"{', '.join(CLASS_NAMES[1:])}",
+                f"{', '.join(CLASS_DISPLAY_NAMES[1:])}",
             )
         classes[int(number)] = found
     return classes
