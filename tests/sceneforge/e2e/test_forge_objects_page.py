@@ -201,3 +201,30 @@ def test_objects_are_renamed_and_found_by_name(objects, shot):
     assert leaves.count() == 0
     search.fill("")
     assert leaves.count() == forge.state("s.objects.size")
+
+
+def test_a_turn_shows_the_new_fit_and_what_collides(objects, shot):
+    forge, page = objects, objects.page
+    chosen(forge, TABLE)
+    fit = page.locator(f".tree-leaf[data-object='{TABLE}'] .legend-count")
+    before = fit.inner_text()
+    forge.key("r")
+    forge.until("s.scene.rev", 1)
+    assert fit.inner_text() != before and fit.inner_text().startswith("IoU ")
+    assert page.locator(".clashes").inner_text() == ""
+    at = centre(forge, SOFA)
+    command = {
+        "op": "move_object",
+        "id": TABLE,
+        "to_m": [at[0] - 0.3, at[1], centre(forge, TABLE)[2]],
+    }
+    page.evaluate("(command) => window.__forge.connection.do(command)", command)
+    mark = page.locator(f".tree-leaf[data-object='{TABLE}'] .tree-clash")
+    mark.wait_for()
+    assert "Collides with sofa 2" in mark.get_attribute("aria-label")
+    shot(forge, "collision")
+    page.locator(f".clash [data-clash='{SOFA}']").click()
+    forge.until("s.selectedObjects", [SOFA])
+    assert f"table {TABLE}" in page.locator(".clashes").inner_text()
+    forge.key("Control+z")
+    mark.wait_for(state="detached")

@@ -149,6 +149,38 @@ def test_help_and_palette_are_made_of_the_one_table(forge, shot):
     assert "Nothing to undo" in row.inner_text()
 
 
+def test_the_palette_offers_nothing_that_would_do_nothing(forge):
+    page = forge.page
+
+    def reasons(mode: str) -> dict[str, str | None]:
+        page.locator(f".mode-tab[data-action='mode.{mode}']").click()
+        forge.key("Control+k")
+        rows = page.locator(".palette-row").all()
+        told = {
+            row.get_attribute("data-action"): row.locator(".palette-group").inner_text()
+            if row.get_attribute("aria-disabled")
+            else None
+            for row in rows
+        }
+        forge.key("Escape")
+        marks = [why is not None for why in told.values()]
+        assert marks == sorted(marks), "what can be done does not come first"
+        return told
+
+    inspecting, painting = reasons("inspect"), reasons("voxels")
+    assert inspecting["cursor.right"] == inspecting["tool.brush"] == "Only in Voxels"
+    assert inspecting["mode.inspect"] == inspecting["tool.navigate"] == "Chosen already"
+    assert inspecting["class.5"] == "Only in Voxels, Objects"
+    assert painting["tool.brush"] is painting["mode.inspect"] is None
+    assert painting["select.none"] == "Nothing selected" and painting["view.unhide"] is None
+    forge.key("Control+k")
+    page.keyboard.type("next object")
+    forge.key("Enter")
+    assert "Only in Objects" in page.locator(".toast").last.inner_text()
+    assert not forge.state("s.selectedObjects.size")
+    assert reasons("walk")["view.top"] == "Not in Walk"
+
+
 def test_what_cannot_be_done_says_why(forge):
     page = forge.page
     undo = forge.action("undo")

@@ -23,6 +23,7 @@ const VOXELS: Mode[] = ["voxels"];
 const OBJECTS: Mode[] = ["objects"];
 const FURNISHING: Mode[] = ["objects", "build"];
 const BOTH: Mode[] = ["voxels", "objects"];
+const VOXEL_VIEWS: Mode[] = ["inspect", "voxels", "objects"];
 const LOOKING: Mode[] = ["inspect", "voxels", "objects", "build"];
 
 const ROWS: Row[] = [
@@ -60,7 +61,7 @@ const ROWS: Row[] = [
   ["view.hide", "view", ["\\"], LOOKING],
   ["view.unhide", "view", ["Shift+\\"], LOOKING],
   ["view.solo", "view", ["O"], LOOKING],
-  ["view.edges", "view", ["E"], LOOKING],
+  ["view.edges", "view", ["E"], VOXEL_VIEWS],
   ["slice.up", "view", ["PageUp"], LOOKING],
   ["slice.down", "view", ["PageDown"], LOOKING],
   ["photo.way", "photos", ["P"], LOOKING],

@@ -1,6 +1,6 @@
 // What one tab knows. Parts of the page subscribe to the keys that they show.
 
-import type { HeldRun, Scene, SceneObject } from "./wire";
+import type { Clash, HeldRun, Scene, SceneObject } from "./wire";
 
 export type Mode = "inspect" | "voxels" | "objects" | "build" | "walk";
 export type ColourBy = "class" | "confidence" | "colour" | "difference";
@@ -42,6 +42,7 @@ export interface State {
   confidence: Uint8Array; // 0..255
   touched: Touched;
   objects: ReadonlyMap<number, SceneObject>;
+  clashes: ReadonlyMap<number, readonly Clash[]>; // by the id of each object that takes part
   mode: Mode;
   tool: string; // "navigate", "brush", "box", "lasso", "flood", "measure", ...
   options: ToolOptions;
@@ -63,6 +64,7 @@ const START: State = {
   confidence: new Uint8Array(0),
   touched: { rev: 0, runs: null },
   objects: new Map(),
+  clashes: new Map(),
   mode: "inspect",
   tool: "navigate",
   options: { classId: 10, shape: "sphere", size: 3, depth: 0, fills: "empty", surfaceOnly: true, snap: false },

@@ -20,6 +20,9 @@ export interface Alternative {
   iou: number;
 }
 
+/** The template of what is built from its own cells; it has no IoU. */
+export const OWN_CELLS = "cells";
+
 export interface Placed {
   template: string;
   center_m: Vec3;
@@ -42,6 +45,12 @@ export interface SceneObject {
   confidence: number;
   cells: number; // how many
   placements: Placed[];
+}
+
+/** An answer to "warnings": furniture that collides, or extends beyond its room. */
+export interface Clash {
+  kind: "collision" | "outside";
+  ids: number[];
 }
 
 /** GET /api/scene */

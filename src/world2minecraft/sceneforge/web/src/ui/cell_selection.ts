@@ -77,7 +77,7 @@ export function cellActions(app: App): void {
       if (hit) void app.do({ op: "delete_component", cell: hit.cell, locked: [...store.get().view.locked] });
       else app.toast(TEXT.why.noPlace, "error");
     },
-    why: () => cannotEdit(store),
+    why: () => cannotEdit(store) || (app.pointer.at ? "" : TEXT.why.noPlace),
   });
   store.watch(["selectedCells", "scene"], ({ selectedCells }) =>
     view.setOverlay("selection", selectedCells.size ? runsOf(selectedCells) : null, SELECTED),

@@ -14,6 +14,7 @@ import { navigateTool } from "../tools/navigate";
 import type { Press } from "../tools/tool";
 import { TEXT } from "../text";
 import { cannotEdit } from "./blocked";
+import { watchClashes } from "./clashes";
 import { cellActions, mountCellSelection } from "./cell_selection";
 import { rightClick } from "./context_menu";
 import { mountDisplay } from "./display";
@@ -65,6 +66,7 @@ export function startEditing(app: App, hover: (at: Press | null) => void): ToolM
       active: () => app.store.get().tool === tool.id,
     });
   }
+  watchClashes(app);
   viewActions(app);
   objectActions(app);
   cellActions(app);

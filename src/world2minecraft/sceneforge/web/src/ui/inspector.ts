@@ -1,10 +1,12 @@
 // The selected object: class, furniture among the best five, turn, size, place, what can be done.
 
-import type { Alternative, SceneObject } from "../wire";
+import { OWN_CELLS, type Alternative, type SceneObject } from "../wire";
 import { nameOf, offeredNames } from "../names";
 import { TEXT } from "../text";
 import { cannotEdit } from "./blocked";
+import { collidingWith, leavesRoom } from "./clashes";
 import { fill, h, setWhy } from "./dom";
+import { icon } from "./icons";
 import { rove } from "./rove";
 import type { App } from "./slots";
 
@@ -38,6 +40,23 @@ export function mountInspector(host: HTMLElement, app: App): void {
     }
   };
   store.watch(["objects", "selectedObjects", "online"], draw);
+  store.watch(["clashes", "objects", "selectedObjects"], () => {
+    const place = body.querySelector<HTMLElement>(".clashes");
+    const [id] = store.get().selectedObjects;
+    if (place && id !== undefined) fill(place, ...clashRows(app, id));
+  });
+}
+
+function clashRows({ store, selection }: App, id: number): HTMLElement[] {
+  const { clashes, objects } = store.get();
+  const others = collidingWith(id, clashes).flatMap((other) => objects.get(other) ?? []);
+  const links = others.map((other) =>
+    h("button", { type: "button", class: "link", data: { clash: String(other.id) }, on: { click: () => selection.objects([other.id]) } }, nameOf(other)),
+  );
+  return [
+    links.length > 0 && h("p", { class: "clash" }, icon("warn"), h("span", {}, TEXT.clashes.collides), ...links),
+    leavesRoom(id, clashes) && h("p", { class: "clash" }, icon("warn"), h("span", {}, TEXT.clashes.outside)),
+  ].filter((row) => row !== false);
 }
 
 function oneParts(app: App, one: SceneObject, list: HTMLElement): HTMLElement[] {
@@ -51,6 +70,7 @@ function oneParts(app: App, one: SceneObject, list: HTMLElement): HTMLElement[] 
   );
   return [
     title,
+    h("div", { class: "clashes", role: "status", "aria-label": TEXT.clashes.title }),
     nameField(app, [one]),
     classField(app, [one]),
     h("h3", { class: "sub" }, TEXT.inspector.templates),
@@ -129,15 +149,17 @@ function showTemplates(app: App, one: SceneObject, list: HTMLElement, best: read
 }
 
 function templateRow(app: App, one: SceneObject, row: Alternative, chosen: boolean): HTMLElement {
+  const own = row.template === OWN_CELLS;
   const node = h(
     "button",
-    { type: "button", class: "template", data: { template: row.template }, vars: { "--share": `${row.iou * 100}%` } },
+    { type: "button", class: "template", data: { template: row.template }, vars: { "--share": own ? "0%" : `${row.iou * 100}%` } },
     h("span", { class: "template-name" }, TEXT.templateName(row.template)),
     h("span", { class: "template-turn" }, `${row.quarter_turns * 90}°`),
-    h("span", { class: "template-iou" }, TEXT.percent(row.iou)),
+    h("span", { class: "template-iou" }, own ? "" : TEXT.objects.fit(row.iou)),
   );
   node.setAttribute("aria-pressed", String(chosen));
-  setWhy(node, cannotEdit(app.store), TEXT.inspector.iouOf(row.template, row.iou));
+  const name = TEXT.templateName(row.template);
+  setWhy(node, cannotEdit(app.store), own ? name : TEXT.inspector.iouOf(name, row.iou));
   node.addEventListener("click", () => {
     if (chosen || cannotEdit(app.store)) return;
     const { template, quarter_turns } = row;

@@ -1,10 +1,12 @@
 // All objects as a tree by class. Choosing one selects it and looks at it.
 
-import type { SceneObject } from "../wire";
+import type { State } from "../store";
+import { OWN_CELLS, type SceneObject } from "../wire";
 import { combineOf } from "../tools/selection";
 import { boxOf } from "../tools/objects_at";
 import { isFound, nameOf } from "../names";
 import { TEXT } from "../text";
+import { clashWords } from "./clashes";
 import { fill, h } from "./dom";
 import { icon } from "./icons";
 import type { App } from "./slots";
@@ -17,7 +19,8 @@ export function mountObjectList(host: HTMLElement, app: App): void {
   const search = h("input", {
     type: "search",
     class: "tree-search",
-    placeholder: TEXT.objects.search,
+    placeholder: TEXT.objects.find,
+    title: TEXT.objects.search,
     "aria-label": TEXT.objects.search,
     autocomplete: "off",
     spellcheck: "false",
@@ -33,7 +36,7 @@ export function mountObjectList(host: HTMLElement, app: App): void {
     if (!tree.children.length) tree.append(h("li", { class: "note" }, none));
     setStop(tree, held);
   };
-  store.watch(["objects", "selectedObjects"], draw);
+  store.watch(["objects", "selectedObjects", "clashes"], draw);
   search.addEventListener("input", draw);
   tree.addEventListener("click", (event) => {
     const item = (event.target as HTMLElement).closest<HTMLElement>("[role=treeitem]");
@@ -50,7 +53,7 @@ export function mountObjectList(host: HTMLElement, app: App): void {
 }
 
 function branches({ store }: App, folded: ReadonlySet<number>, typed: string): HTMLElement[] {
-  const { objects, scene, selectedObjects } = store.get();
+  const { objects, scene } = store.get();
   const byClass = new Map<number, SceneObject[]>();
   for (const one of objects.values()) {
     if (typed && !isFound(one, typed)) continue;
@@ -76,12 +79,14 @@ function branches({ store }: App, folded: ReadonlySet<number>, typed: string): H
         h("span", { class: "legend-count" }, TEXT.objects.count(those.length)),
       );
       const leaves = folded.has(id) ? [] : those.sort((a, b) => a.id - b.id);
-      return [head, ...leaves.map((one) => leaf(one, selectedObjects.has(one.id)))];
+      return [head, ...leaves.map((one) => leaf(one, store.get()))];
     });
 }
 
-function leaf(one: SceneObject, selected: boolean): HTMLElement {
+function leaf(one: SceneObject, state: Readonly<State>): HTMLElement {
   const best = one.placements[0];
+  const clash = clashWords(one.id, state);
+  const fit = best?.template === OWN_CELLS ? TEXT.objects.ownCells : best && TEXT.objects.fit(best.iou);
   return h(
     "li",
     {
@@ -89,11 +94,12 @@ function leaf(one: SceneObject, selected: boolean): HTMLElement {
       class: "tree-leaf",
       tabindex: "-1",
       "aria-level": "2",
-      "aria-selected": String(selected),
+      "aria-selected": String(state.selectedObjects.has(one.id)),
       data: { object: String(one.id), key: `o${one.id}` },
     },
     h("span", { class: "tree-word" }, nameOf(one)),
-    h("span", { class: "legend-count", title: TEXT.objects.iou }, best ? TEXT.objects.fit(best.iou) : "–"),
+    clash && h("span", { class: "tree-clash", role: "img", "aria-label": clash, title: clash }, icon("warn")),
+    h("span", { class: "legend-count", title: TEXT.objects.iou }, fit || "–"),
   );
 }
 

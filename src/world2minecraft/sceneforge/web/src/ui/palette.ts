@@ -1,8 +1,11 @@
 // All commands by name: type a part of it, Enter does it. What cannot be done now says why.
 
+import type { Binding } from "../keys";
+import type { Mode, State } from "../store";
 import { TEXT } from "../text";
 import { fill, h } from "./dom";
 import { shownKey } from "./help";
+import { MODES } from "./top_bar";
 import type { App } from "./slots";
 
 interface Entry {
@@ -51,7 +54,8 @@ export function mountPalette(app: App): { close(): boolean } {
     const row = rows[place];
     if (!row) return;
     hide();
-    app.actions.run(row.id);
+    if (row.why) app.toast(row.why, "error");
+    else app.actions.run(row.id);
   };
   input.addEventListener("input", () => {
     at = 0;
@@ -83,7 +87,8 @@ export function mountPalette(app: App): { close(): boolean } {
   return { close: hide };
 }
 
-function entries({ actions }: App): Entry[] {
+function entries({ actions, store }: App): Entry[] {
+  const state = store.get();
   return actions
     .list()
     .filter(({ binding }) => binding.id !== "palette" && binding.id !== "cancel")
@@ -92,16 +97,27 @@ function entries({ actions }: App): Entry[] {
       title: binding.title,
       group: TEXT.groups[binding.group],
       keys: binding.keys.map(shownKey)[0] ?? "",
-      why,
+      why: whyNotHere(binding, state) || why,
     }));
 }
 
-/** Those whose words all begin or hold what was typed; those that begin with it first. */
+/** Why a command would do nothing in this mode, or changes nothing because it was chosen before. */
+function whyNotHere({ id, modes }: Binding, { mode, tool, options }: Readonly<State>): string {
+  const words = (some: readonly Mode[]): string => some.map((one) => TEXT.action[`mode.${one}`]).join(", ");
+  if (modes && !modes.includes(mode)) {
+    const others = MODES.filter((one) => !modes.includes(one));
+    return others.length > 1 ? TEXT.why.onlyIn(words(modes)) : TEXT.why.elsewhere(words(others));
+  }
+  return [`mode.${mode}`, `tool.${tool}`, `class.${options.classId}`].includes(id) ? TEXT.why.chosen : "";
+}
+
+/** Those whose words all begin or hold what was typed: what begins with it first, then what can be done. */
 function matching(all: Entry[], typed: string): Entry[] {
   const parts = typed.toLowerCase().split(/\s+/).filter(Boolean);
   const found = all.filter(({ title, group }) => parts.every((part) => `${title} ${group}`.toLowerCase().includes(part)));
   const begins = ({ title }: Entry): number => (title.toLowerCase().startsWith(parts[0] ?? "") ? 0 : 1);
-  return found.sort((a, b) => begins(a) - begins(b));
+  const order = (one: Entry): number => 2 * begins(one) + (one.why ? 1 : 0);
+  return found.sort((a, b) => order(a) - order(b));
 }
 
 function option(row: Entry, chosen: boolean, choose: () => void): HTMLElement {

@@ -7,6 +7,8 @@ import { allCells } from "./cell_selection";
 import { selectedOf } from "./object_actions";
 import type { App } from "./slots";
 
+const LARGEST_BRUSH = 15; // cells
+
 export function selectionActions(app: App): void {
   const { actions, store, selection } = app;
   const inObjects = (): boolean => store.get().mode === "objects";
@@ -22,15 +24,25 @@ export function selectionActions(app: App): void {
         ? store.get().selectedCells.size ? "" : TEXT.why.noCells
         : selectedOf(app).length ? "" : TEXT.why.noObject),
   });
-  actions.on("select.all", () => {
-    if (inObjects()) selection.objects(store.get().objects.keys());
-    else selection.cells(allCells(app));
+  const noObjects = (): string => (inObjects() && !store.get().objects.size ? TEXT.why.noObjects("") : "");
+  actions.on("select.all", {
+    run: () => {
+      if (inObjects()) selection.objects(store.get().objects.keys());
+      else selection.cells(allCells(app));
+    },
+    why: noObjects,
   });
-  actions.on("select.none", () => selection.clear());
-  actions.on("select.invert", () => {
-    const { objects, selectedObjects, selectedCells } = store.get();
-    if (inObjects()) selection.objects([...objects.keys()].filter((id) => !selectedObjects.has(id)));
-    else selection.cells(allCells(app).filter((flat) => !selectedCells.has(flat)));
+  actions.on("select.none", {
+    run: () => selection.clear(),
+    why: () => (store.get().selectedCells.size + store.get().selectedObjects.size ? "" : TEXT.why.nothingSelected),
+  });
+  actions.on("select.invert", {
+    run: () => {
+      const { objects, selectedObjects, selectedCells } = store.get();
+      if (inObjects()) selection.objects([...objects.keys()].filter((id) => !selectedObjects.has(id)));
+      else selection.cells(allCells(app).filter((flat) => !selectedCells.has(flat)));
+    },
+    why: noObjects,
   });
   actions.on("select.undo", {
     run: () => selection.undo(),
@@ -48,12 +60,15 @@ function deleteCells({ store, do: send }: App): void {
 }
 
 export function optionActions({ actions, store }: App): void {
-  const sized = (by: number): void => {
-    const { size } = store.get().options;
-    store.setOptions({ size: Math.min(15, Math.max(1, size + by)) });
-  };
-  actions.on("brush.smaller", () => sized(-1));
-  actions.on("brush.larger", () => sized(1));
+  const size = (): number => store.get().options.size;
+  actions.on("brush.smaller", {
+    run: () => store.setOptions({ size: size() - 1 }),
+    why: () => (size() > 1 ? "" : TEXT.why.smallest),
+  });
+  actions.on("brush.larger", {
+    run: () => store.setOptions({ size: size() + 1 }),
+    why: () => (size() < LARGEST_BRUSH ? "" : TEXT.why.largest),
+  });
   actions.on("brush.shape", () => {
     const shapes = ["sphere", "cube", "single"] as const;
     const at = shapes.indexOf(store.get().options.shape);

@@ -23,9 +23,13 @@ export function viewActions(app: App): void {
     why: scene,
   });
   cameraActions(view, on);
-  on("view.unhide", () => store.setView({ hidden: new Set(), solo: null }));
-  on("view.hide", () => toggleSeen(app, classInHand(app), false));
-  on("view.solo", () => toggleSeen(app, classInHand(app), true));
+  actions.on("view.unhide", {
+    run: () => store.setView({ hidden: new Set(), solo: null }),
+    why: () => scene() || (store.get().view.hidden.size || store.get().view.solo !== null ? "" : TEXT.why.allShown),
+  });
+  const ofClass = (): string => scene() || (classInHand(app) ? "" : TEXT.why.aClass);
+  actions.on("view.hide", { run: () => toggleSeen(app, classInHand(app), false), why: ofClass });
+  actions.on("view.solo", { run: () => toggleSeen(app, classInHand(app), true), why: ofClass });
   actions.on("view.edges", {
     run: () => store.setView({ edges: !store.get().view.edges }),
     why: scene,
