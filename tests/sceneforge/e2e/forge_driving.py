@@ -75,12 +75,12 @@ class Driver:
         self.page.locator(f"input[data-field='{field}']").fill(str(value))
 
 
-def opened_page(page: Any, link: str, hints: bool) -> Driver:
+def opened_page(page: Any, link: str, hints: bool, theme: str = "dark") -> Driver:
     """Open the link and wait for the room."""
     driver = Driver(page)
     if not hints:
         page.add_init_script("localStorage.setItem('sceneforge.hints', 'seen')")
-    page.add_init_script("localStorage.setItem('sceneforge.theme', 'dark')")
+    page.add_init_script(f"localStorage.setItem('sceneforge.theme', '{theme}')")
     page.goto(link)
     end = time.monotonic() + PATIENCE_S
     while not page.evaluate("Boolean(window.__forge?.store.get().scene)"):

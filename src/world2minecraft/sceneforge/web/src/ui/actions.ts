@@ -69,7 +69,7 @@ export class Actions {
         type: "button",
         class: look.class ?? (label ? "button" : "button icon-only"),
         data: { action: id },
-        "aria-label": titleOf(id),
+        "aria-label": label ? undefined : titleOf(id), // What is read is what is seen.
         on: { click: () => this.run(id) },
       },
       look.icon && icon(look.icon),

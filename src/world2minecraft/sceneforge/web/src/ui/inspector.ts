@@ -155,7 +155,7 @@ function templateRow(app: App, one: SceneObject, row: Alternative, chosen: boole
     { type: "button", class: "template", data: { template: row.template }, vars: { "--share": own ? "0%" : `${row.iou * 100}%` } },
     h("span", { class: "template-name" }, TEXT.templateName(row.template)),
     h("span", { class: "template-turn" }, `${row.quarter_turns * 90}°`),
-    h("span", { class: "template-iou" }, own ? "" : TEXT.objects.fit(row.iou)),
+    !own && h("span", { class: "template-iou" }, TEXT.objects.fit(row.iou)),
   );
   node.setAttribute("aria-pressed", String(chosen));
   const name = TEXT.templateName(row.template);
