@@ -204,6 +204,32 @@ def test_one_walks_until_a_wall_stops_and_jumps(forge, shot):
     until(forge, "window.__forge.walk.walker.body.onGround")
 
 
+def test_a_sentence_leads_to_a_thing_before_ones_eyes(forge, shot):
+    build(forge)
+    page, said = forge.page, forge.page.locator(".go-said")
+    forge.key("g")
+    forge.until("s.mode", "walk")
+    until(forge, "window.__forge.walk.walker !== null")
+    assert page.evaluate("document.activeElement.className") == "go-input"
+    page.locator(".go-input").fill("where is the zeppelin")
+    forge.key("Enter")
+    page.locator(".go-near").first.wait_for()
+    assert "There is no “zeppelin” here" in said.inner_text()
+    shot(forge, "walk-unknown")
+    start = page.evaluate(FEET)
+    page.locator(".go-near", has_text="lamp").click()
+    until(forge, "/^Walking to the lamp/.test(document.querySelector('.go-said').textContent)")
+    until(forge, f"Math.hypot({FEET}[0] - {start[0]}, {FEET}[1] - {start[1]}) > 0.3")
+    until(forge, "/^Here is the lamp/.test(document.querySelector('.go-said').textContent)")
+    forge.until("s.selectedObjects", [16])
+    shot(forge, "walk-led")
+    page.locator(".go-input").fill("to the tv stand")
+    forge.key("Enter")
+    until(forge, "/^Walking/.test(document.querySelector('.go-said').textContent)")
+    page.keyboard.press("a")
+    until(forge, "document.querySelector('.go-said').textContent === ''")
+
+
 def test_low_furniture_is_a_step_and_esc_leaves(forge):
     build(forge)
     walk(forge)

@@ -102,26 +102,43 @@ def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
     Raises:
         UsageError: If the sentence names no landmark, or an ambiguous one.
     """
-    text = " ".join(sentence.lower().split())
-    named = phrases_of(scene.landmarks)
+    phrase, named = _last_phrase(scene.landmarks, sentence)
+    if not named:
+        some = ", ".join(sorted(one.name for one in scene.landmarks)[:12]) or "nothing"
+        raise UsageError(
+            f"no object of {scene.scene_id} matches {_plain(sentence)[:60]!r}; known objects: "
+            f"{some}"
+        )
+    if len(named) > 1:
+        some = ", ".join(repr(one.name) for one in named[:6])
+        raise UsageError(
+            f"{phrase!r} matches {len(named)} objects; use one of {some}, or name the "
+            "goal (--goal NAME)"
+        )
+    return named[0]
+
+
+def landmarks_named(landmarks: Sequence[Landmark], sentence: str) -> list[Landmark]:
+    """Return the landmarks that a sentence names last, by the rules of ``find_named_landmark``.
+
+    There is none if no name matches, and there are several if the name is ambiguous.
+    """
+    return _last_phrase(landmarks, sentence)[1]
+
+
+def _last_phrase(landmarks: Sequence[Landmark], sentence: str) -> tuple[str, list[Landmark]]:
+    text, named = _plain(sentence), phrases_of(landmarks)
     spans = [
         (found.end(), -found.start(), phrase)
         for phrase in named
         for found in re.finditer(rf"(?<!\w){re.escape(phrase)}(?!\w)", text)
     ]
-    if not spans:
-        some = ", ".join(sorted(one.name for one in scene.landmarks)[:12]) or "nothing"
-        raise UsageError(
-            f"no object of {scene.scene_id} matches {text[:60]!r}; known objects: {some}"
-        )
-    phrase = max(spans)[2]
-    if len(named[phrase]) > 1:
-        some = ", ".join(repr(one.name) for one in named[phrase][:6])
-        raise UsageError(
-            f"{phrase!r} matches {len(named[phrase])} objects; use one of {some}, or name the "
-            "goal (--goal NAME)"
-        )
-    return named[phrase][0]
+    phrase = max(spans)[2] if spans else ""
+    return phrase, named.get(phrase, [])
+
+
+def _plain(sentence: str) -> str:
+    return " ".join(sentence.lower().split())
 
 
 def phrases_of(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:

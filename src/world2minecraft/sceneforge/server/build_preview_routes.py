@@ -1,4 +1,10 @@
-"""The ``GET /api/build`` and ``GET /api/collision`` routes, which return the scene as blocks.
+"""The routes that return the scene as blocks, and lead through them.
+
+=======================  =====================================================================
+``GET /api/build``       the mesh of a build
+``GET /api/collision``   what stops a walker in a build, or in the voxels
+``GET /api/way``         the way to a thing: ``to`` is what was typed, ``feet_m`` the place
+=======================  =====================================================================
 
 Builds are made by a thread, one at a time, while the scene can still be edited. The last few builds
 are cached. A build that takes longer is announced to all tabs as a job. Walking in the page follows
@@ -11,11 +17,11 @@ import zlib
 from collections import OrderedDict
 from collections.abc import Callable, Coroutine
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
@@ -28,9 +34,11 @@ from world2minecraft.sceneforge.build_preview import BlockBuild, BuildOptions, S
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.jobs.jobs import JobState, describe_error
 from world2minecraft.sceneforge.session import Session
+from world2minecraft.sceneforge.walk_guide import Feet, WalkGuide
 
 MAGIC = b"W2MC"
 MAX_CACHED = 6  # Packed answers; a room has about a megabyte each.
+MAX_SENTENCE = 200
 NOTIFY_AFTER_S = 1.0  # What is ready by then needs no word.
 
 
@@ -87,6 +95,7 @@ def _middle(grid: OccupancyGrid, where: np.ndarray) -> np.ndarray:
 
 
 Key = tuple[Any, ...]
+Made = TypeVar("Made")
 
 
 class BuildCache:
@@ -97,6 +106,7 @@ class BuildCache:
         self._turn = asyncio.Lock()
         self._volumes: OrderedDict[Key, BlockBuild] = OrderedDict()
         self._packed: OrderedDict[Key, bytes] = OrderedDict()
+        self._guide: tuple[Key, WalkGuide] | None = None
 
     async def build(self, options: BuildOptions) -> tuple[int, bytes]:
         """Return the revision of the scene that was built, and the packed mesh of the build."""
@@ -115,6 +125,26 @@ class BuildCache:
         return await self._made(
             ("boxes", options), lambda scene: build_collision(self._of(scene, options))
         )
+
+    async def way(self, sentence: str, feet_m: Feet, options: BuildOptions) -> dict[str, Any]:
+        """Return the answer of ``WalkGuide`` in a build.
+
+        Raises:
+            InputError: If there is no floor to stand on.
+        """
+        async with self._turn:
+            scene = await self.session.read(self._held)
+            return await self._told(
+                asyncio.to_thread(lambda: self._guided(scene, options).answer(sentence, feet_m))
+            )
+
+    def _guided(self, scene: SceneSnapshot, options: BuildOptions) -> WalkGuide:
+        """Return the guide of a build. The last one is kept: people ask more than once."""
+        key = (scene.shown, scene.rev, options)
+        if self._guide is None or self._guide[0] != key:
+            volume = self._of(scene, options).volume
+            self._guide = (key, WalkGuide(volume, scene.objects, scene.name))
+        return self._guide[1]
 
     def _held(self, editor: Editor) -> SceneSnapshot:
         """Copy the scene in its turn, because another room may be opened during the build."""
@@ -142,7 +172,7 @@ class BuildCache:
                 self._packed.popitem(last=False)
             return scene.rev, packed
 
-    async def _told(self, work: Coroutine[Any, Any, bytes]) -> bytes:
+    async def _told(self, work: Coroutine[Any, Any, Made]) -> Made:
         """Wait for a build, and announce it to the tabs after a second."""
         task = asyncio.ensure_future(work)
         done, _ = await asyncio.wait([task], timeout=NOTIFY_AFTER_S)
@@ -151,19 +181,23 @@ class BuildCache:
         state = JobState("build", "Building blocks", "build")
         self.session.broadcaster.broadcast(state.message())
         try:
-            packed = await task
+            made = await task
         except Exception as error:
             self.session.broadcaster.broadcast(
                 replace(state, state="failed", note=describe_error(error)).message()
             )
             raise
         self.session.broadcaster.broadcast(replace(state, state="done").message())
-        return packed
+        return made
 
 
 def build_routes() -> list[BaseRoute]:
-    """Return the two routes. They build the scene of ``state.session`` of the application."""
-    return [Route("/api/build", _build), Route("/api/collision", _collision)]
+    """Return the routes. They build the scene of ``state.session`` of the application."""
+    return [
+        Route("/api/build", _build),
+        Route("/api/collision", _collision),
+        Route("/api/way", _way),
+    ]
 
 
 async def _build(request: Request) -> Response:
@@ -177,6 +211,22 @@ async def _collision(request: Request) -> Response:
         raise UsageError(f"what must be 'build' or 'voxels', got {what!r}")
     options = _options(request) if what == "build" else None
     return _answer(request, *await _builds(request).collision(options))
+
+
+async def _way(request: Request) -> Response:
+    query = request.query_params
+    sentence = query.get("to", "").strip()
+    if not 0 < len(sentence) <= MAX_SENTENCE:
+        raise UsageError(f"to must be 1 to {MAX_SENTENCE} characters, such as: go to the lamp")
+    try:
+        x, y, z = (float(value) for value in query.get("feet_m", "").split(","))
+    except ValueError as error:
+        raise UsageError("feet_m must be three numbers, such as 1.5,2,0") from error
+    if not np.isfinite([x, y, z]).all():
+        raise UsageError("feet_m must be three finite numbers, such as 1.5,2,0")
+    # Entities have no blocks of their own: furniture stands where its blocks would.
+    options = replace(_options(request), style="blocks")
+    return JSONResponse(await _builds(request).way(sentence, (x, y, z), options))
 
 
 def _builds(request: Request) -> BuildCache:

@@ -36,6 +36,7 @@ from world2minecraft.sceneforge.block_arrays import (
     collision_arrays,
     compact_mesh_arrays,
 )
+from world2minecraft.sceneforge.walk_guide import goals_of
 
 MAGIC = b"W2MS"
 NO_WAY = 65_535
@@ -194,7 +195,7 @@ class SharedRoom:
             }
         for number, one in enumerate(self.landmarks[:count]):
             progress("ways", number, count)
-            turns = scene.turning_places(scene.goals_at(one) or _nearest_place(scene, one))
+            turns = scene.turning_places(goals_of(scene, one))
             rows.append(np.where(turns < 0, NO_WAY, turns).astype(np.uint16))
         progress("ways", count, count)
         feet = scene.corner_graph.feet - np.array(self.volume.corner)
@@ -215,14 +216,6 @@ class SharedPacket:
     def compressed(self, **more: Any) -> bytes:
         """Return the packet as bytes, with further facts in its header."""
         return zlib.compress(pack_arrays(MAGIC, self.header | more, self.arrays), 9)
-
-
-def _nearest_place(scene: VlnScene, thing: Landmark) -> tuple[tuple[float, float, float], ...]:
-    """Return the place of the floor nearest to a thing that nobody can stand before."""
-    feet = scene.graph.feet[scene.main_places]
-    away = np.linalg.norm(scene.to_room_m(feet) - thing.center_m, axis=1)
-    x, y, z = feet[away.argmin()]
-    return ((float(x), float(y), float(z)),)
 
 
 def _best_azimuth(volume: BlockVolume) -> float:

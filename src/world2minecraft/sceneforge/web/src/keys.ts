@@ -114,6 +114,7 @@ const ROWS: Row[] = [
   ["object.wall", "objects", ["Shift+C"], OBJECTS],
   ["object.relabel", "objects", ["Enter"], OBJECTS],
   ["object.rematch", "objects", ["Shift+M"], OBJECTS],
+  ["walk.ask", "walk", ["G"], ["inspect", "build", "walk"]],
   ["object.next", "objects", ["ArrowRight"], OBJECTS],
   ["object.previous", "objects", ["ArrowLeft"], OBJECTS],
 ];

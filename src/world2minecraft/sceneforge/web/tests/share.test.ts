@@ -4,10 +4,13 @@ import { expanded } from "../src/build/compact";
 import { Packet } from "../src/build/packet";
 import type { Thing } from "../src/share/data";
 import { distance, findThing, subjectOf } from "../src/share/finder";
-import { Route, turnedTo, Ways, yawTo } from "../src/share/route";
 import { snug } from "../src/share/snug";
+import { Ways } from "../src/share/ways";
 import { axesOf, eyeOf, FIELD } from "../src/view/camera";
+import { Led } from "../src/walk/led";
+import { Route, yawTo } from "../src/walk/route";
 import { keysOfStick } from "../src/walk/thumbs";
+import type { Walker } from "../src/walk/walker";
 import type { Vec3 } from "../src/wire";
 
 type Rows = Record<string, { dtype: string; shape: number[]; data: Uint8Array }>;
@@ -111,7 +114,33 @@ describe("the way to a thing", () => {
     expect(route.at(5.5)).toEqual({ place: [1.5, 0, 4], yawDeg: -90 });
     expect(route.at(99).place).toEqual([3, 0, 4]);
     expect(route.crumbs(2)).toHaveLength(3);
-    expect(turnedTo(170, yawTo([0, 0, 0], [1, 0, -1]), 30)).toBe(200);
+    expect(yawTo([0, 0, 0], [1, 0, -1])).toBe(-135);
+  });
+
+  it("is walked gently, and ends facing what it leads to", () => {
+    const walker = {
+      yawDeg: 170,
+      pitchDeg: 0,
+      place: [0, 0, 0] as Vec3,
+      put(place: Vec3, yawDeg: number, pitchDeg: number) {
+        Object.assign(this, { place, yawDeg, pitchDeg });
+      },
+    };
+    const led = new Led(new Route([[0, 0, 0], [0, 0, 8]]), [4, 0, 8], 4); // 2 m, then to the side
+    const places: number[] = [0];
+    let yaw = 170;
+    while (!led.pass(walker as unknown as Walker, 16) && places.length < 1000) {
+      expect(Math.abs(walker.yawDeg - yaw)).toBeLessThanOrEqual(220 * 0.016 + 1e-9);
+      yaw = walker.yawDeg;
+      places.push(walker.place[2]);
+    }
+    const steps = places.slice(1).map((place, i) => place - places[i]!);
+    const fastest = Math.max(...steps);
+    expect(fastest).toBeCloseTo(1.5 * 4 * 0.016, 6);
+    expect(steps[0]).toBeLessThan(fastest / 5);
+    expect(steps.every((step) => step >= 0)).toBe(true);
+    expect(walker.place).toEqual([0, 0, 8]);
+    expect(((walker.yawDeg % 360) + 360) % 360).toBeCloseTo(270, 0);
   });
 });
 

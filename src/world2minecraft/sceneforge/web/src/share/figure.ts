@@ -3,7 +3,7 @@
 import * as THREE from "three";
 
 import type { Vec3 } from "../wire";
-import type { Stand } from "./route";
+import type { Stand } from "../walk/route";
 
 // Parts of a figure of height 1: middle and size along x, y, z, and colour.
 const PARTS: readonly { name: string; middle: Vec3; size: Vec3; colour: number }[] = [

@@ -6,6 +6,7 @@ import { h, takesText } from "../ui/dom";
 import { segment } from "../ui/fields";
 import { icon } from "../ui/icons";
 import { turned, zoomed } from "../view/camera";
+import { GoBox, nearNames } from "../walk/go_box";
 import { Thumbs } from "../walk/thumbs";
 import type { Vec3 } from "../wire";
 import { readFloor, type RoomData, type Thing } from "./data";
@@ -15,7 +16,7 @@ import { Photos } from "./photos";
 import { RoomView } from "./room_view";
 import { Stroll } from "./stroll";
 import { capital, TEXT } from "./text";
-import { GoBox, thingLabel, thingList } from "./things";
+import { thingLabel, thingList } from "./things";
 
 const CLICK_PX = 6;
 const AHEAD_MS = 200; // between two looks at what is ahead
@@ -52,7 +53,8 @@ export class RoomPage {
     host.append(this.stage);
     this.stage.append(this.canvas);
     this.list = thingList(facts.things, coloursOf(mesh), (thing) => this.visit(thing));
-    this.go = new GoBox(facts.things, (text) => this.ask(text));
+    this.go = new GoBox(TEXT.ask, (text) => this.ask(text));
+    this.go.offer(facts.things.map(({ name }) => name));
     this.lamp = h("button", { class: "button", type: "button", "aria-pressed": "false", on: { click: () => this.setLight(this.light === "day" ? "night" : "day") } }, icon("moon"), TEXT.night);
     this.more = h("button", { class: "button more", type: "button", "aria-expanded": "false", on: { click: () => this.unfold() } }, TEXT.thingsCount(facts.things.length), icon("down"));
     host.append(this.head(), this.side());
@@ -81,12 +83,11 @@ export class RoomPage {
 
   /** Go to what a sentence names. */
   ask(text: string): void {
-    if (!text) return this.go.say(TEXT.ask);
+    if (!text) return this.go.say(TEXT.ask.nothing);
     const { phrases, things } = this.room.facts;
     const found = findThing(text, phrases, things, (thing) => this.stroll?.away(thing) ?? 0);
     if ("thing" in found) return this.walkTo(found.thing, found.of);
-    const buttons = found.near.map((name) => h("button", { class: "button go-near", type: "button", on: { click: () => this.ask(name) } }, name));
-    this.go.say(TEXT.unknown(subjectOf(text)), h("span", { class: "go-nears" }, ...buttons));
+    this.go.say(TEXT.unknown(subjectOf(text)), nearNames(found.near, (name) => this.ask(name)));
   }
 
   set(mode: Way): void {

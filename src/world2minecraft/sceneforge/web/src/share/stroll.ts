@@ -6,17 +6,16 @@ import type { Pose } from "../view/sight";
 import { HEIGHT } from "../walk/body";
 import { Input } from "../walk/input";
 import type { Thumbs } from "../walk/thumbs";
+import { Led } from "../walk/led";
+import { Route } from "../walk/route";
 import { Walker } from "../walk/walker";
 import type { Vec3 } from "../wire";
 import type { RoomData, Thing } from "./data";
 import { Figure } from "./figure";
 import type { RoomView } from "./room_view";
-import { Route, turnedTo, Ways, yawTo } from "./route";
+import { Ways } from "./ways";
 
-const PACE_M_S = 1.5;
-const TURN_DEG_S = 220;
 const CRUMB_M = 0.3;
-const LOOK_DOWN_DEG = 10;
 const DIM_AT_NIGHT = 0.55;
 const LEAST_ACROSS = (56 * Math.PI) / 180; // radians
 const MOST_FIELD = (96 * Math.PI) / 180;
@@ -32,7 +31,7 @@ export class Stroll {
   readonly figure: Figure;
   private readonly ways: Ways;
   private readonly input: Input;
-  private led: { route: Route; thing: Thing; gone: number } | null = null;
+  private led: { way: Led; thing: Thing } | null = null;
   private frame = 0;
   private last = 0;
   private isIn = false;
@@ -92,7 +91,7 @@ export class Stroll {
     const corners = this.ways.from(this.place, thing.way);
     if (!corners) return null;
     const route = new Route(corners);
-    this.led = { route, thing, gone: 0 };
+    this.led = { way: new Led(route, this.middleOf(thing), this.cellsPerMetre), thing };
     this.figure.lay(route.crumbs(CRUMB_M * this.cellsPerMetre));
     this.figure.group.visible = true;
     this.figure.isSeen = !this.isIn;
@@ -157,21 +156,15 @@ export class Stroll {
     if (this.walker.pass(milliseconds) || right || down) this.view.pose = this.pose;
   }
 
-  private follow(led: { route: Route; thing: Thing; gone: number }, milliseconds: number): void {
-    led.gone = Math.min(led.gone + (PACE_M_S * this.cellsPerMetre * milliseconds) / 1000, led.route.length);
-    const { place, yawDeg } = led.route.at(led.gone);
-    const arrived = led.gone >= led.route.length;
-    const wanted = arrived ? yawTo(place, this.middleOf(led.thing)) : yawDeg;
-    const yaw = turnedTo(this.walker.yawDeg, wanted, (TURN_DEG_S * milliseconds) / 1000);
-    const pitch = this.walker.pitchDeg + (LOOK_DOWN_DEG - this.walker.pitchDeg) * 0.1;
-    this.walker.put(place, yaw, pitch);
-    this.figure.stand({ place, yawDeg: yaw }, arrived ? 0 : led.gone);
+  private follow({ way, thing }: { way: Led; thing: Thing }, milliseconds: number): void {
+    const isDone = way.pass(this.walker, milliseconds);
+    this.figure.stand({ place: this.place, yawDeg: this.walker.yawDeg }, way.hasArrived ? 0 : way.gone);
     if (this.isIn) this.view.pose = this.pose;
     this.view.invalidate();
-    if (!arrived || Math.abs(turnedTo(yaw, wanted, 1) - yaw) > 0.01) return;
+    if (!isDone) return;
     this.led = null;
     this.figure.lay([]);
-    this.calls.arrived(led.thing);
+    this.calls.arrived(thing);
   }
 
   /** The middle of a thing, in cells. */

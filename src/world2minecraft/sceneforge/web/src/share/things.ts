@@ -1,12 +1,10 @@
-// The list of things, the box that takes "go to the lamp", and the label of what is chosen.
+// The list of things, and the label of what is chosen.
 
-import { fill, h, type Child } from "../ui/dom";
+import { fill, h } from "../ui/dom";
 import { icon } from "../ui/icons";
 import type { Vec3 } from "../wire";
 import type { Thing } from "./data";
 import { capital, TEXT } from "./text";
-
-const EXAMPLES = ["lamp", "sofa", "bed", "desk", "oven", "table"]; // short, and most rooms have one
 
 export function thingList(things: readonly Thing[], colours: ReadonlyMap<number, Vec3>, choose: (thing: Thing) => void): { node: HTMLElement; mark(thing: Thing | null): void } {
   const buttons = new Map<number, HTMLElement>();
@@ -26,40 +24,6 @@ export function thingList(things: readonly Thing[], colours: ReadonlyMap<number,
     if (thing) buttons.get(thing.id)?.scrollIntoView({ block: "nearest" });
   };
   return { node: h("ul", { class: "things" }, ...rows), mark };
-}
-
-export class GoBox {
-  readonly node: HTMLElement;
-  private readonly input: HTMLInputElement;
-  private readonly said = h("div", { class: "go-said", role: "status" });
-
-  constructor(things: readonly Thing[], asked: (text: string) => void) {
-    const example = EXAMPLES.map((word) => things.find(({ name }) => name === word)).find((one) => one) ?? things[0];
-    const names = h("datalist", { id: "names" }, ...things.map(({ name }) => h("option", { value: name })));
-    this.input = h("input", {
-      class: "go-input",
-      type: "text",
-      name: "goal",
-      autocomplete: "off",
-      enterkeyhint: "go",
-      maxlength: 120,
-      list: "names",
-      placeholder: example ? TEXT.goHint(example.name) : TEXT.goLabel,
-      "aria-label": TEXT.goLabel,
-    });
-    const send = h("button", { class: "button is-main go-send", type: "submit" }, TEXT.go);
-    const form = h("form", { class: "go-form" }, icon("search"), this.input, send, names);
-    form.addEventListener("submit", (event) => {
-      event.preventDefault();
-      asked(this.input.value.trim() || (example ? TEXT.goHint(example.name) : ""));
-      this.input.blur(); // Keys are for walking again, and a phone puts its keyboard away.
-    });
-    this.node = h("div", { class: "go" }, form, this.said);
-  }
-
-  say(text: string, ...more: Child[]): void {
-    fill(this.said, text, ...more);
-  }
 }
 
 /** What floats over the thing that is chosen. */

@@ -10,14 +10,27 @@ import { nameOf } from "../names";
 import { TEXT } from "../text";
 import { fill, h } from "../ui/dom";
 import { segment } from "../ui/fields";
+import type { Vec3 } from "../wire";
 import { registerMode, registerPanel, registerStagePart, type App } from "../ui/slots";
 import type { SceneView } from "../view/view";
+import { mountAsk } from "./ask";
 import { Input } from "./input";
+import { Led } from "./led";
+import { Route } from "./route";
 import { Thumbs } from "./thumbs";
 import { Walker } from "./walker";
 
 type Ground = "blocks" | "voxels";
 
+/** A way to be led along, in metres of the room. */
+export interface Lead {
+  corners_m: readonly Vec3[];
+  goal_m: Vec3;
+  arrived(): void;
+  broken(): void; // the person walked on
+}
+
+const MOST_STEP_MS = 250; // of a way: who looked elsewhere does not leap
 const TOLD_MS = 250; // between two looks at what is ahead
 
 export class Walking {
@@ -34,10 +47,11 @@ export class Walking {
   private readonly sky = new Color();
   private listeners = new Set<() => void>();
   private asked = 0;
+  private led: { way: Led; lead: Lead } | null = null;
 
   constructor(private readonly app: App) {
     this.view = app.view as unknown as SceneView;
-    this.input = new Input(app.canvas, { leave: () => this.app.store.set({ mode: this.back }), moved: () => undefined }, this.thumbs);
+    this.input = new Input(app.canvas, { leave: () => this.app.store.set({ mode: this.back }), moved: () => this.take() }, this.thumbs);
     app.store.watch(["mode"], ({ mode }) => {
       if (mode !== "walk") this.back = mode;
     });
@@ -53,6 +67,27 @@ export class Walking {
     return this.app.store.get().mode === "walk";
   }
 
+  /** Blocks a metre of what is walked on, as far as it is a build. */
+  get size(): number {
+    return builderOf(this.app).loader.wish.size;
+  }
+
+  /** Be led along a way; null ends it. */
+  lead(lead: Lead | null): void {
+    const { walker } = this;
+    this.led = null;
+    if (!walker || !lead) return;
+    const route = new Route(lead.corners_m.map((corner) => walker.blocksOf(corner)));
+    this.led = { way: new Led(route, walker.blocksOf(lead.goal_m), walker.scale), lead };
+  }
+
+  /** Keys and thumbs of a person count more than the planner. */
+  private take(): void {
+    const { led } = this;
+    this.led = null;
+    led?.lead.broken();
+  }
+
   enter(): void {
     this.behind = this.view.scene.background;
     this.choose(this.ground);
@@ -65,7 +100,7 @@ export class Walking {
   leave(): void {
     cancelAnimationFrame(this.frame);
     this.input.stop();
-    this.walker = null;
+    this.walker = this.led = null;
     this.view.pose = null;
     this.view.scene.background = this.behind;
     builderOf(this.app).show(false);
@@ -99,6 +134,7 @@ export class Walking {
     if (asked !== this.asked || !this.isOn) return;
     const walker = new Walker(Packet.read(data, "W2MC"));
     if (this.walker) walker.standAt(this.walker);
+    this.take(); // The way is one through other blocks.
     this.walker = walker;
     this.tell();
   }
@@ -110,18 +146,31 @@ export class Walking {
     const { walker } = this;
     if (!walker) return;
     this.showSky();
-    const [right, down] = this.input.look(milliseconds);
-    walker.look(right, down);
-    walker.keys = this.input.keys;
-    const moved = walker.pass(milliseconds);
-    if (moved || right || down || !this.view.pose) {
-      this.view.pose = walker.pose;
-      this.app.connection.active();
-    }
+    if (this.led) this.follow(this.led, walker, milliseconds);
+    else this.steer(walker, milliseconds);
     if (now - this.toldAt > TOLD_MS) {
       this.toldAt = now;
       this.tell();
     }
+  }
+
+  private steer(walker: Walker, milliseconds: number): void {
+    const [right, down] = this.input.look(milliseconds);
+    walker.look(right, down);
+    walker.keys = this.input.keys;
+    const moved = walker.pass(milliseconds);
+    if (!moved && !right && !down && this.view.pose) return;
+    this.view.pose = walker.pose;
+    this.app.connection.active();
+  }
+
+  private follow(led: { way: Led; lead: Lead }, walker: Walker, milliseconds: number): void {
+    const isDone = led.way.pass(walker, Math.min(milliseconds, MOST_STEP_MS));
+    this.view.pose = walker.pose;
+    this.app.connection.active();
+    if (!isDone) return;
+    this.led = null;
+    led.lead.arrived();
   }
 
   /** The view paints its own ground behind all when the theme or the legend changes. */
@@ -184,6 +233,7 @@ function mountOver(host: HTMLElement, app: App): void {
   const hint = h("div", { class: "walk-hint" }, TEXT.walk.hint);
   const over = h("div", { class: "walk-over", hidden: true }, h("div", { class: "walk-cross" }), ahead, hint);
   host.append(walking.thumbs.node, over);
+  mountAsk(host, app, walking);
   app.store.watch(["mode"], ({ mode }) => (over.hidden = mode !== "walk"));
   walking.watch(() => {
     if (!walking.isOn) return;

@@ -71,7 +71,7 @@ export class Walker {
 
   /** Stand where another walker stands, or a little higher; at the start where that is taken. */
   standAt(other: Walker): void {
-    const [x, y, z] = new THREE.Vector3(...other.feet).applyMatrix4(this.toRoom.clone().invert()).toArray();
+    const [x, y, z] = this.blocksOf(other.feet);
     const box = (lift: number): Box => bodyBox([x, y + lift * this.scale, z], this.scale, false);
     const isFree = (b: Box): boolean => !overlapsAny(this.world.near([b[0], b[1], b[2]], [b[3], b[4], b[5]]), b);
     const lift = LIFTS_M.find((one) => isFree(box(one)));
@@ -84,6 +84,11 @@ export class Walker {
     this.body = this.before = { ...bodyAt(place), onGround: true };
     this.rest = 0;
     [this.yawDeg, this.pitchDeg] = [yawDeg, pitchDeg];
+  }
+
+  /** A point of the room in blocks. */
+  blocksOf(point_m: Vec3): Vec3 {
+    return new THREE.Vector3(...point_m).applyMatrix4(this.toRoom.clone().invert()).toArray();
   }
 
   private get isStill(): boolean {
