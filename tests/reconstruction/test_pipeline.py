@@ -169,6 +169,10 @@ def test_build_at_another_scale_and_from_a_bare_array(out, tmp_path):
 def test_the_report_stands_alone(out):
     page = (out / "report.html").read_text()
     crops = len(re.findall(r'alt="Object \d+ in the world"', page))
+    (room,) = re.findall(r'srcdoc="([^"]*)"', page)  # Its policy lets nothing out.
+    page = page.replace(room, "")
     assert crops > 0 and page.count("data:image/") == 15 + 2 * crops
     assert "://" not in page.split("</style>")[1]
+    assert "default-src &amp;#x27;none&amp;#x27;" in room
+    assert len(page) + len(room) < 5_000_000
     assert "Photos and built world" in page and "Comparison with ground truth" in page

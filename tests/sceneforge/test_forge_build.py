@@ -22,8 +22,8 @@ from world2minecraft.formats.occupancy_files import inner_corner_m
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box, step
 from world2minecraft.minecraft.physics.collisions import find_overlaps
 from world2minecraft.rendering.mesh import mesh_of
+from world2minecraft.rendering.mesh.packets import pack_arrays
 from world2minecraft.sceneforge import build_preview as blocks
-from world2minecraft.sceneforge.array_messages import pack_arrays
 from world2minecraft.sceneforge.build_preview import BlockBuild, BuildOptions, SceneSnapshot
 from world2minecraft.sceneforge.server import build_preview_routes as build_routes
 from world2minecraft.sceneforge.session import Session

@@ -21,7 +21,8 @@ from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.schematics.sponge import write_schem
 from world2minecraft.procgen.worlds import write_worlds
 from world2minecraft.rendering.mesh import mesh_of
-from world2minecraft.sceneforge.block_arrays import compact_mesh_arrays
+from world2minecraft.rendering.mesh.packets import compact_mesh_arrays
+from world2minecraft.rendering.mesh.viewer_page import ICON, assemble
 from world2minecraft.sceneforge.share import page as pages
 from world2minecraft.sceneforge.share import room_data
 from world2minecraft.sceneforge.share.photos import choose_photos, spread_out
@@ -115,7 +116,7 @@ worlds = st.builds(
 def test_blocks_of_small_worlds_come_back_from_the_page(volume, title):
     mesh = mesh_of(volume)
     packet = SharedPacket({"title": title}, compact_mesh_arrays(mesh)).compressed()
-    page = pages.assemble(title, {"room-data": packet})
+    page = assemble(title, {"room-data": packet})
     got = unpacked(block(page, "room-data"))
     assert got["title"] == title
     assert np.abs(quads(got["corners"], 3) - mesh.position).max(initial=0) <= 2 / UNIT
@@ -152,7 +153,7 @@ def test_the_page_may_run_its_own_script_and_fetch_nothing(page):
         digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
         assert rules[name] == f"'sha256-{digest}'"
     links = [attrs.get("href") or attrs.get("src") for _, attrs in elements.found]
-    assert [link for link in links if link] == [pages.ICON]
+    assert [link for link in links if link] == [ICON]
     assert "Copyright © 2010-2026 three.js authors" in page.decode()  # As its licence demands.
     assert not any(name.startswith("on") for _, attrs in elements.found for name in attrs)
 

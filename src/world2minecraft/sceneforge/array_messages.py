@@ -1,20 +1,12 @@
-"""Binary array messages for the page: ``W2MV`` for one array of a scene, and packets of arrays.
+"""Binary messages with one array of a scene for the page, ``W2MV``.
 
 ``W2MV``: magic, u16 version, u8 dtype (0 u8, 1 u16), u8 flags, 3 x u32 cells along x, y, z, f32
 cell size in metres, 3 x f32 minimum corner in metres, u32 number of labels; then the values in C
 order, all little-endian. Flag 1 means that each cell has three bytes, its colour.
-
-A packet: ``magic`` (4 bytes), u32 length of the header, the header in UTF-8 padded with spaces,
-then the arrays, little-endian and in C order, each at a multiple of 8 bytes after the header. The
-header is JSON. Its ``arrays`` is ``{name: {"dtype": "f4", "shape": [...], "offset": bytes after the
-header}}``.
 """
 
-import json
 import struct
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -22,26 +14,11 @@ from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.editing.scene import SceneDraft
 
-_ALIGN = 8
 MAGIC, VERSION = b"W2MV", 1
 HEADER = struct.Struct("<4sHBB3If3fI")
 DTYPE_U8, DTYPE_U16 = 0, 1
 FLAG_RGB = 1
 VOLUMES = ("labels", "instance", "confidence", "colour")
-
-
-def pack_arrays(magic: bytes, facts: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
-    """Return a packet with arrays and additional header fields as bytes."""
-    rows, parts, offset = {}, [], 0
-    for name, values in arrays.items():
-        kind = values.dtype.newbyteorder("<")
-        data = np.ascontiguousarray(values, kind).tobytes()
-        rows[name] = {"dtype": kind.str[1:], "shape": list(values.shape), "offset": offset}
-        parts += [data, bytes(-len(data) % _ALIGN)]
-        offset += len(data) + len(parts[-1])
-    text = json.dumps({**facts, "arrays": rows}, separators=(",", ":"), allow_nan=False).encode()
-    text += b" " * (-(len(text) + len(magic) + 4) % _ALIGN)
-    return b"".join([magic, struct.pack("<I", len(text)), text, *parts])
 
 
 @dataclass(frozen=True, eq=False)

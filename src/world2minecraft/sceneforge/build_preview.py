@@ -20,8 +20,7 @@ from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.minecraft.physics import BlockWorld, find_standing_place
 from world2minecraft.reconstruction.file_stages import corner_m
 from world2minecraft.rendering.mesh import mesh_of
-from world2minecraft.sceneforge.array_messages import pack_arrays
-from world2minecraft.sceneforge.block_arrays import mesh_arrays
+from world2minecraft.rendering.mesh.packets import mesh_arrays, pack_arrays
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.scene_sources import read_source_rooms
 

@@ -1,6 +1,6 @@
 """What a reconstruction has found so far, for the live view of the start page.
 
-Each layer is available once its stage is finished, and is a packet of ``array_messages``:
+Each layer is available once its stage is finished, and is a packet of ``rendering.mesh``:
 
 ===========  ===========  =====================================================================
 layer        after        contents
@@ -28,7 +28,7 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.evaluation.report.finished_run import read_built
 from world2minecraft.formats.run_arrays import read_evidence, read_room
 from world2minecraft.geometry.morphology import erode_faces
-from world2minecraft.sceneforge.array_messages import pack_arrays
+from world2minecraft.rendering.mesh.packets import pack_arrays
 from world2minecraft.sceneforge.build_preview import BlockBuild, BuildOptions
 
 MAGIC = b"W2ML"

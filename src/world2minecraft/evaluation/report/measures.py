@@ -198,6 +198,8 @@ def object_rows(scene: FinishedScene) -> list[dict[str, Any]]:
         if instance.name:
             confidence = round(float(instance.name_confidence), 3)
             named = {"name": instance.name, "name_confidence": confidence}
+        placed = {p.template for p in mine}
+        others = {a.template: a.iou for p in mine for a in p.alternatives}
         rows.append(
             named
             | {
@@ -208,6 +210,11 @@ def object_rows(scene: FinishedScene) -> list[dict[str, Any]]:
                 "yaw_deg": round(float(instance.yaw_deg), 1),
                 "confidence": round(float(instance.confidence), 3),
                 "templates": [{"name": p.template, "iou": round(float(p.iou), 3)} for p in mine],
+                "alternatives": [
+                    {"name": name, "iou": round(float(iou), 3)}
+                    for name, iou in sorted(others.items(), key=lambda one: (-one[1], one[0]))
+                    if name not in placed
+                ],
             }
         )
     return rows

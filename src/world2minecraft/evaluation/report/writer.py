@@ -34,6 +34,7 @@ from world2minecraft.evaluation.report.photo_section import (
     crop_objects,
     worst_first,
 )
+from world2minecraft.evaluation.report.room_view import room_view
 from world2minecraft.evaluation.report.truth_picture import truth_picture
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
 from world2minecraft.evaluation.scoring.truth_files import read_truth
@@ -166,7 +167,8 @@ def write_report(
     progress("report", 2, 3, "page")
     write_bytes(folder / "preview.png", as_png(outside))
     write_json(folder / "report.json", facts)
-    write_text(folder / "report.html", _page(facts, pairs, crops, outside, true, plan))
+    room = room_view(scene, view.camera_to_room)
+    write_text(folder / "report.html", _page(facts, pairs, crops, outside, true, plan, room))
     progress("report", 3, 3)
     return facts
 
@@ -197,6 +199,7 @@ def _page(
     outside: np.ndarray,
     true: np.ndarray | None,
     plan: np.ndarray,
+    room: str | None,
 ) -> str:
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     source = (
@@ -209,6 +212,7 @@ def _page(
         outside=as_data_uri(outside),
         true_room=None if true is None else as_data_uri(true),
         plan=as_data_uri(plan, lossless=True),
+        room=room,
         agreeing=[pair.depth_agrees for pair in pairs if pair.depth_agrees is not None],
         pairs=[
             {
@@ -226,6 +230,7 @@ def _page(
             crop.object_id: (as_data_uri(crop.photo), as_data_uri(crop.built)) for crop in crops
         },
         called={row["id"]: row.get("name") or NAMES[row["class"]] for row in facts["objects"]},
+        known={row["id"]: row for row in facts["objects"]},
         colours={
             name: "#{:02x}{:02x}{:02x}".format(*colour)
             for name, colour in zip(CLASS_NAMES, CLASS_COLOURS, strict=True)

@@ -28,7 +28,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.minecraft.physics import BlockWorld, find_standing_place
-from world2minecraft.sceneforge.array_messages import pack_arrays
+from world2minecraft.rendering.mesh.packets import pack_arrays
 from world2minecraft.sceneforge.block_arrays import collision_arrays
 from world2minecraft.sceneforge.build_preview import BlockBuild, BuildOptions, SceneSnapshot
 from world2minecraft.sceneforge.editor import Editor

@@ -27,6 +27,7 @@ from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Respon
 from starlette.routing import Route
 
 from world2minecraft.core.errors import InputError, LimitError, UnknownNameError, UsageError
+from world2minecraft.rendering.mesh.viewer_page import ICON, STATIC
 from world2minecraft.sceneforge.phone_access import (
     SESSION_LIFE_S,
     WRONG_WINDOW_S,
@@ -53,7 +54,6 @@ from world2minecraft.sceneforge.server.error_messages import EXCEPTION_HANDLERS
 from world2minecraft.sceneforge.server.limits import BodyLimit
 from world2minecraft.sceneforge.server.phone_guard import PAIR, PhoneGuard, cookie_name
 from world2minecraft.sceneforge.server.request_parsing import get_workspace, read_json_object
-from world2minecraft.sceneforge.share.page import ICON, STATIC
 from world2minecraft.sceneforge.uploads import CaptureFolder
 from world2minecraft.sceneforge.workspace import Workspace
 

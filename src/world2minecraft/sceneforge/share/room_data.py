@@ -1,13 +1,12 @@
 """What a shared page contains of a room, as two packets.
 
-The packets are those of ``array_messages`` with the magic ``W2MS``, compressed by zlib. That of the
-room has the arrays of ``compact_mesh_arrays``. That of the floor has those of ``collision_arrays``,
-and the ways of the planner: ``feet_of_ways`` float32 [N, 3] (positions in cells) and ``turns``
-uint16 [T, N]. Row t contains where the shortest path from each position to thing t turns first, or
-65535 without a path.
+The packets are those of ``rendering.mesh``, with the magic ``W2MS``. That of the room has the
+arrays of ``compact_mesh_arrays``. That of the floor has those of ``collision_arrays``, and the
+ways of the planner: ``feet_of_ways`` float32 [N, 3] (positions in cells) and ``turns`` uint16
+[T, N]. Row t contains where the shortest path from each position to thing t turns first, or 65535
+without a path.
 """
 
-import zlib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -27,18 +26,14 @@ from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.running.sentence_goals import phrases_of
 from world2minecraft.navigation.scene import VlnScene, source_landmarks
 from world2minecraft.rendering.mesh import mesh_of
+from world2minecraft.rendering.mesh.packets import COMPACT_UNIT, compact_mesh_arrays
+from world2minecraft.rendering.mesh.viewer_page import packed_block
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild
 from world2minecraft.rendering.views.cameras import camera_of
 from world2minecraft.rendering.views.orbit import orbit_shots
-from world2minecraft.sceneforge.array_messages import pack_arrays
-from world2minecraft.sceneforge.block_arrays import (
-    COMPACT_UNIT,
-    collision_arrays,
-    compact_mesh_arrays,
-)
+from world2minecraft.sceneforge.block_arrays import collision_arrays
 from world2minecraft.sceneforge.walk_guide import goals_of
 
-MAGIC = b"W2MS"
 NO_WAY = 65_535
 MAX_TURNS = 8_000_000  # Of all goals together; beyond, things far from the start have no way.
 GENERIC_NAMES = ("out", "build", "world", "output", "run", "room")
@@ -215,7 +210,7 @@ class SharedPacket:
 
     def compressed(self, **more: Any) -> bytes:
         """Return the packet as bytes, with further facts in its header."""
-        return zlib.compress(pack_arrays(MAGIC, self.header | more, self.arrays), 9)
+        return packed_block(self.header | more, self.arrays)
 
 
 def _best_azimuth(volume: BlockVolume) -> float:

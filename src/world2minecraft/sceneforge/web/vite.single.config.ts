@@ -1,7 +1,7 @@
 import { defineConfig } from "vite";
 
 // Pages of their own, by the mode: `share`, the script and style of shared rooms, which Python puts
-// into the page (sceneforge/share/page.py), and `phone` (sceneforge/server/phone_routes.py). One
+// into the page (rendering/mesh/viewer_page.py), and `phone` (sceneforge/server/phone_routes.py). One
 // file of each kind; nothing is loaded, so there are no modules.
 export default defineConfig(({ mode }) => ({
   publicDir: false,

@@ -6,7 +6,7 @@ import { describe as inWords } from "../src/build/words";
 
 type Arrays = Record<string, { dtype: string; shape: number[]; data: Uint8Array }>;
 
-/** What sceneforge/array_messages.py packs, written a second time. */
+/** What rendering/mesh/packets.py packs, written a second time. */
 function packed(magic: string, told: object, arrays: Arrays): ArrayBuffer {
   const rows: Record<string, object> = {};
   let offset = 0;

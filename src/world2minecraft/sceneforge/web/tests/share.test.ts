@@ -15,7 +15,7 @@ import type { Vec3 } from "../src/wire";
 
 type Rows = Record<string, { dtype: string; shape: number[]; data: Uint8Array }>;
 
-/** What sceneforge/array_messages.py packs. */
+/** What rendering/mesh/packets.py packs. */
 function packed(told: object, arrays: Rows): Packet {
   const rows: Record<string, object> = {};
   let offset = 0;

@@ -1,4 +1,4 @@
-// The mesh of a build as compact_mesh_arrays (block_arrays.py) packs it, restored: three corners of
+// The mesh of a build as compact_mesh_arrays (rendering/mesh) packs it, restored: three corners of
 // each quad as planes of bytes, a column per quad.
 
 import { BlockMesh, type DrawnFacts } from "./mesh";

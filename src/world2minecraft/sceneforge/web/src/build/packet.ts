@@ -1,4 +1,4 @@
-// What array_messages.py packs: a JSON header, then arrays.
+// What rendering/mesh/packets.py packs: a JSON header, then arrays.
 
 export type Values = Uint8Array | Uint16Array | Int32Array | Float32Array;
 

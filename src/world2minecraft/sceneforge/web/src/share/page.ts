@@ -170,7 +170,7 @@ export class RoomPage {
   }
 
   private side(): HTMLElement {
-    return h("aside", { class: "side" }, this.go.node, h("h2", {}, TEXT.things), this.more, h("div", { class: "things-frame" }, this.list.node), h("p", { class: "made" }, TEXT.made));
+    return h("aside", { class: "side" }, this.room.facts.can_walk && this.go.node, h("h2", {}, TEXT.things), this.more, h("div", { class: "things-frame" }, this.list.node), h("p", { class: "made" }, TEXT.made));
   }
 
   private over(): HTMLElement {
@@ -180,7 +180,7 @@ export class RoomPage {
   private bar(): HTMLElement {
     const whole = h("button", { class: "button is-whole", type: "button", on: { click: () => { this.choose(null); this.view.frame(); } } }, icon("home"), TEXT.whole); // prettier-ignore
     if (this.photos) this.pictures = h("button", { class: "button is-photos", type: "button", on: { click: () => this.openPhotos() } }, icon("photo"), TEXT.photos);
-    return h("nav", { class: "bar glass", "aria-label": TEXT.viewsLabel }, this.ways.node, this.lamp, this.pictures, whole);
+    return h("nav", { class: "bar glass", "aria-label": TEXT.viewsLabel }, this.room.facts.can_walk && this.ways.node, this.lamp, this.pictures, whole);
   }
 
   private openPhotos(): void {
