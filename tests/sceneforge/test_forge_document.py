@@ -11,6 +11,7 @@ import pytest
 from forge_documents import SHAPE, Clock, edit, held, same_files, write_run
 
 from world2minecraft.core.errors import ConflictError, OutputError, UsageError
+from world2minecraft.core.locks import Lock
 from world2minecraft.sceneforge.document import document as document_module
 from world2minecraft.sceneforge.document.snapshots import read_state
 from world2minecraft.sceneforge.editor import Editor
@@ -93,7 +94,8 @@ def test_a_torn_tail_is_left_out_and_told(run, forge, cut):
 def abandon(editor):
     """End an editor as a kill does: nothing is written, the lock falls."""
     editor.document.wait()
-    editor.document._lock._release()  # The file still tells of the holder.
+    editor.document._lock.leave()  # The file still tells of the holder.
+    editor.document._target.leave()
     editor.document._lock = None
 
 
@@ -245,10 +247,10 @@ def test_the_history_forgets_its_oldest_edits_and_says_so(run, forge):
 def test_a_second_process_may_look_and_not_edit(run, forge):
     editor, states = edited(run, 3)
     other = Editor.open(run)
-    assert (
-        other.read_only
-        == f"process {os.getpid()} is editing this scene; close the scene there, then open it again"
-    )
+    who = Lock(forge / "lock").holder()
+    assert who.startswith(f"process {os.getpid()} since ")
+    reason = f"it is being edited by {who}; close the scene there, then open it again"
+    assert other.read_only == reason
     assert held(other) == states[-1] and other.scene_json()["read_only"] == other.read_only
     before = {path.name: path.read_bytes() for path in forge.iterdir()}
     for step in (
@@ -257,7 +259,7 @@ def test_a_second_process_may_look_and_not_edit(run, forge):
         other.redo,
         other.save,
     ):
-        with pytest.raises(UsageError, match="^den is open read-only: process"):
+        with pytest.raises(UsageError, match="^den is open read-only: it is being edited by"):
             step()
     other.active()
     other.close()

@@ -130,6 +130,10 @@ def test_nothing_is_written_before_it_is_saved(editor, source):
     assert not (source.parent / "den").exists()
     folder = editor.save()
     assert folder == source.parent / "den" and editor.saved_rev == editor.rev == 1
+    with pytest.raises(ConflictError, match="den: is being edited by process"):
+        Editor.open(folder)  # A scene of its own, which is saved to the same folder.
+    assert not source.with_name("den.forge").exists()
+    editor.close()
     again = Editor.open(folder)
     assert np.array_equal(again.draft.labels, editor.draft.labels)
     assert again.draft.objects.keys() == editor.draft.objects.keys()

@@ -31,7 +31,7 @@ def test_five_files_are_saved_and_open_again_as_they_were(run):
     for number in range(9):
         edit(editor, number)
     assert editor.save() == run and editor.saved_rev == editor.rev == 9
-    assert {path.name for path in run.iterdir()} == set(saving.SAVED_FILES)
+    assert {path.name for path in run.iterdir()} == {*saving.SAVED_FILES, ".lock"}
     labels = editor.draft.labels
     assert np.array_equal(
         read_occupancy(run / "occ.json").labels, np.where(labels < 255, labels, 0)

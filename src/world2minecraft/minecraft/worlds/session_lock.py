@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import ConflictError, OutputError
+from world2minecraft.core.locks import folder_lock
 from world2minecraft.minecraft.worlds.level_dat import no_world
 
 try:
@@ -33,12 +34,18 @@ def session_lock(world: Path) -> Iterator[None]:
     """Lock a world, so that neither the game nor another run of the program opens it.
 
     Raises:
-        ConflictError: If the game or another program has the world open.
+        ConflictError: If the game or another process has the world open.
         InputError: If the world is not found.
         OutputError: If the world folder cannot be written.
     """
     if not (world / "level.dat").is_file():
         raise no_world(world)
+    with folder_lock(world, "changed"), _session(world):  # The first names the other process.
+        yield
+
+
+@contextmanager
+def _session(world: Path) -> Iterator[None]:
     path = world / LOCK_FILE
     was_there = path.exists()
     try:

@@ -10,17 +10,19 @@
 ``lock``               the process that edits the document
 =====================  =========================================================================
 
-No file outside the folder is written before ``save`` is called.
+No file outside the folder is written before ``save`` is called. The folder that the scene is saved
+to is locked while the document is open, so that no command writes there.
 """
 
 import hashlib
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 from world2minecraft.core.errors import ConflictError, OutputError
-from world2minecraft.core.locks import Lock
+from world2minecraft.core.locks import LOCK_FILE, Lock
 from world2minecraft.core.types import Operation
 from world2minecraft.editing.scene import SceneHistory
 from world2minecraft.editing.scene.journal import DO, UNDO
@@ -75,6 +77,7 @@ class Document(MemoryDocument):
         self.notes: list[str] = []
         self.history_bytes = HISTORY_BYTES
         self._lock, self._writer = lock, None
+        self._target: Lock | None = None
         self.identity = read_identity(folder)
         self.saved_rev = saving.saved_rev(folder)
         found = recover(folder)
@@ -98,8 +101,8 @@ class Document(MemoryDocument):
     ) -> "Document":
         """Open the document of a source, and create it if it does not exist.
 
-        If another process edits the document, or if its folder is not writable, the document is
-        opened read-only and ``read_only`` states the reason.
+        If another process edits the document or writes the run, or if the document's folder is not
+        writable, the document is opened read-only and ``read_only`` states the reason.
 
         Args:
             source: A source that ``scene_sources.py`` reads, or a document folder. None opens the
@@ -111,24 +114,32 @@ class Document(MemoryDocument):
         Raises:
             InputError: If the source cannot be read.
             OutputError: If the document folder cannot be created.
-            ConflictError: If the source has changed since and the document has unsaved edits.
+            ConflictError: If the source has changed since and the document has unsaved edits, or if
+                another process writes the run and there is no document yet.
         """
         folder = document_folder(source, out)
         opened = None if is_document(folder) else read_source(source, out)
         lock, reason = _take_lock(folder)
         if lock is None:
             return cls(folder, clock, None, reason)
+        target = None
         try:
+            target = _lock_target(opened.folder if opened else read_identity(folder).target)
             notes = _prepare(folder, source, out, opened)
             document = cls(folder, clock, lock, "")
-        except OutputError as error:
-            lock.release()
+        except BaseException as error:
+            _release(lock, target)
+            busy = isinstance(error, ConflictError) and target is None
             if not is_document(folder):
+                with suppress(OSError):
+                    (folder / "lock").unlink()
+                    folder.rmdir()
                 raise
-            return cls(folder, clock, None, str(error))
-        except BaseException:
-            lock.release()
-            raise
+            if not busy and not isinstance(error, OutputError):
+                raise
+            reason = f"{error}; open it again when that has ended" if busy else str(error)
+            return cls(folder, clock, None, reason)
+        document._target = target
         document.notes[:0] = notes
         return document
 
@@ -145,6 +156,10 @@ class Document(MemoryDocument):
             OutputError: If the files cannot be written.
         """
         self.check_writable()
+        if self._target is None:
+            with suppress(OSError):  # What is wrong is reported when the files are written.
+                self.opened.folder.mkdir(parents=True, exist_ok=True)
+            self._target = _lock_target(self.opened.folder)
         state = self.state()
         known = self.identity.inputs.values()
         saving.save(self.folder, self.opened.source, self.opened.folder, state, known)
@@ -170,7 +185,7 @@ class Document(MemoryDocument):
         if self.rev > self._snapshot_rev:
             self._snapshot()
         self.wait()
-        self._lock.release()
+        _release(self._lock, self._target)
         self._lock, self.read_only = None, "the scene is closed"
 
     def _take(self, found: RecoveredScene) -> None:
@@ -265,15 +280,36 @@ def _take_lock(folder: Path) -> tuple[Lock | None, str]:
         folder.mkdir(parents=True, exist_ok=True)
         lock.acquire()
     except ConflictError:
-        who = lock.holder()
         if not is_document(folder):
             raise
-        return None, f"{who} is editing this scene; close the scene there, then open it again"
+        return None, f"it {lock.conflict()}; close the scene there, then open it again"
     except (OutputError, OSError) as error:
         if not is_document(folder):
             raise OutputError(folder, f"cannot be created ({error})") from error
         return None, str(error)
     return lock, ""
+
+
+def _lock_target(target: Path) -> Lock | None:
+    """Acquire the lock of the folder that a scene is saved to, if it exists and is writable.
+
+    Raises:
+        ConflictError: If another process writes the folder.
+    """
+    if not target.is_dir():
+        return None
+    lock = Lock(target / LOCK_FILE)
+    try:
+        lock.acquire()
+    except OutputError:
+        return None
+    return lock
+
+
+def _release(lock: Lock, target: Lock | None) -> None:
+    lock.release()
+    if target is not None:
+        target.remove()
 
 
 def _prepare(
