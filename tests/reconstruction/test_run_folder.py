@@ -5,13 +5,13 @@ import json
 import pytest
 
 from world2minecraft.core.errors import InputError, OutputError, UnknownNameError
+from world2minecraft.core.output_folders import check_writable
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
 from world2minecraft.reconstruction.pipeline import manifest
 from world2minecraft.reconstruction.run_folder import (
     BUILT_FROM,
     RunFolder,
     check_finished,
-    check_writable,
     hash_capture,
 )
 

@@ -209,6 +209,7 @@ def segment_capture(
         ...
         world2minecraft.core.errors.UnknownNameError: no network is named 'ade'; ...
     """
+    from world2minecraft.core.output_folders import FolderKind, output_folder
     from world2minecraft.reconstruction.recognition.label_folder import write_label_images
     from world2minecraft.reconstruction.recognition.segmentation import (
         GENERATED_WEIGHTS,
@@ -223,27 +224,20 @@ def segment_capture(
         raise UsageError(
             f"min_probability (--min-probability) must be from 0 to 1, got {min_probability}"
         )
-    place = Path(out)
-    if place.exists() and not place.is_dir():
-        raise OutputError(place, "is a file; the output must be a folder")
-    if not force and place.is_dir() and any(place.iterdir()):
-        raise UsageError(
-            f"{place} contains files; choose another folder, or pass force (--force) to replace "
-            "those of the same names"
-        )
     options = _reader_options(settings)
-    source = Path(capture)
+    source, place = Path(capture), Path(out)
     _check_no_roomplan(source)
-    written = write_label_images(
-        source,
-        place,
-        SegmentationModel(weights[semantics]),
-        network=semantics,
-        options=options,
-        min_probability=min_probability,
-        overlay=overlay,
-        progress=progress,
-    )
+    with output_folder(place, FolderKind(), "written", force=force, keep=False):
+        written = write_label_images(
+            source,
+            place,
+            SegmentationModel(weights[semantics]),
+            network=semantics,
+            options=options,
+            min_probability=min_probability,
+            overlay=overlay,
+            progress=progress,
+        )
     return CaptureLabels(source, semantics, written)
 
 
@@ -280,6 +274,7 @@ def join_rooms(
     formats: Sequence[str] = (),
     mc_version: str = "1.20.1",
     settings: Settings | None = None,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> Run:
     """Join finished runs of single rooms to one home with one world.
@@ -299,13 +294,16 @@ def join_rooms(
         formats: Additional file formats to write, such as ``("litematic", "glb")``.
         mc_version: Minecraft version of the world.
         settings: Further parameters by key.
+        force: Write into a folder that contains other files.
         progress: Callback that reports the progress of each stage.
 
     Returns:
         The run of the home.
 
     Raises:
-        UsageError: If an argument is invalid, or if a room fits in no position or in several.
+        UsageError: If an argument is invalid, if a room fits in no position or in several, or if
+            the folder contains other files without ``force``.
+        ConflictError: If another process writes the folder.
         InputError: If a run cannot be read.
         OutputError: If the output folder cannot be written.
 
@@ -316,15 +314,18 @@ def join_rooms(
         ...
         world2minecraft.core.errors.UsageError: expected 2 to 50 finished runs to join, got 1
     """
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.evaluation.report import write_brief_report
     from world2minecraft.reconstruction.homes import join
+    from world2minecraft.reconstruction.run_folder import RUN
 
     options = BuildOptions(blocks_per_metre, style, palette, formats, mc_version, settings)
     folders, folder = [path_of(room) for room in rooms], Path(out)
-    scan = join(folders, folder, options.parameters(), places, progress)
-    progress("report", 0, 1)
-    write_brief_report(folder, scan, _report_links(folders, folder))
-    progress("report", 1, 1)
+    with output_folder(folder, RUN, "joined", force=force, keep=False):
+        scan = join(folders, folder, options.parameters(), places, progress)
+        progress("report", 0, 1)
+        write_brief_report(folder, scan, _report_links(folders, folder))
+        progress("report", 1, 1)
     return Run(folder)
 
 

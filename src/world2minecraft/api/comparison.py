@@ -174,6 +174,7 @@ def build_layouts(
     task: str | Path | None = None,
     assets: str | Path | None = None,
     blocks_per_metre: float = 4.0,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> BuiltLayouts:
     """Build layouts from other methods as Minecraft worlds, without correcting their errors.
@@ -191,16 +192,20 @@ def build_layouts(
         task: LayoutVLM scene file, if it is not stored next to the layout.
         assets: Folder of LayoutVLM assets, from which object sizes are read.
         blocks_per_metre: Scale of the world.
+        force: Write into a folder that contains other files.
         progress: Callback that reports each step.
 
     Raises:
         InputError: If the layout cannot be read.
-        UsageError: If an argument is invalid.
+        UsageError: If an argument is invalid, or a folder contains other files without ``force``.
+        ConflictError: If another process writes a folder.
     """
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.paper.layouts.importers import read_layouts_of
     from world2minecraft.paper.layouts.layout_to_world import build_scene
     from world2minecraft.paper.layouts.scene_selection import folder_names, select_scenes
     from world2minecraft.reconstruction.parameters import Parameters
+    from world2minecraft.reconstruction.run_folder import RUN
 
     how = _how(px_m, task, assets)
     chosen = Parameters(blocks_per_metre=blocks_per_metre)
@@ -210,7 +215,8 @@ def build_layouts(
     places = [Path(out) / name for name in folder_names(wanted)] if several else [Path(out)]
     built = []
     for one, place in zip(wanted, places, strict=True):
-        made = build_scene(one, place, chosen, progress)
+        with output_folder(place, RUN, "built", force=force, keep=False):
+            made = build_scene(one, place, chosen, progress)
         built.append(BuiltLayout(place, one.name, one.method, made.objects, len(one.objects)))
     return BuiltLayouts(built, skipped_objects(wanted), len(found))
 

@@ -143,6 +143,7 @@ def build_dataset(
     seed: int = 0,
     engine: str = "pool",
     jobs: int | None = None,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> Dataset:
     """Build a data set with images, depth maps and class labels for cells in front of the camera.
@@ -179,13 +180,15 @@ def build_dataset(
         engine: ``pool`` (processes on this machine) or ``ray`` (a Ray cluster).
         jobs: Number of processes. Defaults to one per core. With more than one, a script must call
             this function under ``if __name__ == "__main__":``, because each process imports it.
+        force: Write into a folder that contains other files.
         progress: Callback that reports progress on scenes, images and the index.
 
     Returns:
         The data set with its ``report``.
 
     Raises:
-        UsageError: If arguments are invalid or contradict each other.
+        UsageError: If arguments are invalid or contradict each other, or the folder contains other
+            files without ``force``.
         ConflictError: If the folder contains another data set or another process is building there.
         InputError: If a scene cannot be read or the disk is full.
 
@@ -223,7 +226,7 @@ def build_dataset(
     )
     plan = plan_dataset(scenes, images, preset=preset, recipe=recipe, test_share=test_share)
     with open_engine(engine, usable_cores() if jobs is None else jobs) as workers:
-        report = build(out, plan, workers, progress)
+        report = build(out, plan, workers, progress, force)
     return replace(open_dataset(out), report=report)
 
 
@@ -253,6 +256,7 @@ def build_photo_dataset(
     test_share: float = 0.25,
     size: tuple[int, int] | None = None,
     seed: int = 0,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> Dataset:
     """Build a data set of photo-like images of generated rooms, as a substitute for real photos.
@@ -261,16 +265,18 @@ def build_photo_dataset(
     of NYUv2. See docs/training.md.
 
     Args:
-        out: Output folder, which must be new.
+        out: Output folder, which must be new or empty.
         rooms: Number of rooms to generate.
         images: Total number of images.
         test_share: Fraction of the rooms to use for testing.
         size: Image width and height in pixels. Defaults to 640x480, as in NYUv2.
         seed: Random seed. Must be 0 or more.
+        force: Write into a folder that contains other files.
         progress: Callback that is called after each image.
 
     Raises:
-        UsageError: If a number is out of range.
+        UsageError: If a number is out of range, or the folder contains other files without
+            ``force``.
         ConflictError: If the folder already contains a data set.
         OutputError: If the folder cannot be written.
 
@@ -285,7 +291,11 @@ def build_photo_dataset(
     plan = PhotoRooms(rooms, images, test_share, seed, camera_named("nyu", size, None))
     facts = {"rooms": rooms, "images": images, "test_share": test_share, "seed": seed}
     write_store(
-        out, photo_samples(plan), {"photo_rooms": facts}, progress=_with_total(progress, images)
+        out,
+        photo_samples(plan),
+        {"photo_rooms": facts},
+        force=force,
+        progress=_with_total(progress, images),
     )
     return open_dataset(out)
 
@@ -324,28 +334,32 @@ def import_dataset(
     labels: str | Path | None = None,
     split: str | None = None,
     limit: int | None = None,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> Dataset:
     """Convert a published occupancy data set to our format, for training, scoring and display.
 
     Pickle files are read without executing code. A pickle file that contains anything other than
-    arrays is rejected.
+    arrays is rejected. If the import fails, the output folder is unchanged.
 
     Args:
         source: Folder of NYUv2, OccScanNet, EmbodiedOcc-ScanNet or npz files, or a ``Dataset`` that
             is already open.
-        out: Output folder, which must be new.
+        out: Output folder, which must be new or empty.
         format: ``nyu``, ``occscannet``, ``embodied`` or ``npz``. Detected automatically by default.
         labels: Folder with MonoScene's preprocessed ``base/``, if it is stored elsewhere. Only for
             ``nyu``.
         split: Import only ``train`` or only ``test``. Defaults to all splits.
         limit: Maximum number of samples to import.
+        force: Write into a folder that contains other files.
         progress: Callback that is called after each sample.
 
     Raises:
         InputError: If the source cannot be read.
-        UsageError: If the split contains no samples.
-        ConflictError: If the output folder already contains a data set.
+        UsageError: If the split contains no samples, or the folder contains other files without
+            ``force``.
+        ConflictError: If the output folder already contains a data set, or another process writes
+            it.
 
     Example:
         >>> import world2minecraft as w2m
@@ -372,6 +386,7 @@ def import_dataset(
         out,
         islice(found.samples(split), count),
         {"imported": {"format": name, "samples": count}},
+        force=force,
         progress=_with_total(progress, count),
     )
     return open_dataset(out)
@@ -390,6 +405,7 @@ def export_dataset(
     data_root: str | None = None,
     frames_per_scene: int | None = None,
     axes: str = "published",
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> "ExportReport":
     """Export a data set in the format of NYUv2, OccScanNet or EmbodiedOcc-ScanNet, or as npz files.
@@ -412,6 +428,7 @@ def export_dataset(
             to 30.
         axes: Order of the label axes: ``published``, or ``iso`` for ISO's loader. Only for
             ``occscannet``.
+        force: Write into a folder that contains other files.
         progress: Callback that is called after each sample.
 
     Returns:
@@ -420,8 +437,9 @@ def export_dataset(
 
     Raises:
         UnknownNameError: If the format is unknown.
-        UsageError: If there are no samples to export.
-        ConflictError: If the folder contains another export.
+        UsageError: If there are no samples to export, or the folder contains other files without
+            ``force``.
+        ConflictError: If the folder contains another export, or another process writes it.
         InputError: If the source cannot be read.
 
     Example:
@@ -429,7 +447,8 @@ def export_dataset(
         >>> w2m.export_dataset(data, tmp / "NYU", "nyu").written
         2
     """
-    from world2minecraft.minecraftocc.exporters import ExportRule, export_samples
+    from world2minecraft.core.output_folders import output_folder
+    from world2minecraft.minecraftocc.exporters import EXPORT, ExportRule, export_samples
     from world2minecraft.minecraftocc.exporters.options import DATA_ROOT, FRAMES_PER_SCENE
     from world2minecraft.minecraftocc.importers import open_occupancy
 
@@ -442,7 +461,10 @@ def export_dataset(
         axes=axes,
     )
     samples = source.store if isinstance(source, Dataset) else open_occupancy(source)
-    return export_samples(samples, format, out, rule, split=split, limit=limit, progress=progress)
+    with output_folder(Path(out), EXPORT, "written", force=force):
+        return export_samples(
+            samples, format, out, rule, split=split, limit=limit, progress=progress
+        )
 
 
 def camera_named(

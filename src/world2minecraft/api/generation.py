@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING, Any
 from world2minecraft.api.results import Run
 from world2minecraft.api.rooms import BuildOptions, path_of
 from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.output_folders import FolderKind
 from world2minecraft.core.progress import Progress, no_progress
 
 if TYPE_CHECKING:
     from world2minecraft.procgen import Room as GeneratedRoom
 
+ROOM = FolderKind({"truth.npz": ""}, ("layout.json", "preview.png", "truth.npz"))
+HOUSES = FolderKind({"house_0001/scene.json": ""}, ("house_0001",))
 MIN_FRAMES = 3  # The quality of the poses cannot be estimated from fewer frames.
 
 
@@ -105,6 +108,7 @@ def generate_worlds(
     houses: int,
     seed: int = 0,
     style: str | None = None,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> list[Path]:
     """Generate houses as Minecraft worlds, with the class and object id of every block.
@@ -115,6 +119,7 @@ def generate_worlds(
             first ones.
         seed: Random seed. Must be 0 or more.
         style: Style of all houses. Random for each house by default.
+        force: Write into a folder that contains other files.
         progress: Callback that is called for each house.
 
     Returns:
@@ -122,7 +127,9 @@ def generate_worlds(
         ``designs.json``.
 
     Raises:
-        UsageError: If a number is out of range.
+        UsageError: If a number is out of range, or the folder contains other files without
+            ``force``.
+        ConflictError: If another process writes the folder.
         UnknownNameError: If the style is unknown.
         OutputError: If the output folder cannot be written.
 
@@ -131,19 +138,23 @@ def generate_worlds(
         >>> [house.name for house in generate_worlds(tmp / "worlds", houses=1)]
         ['house_0001']
     """
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.procgen.worlds import write_worlds
-    from world2minecraft.reconstruction.run_folder import check_writable
 
     if houses < 1:
         raise UsageError(f"houses must be 1 or more, got {houses}")
     if seed < 0:
         raise UsageError(f"seed must be 0 or more, got {seed}")
-    check_writable(Path(out))
-    return write_worlds(Path(out), houses, seed, style=style, progress=progress)
+    with output_folder(Path(out), HOUSES, "generated", force=force):
+        return write_worlds(Path(out), houses, seed, style=style, progress=progress)
 
 
 def save_room(
-    room: "GeneratedRoom", out: str | Path, progress: Progress = no_progress
+    room: "GeneratedRoom",
+    out: str | Path,
+    progress: Progress = no_progress,
+    *,
+    force: bool = False,
 ) -> "GeneratedRoom":
     """Write a generated room as ``layout.json``, ``truth.npz`` and ``preview.png``, and return it.
 
@@ -151,8 +162,11 @@ def save_room(
         room: Room or house to write.
         out: Output folder.
         progress: Callback that reports each written file.
+        force: Write into a folder that contains other files.
 
     Raises:
+        UsageError: If the folder contains other files without ``force``.
+        ConflictError: If another process writes the folder.
         OutputError: If the output folder cannot be written.
 
     Example:
@@ -165,18 +179,18 @@ def save_room(
     from PIL import Image
 
     from world2minecraft.core.files import write_bytes
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.procgen import room_picture, write_generated
-    from world2minecraft.reconstruction.run_folder import check_writable
 
     folder = Path(out)
-    check_writable(folder)
-    progress("write", 0, 2, "layout.json, truth.npz")
-    write_generated(room, folder)
-    progress("write", 1, 2, "preview.png")
-    picture = io.BytesIO()
-    Image.fromarray(room_picture(room)).save(picture, "PNG")
-    write_bytes(folder / "preview.png", picture.getvalue())
-    progress("write", 2, 2)
+    with output_folder(folder, ROOM, "generated", force=force, keep=False):
+        progress("write", 0, 2, "layout.json, truth.npz")
+        write_generated(room, folder)
+        progress("write", 1, 2, "preview.png")
+        picture = io.BytesIO()
+        Image.fromarray(room_picture(room)).save(picture, "PNG")
+        write_bytes(folder / "preview.png", picture.getvalue())
+        progress("write", 2, 2)
     return room
 
 
@@ -191,6 +205,7 @@ def scan_room(
     label_error: float = 0.0,
     depth_scale_sigma: float = 0.0,
     coverage: float = 1.0,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> Path:
     """Scan a generated room with a virtual camera, and write a capture with its ground truth.
@@ -207,6 +222,7 @@ def scan_room(
         label_error: Fraction of the surface with wrong labels, 0 to 1.
         depth_scale_sigma: Standard deviation of the depth scale factor of each frame.
         coverage: Fraction of the walk to record, above 0 and at most 1.
+        force: Write into a folder that contains other files.
         progress: Callback that is called after each frame.
 
     Returns:
@@ -214,7 +230,9 @@ def scan_room(
         ``evaluate``.
 
     Raises:
-        UsageError: If an argument is out of range or the folder contains another capture.
+        UsageError: If an argument is out of range, or the folder contains another capture, or
+            other files without ``force``.
+        ConflictError: If another process writes the folder.
         OutputError: If the output folder cannot be written.
 
     Example:
@@ -223,6 +241,7 @@ def scan_room(
         >>> (capture / "truth.npz").is_file()
         True
     """
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.procgen import read_generated
     from world2minecraft.procgen import scan_room as scan
 
@@ -238,7 +257,8 @@ def scan_room(
     check_scan(folder, figures)
     made = read_generated(Path(room)) if isinstance(room, str | Path) else room
     chosen = made.seed if seed is None else seed
-    scan(made, folder, seed=chosen, progress=progress, **_settings_of(figures))
+    with output_folder(folder, FolderKind(), "written", force=force, keep=False):
+        scan(made, folder, seed=chosen, progress=progress, **_settings_of(figures))
     return folder
 
 
@@ -260,7 +280,7 @@ def check_scan(out: Path, figures: Mapping[str, Any]) -> None:
         ScanSettings(**_settings_of(figures))
     except ValueError as error:
         raise UsageError(str(error)) from error
-    _check_empty(out)
+    _check_new(out)
 
 
 def _settings_of(figures: Mapping[str, Any]) -> dict[str, Any]:
@@ -280,6 +300,7 @@ def demo(
     style: str | None = None,
     palette: str | Path | None = None,
     formats: Sequence[str] = (),
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> Run:
     """Generate a room, scan it with a virtual depth camera and reconstruct it.
@@ -295,10 +316,13 @@ def demo(
         style: ``blocks``, ``display`` or ``voxels``.
         palette: ``vanilla``, the palette of a mod, or a YAML file.
         formats: Additional file formats to write.
+        force: Write into a folder that contains other files.
         progress: Callback that reports the progress of each stage.
 
     Raises:
-        UsageError: If an argument is out of range.
+        UsageError: If an argument is out of range, or the folder contains other files without
+            ``force``.
+        ConflictError: If another process writes the folder.
         OutputError: If the output folder cannot be written.
 
     Example:
@@ -306,10 +330,11 @@ def demo(
         >>> w2m.demo(tmp / "demo", kind="study", seed=3, frames=6).world.is_dir()
         True
     """
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.procgen import generate_room as generate
     from world2minecraft.procgen import scan_room as scan
     from world2minecraft.procgen.rooms.recipes import KINDS, find_kind, room_title
-    from world2minecraft.reconstruction.run_folder import check_writable
+    from world2minecraft.reconstruction.run_folder import RUN
     from world2minecraft.runs import run_capture
 
     if seed < 0:
@@ -321,33 +346,40 @@ def demo(
     options = BuildOptions(blocks_per_metre, style, palette, formats, settings=plaque)
     chosen = options.parameters()
     folder = Path(out)
-    check_writable(folder)
-    progress("room", 0, 1)
-    made = generate(seed, kind=kind)
-    progress("room", 1, 1, f"{KINDS[kind].title}, seed {seed}")
-    scan(made, folder / "capture", frames=frames, seed=seed, progress=progress)
-    run_capture(folder / "capture", folder, chosen, progress=progress)
+    with output_folder(folder, RUN, "reconstructed", force=force):
+        progress("room", 0, 1)
+        made = generate(seed, kind=kind)
+        progress("room", 1, 1, f"{KINDS[kind].title}, seed {seed}")
+        scan(made, folder / "capture", frames=frames, seed=seed, progress=progress)
+        run_capture(folder / "capture", folder, chosen, progress=progress)
     return Run(folder)
 
 
-def scan_trial(name: str, out: str | Path, progress: Progress = no_progress) -> Path:
+def scan_trial(
+    name: str, out: str | Path, progress: Progress = no_progress, *, force: bool = False
+) -> Path:
     """Write a benchmark trial, such as ``noise-500``: a scanned room with its ground truth.
 
     Args:
         name: Name of the trial.
         out: Output folder.
         progress: Callback that reports the progress of the scan.
+        force: Write into a folder that contains other files.
 
     Raises:
         UnknownNameError: If the trial is unknown.
-        UsageError: If the folder contains another capture.
+        UsageError: If the folder contains another capture, or other files without ``force``.
+        ConflictError: If another process writes the folder.
         OutputError: If the output folder cannot be written.
     """
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.procgen.benchmark_trials import find_trial, write_trial
 
-    _check_empty(Path(out))
-    write_trial(find_trial(name), Path(out), progress)
-    return Path(out)
+    folder, trial = Path(out), find_trial(name)
+    _check_new(folder)
+    with output_folder(folder, FolderKind(), "written", force=force, keep=False):
+        write_trial(trial, folder, progress)
+    return folder
 
 
 def evaluate(
@@ -415,11 +447,8 @@ def _check_run(folder: Path) -> None:
             )
 
 
-def _check_empty(out: Path) -> None:
+def _check_new(out: Path) -> None:
     """Raise UsageError if a folder already contains a capture or a generated room."""
-    from world2minecraft.reconstruction.run_folder import check_writable
-
-    check_writable(out)
     if (out / "layout.json").exists():
         raise UsageError(f"{out} already contains a generated room; choose another output folder")
     if any((out / name).exists() for name in ("capture.json", "capture.mp4", "truth.npz")):

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -80,6 +81,7 @@ def build_navigation_set(
     size: tuple[int, int] = (640, 360),
     seed: int = 0,
     workers: int | None = None,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> "BuiltSet":
     """Build a navigation set: walks through scenes, instructions in English and questions.
@@ -111,6 +113,7 @@ def build_navigation_set(
         size: Image width and height, each from 16 to 4096 pixels.
         seed: Random seed. Must be 0 or more.
         workers: Number of processes. Defaults to one per core.
+        force: Write into a folder that contains other files.
         progress: Callback that receives the number of completed walks.
 
     Returns:
@@ -118,7 +121,9 @@ def build_navigation_set(
         splits.
 
     Raises:
-        UsageError: If an argument is invalid or the scenes produce no items.
+        UsageError: If an argument is invalid, the scenes produce no items, or the folder contains
+            other files without ``force``.
+        ConflictError: If another process writes the folder.
         InputError: If a scene cannot be read.
         OutputError: If the folder cannot be written.
 
@@ -129,14 +134,14 @@ def build_navigation_set(
         True
     """
     from world2minecraft.core.machine import usable_cores
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.navigation.data.generated_scenes import make_scenes
     from world2minecraft.navigation.data.recorded_walks import parse_at
     from world2minecraft.navigation.data.rewording import annotate_set
     from world2minecraft.navigation.data.scene_items import SceneRule
     from world2minecraft.navigation.data.set_building import BuildRule
     from world2minecraft.navigation.data.set_building import build_navigation_set as build
-    from world2minecraft.navigation.records import SCENES_FOLDER
-    from world2minecraft.reconstruction.run_folder import check_writable
+    from world2minecraft.navigation.records import NAVIGATION_SET, SCENES_FOLDER
 
     _check_size(size)
     work = SceneRule(
@@ -150,12 +155,12 @@ def build_navigation_set(
     if not (scenes or rooms or houses):
         raise UsageError("no scenes given; add scenes, or generate some (--rooms 3)")
     folder, processes = Path(out), workers or usable_cores()
-    check_writable(folder)
-    generated = make_scenes(folder / SCENES_FOLDER, rooms, houses, seed, processes, progress)
-    places = [*map(path_of, scenes), *generated]
-    built = build(places, folder, rule, progress, processes)
-    if annotations is not None:
-        annotate_set(folder, annotations)
+    with output_folder(folder, NAVIGATION_SET, "built", force=force):
+        generated = make_scenes(folder / SCENES_FOLDER, rooms, houses, seed, processes, progress)
+        places = [*map(path_of, scenes), *generated]
+        built = build(places, folder, rule, progress, processes)
+        if annotations is not None:
+            annotate_set(folder, annotations)
     return built
 
 
@@ -204,7 +209,7 @@ def export_navigation_set(
     Raises:
         UsageError: If an argument is invalid or no items match.
         InputError: If the set cannot be read.
-        ConflictError: If the output folder contains other files.
+        ConflictError: If the output folder contains other files, or another process writes it.
 
     Example:
         >>> import world2minecraft as w2m
@@ -213,6 +218,7 @@ def export_navigation_set(
         >>> result.format, result.written[0].rows > 0
         ('r2r', True)
     """
+    from world2minecraft.core.output_folders import FolderKind, output_folder
     from world2minecraft.navigation.exporters import ExportOptions, export_set
 
     choices = {
@@ -226,7 +232,8 @@ def export_navigation_set(
         "seed": seed,
     }
     rule = ExportOptions(**{name: value for name, value in choices.items() if value is not None})
-    return export_set(navigation_set, to, out, rule, progress=progress)
+    with output_folder(Path(out), FolderKind(), "written", force=True):  # It checks the folder.
+        return export_set(navigation_set, to, out, rule, progress=progress)
 
 
 @dataclass(frozen=True, eq=False)
@@ -355,6 +362,7 @@ def reword_navigation_set(
     Raises:
         UsageError: If no change is requested or an option is invalid.
         InputError: If a file cannot be read.
+        ConflictError: If another process writes the set.
         ServerError: If the model does not reply.
 
     Example:
@@ -363,6 +371,27 @@ def reword_navigation_set(
         >>> dict(reword_navigation_set(tmp / "set", plain=True).sources)
         {'template': ...}
     """
+    from world2minecraft.core.locks import folder_lock
+    from world2minecraft.navigation.records import ITEMS
+
+    if not (annotations or rewrite or plain):
+        raise UsageError("nothing to do; add --annotations FILE, --rewrite MODEL or --plain")
+    folder = Path(navigation_set)
+    lock = folder_lock(folder, "reworded") if (folder / ITEMS).is_file() else nullcontext()
+    with lock:
+        return _reword_folder(folder, annotations, rewrite, plain, jobs, model, progress)
+
+
+def _reword_folder(
+    folder: Path,
+    annotations: str | Path | None,
+    rewrite: str,
+    plain: bool,
+    jobs: int,
+    model: "ModelOptions | None",
+    progress: Progress,
+) -> RewordedSet:
+    """Reword the navigation set in a folder, which is locked."""
     from world2minecraft.external_models.model_options import ModelOptions
     from world2minecraft.navigation.data.rewording import (
         ORDER,
@@ -372,9 +401,6 @@ def reword_navigation_set(
         write_set,
     )
 
-    if not (annotations or rewrite or plain):
-        raise UsageError("nothing to do; add --annotations FILE, --rewrite MODEL or --plain")
-    folder = Path(navigation_set)
     made, chat, outcomes = read_set(folder), None, Counter[str]()
     if annotations is not None:
         made = add_annotations(made, annotations)

@@ -388,6 +388,7 @@ def predict_occupancy(
     labels: str | Path | None = None,
     fov_deg: float | None = None,
     run_folder: str | Path | None = None,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> "PredictedCells":
     """Predict the class of every cell in the grid of one frame or in a whole captured room.
@@ -412,6 +413,7 @@ def predict_occupancy(
         fov_deg: Vertical field of view in degrees. Only for a single photo without ``grid``.
         run_folder: Folder for the files of the run. Only for a capture. Defaults to a temporary
             folder.
+        force: Write into a ``run_folder`` that contains other files.
         progress: Callback that reports each step.
 
     Returns:
@@ -419,7 +421,9 @@ def predict_occupancy(
         ``observed`` arrays, with the axes x, y and z (up).
 
     Raises:
-        UsageError: If arguments contradict each other.
+        UsageError: If arguments contradict each other, or ``run_folder`` contains other files
+            without ``force``.
+        ConflictError: If another process writes ``run_folder``.
         InputError: If a file cannot be read.
         UnknownNameError: If the predictor is unknown.
 
@@ -448,7 +452,7 @@ def predict_occupancy(
         if colour is not None:
             raise UsageError("colour requires a single depth image and a grid (--grid)")
         cells, scan_to_room = _capture_cells(
-            path, place, predictor, labels, fov_deg, run_folder, progress
+            path, place, predictor, labels, fov_deg, run_folder, force, progress
         )
         more = more or {"scan_to_room": scan_to_room}
     if out is not None:
@@ -463,22 +467,26 @@ def _capture_cells(
     labels: str | Path | None,
     fov_deg: float | None,
     run_folder: str | Path | None,
+    force: bool,
     progress: Progress,
 ) -> "tuple[PredictedCells, Any]":
     """Reconstruct a capture up to the label stage and return its cells and ``scan_to_room``."""
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.formats.run_arrays import read_room
     from world2minecraft.minecraftocc.cell_predictions import cells_of_room, resample_to_grid
     from world2minecraft.reconstruction.parameters import Parameters, with_settings
     from world2minecraft.reconstruction.pipeline import reconstruct
+    from world2minecraft.reconstruction.run_folder import RUN
 
     chosen = Parameters(predictor=predictor)
     chosen = with_settings(chosen, [] if fov_deg is None else [f"capture.fov_deg={fov_deg}"])
     label_folder = None if labels is None else Path(labels)
     with tempfile.TemporaryDirectory() as spare:
         folder = Path(spare if run_folder is None else run_folder)
-        reconstruct(
-            capture, folder, chosen, until=LAST_STAGE, labels=label_folder, progress=progress
-        )
+        with output_folder(folder, RUN, "reconstructed", force=force):
+            reconstruct(
+                capture, folder, chosen, until=LAST_STAGE, labels=label_folder, progress=progress
+            )
         room, scan_to_room = read_room(folder / "room.npz")
     cells = cells_of_room(room)
     if place is not None:

@@ -1,6 +1,7 @@
 """Repair built rooms, list the repairs, and undo or redo each of them."""
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,6 +10,7 @@ from world2minecraft.api.results import Run
 from world2minecraft.api.rooms import path_of
 from world2minecraft.core.classes import display_name
 from world2minecraft.core.errors import ConflictError, InputError, OutputError
+from world2minecraft.core.locks import folder_lock
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockEdit
@@ -60,7 +62,7 @@ def repair(
         UnknownNameError: If a rule is unknown.
         InputError: If the source contains no build.
         OutputError: If the world has been played in.
-        ConflictError: If the journal belongs to another build.
+        ConflictError: If the journal belongs to another build, or another process writes the run.
 
     Example:
         >>> import world2minecraft as w2m
@@ -70,15 +72,16 @@ def repair(
     from world2minecraft.editing.cleanup.passes import RULES, repair_volume
 
     build = _build_folder(path_of(source))
-    history = _open_history(build)
-    if not dry_run:
-        _check_unplayed(build / "world")  # Before any edit is recorded.
-    edits = repair_volume(history.volume, tuple(only or RULES))[1]
-    first = 0 if dry_run else len(history.journal.edits)
-    if edits and not dry_run:
-        for edit in edits:
-            history.do(edit)
-        _rewrite_build(build, history)
+    with nullcontext() if dry_run else _lock_of(build):
+        history = _open_history(build)
+        if not dry_run:
+            _check_unplayed(build / "world")  # Before any edit is recorded.
+        edits = repair_volume(history.volume, tuple(only or RULES))[1]
+        first = 0 if dry_run else len(history.journal.edits)
+        if edits and not dry_run:
+            for edit in edits:
+                history.do(edit)
+            _rewrite_build(build, history)
     return [_repair_of(number, edit) for number, edit in enumerate(edits, first + 1)]
 
 
@@ -108,17 +111,18 @@ def undo_repair(source: Run | str | Path, number: int | None = None) -> int:
 
     Raises:
         UsageError: If the repair does not exist.
-        ConflictError: If a later repair changed the same blocks.
+        ConflictError: If a later repair changed the same blocks, or another process writes the run.
         InputError: If the source contains no build.
         OutputError: If the world has been played in.
     """
     build = _build_folder(path_of(source))
-    history = _open_history(build)
-    _check_unplayed(build / "world")
-    count = sum(history.journal.is_done) if number is None else 1
-    for _ in range(count):
-        history.undo(None if number is None else number - 1)
-    _rewrite_build(build, history)
+    with _lock_of(build):
+        history = _open_history(build)
+        _check_unplayed(build / "world")
+        count = sum(history.journal.is_done) if number is None else 1
+        for _ in range(count):
+            history.undo(None if number is None else number - 1)
+        _rewrite_build(build, history)
     return count
 
 
@@ -131,15 +135,16 @@ def redo_repair(source: Run | str | Path, number: int) -> None:
 
     Raises:
         UsageError: If the repair has not been undone.
-        ConflictError: If a later repair changed the same blocks.
+        ConflictError: If a later repair changed the same blocks, or another process writes the run.
         InputError: If the source contains no build.
         OutputError: If the world has been played in.
     """
     build = _build_folder(path_of(source))
-    history = _open_history(build)
-    _check_unplayed(build / "world")
-    history.redo(number - 1)
-    _rewrite_build(build, history)
+    with _lock_of(build):
+        history = _open_history(build)
+        _check_unplayed(build / "world")
+        history.redo(number - 1)
+        _rewrite_build(build, history)
 
 
 def world_of(source: Run | str | Path) -> Path:
@@ -177,6 +182,11 @@ def _build_folder(source: Path) -> Path:
     raise InputError(
         source, "does not contain a build (build/scene.json); create one with w2m build"
     )
+
+
+def _lock_of(build: Path) -> AbstractContextManager[object]:
+    """Return the lock of the run that a build belongs to."""
+    return folder_lock(build.parent if build.name == "build" else build, "repaired")
 
 
 def _check_unplayed(world: Path) -> None:

@@ -101,6 +101,7 @@ def reconstruct(
     follow: bool = False,
     follow_idle_s: float = 60.0,
     settings: Settings | None = None,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> Run:
     """Convert a capture of a room to a Minecraft world with a report (Algorithm 1 of the paper).
@@ -141,6 +142,7 @@ def reconstruct(
         follow: Watch a capture that is still being recorded until a file named ``done`` appears.
         follow_idle_s: Seconds to wait for a new frame before the capture is considered complete.
         settings: Further parameters, such as ``{"find.cluster_radius": 3}``.
+        force: Write into a folder that contains other files.
         progress: Callback that receives the stage, the number of completed steps, the total number
             of steps and a note.
 
@@ -148,7 +150,8 @@ def reconstruct(
         The run with its room, objects, world and report.
 
     Raises:
-        UsageError: If an argument is invalid.
+        UsageError: If an argument is invalid, or the folder contains other files without ``force``.
+        ConflictError: If another process writes the folder.
         CaptureError: If the capture cannot be used.
         OutputError: If the output folder cannot be written.
 
@@ -158,8 +161,9 @@ def reconstruct(
         >>> run.objects[0].name, run.world.is_dir()
         ('...', True)
     """
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.reconstruction.parameters import Parameters, with_method
-    from world2minecraft.runs import run_capture
+    from world2minecraft.reconstruction.run_folder import RUN
 
     base = Parameters(
         voxel_m,
@@ -181,29 +185,32 @@ def reconstruct(
     _check_stage(start, follow, chosen)
     needs_frames = {"start": start, "labels": labels, "follow": follow}
     place, folder = Path(capture), Path(out)
-    if _build_lone_plan(place, folder, chosen, needs_frames, progress):
-        return Run(folder)
-    label_folder = None if labels is None else Path(labels)
-    if follow:
-        _follow(place, folder, chosen, label_folder, follow_idle_s, progress)
-    run_capture(place, folder, chosen, start, label_folder, progress)
+    with output_folder(folder, RUN, "reconstructed", force=force):
+        if not _build_lone_plan(place, folder, chosen, needs_frames, progress):
+            label_folder = None if labels is None else Path(labels)
+            idle_s = follow_idle_s if follow else None
+            _reconstruct_frames(place, folder, chosen, start, label_folder, idle_s, progress)
     return Run(folder)
 
 
-def _follow(
+def _reconstruct_frames(
     capture: Path,
     out: Path,
     chosen: "Parameters",
+    start: str | None,
     labels: Path | None,
-    idle_s: float,
+    idle_s: float | None,
     progress: Progress,
 ) -> None:
-    """Reconstruct a capture that is still being recorded until it is complete."""
+    """Reconstruct frames, after following their recording unless ``idle_s`` is None."""
     from world2minecraft.core.precompile import compile_first
     from world2minecraft.reconstruction import online
+    from world2minecraft.runs import run_capture
 
-    compiled = compile_first(progress)
-    online.follow(capture, out, chosen, labels=labels, idle_s=idle_s, progress=compiled)
+    if idle_s is not None:
+        compiled = compile_first(progress)
+        online.follow(capture, out, chosen, labels=labels, idle_s=idle_s, progress=compiled)
+    run_capture(capture, out, chosen, start, labels, progress)
 
 
 def build(
@@ -217,12 +224,13 @@ def build(
     mc_version: str = "1.20.1",
     classes: str | Path = "",
     settings: Settings | None = None,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> Run:
     """Build a new world from a run or an occupancy grid.
 
     The objects and placements of a run are used unchanged. For an occupancy grid, objects are
-    detected and matched with furniture first.
+    detected and matched with furniture first. If the build fails, the folder is unchanged.
 
     Args:
         source: Run, run folder, ``room.npz``, ``occ.json``, or a ``.npy`` file of class ids [X, Y,
@@ -236,10 +244,12 @@ def build(
         classes: Class ids of an occupancy grid: ``nyu12`` (the default), ``embodied`` (12 is
             empty), ``occscannet`` or a YAML file of ids and names.
         settings: Further parameters, such as ``{"build.ceiling": "glass"}``.
+        force: Write into a folder that contains other files.
         progress: Callback that reports the progress of each stage.
 
     Raises:
-        UsageError: If an argument is invalid.
+        UsageError: If an argument is invalid, or the folder contains other files without ``force``.
+        ConflictError: If another process writes the folder.
         InputError: If the source cannot be read.
         OutputError: If the output folder cannot be written.
 
@@ -252,7 +262,8 @@ def build(
     from world2minecraft.reconstruction.build_without_capture import rebuild
 
     options = BuildOptions(blocks_per_metre, style, palette, formats, mc_version, settings)
-    rebuild(path_of(source), Path(out), options.parameters(), progress, str(classes))
+    chosen = options.parameters()
+    rebuild(path_of(source), Path(out), chosen, progress, str(classes), force)
     return Run(Path(out))
 
 

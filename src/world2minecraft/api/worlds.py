@@ -3,14 +3,17 @@
 import os
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from world2minecraft.api.results import Run
 from world2minecraft.api.rooms import path_of
 from world2minecraft.core.errors import InputError, OutputError, UsageError
+from world2minecraft.core.locks import folder_lock
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
@@ -80,6 +83,7 @@ def convert(
 
     Raises:
         UsageError: If the target exists or has an unknown suffix.
+        ConflictError: If the target is a world that is open, or another process replaces it.
         InputError: If the source cannot be read or the target cannot be written.
 
     Example:
@@ -103,8 +107,9 @@ def convert(
     unread, unwritten = Losses(), Losses()
     volume = _with_scale(_read_part(place, box, unread), blocks_per_metre)
     volume = _with_labels(volume, labels)
-    _make_parent(goal)
-    with tempfile.TemporaryDirectory(dir=goal.parent, prefix=".w2m-") as folder:
+    lock = folder_lock(goal, "replaced") if goal.is_dir() else nullcontext()
+    scratch = partial(tempfile.TemporaryDirectory, prefix=".w2m-")
+    with _parent_of(goal) as parent, lock, scratch(dir=parent) as folder:
         # The new one is complete before the old one is removed; both are on one disk.
         written = Path(folder) / goal.name
         write_volume(volume, written, options, unwritten)
@@ -212,13 +217,22 @@ def _replace_target(written: Path, target: Path, force: bool) -> None:
     _put_in_place(written, target)
 
 
-def _make_parent(target: Path) -> None:
-    """Create the parent folder of the target."""
+@contextmanager
+def _parent_of(target: Path) -> Iterator[Path]:
+    """Create and yield the parent folder of the target, which a failure of the block removes."""
+    made = [path for path in target.parents if not path.exists()]
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         reason = "is a file" if target.parent.is_file() else f"cannot be created: {error.strerror}"
         raise OutputError(target.parent, f"{reason}; choose another target") from error
+    try:
+        yield target.parent
+    except BaseException:
+        for path in made:
+            with suppress(OSError):
+                path.rmdir()
+        raise
 
 
 def _put_in_place(written: Path, target: Path) -> None:

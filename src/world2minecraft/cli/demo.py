@@ -13,7 +13,7 @@ from world2minecraft.cli.build.options import (
     print_style_note,
     split_names,
 )
-from world2minecraft.cli.panels import OutFolder, more_option
+from world2minecraft.cli.panels import Force, OutFolder, more_option
 
 EXAMPLES = """\
 w2m demo                      build a living room in OUT/
@@ -40,6 +40,7 @@ def run(
     style: Style = None,
     palette: PaletteName = None,
     formats: Formats = None,
+    force: Force = False,
 ) -> None:
     """Generate a room, scan it with a virtual depth camera and build it as a world.
 
@@ -55,6 +56,7 @@ def run(
         style: Material of the furniture.
         palette: Palette of blocks to build with.
         formats: Additional file formats to write.
+        force: Write into a folder that contains other files.
     """
     from world2minecraft.api import demo
     from world2minecraft.api.progress import show_progress
@@ -74,6 +76,7 @@ def run(
             style=style,
             palette=palette,
             formats=split_names(formats),
+            force=force,
             progress=progress,
         )
     print_outcome(out, made.report)

@@ -16,6 +16,7 @@ from world2minecraft.cli.build.options import (
     print_style_note,
     split_names,
 )
+from world2minecraft.cli.panels import Force
 
 EXAMPLES = """\
 w2m join kitchen hall bedroom -o HOME             by their common doors
@@ -39,6 +40,7 @@ def run(
     formats: Formats = None,
     mc_version: Version = "1.20.1",
     settings: SettingList = None,
+    force: Force = False,
 ) -> None:
     """Join finished runs to one home with one world.
 
@@ -69,6 +71,7 @@ def run(
             formats=split_names(formats),
             mc_version=mc_version,
             settings=changes,
+            force=force,
             progress=compile_first(shown),
         )
     print_home(out, len(rooms))

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import MORE, Force
 
 if TYPE_CHECKING:
     from world2minecraft.api.networks import PredictedCells
@@ -73,6 +73,7 @@ def run(
     labels: LabelImages = None,
     fov: FieldOfView = None,
     keep: Keep = None,
+    force: Force = False,
 ) -> None:
     """Predict the class of every cell in the grid of a frame, or in a captured room.
 
@@ -101,6 +102,7 @@ def run(
             labels=labels,
             fov_deg=fov,
             run_folder=keep,
+            force=force,
             progress=compile_first(progress),
         )
     for line in summary_lines(source, out, cells, grid):

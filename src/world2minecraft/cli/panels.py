@@ -43,5 +43,8 @@ def out_option(help: str, *names: str, **facts: Any) -> Any:
     return typer.Option("--out", "-o", *names, help=help, **facts)
 
 
+Force = Annotated[
+    bool, more_option("--force", help="Write into a folder that contains other files.")
+]
 OutFolder = Annotated[Path, out_option("Write the results to this folder.")]
 OutFile = Annotated[Path, out_option("Write the result to this file.")]

@@ -16,7 +16,7 @@ from world2minecraft.cli.build.options import (
     print_style_note,
     split_names,
 )
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import MORE, Force
 
 if TYPE_CHECKING:
     from world2minecraft.api import Run
@@ -144,6 +144,7 @@ def run(
     settings: SettingList = None,
     follow: Follow = False,
     follow_idle_s: FollowIdle = 60.0,
+    force: Force = False,
 ) -> None:
     """Convert a capture to a Minecraft world.
 
@@ -164,7 +165,8 @@ def run(
             known_points=known_points, fov_deg=fov, plan=plan, depth_model=depth_model,
             semantics=semantics, predictor=predictor, predictions=predictions,
             convention=convention, classes=classes, labeller=labeller, start=start,
-            follow=follow, follow_idle_s=follow_idle_s, settings=changes, progress=progress,
+            follow=follow, follow_idle_s=follow_idle_s, settings=changes, force=force,
+            progress=progress,
         )  # fmt: skip
     print_run(made)
 

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from world2minecraft.cli.panels import Force
+
 EXAMPLES = """\
 w2m segment my_photos --out LABELS                label images of photos; no poses are needed
 w2m segment IMG_2041.MOV --out LABELS             of the frames of a video
@@ -29,10 +31,6 @@ Overlay = Annotated[
     bool,
     typer.Option("--overlay", help="Also write NAME.overlay.jpg: the picture in the colours of its "
                  "classes, with a legend."),
-]  # fmt: skip
-Force = Annotated[
-    bool, typer.Option("--force", help="Write into a folder that contains files, replacing those "
-                       "of the same names.")
 ]  # fmt: skip
 AsJson = Annotated[bool, typer.Option("--json", help="Print the results as JSON.")]
 ReaderSettings = Annotated[

@@ -8,6 +8,7 @@ code, or None for 0. Options declared with ``cli.panels.MORE`` are listed in a s
 
 import os
 import re
+import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from inspect import cleandoc, signature
@@ -21,7 +22,8 @@ from typer.core import TyperCommand, TyperGroup
 from world2minecraft import __version__
 from world2minecraft.cli.failures import STOPPED
 from world2minecraft.cli.json_output import complete_json_option
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import MORE, more_option
+from world2minecraft.core.locks import wait_for_locks
 
 # The verbs under the headings of ``w2m --help``, each with its one-line summary.
 VERB_GROUPS: dict[str, dict[str, str]] = {
@@ -117,6 +119,13 @@ FAMILIES = {
 
 # One-word verbs whose folder contains more modules than the command.
 FOLDERS = ("build", "forge", "paper", "render", "train")
+
+# Verbs with the option --wait, which write folders that another process may write.
+WAITING_VERBS = frozenset((
+    "build", "clean", "compare build", "convert", "dataset build", "dataset export",
+    "dataset import", "dataset rooms", "demo", "join", "occupy", "reconstruct", "rooms generate",
+    "rooms scan", "segment", "train", "undo", "vln build", "vln export", "vln reword",
+))  # fmt: skip
 
 # A shell completion script sets this variable to request names.
 COMPLETE_VARIABLE = "_W2M_COMPLETE"
@@ -319,8 +328,34 @@ def load(verb: str) -> Any:
     app.command(name=words[-1], help=_help(verb, module.run), cls=VerbCommand)(module.run)
     command = typer.main.get_command(app)
     command.examples = module.EXAMPLES  # type: ignore[attr-defined]
+    if verb in WAITING_VERBS:
+        command.params.append(_wait_option())
     _name_values(command, module.run)
     return command
+
+
+def _wait_option() -> Any:
+    """Return the option ``--wait``, with which a command waits for the locks of other processes."""
+
+    def wait(ctx: typer.Context, is_given: bool) -> None:
+        if is_given and not ctx.resilient_parsing:
+            ctx.with_resource(wait_for_locks(_tell_holder))
+
+    help = "Wait while another process writes the folder."
+    kind = Annotated[bool, more_option("--wait", help=help, callback=wait)]
+
+    def declare(wait: kind = False) -> None:  # type: ignore[valid-type]
+        """Declare the option."""
+
+    app = typer.Typer(rich_markup_mode=None, add_completion=False)
+    app.command()(declare)
+    option = typer.main.get_command(app).params[0]
+    option.expose_value = False
+    return option
+
+
+def _tell_holder(holder: str) -> None:
+    print(f"waiting for {holder} ...", file=sys.stderr, flush=True)
 
 
 def _module_of(words: list[str]) -> str:

@@ -19,6 +19,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import write_text
+from world2minecraft.core.output_folders import FolderKind
 from world2minecraft.navigation.types import Episode, Item, Trajectory
 
 ITEMS = "items.jsonl"
@@ -26,6 +27,9 @@ TRAJECTORIES = "trajectories.jsonl"
 EPISODES = "episodes.jsonl"
 ABOUT = "dataset.json"
 SCENES_FOLDER = "scenes"  # Of a set, where its scenes were made for it.
+NAVIGATION_SET = FolderKind(
+    {ITEMS: ""}, (ABOUT, ITEMS, TRAJECTORIES, EPISODES, "images", SCENES_FOLDER)
+)
 
 # A set of the paper's size has 3,542 items of about 2 kB.
 MAX_FILE_BYTES = 1 << 30

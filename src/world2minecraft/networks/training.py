@@ -30,7 +30,7 @@ from torch import nn
 from world2minecraft import __version__
 from world2minecraft.core.errors import ConflictError, DamagedFileError, UsageError
 from world2minecraft.core.files import write_json
-from world2minecraft.core.locks import Lock
+from world2minecraft.core.locks import LOCK_FILE, Lock, acquire_or_wait
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.networks.callbacks import CHECKPOINT, LAST, WEIGHTS, RunState, TrainingCallback
@@ -122,8 +122,8 @@ def train_run(
         )
     check_folder(config, folder)
     folder.mkdir(parents=True, exist_ok=True)
-    lock = Lock(folder / ".lock", "trained")
-    lock.acquire()
+    lock = Lock(folder / LOCK_FILE, "trained")
+    acquire_or_wait(lock)
     try:
         if config.threads:
             torch.set_num_threads(config.threads)

@@ -4,12 +4,14 @@ The stages are those of ``pipeline``: a grid starts at ``find``, a finished run 
 """
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes
+from world2minecraft.core.output_folders import draft_of, output_folder
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.formats.occupancy_files import read_occupancy
@@ -17,10 +19,13 @@ from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.minecraft.formats import FORMATS, read_blocks
 from world2minecraft.reconstruction.file_stages import built_volume, run_stage
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.run_folder import BUILT_FROM, check_finished, check_writable
+from world2minecraft.reconstruction.run_folder import BUILT_FROM, RUN, check_finished
 
 # Runs from a grid alone have no scan, those of the first versions no rooms.
 MORE_FILES = ("scan.json", "layout.json")
+BUILT = replace(
+    RUN, names=("build", *BUILT_FROM, *MORE_FILES, "occ.json", "centers.json", "centers.npz")
+)
 
 
 def rebuild(
@@ -29,18 +34,20 @@ def rebuild(
     parameters: Parameters,
     progress: Progress = no_progress,
     classes: str = "",
+    force: bool = False,
 ) -> None:
     """Build ``out / "build"`` from the folder of a run or from an occupancy file.
 
     A run is built from its existing objects and placements. For a grid, objects are first found and
     matched, and their files are also written to ``out``. ``classes`` is the class set of a grid
-    with other ids than ours, such as ``embodied``.
+    with other ids than ours, such as ``embodied``. If the build fails, ``out`` is unchanged.
 
     Raises:
         InputError: If ``source`` cannot be read.
+        ConflictError: If another process writes ``out``.
         OutputError: If ``out`` cannot be written.
-        UsageError: If ``out`` equals ``source``, or if ``source`` contains blocks instead of a
-            room.
+        UsageError: If ``out`` equals ``source`` or contains other files without ``force``, or if
+            ``source`` contains blocks instead of a room.
     """
     if out.exists() and source.exists() and out.samefile(source):
         raise UsageError(f"{out} is the source folder; choose another output folder")
@@ -49,16 +56,15 @@ def rebuild(
         raise UsageError(f"{source} contains blocks, but an output folder requires a room; {ways}")
     if classes and source.is_dir():
         raise UsageError(f"classes requires an occupancy grid, but {source} is a run folder")
-    if source.is_dir():
-        _copy_run(source, out)
-        stages: tuple[str, ...] = ("build",)
-    else:
-        grid = read_occupancy(source, classes)
-        check_writable(out)
-        write_room(out / "room.npz", grid, np.eye(4))
-        stages = ("find", "furnish", "build")
-    for stage in stages:
-        run_stage(stage, out, parameters, progress)
+    with output_folder(out, BUILT, "built", force=force), draft_of(out, ("build",)) as draft:
+        if source.is_dir():
+            _copy_run(source, draft)
+            stages: tuple[str, ...] = ("build",)
+        else:
+            write_room(draft / "room.npz", read_occupancy(source, classes), np.eye(4))
+            stages = ("find", "furnish", "build")
+        for stage in stages:
+            run_stage(stage, draft, parameters, progress)
 
 
 def blocks_of(
@@ -101,7 +107,6 @@ def is_block_file(source: Path) -> bool:
 
 def _copy_run(source: Path, out: Path) -> None:
     check_finished(source)
-    check_writable(out)
     for name in (*BUILT_FROM, *MORE_FILES):
         if (source / name).is_file():
             write_bytes(out / name, (source / name).read_bytes())

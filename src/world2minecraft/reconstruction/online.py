@@ -23,6 +23,7 @@ from world2minecraft.capture.view_stream import read_view
 from world2minecraft.construction import build_volume
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import read_json, write_bytes, write_json
+from world2minecraft.core.output_folders import check_writable
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import FusedEvidence, Scan, View
 from world2minecraft.formats.run_arrays import write_room
@@ -32,7 +33,6 @@ from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
 from world2minecraft.reconstruction.registration import apply_corrections, register
-from world2minecraft.reconstruction.run_folder import check_writable
 from world2minecraft.rendering.preview import preview
 
 FIRST_PLACING = 4  # Fewer frames rarely show two walls and a floor.

@@ -6,9 +6,7 @@ seed) and the finished stages; a run with the same manifest continues after the 
 """
 
 import hashlib
-import os
 import platform
-import shutil
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,8 +22,18 @@ except ImportError:  # Windows has none.
 from world2minecraft.core.errors import DamagedFileError, InputError, OutputError, UnknownNameError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.machine import usable_cores
+from world2minecraft.core.output_folders import FolderKind, check_writable
 
-FREE_BYTES = 64 << 20  # A reconstruction of one room writes 1 to 20 MB.
+# What marks the folder of a run, and what commands write there.
+RUN = FolderKind(
+    markers={"manifest.json": "program", "build/scene.json": ""},
+    names=(
+        "build", "capture", "centers.json", "centers.npz", "evidence.npz", "layout.json",
+        "manifest.json", "names.npz", "objects.json", "occ.json", "placements.json", "poses.npz",
+        "preview.png", "repairs.json", "report.html", "report.json", "room.npz", "run.json",
+        "scan.json",
+    ),
+)  # fmt: skip
 BUILT_FROM = ("room.npz", "objects.json", "placements.json")  # Files from which a world is built.
 
 
@@ -174,26 +182,6 @@ def check_finished(folder: Path) -> None:
             "is not a finished run: it was interrupted before the furnish stage; repeat its "
             "w2m reconstruct command to continue",
         )
-
-
-def check_writable(folder: Path) -> None:
-    """Create a folder and check that it is writable with enough free space.
-
-    Raises:
-        OutputError: If it is a file, is not writable or its disk is full.
-    """
-    if folder.exists() and not folder.is_dir():
-        raise OutputError(folder, "is a file; the output must be a folder")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(folder, f"cannot create the folder: {error.strerror or error}") from error
-    if not os.access(folder, os.W_OK):
-        raise OutputError(folder, "the folder is not writable; choose another output folder")
-    free = shutil.disk_usage(folder).free
-    if free < FREE_BYTES:
-        needed = f"{FREE_BYTES >> 20} MB are required; free some space or choose another folder"
-        raise OutputError(folder, f"the disk has {free >> 20} MB free, {needed}")
 
 
 def hash_capture(path: Path, without: Path | None = None) -> str:

@@ -16,7 +16,7 @@ from world2minecraft.cli.build.options import (
     print_style_note,
     split_names,
 )
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import MORE, Force
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
@@ -98,6 +98,7 @@ def run(
     mc_version: Version = "1.20.1",
     classes: Classes = "",
     settings: SettingList = None,
+    force: Force = False,
 ) -> None:
     """Build a room as a new world, into an existing world, or on a running server.
 
@@ -119,7 +120,8 @@ def run(
     }
     place: dict[str, Any] = {"turns": turns, "air": air}
     if out is not None:
-        _build_folder(source, out, options | {"formats": split_names(formats)}, mc_version)
+        more = {"formats": split_names(formats), "mc_version": mc_version, "force": force}
+        _build_folder(source, out, options | more)
     if into is not None and at is not None:
         _build_into(source, into, at, options | place | {"new_chunks": new_chunks})
     if rcon is not None:
@@ -146,7 +148,7 @@ def _check_targets(
     check_place(at, turns, air, new_chunks, **has)
 
 
-def _build_folder(source: Path, out: Path, options: dict[str, Any], mc_version: str) -> None:
+def _build_folder(source: Path, out: Path, options: dict[str, Any]) -> None:
     from world2minecraft.api import build
     from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_play_steps
@@ -154,7 +156,7 @@ def _build_folder(source: Path, out: Path, options: dict[str, Any], mc_version: 
 
     with show_progress() as shown:
         progress = compile_first(shown)
-        build(source, out, mc_version=mc_version, progress=progress, **options)
+        build(source, out, progress=progress, **options)
     print()
     print_play_steps(out / "build")
 

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from world2minecraft.cli.compare import options as option
+from world2minecraft.cli.panels import Force
 
 EXAMPLES = """\
 w2m compare build scene_graph.json -o ROOM                     I-Design's room as a world
@@ -45,6 +46,7 @@ def run(
     task: option.Task = None,
     assets: option.Assets = None,
     blocks_per_metre: Scale = 4.0,
+    force: Force = False,
 ) -> None:
     """Build layouts as worlds without repairing their faults.
 
@@ -72,6 +74,7 @@ def run(
             task=task,
             assets=assets,
             blocks_per_metre=blocks_per_metre,
+            force=force,
             progress=compile_first(progress, "pictures"),
         )
     for one in found.built:

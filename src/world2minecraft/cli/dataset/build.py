@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from world2minecraft.cli.dataset import options as option
+from world2minecraft.cli.panels import Force
 
 if TYPE_CHECKING:
     from world2minecraft.api.datasets import Dataset
@@ -53,6 +54,7 @@ def run(
     seed: option.Seed = 0,
     engine: option.EngineName = "pool",
     jobs: option.Jobs = None,
+    force: Force = False,
 ) -> None:
     """Build a data set with images, depth, and a class for every cell in front of the camera.
 
@@ -75,6 +77,7 @@ def run(
         "labels_only": labels_only, "image_format": image_format, "quality": quality,
         "block_map": block_map, "blocks_per_metre": blocks_per_metre, "hour": hour,
         "paper_compat": paper_compat, "seed": seed, "engine": engine, "jobs": jobs,
+        "force": force,
     }  # fmt: skip
     from world2minecraft.api import build_dataset
     from world2minecraft.api.datasets import worlds_in

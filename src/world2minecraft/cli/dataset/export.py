@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from world2minecraft.cli.dataset.options import MORE
+from world2minecraft.cli.panels import Force
 
 if TYPE_CHECKING:
     from world2minecraft.api.datasets import ExportReport
@@ -79,6 +80,7 @@ def run(
     data_root: DataRoot = None,
     frames_per_scene: FramesPerScene = None,
     axes: Axes = "published",
+    force: Force = False,
 ) -> None:
     """Export a data set in the format of NYUv2, OccScanNet, EmbodiedOcc-ScanNet, or as npz files.
 
@@ -101,6 +103,7 @@ def run(
             data_root=data_root,
             frames_per_scene=frames_per_scene,
             axes=axes,
+            force=force,
             progress=progress,
         )
     _print_summary(report, format)

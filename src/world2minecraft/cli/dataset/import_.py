@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from world2minecraft.cli.panels import Force
+
 EXAMPLES = """\
 w2m dataset import depthbin --labels preprocess --out NYU     NYUv2 as MonoScene has it
 w2m dataset import OccScanNet --out OCC --limit 500           a few samples to try
@@ -34,6 +36,7 @@ def run(
     limit: Annotated[
         int | None, typer.Option("--limit", min=1, help="Maximum number of samples.")
     ] = None,
+    force: Force = False,
 ) -> None:
     """Convert a published occupancy data set to our own format for training, scoring and viewing.
 
@@ -46,6 +49,6 @@ def run(
     found = open_dataset(source, format=format, labels=labels)
     print(f"{source}: {found.describe()}")
     with show_progress() as progress:
-        made = import_dataset(found, out, split=split, limit=limit, progress=progress)
+        made = import_dataset(found, out, split=split, limit=limit, force=force, progress=progress)
     print(f"{len(made):,} samples written to {out}")
     print(f"next: w2m dataset show {out}")

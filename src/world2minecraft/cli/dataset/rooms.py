@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from world2minecraft.cli.dataset import options as option
+from world2minecraft.cli.panels import Force
 
 EXAMPLES = """\
 w2m dataset rooms PHOTO                                   400 images of 20 rooms
@@ -28,6 +29,7 @@ def run(
     seed: Annotated[
         int, typer.Option("--seed", min=0, help="The same seed gives the same data set.")
     ] = 0,
+    force: Force = False,
 ) -> None:
     """Build a data set of photo-like images of generated rooms, with exact labels.
 
@@ -49,6 +51,7 @@ def run(
             test_share=test_share,
             size=size_of(size),
             seed=seed,
+            force=force,
             progress=compile_first(progress),
         )
     print(f"{images:,} images of {rooms:,} rooms written to {target}")

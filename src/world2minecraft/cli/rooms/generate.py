@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from world2minecraft.cli.panels import Force
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
@@ -65,6 +66,7 @@ def run(
         Path | None, typer.Option("--worlds", help="Output folder of --houses.")
     ] = None,
     style: StyleName = None,
+    force: Force = False,
 ) -> None:
     """Generate a furnished room or a house of several rooms, with exact ground truth.
 
@@ -83,14 +85,14 @@ def run(
             )
         if furnishing != "basic":
             raise UsageError("--houses cannot be combined with --furnishing; omit it")
-        _write_worlds(houses, seed, worlds, style)
+        _write_worlds(houses, seed, worlds, style, force)
         return
     if house and (kind is not None or shape != "box"):
         raise UsageError("--kind and --shape apply to a single room; omit them or --house")
     if not house and (rooms is not None or storeys is not None):
         raise UsageError("--rooms and --storeys apply to a house; add --house")
     look = {"seed": seed, "clutter": clutter, "furnishing": furnishing}
-    _write_room(out, kind, shape, (rooms, storeys) if house else None, look)
+    _write_room(out, kind, shape, (rooms, storeys) if house else None, look, force)
 
 
 def _write_room(
@@ -99,6 +101,7 @@ def _write_room(
     shape: str,
     house: tuple[int | None, int | None] | None,
     look: dict[str, Any],
+    force: bool,
 ) -> None:
     from world2minecraft.api import generate_house, generate_room
     from world2minecraft.api.generation import save_room
@@ -119,7 +122,7 @@ def _write_room(
                 **look,
             )
         progress("room", 1, 1, f"{len(made.layouts)} rooms, {len(made.objects)} objects")
-        save_room(made, out, progress)
+        save_room(made, out, progress, force=force)
     _print_room(made, out)
 
 
@@ -130,14 +133,16 @@ def _print_room(made: "GeneratedRoom", out: Path) -> None:
     print(f"  next   w2m rooms scan {out} --out capture")
 
 
-def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> None:
+def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None, force: bool) -> None:
     from world2minecraft.api.generation import generate_worlds
     from world2minecraft.api.progress import show_progress
     from world2minecraft.core.precompile import compile_first
 
     with show_progress() as shown:
         progress = compile_first(shown, "pictures")
-        written = generate_worlds(worlds, houses=houses, seed=seed, style=style, progress=progress)
+        written = generate_worlds(
+            worlds, houses=houses, seed=seed, style=style, force=force, progress=progress
+        )
     print(f"\n{len(written)} houses in {worlds}.")
     print(f"  look   w2m render {written[0]} --out house.png")
     print(f"  play   w2m install {written[0]}")

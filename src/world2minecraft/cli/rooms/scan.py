@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import MORE, Force
 from world2minecraft.core.errors import UsageError
 
 EXAMPLES = """\
@@ -84,6 +84,7 @@ def run(
     coverage: Coverage = None,
     labels: Labels = False,
     label_error: LabelError = None,
+    force: Force = False,
 ) -> None:
     """Scan a generated room or house with a virtual depth camera or phone.
 
@@ -106,22 +107,28 @@ def run(
     with show_progress() as shown:
         progress = compile_first(shown)
         if trial is not None:
-            scan_trial(trial, out, progress)
+            scan_trial(trial, out, progress, force=force)
         else:
-            _scan(room_dir, out, seed, kind, given | {"progress": progress})
+            more = {"progress": progress, "force": force}
+            _scan(room_dir, out, seed, kind, given, more)
     print(f"next: w2m reconstruct {out} --out OUT")
     print(f"then: w2m evaluate reconstruction OUT {out}")
 
 
 def _scan(
-    room_dir: Path | None, out: Path, seed: int | None, kind: str | None, given: dict[str, Any]
+    room_dir: Path | None,
+    out: Path,
+    seed: int | None,
+    kind: str | None,
+    given: dict[str, Any],
+    more: dict[str, Any],
 ) -> None:
     from world2minecraft.api import generate_room, scan_room
     from world2minecraft.api.generation import check_scan
 
     check_scan(out, given)
     room = room_dir or generate_room(kind, seed=seed or 0)
-    scan_room(room, out, seed=seed, **given)
+    scan_room(room, out, seed=seed, **given, **more)
 
 
 def _check_source(

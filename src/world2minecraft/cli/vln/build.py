@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import MORE, Force
 
 if TYPE_CHECKING:
     from world2minecraft.api.navigation import BuiltSet
@@ -121,6 +121,7 @@ def run(
     size: Size = "640x360",
     seed: Seed = 0,
     workers: Workers = None,
+    force: Force = False,
 ) -> None:
     """Generate walks through scenes, instructions in English, and items about views and actions.
 
@@ -158,6 +159,7 @@ def run(
             size=_size(size),
             seed=seed,
             workers=workers,
+            force=force,
             progress=compile_first(progress, "navigation"),
         )
     _print_summary(out, built)

@@ -16,9 +16,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import ConflictError, OutputError, UsageError
+from world2minecraft.core.errors import ConflictError, UsageError
 from world2minecraft.core.files import write_json
-from world2minecraft.core.locks import Lock
+from world2minecraft.core.output_folders import output_folder
 from world2minecraft.core.precompile import compile_kernels
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.building.cpu_clock import (
@@ -37,10 +37,10 @@ from world2minecraft.minecraftocc.engine import Engine
 from world2minecraft.minecraftocc.plan import DatasetPlan, SceneSpec
 from world2minecraft.minecraftocc.store.folder import (
     CLASSES,
+    DATASET,
     INDEX,
     KIND,
     LEFTOVER,
-    LOCK,
     META,
     SHARDS,
     SPLITS,
@@ -133,7 +133,11 @@ class BuildReport:
 
 
 def build_dataset(
-    folder: str | Path, plan: DatasetPlan, engine: Engine, progress: Progress = no_progress
+    folder: str | Path,
+    plan: DatasetPlan,
+    engine: Engine,
+    progress: Progress = no_progress,
+    force: bool = False,
 ) -> BuildReport:
     """Build a data set, or complete one whose build was interrupted.
 
@@ -143,30 +147,25 @@ def build_dataset(
         plan: Scenes, numbers of images and settings of the data set.
         engine: Engine that runs the tasks, such as a process pool.
         progress: Callback that reports progress on scenes, images and the index.
+        force: Whether to write into a folder that contains other files.
 
     Raises:
         ConflictError: If the folder contains another data set, or if another process is building
             there.
-        UsageError: If the scenes have too few views for a preset.
+        UsageError: If the scenes have too few views for a preset, or if the folder contains other
+            files without ``force``.
         OutputError: If the disk is full.
         InputError: If a scene cannot be read.
         WorkerError: If worker processes exit repeatedly.
     """
     root, began = Path(folder), time.monotonic()
     arrow_modules()
-    _make_folder(root)
-    lock = Lock(root / LOCK, "built")
-    lock.acquire()
-    try:
+    with output_folder(root, DATASET, "built", force=force):
         wait_for_others(root)
         begin_dataset(root, plan)
         remove_leftovers(root)
         report = _finished_report(root) or _Build(root, plan, engine, progress).run()
-    except BaseException:
-        lock.release()
-        raise
-    remove_registry(root)
-    lock.remove()
+        remove_registry(root)
     return replace(report, seconds=time.monotonic() - began)
 
 
@@ -351,13 +350,6 @@ def _differences(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
 def _as_json(value: Any) -> Any:
     """Return a value as it would be read back from JSON."""
     return json.loads(json.dumps(value))
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(folder, f"cannot be created: {error.strerror or error}") from error
 
 
 def _scene_json(scene: SceneSpec, facts: SceneFacts) -> dict[str, Any]:

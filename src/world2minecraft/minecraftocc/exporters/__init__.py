@@ -5,7 +5,7 @@ and the last file of a sample marks it as finished, so an interrupted export can
 ``docs/occupancy-formats.md`` describes all files and keys.
 """
 
-from world2minecraft.minecraftocc.exporters.export import ExportReport, export_samples
+from world2minecraft.minecraftocc.exporters.export import EXPORT, ExportReport, export_samples
 from world2minecraft.minecraftocc.exporters.options import FORMATS, ExportRule
 
-__all__ = ["FORMATS", "ExportReport", "ExportRule", "export_samples"]
+__all__ = ["EXPORT", "FORMATS", "ExportReport", "ExportRule", "export_samples"]

@@ -7,11 +7,13 @@ from typing import Any, Protocol, runtime_checkable
 
 from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.output_folders import FolderKind
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.exporters.options import FORMATS, Exporter, ExportRule
 from world2minecraft.minecraftocc.types import OccSample
 
 RECORD = "export.json"  # What was chosen, in the folder's root,
+EXPORT = FolderKind({RECORD: "format"}, (RECORD,))
 SOURCE = "sha256"  # and the sum of the data set that is exported.
 
 

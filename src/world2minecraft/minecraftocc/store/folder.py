@@ -19,6 +19,8 @@ from typing import Any
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json, write_json, write_text
+from world2minecraft.core.locks import LOCK_FILE
+from world2minecraft.core.output_folders import FolderKind
 from world2minecraft.minecraftocc.store.sample_files import FORMAT, FineTable
 from world2minecraft.minecraftocc.types import FineClass
 
@@ -27,7 +29,7 @@ META, CLASSES, INDEX, CARD, LOCK, CREW = (
     "classes.json",
     "index.parquet",
     "README.md",
-    ".lock",
+    LOCK_FILE,
     ".crew",
 )
 SHARDS, SCENES, WORLDS = "shards", "scenes", "worlds"
@@ -38,6 +40,7 @@ LEFTOVER = re.compile(
 )
 SHARD_NAME = re.compile(r"shards/(?:train|val|test|all)/[A-Za-z0-9_-]{1,90}\.tar")
 KIND = "minecraftocc"
+DATASET = FolderKind({META: "kind"}, (META, CLASSES, INDEX, CARD, SHARDS, SCENES, WORLDS))
 MAX_META_BYTES, MAX_FINE = 64 << 20, 65_535
 
 

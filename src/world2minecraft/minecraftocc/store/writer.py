@@ -12,14 +12,13 @@ import PIL
 from world2minecraft import __version__
 from world2minecraft.core.errors import ConflictError, UsageError
 from world2minecraft.core.files import write_json
-from world2minecraft.core.locks import Lock
+from world2minecraft.core.output_folders import draft_of, output_folder
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.store.folder import (
+    DATASET,
     INDEX,
     KIND,
-    LOCK,
     META,
-    SHARDS,
     shard_name,
     write_card,
     write_classes,
@@ -99,46 +98,39 @@ def write_store(
     meta: dict[str, Any] | None = None,
     *,
     files: SampleFiles | None = None,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> dict[str, Any]:
-    """Write samples as a new data set.
+    """Write samples as a new data set. If this fails, the folder is unchanged.
 
     Consecutive samples with the same scene and split share shards. Samples are read one at a time,
     and fine classes are numbered in the order in which they appear.
 
     Args:
-        folder: New folder for the data set.
+        folder: New or empty folder for the data set.
         samples: Samples to write. Keys must be unique; keys and scene names may contain letters,
             digits, ``-`` and ``_``. ``split`` must be ``train``, ``val``, ``test`` or empty.
         meta: Further content for ``dataset.json``.
         files: File formats of the samples.
+        force: Whether to write into a folder that contains other files.
         progress: Callback that reports the number of samples written so far.
 
     Returns:
         The content of ``dataset.json``.
 
     Raises:
-        ConflictError: If the folder already contains a data set, or an incomplete one.
-        UsageError: If a key, scene name or split is not valid.
+        ConflictError: If the folder already contains a data set, or another process writes it.
+        UsageError: If a key, scene name or split is not valid, or if the folder contains other
+            files without ``force``.
         OutputError: If a file cannot be written.
     """
     target, how = Path(folder), files or SampleFiles()
     arrow_modules()  # Before the work, not after it.
-    if (target / META).exists():
-        raise ConflictError(target, "already contains a data set; choose another folder")
-    target.mkdir(parents=True, exist_ok=True)
-    lock = Lock(target / LOCK, "written")
-    lock.acquire()
-    try:
-        if (target / SHARDS).exists():
-            raise ConflictError(
-                target,
-                f"contains {SHARDS}/ of an incomplete data set; delete this folder or choose "
-                "another one",
-            )
-        return _write_shards(target, samples, dict(meta or {}), how, progress)
-    finally:
-        lock.remove()
+    with output_folder(target, DATASET, "written", force=force):
+        if (target / META).exists():
+            raise ConflictError(target, "already contains a data set; choose another folder")
+        with draft_of(target) as draft:
+            return _write_shards(draft, samples, dict(meta or {}), how, progress)
 
 
 def _write_shards(

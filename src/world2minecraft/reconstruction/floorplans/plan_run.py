@@ -11,6 +11,7 @@ import numpy as np
 from world2minecraft import __version__
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.files import write_json
+from world2minecraft.core.output_folders import check_writable
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, Scan
 from world2minecraft.formats.layout import write_layouts
@@ -28,7 +29,6 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
 )
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.retrieval.placement_settling import settle_placements
-from world2minecraft.reconstruction.run_folder import check_writable
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ import numpy as np
 from world2minecraft import __version__
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import write_json
+from world2minecraft.core.output_folders import check_writable
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
 from world2minecraft.formats.layout import read_rooms, write_layouts
@@ -30,7 +31,7 @@ from world2minecraft.reconstruction.homes.room_placement import (
     stated,
 )
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.run_folder import check_finished, check_writable
+from world2minecraft.reconstruction.run_folder import check_finished
 
 MAX_RUNS = 50
 

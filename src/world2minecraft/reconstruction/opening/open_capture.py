@@ -27,6 +27,7 @@ from world2minecraft.core.errors import (
     UsageError,
 )
 from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.output_folders import check_writable
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan, SparseScene, View
 from world2minecraft.reconstruction.opening.metric_scale import (
@@ -38,7 +39,7 @@ from world2minecraft.reconstruction.opening.one_photo import is_one_photo, prepa
 from world2minecraft.reconstruction.opening.photo_views import depth_views, stereo_views
 from world2minecraft.reconstruction.opening.predicted_room import prepare_predicted
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.run_folder import check_writable, hash_capture
+from world2minecraft.reconstruction.run_folder import hash_capture
 
 FOLDER = "capture"
 STAMP = "prepared.json"

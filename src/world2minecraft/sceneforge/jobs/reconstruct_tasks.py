@@ -13,12 +13,14 @@ from world2minecraft.capture.readers.roomplan_detection import find_lone_roompla
 from world2minecraft.capture.summary import roomplan_lines, summary_lines, summary_to_json
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.files import write_bytes, write_json
+from world2minecraft.core.output_folders import output_folder
 from world2minecraft.core.progress import Progress
 from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.procgen.rooms.recipes import room_title
 from world2minecraft.reconstruction.floorplans import read_roomplan
 from world2minecraft.reconstruction.opening import scene_name
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
+from world2minecraft.reconstruction.run_folder import RUN
 from world2minecraft.runs import run_capture, run_plan
 
 SURVEY, PICTURE = "survey.json", "survey.png"
@@ -116,10 +118,11 @@ def reconstruct(
     """Reconstruct a capture into a run folder, and return the folder as ``out`` with a summary."""
     source, target, chosen = Path(capture), Path(out), parameters_of_choice(choice)
     plan = find_lone_roomplan(source)
-    if plan is not None:
-        built = run_plan(plan, target, chosen, progress, scene_name(source))
-        return {"out": out, "objects": built.objects}
-    facts = run_capture(source, target, chosen, progress=progress)
+    with output_folder(target, RUN, "reconstructed"):
+        if plan is not None:
+            built = run_plan(plan, target, chosen, progress, scene_name(source))
+            return {"out": out, "objects": built.objects}
+        facts = run_capture(source, target, chosen, progress=progress)
     return {"out": out, "objects": len(facts["objects"]), "notes": facts["scan"]["notes"]}
 
 
@@ -128,11 +131,12 @@ def demo(
 ) -> dict[str, Any]:
     """Generate a room, scan it with a virtual camera and reconstruct it, as ``w2m demo`` does."""
     target = Path(out)
-    progress("room", 0, 1)
-    room = generate_room(seed, kind=kind)
-    progress("room", 1, 1)
-    capture = target / "capture"
-    scan_room(room, capture, frames=frames or DEMO_FRAMES, seed=seed, progress=progress)
-    chosen = Parameters(build=BuildParameters(plaque=room_title(kind)))
-    facts = run_capture(capture, target, chosen, progress=progress)
+    with output_folder(target, RUN, "reconstructed"):
+        progress("room", 0, 1)
+        room = generate_room(seed, kind=kind)
+        progress("room", 1, 1)
+        capture = target / "capture"
+        scan_room(room, capture, frames=frames or DEMO_FRAMES, seed=seed, progress=progress)
+        chosen = Parameters(build=BuildParameters(plaque=room_title(kind)))
+        facts = run_capture(capture, target, chosen, progress=progress)
     return {"out": out, "objects": len(facts["objects"])}
