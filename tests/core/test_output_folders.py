@@ -74,6 +74,20 @@ def test_a_foreign_folder_is_refused_with_what_is_there(tmp_path, files, text):
     assert contents(tmp_path) == before
 
 
+def test_what_a_command_reads_may_lie_in_its_folder(tmp_path):
+    source = tmp_path / "capture" / "frames"
+    source.mkdir(parents=True)
+    with (
+        pytest.raises(KeyboardInterrupt),
+        output_folder(tmp_path, KIND, "built", keep=False, source=source),
+    ):
+        (tmp_path / "room.npz").write_text("half")
+        raise KeyboardInterrupt
+    assert contents(tmp_path).keys() == {"capture", "capture/frames"}
+    with pytest.raises(UsageError), output_folder(source.parent, KIND, "built", source=tmp_path):
+        pass
+
+
 def test_a_file_in_place_of_the_folder_is_refused(tmp_path):
     (tmp_path / "out").write_text("x")
     with (

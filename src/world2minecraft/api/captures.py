@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from world2minecraft.api.results import Run
 from world2minecraft.api.rooms import BuildOptions, Settings, path_of
 from world2minecraft.core.errors import OutputError, UnknownNameError, UsageError
+from world2minecraft.core.output_folders import FolderKind
 from world2minecraft.core.progress import Progress, no_progress
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from world2minecraft.reconstruction.recognition.label_folder import LabelledFolder
 
 
+LABELS = FolderKind({}, ("*.png", "*.overlay.jpg"))
 SHOWN_CLASSES = 6
 
 
@@ -209,7 +211,7 @@ def segment_capture(
         ...
         world2minecraft.core.errors.UnknownNameError: no network is named 'ade'; ...
     """
-    from world2minecraft.core.output_folders import FolderKind, output_folder
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.reconstruction.recognition.label_folder import write_label_images
     from world2minecraft.reconstruction.recognition.segmentation import (
         GENERATED_WEIGHTS,
@@ -227,7 +229,7 @@ def segment_capture(
     options = _reader_options(settings)
     source, place = Path(capture), Path(out)
     _check_no_roomplan(source)
-    with output_folder(place, FolderKind(), "written", force=force, keep=False):
+    with output_folder(place, LABELS, "written", force=force, keep=False):
         written = write_label_images(
             source,
             place,

@@ -13,8 +13,12 @@ from world2minecraft.core.progress import Progress, no_progress
 if TYPE_CHECKING:
     from world2minecraft.procgen import Room as GeneratedRoom
 
+CAPTURE = FolderKind(
+    {},
+    ("capture.*", "colour", "depth", "labels", "truth.json", "truth.npz", "*.jpg"),
+)
 ROOM = FolderKind({"truth.npz": ""}, ("layout.json", "preview.png", "truth.npz"))
-HOUSES = FolderKind({"house_0001/scene.json": ""}, ("house_0001",))
+HOUSES = FolderKind({"house_0001/scene.json": ""}, ("house_*",))
 MIN_FRAMES = 3  # The quality of the poses cannot be estimated from fewer frames.
 
 
@@ -257,7 +261,7 @@ def scan_room(
     check_scan(folder, figures)
     made = read_generated(Path(room)) if isinstance(room, str | Path) else room
     chosen = made.seed if seed is None else seed
-    with output_folder(folder, FolderKind(), "written", force=force, keep=False):
+    with output_folder(folder, CAPTURE, "written", force=force, keep=False):
         scan(made, folder, seed=chosen, progress=progress, **_settings_of(figures))
     return folder
 
@@ -377,7 +381,7 @@ def scan_trial(
 
     folder, trial = Path(out), find_trial(name)
     _check_new(folder)
-    with output_folder(folder, FolderKind(), "written", force=force, keep=False):
+    with output_folder(folder, CAPTURE, "written", force=force, keep=False):
         write_trial(trial, folder, progress)
     return folder
 

@@ -218,8 +218,9 @@ def export_navigation_set(
         >>> result.format, result.written[0].rows > 0
         ('r2r', True)
     """
-    from world2minecraft.core.output_folders import FolderKind, output_folder
+    from world2minecraft.core.output_folders import output_folder
     from world2minecraft.navigation.exporters import ExportOptions, export_set
+    from world2minecraft.navigation.records import NAVIGATION_SET
 
     choices = {
         "tasks": None if task is None else (task,),
@@ -232,7 +233,7 @@ def export_navigation_set(
         "seed": seed,
     }
     rule = ExportOptions(**{name: value for name, value in choices.items() if value is not None})
-    with output_folder(Path(out), FolderKind(), "written", force=True):  # It checks the folder.
+    with output_folder(Path(out), NAVIGATION_SET, "written", force=True):  # It checks the folder.
         return export_set(navigation_set, to, out, rule, progress=progress)
 
 

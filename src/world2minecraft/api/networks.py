@@ -483,7 +483,7 @@ def _capture_cells(
     label_folder = None if labels is None else Path(labels)
     with tempfile.TemporaryDirectory() as spare:
         folder = Path(spare if run_folder is None else run_folder)
-        with output_folder(folder, RUN, "reconstructed", force=force):
+        with output_folder(folder, RUN, "reconstructed", force=force, source=capture):
             reconstruct(
                 capture, folder, chosen, until=LAST_STAGE, labels=label_folder, progress=progress
             )

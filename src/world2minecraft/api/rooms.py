@@ -185,7 +185,7 @@ def reconstruct(
     _check_stage(start, follow, chosen)
     needs_frames = {"start": start, "labels": labels, "follow": follow}
     place, folder = Path(capture), Path(out)
-    with output_folder(folder, RUN, "reconstructed", force=force):
+    with output_folder(folder, RUN, "reconstructed", force=force, source=place):
         if not _build_lone_plan(place, folder, chosen, needs_frames, progress):
             label_folder = None if labels is None else Path(labels)
             idle_s = follow_idle_s if follow else None

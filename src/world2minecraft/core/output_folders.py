@@ -9,7 +9,7 @@ import os
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from world2minecraft.core.errors import InputError, OutputError, UsageError
@@ -27,16 +27,22 @@ class FolderKind:
     Attributes:
         markers: Files that mark a folder as the program's own, each with a key that it contains if
             it is JSON, or an empty text if its name suffices.
-        names: Files and folders that a command of this kind may replace.
+        names: Files and folders that commands of this kind write, as patterns such as ``*.png``.
     """
 
-    markers: Mapping[str, str] = field(default_factory=dict)
-    names: tuple[str, ...] = ()
+    markers: Mapping[str, str]
+    names: tuple[str, ...]
 
 
 @contextmanager
 def output_folder(
-    folder: Path, kind: FolderKind, work: str, *, force: bool = False, keep: bool = True
+    folder: Path,
+    kind: FolderKind,
+    work: str,
+    *,
+    force: bool = False,
+    keep: bool = True,
+    source: Path | None = None,
 ) -> Iterator[None]:
     """Check that a folder may be written, create it and hold its lock.
 
@@ -49,30 +55,27 @@ def output_folder(
         work: What is done to it, for the messages of other processes, such as ``built``.
         force: Whether to write into a folder that contains other files.
         keep: Whether a failed command leaves its results, so that it can be continued.
+        source: What the command reads. If it lies in the folder, it does not count as another file.
 
     Raises:
         UsageError: If the folder contains other files, without ``force``.
         ConflictError: If another process writes the folder.
         OutputError: If it is a file, is not writable or its disk is full.
     """
-    check_owned(folder, kind, force)
+    check_owned(folder, kind, force, source)
     made = [path for path in (folder, *folder.parents) if not path.exists()]
     check_writable(folder)
     try:
         with folder_lock(folder, work) as lock:
-            was_empty = not others_in(folder)
+            was_empty = not others_in(folder, source)
             shutil.rmtree(folder / DRAFT, ignore_errors=True)  # Of a killed process.
             try:
                 yield
             except BaseException:
-                if was_empty and not keep:
-                    _remove_all(others_in(folder))
-                if (
-                    lock
-                    and was_empty
-                    and others_in(folder)
-                    and not _has_marker(folder, kind.markers)
-                ):
+                rest = others_in(folder, source) if was_empty else []
+                if not keep:
+                    _remove_all(rest)
+                elif lock and rest and not _has_marker(folder, kind.markers):
                     lock.leave()  # As the marker of what the same command will continue.
                 raise
             finally:
@@ -84,8 +87,12 @@ def output_folder(
         raise
 
 
-def check_owned(folder: Path, kind: FolderKind, force: bool = False) -> None:
+def check_owned(
+    folder: Path, kind: FolderKind, force: bool = False, source: Path | None = None
+) -> None:
     """Check that a folder may be written: it is empty, has a marker or is written by ``force``.
+
+    The arguments are those of ``output_folder``.
 
     Raises:
         UsageError: If the folder contains other files, without ``force``.
@@ -94,12 +101,12 @@ def check_owned(folder: Path, kind: FolderKind, force: bool = False) -> None:
     if folder.exists() and not folder.is_dir():
         raise OutputError(folder, "is a file; the output must be a folder")
     try:
-        others = others_in(folder)
+        others = others_in(folder, source)
     except OSError as error:
         raise OutputError(folder, f"cannot be read: {error.strerror or error}") from error
     if force or not others or is_owned(folder, kind):
         return
-    replaced = [path.name for path in others if path.name in kind.names]
+    replaced = [path.name for path in others if any(map(path.match, kind.names))]
     does = f"replace {_listed(replaced)} there" if replaced else "write beside them"
     raise UsageError(
         f"{folder} contains other files ({_listed(path.name for path in others)}); choose another "
@@ -112,10 +119,14 @@ def is_owned(folder: Path, kind: FolderKind) -> bool:
     return _has_marker(folder, {**kind.markers, LOCK_FILE: "pid"})
 
 
-def others_in(folder: Path) -> list[Path]:
-    """Return the contents of a folder except the lock and the draft."""
+def others_in(folder: Path, source: Path | None = None) -> list[Path]:
+    """Return the contents of a folder except the lock, the draft and what contains the source."""
     found = folder.iterdir() if folder.is_dir() else ()
-    return sorted(path for path in found if path.name not in (LOCK_FILE, DRAFT))
+    others = sorted(path for path in found if path.name not in (LOCK_FILE, DRAFT))
+    if source is None:
+        return others
+    place = source.resolve()
+    return [path for path in others if not place.is_relative_to(path.resolve())]
 
 
 def check_writable(folder: Path) -> None:

@@ -93,16 +93,14 @@ def test_a_folder_with_a_data_set_is_left_alone(made):
         write_store(made, samples())
 
 
-def test_an_unfinished_data_set_is_recognised(tmp_path):
+def test_an_unfinished_data_set_leaves_nothing(tmp_path):
     def stopped():
         yield from samples(2)
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         write_store(tmp_path, stopped(), files=PNG)
-    with pytest.raises(ConflictError, match="contains shards/ of an incomplete data set"):
-        write_store(tmp_path, samples(2), files=PNG)
-    shutil.rmtree(tmp_path / "shards")
+    assert not os.listdir(tmp_path)
     write_store(tmp_path, samples(2), files=PNG)
     assert len(open_store(tmp_path)) == 4
 
@@ -287,4 +285,4 @@ def test_no_file_is_left_when_writing_fails(tmp_path):
 
     with pytest.raises(KeyError):
         write_store(tmp_path / "data", failing(), files=PNG)
-    assert os.listdir(tmp_path / "data") == ["shards"]
+    assert not os.listdir(tmp_path)

@@ -13,7 +13,13 @@ from world2minecraft.minecraftocc.exporters.options import FORMATS, Exporter, Ex
 from world2minecraft.minecraftocc.types import OccSample
 
 RECORD = "export.json"  # What was chosen, in the folder's root,
-EXPORT = FolderKind({RECORD: "format"}, (RECORD,))
+EXPORT = FolderKind(
+    {RECORD: "format"},
+    (
+        RECORD, "NYU*", "all", "base", "gathered_data", "index.json", "occscannet",
+        "posed_images", "scene_occ", "test", "train", "val", "*.txt",
+    ),
+)  # fmt: skip
 SOURCE = "sha256"  # and the sum of the data set that is exported.
 
 

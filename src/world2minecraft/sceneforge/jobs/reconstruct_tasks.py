@@ -118,7 +118,7 @@ def reconstruct(
     """Reconstruct a capture into a run folder, and return the folder as ``out`` with a summary."""
     source, target, chosen = Path(capture), Path(out), parameters_of_choice(choice)
     plan = find_lone_roomplan(source)
-    with output_folder(target, RUN, "reconstructed"):
+    with output_folder(target, RUN, "reconstructed", source=source):
         if plan is not None:
             built = run_plan(plan, target, chosen, progress, scene_name(source))
             return {"out": out, "objects": built.objects}
