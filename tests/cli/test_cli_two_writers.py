@@ -11,7 +11,7 @@ import world2minecraft as w2m
 from world2minecraft import cli
 from world2minecraft.api.navigation import reword_navigation_set
 from world2minecraft.api.repairs import undo_repair
-from world2minecraft.core.errors import ConflictError, UsageError
+from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.core.locks import Lock
 from world2minecraft.sceneforge.editor import Editor
 
@@ -172,6 +172,12 @@ def test_a_navigation_set_in_use_is_not_reworded(held):
     (folder / "items.jsonl").write_text("")
     with pytest.raises(ConflictError, match="is being built by process"):
         reword_navigation_set(folder, plain=True)
+
+
+def test_a_navigation_set_is_exported_into_an_empty_folder(run, tmp_path):
+    with pytest.raises(InputError, match="items.jsonl"):  # The folder itself is accepted.
+        w2m.export_navigation_set(run, tmp_path / "out", "trl")
+    assert not (tmp_path / "out").exists()
 
 
 def test_the_second_of_two_builds_is_refused_or_waits(run, room, tmp_path, capsys):

@@ -8,6 +8,7 @@ from typing import Any
 from world2minecraft import __version__
 from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json, write_text
+from world2minecraft.core.output_folders import others_in
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.navigation.exporters import easyr1, llamafactory
 from world2minecraft.navigation.exporters.options import ExportedFile, ExportOptions, group_items
@@ -133,7 +134,7 @@ def _check_folder(root: Path, choices: dict[str, Any]) -> None:
                 f"the folder contains an export with other options ({', '.join(other)}); "
                 "choose another folder",
             )
-    elif root.is_dir() and any(root.iterdir()):
+    elif others_in(root):
         raise ConflictError(
             root, "the folder is not empty and does not contain an export; choose another folder"
         )
