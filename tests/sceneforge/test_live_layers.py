@@ -3,7 +3,6 @@
 import itertools
 import json
 import os
-import time
 import shutil
 import struct
 import time
