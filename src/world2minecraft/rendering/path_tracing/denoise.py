@@ -17,7 +17,7 @@ from world2minecraft.rendering.path_tracing.film import Film, luminance
 
 SWEEPS = 5  # The last reaches 32 pixels to each side.
 GLOSS_SWEEPS = 3  # What is mirrored has edges of its own.
-GRAIN = 3.0  # Standard deviations of a difference that still count as one light.
+GRAIN = 4.0  # Standard deviations of a difference that still count as one light; 3 left stains.
 SPREAD = 3  # Pixels to each side over which outliers are spread,
 OUTLIER = 3.0  # which are so many times as bright as the mean there,
 DISAGREEMENT = 0.5  # and whose mean has so much of itself as its standard deviation.
