@@ -1,5 +1,7 @@
 """Plans and films: the way is drawn where it was walked, and any text can be shown."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -124,6 +126,10 @@ def test_the_camera_turns_to_a_near_goal_at_the_end():
     episode = Episode("e", "s", "s", Stance(2.0, 65.0, 2.0), ((3.0, 65.0, 2.0),), "lamp",
                       Instruction("Go to the lamp", "human", "goal"),
                       facing=(2.0, 65.0, 5.0))  # fmt: skip
-    assert look_at_goal(Stance(2.0, 65.0, 2.0, 90.0), episode, 0.25).yaw_deg == 0.0
+    looked = look_at_goal(Stance(2.0, 65.0, 2.0, 90.0), episode, 0.25, 1.5)
+    assert looked.yaw_deg == 0.0 and looked.pitch_deg == pytest.approx(26.57, abs=0.01)  # Down.
+    assert look_at_goal(Stance(2.0, 65.0, 2.0), episode, 0.25, 6.5).pitch_deg == 40.0
+    above = replace(episode, facing=(2.0, 68.0, 5.0))
+    assert look_at_goal(Stance(2.0, 65.0, 2.0), above, 0.25, 1.5).pitch_deg < 0
     far = Stance(2.0, 65.0, 60.0, 90.0)
-    assert look_at_goal(far, episode, 0.25) == far
+    assert look_at_goal(far, episode, 0.25, 1.5) == far

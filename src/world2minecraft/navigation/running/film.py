@@ -28,6 +28,7 @@ WALK_S, TURN_S, WAIT_S = 0.3, 0.25, 0.15  # A step, a turn, and a move that chan
 EASE_S = 0.12  # Standard deviation of the smoothing in time.
 HOLD_S = 2.0  # The first and the last frame stay,
 LOOK_S, LOOK_M = 1.0, 3.0  # and the camera turns to a goal that is so near.
+MAX_PITCH_DEG = 40.0
 PLAN_PX, EDGE_PX = 190, 12
 INK, PAPER, BAD = (24, 26, 30), (248, 247, 244), (255, 130, 120)
 VEIL = (18, 20, 24, 165)  # Behind texts.
@@ -81,7 +82,8 @@ class Film:
             return
         moments, text = list(self._moments), end_text(walk)
         last = moments[-1]
-        looked = look_at_goal(last.stance, self._episode, self.ground.metres_per_block)
+        scale, eye = self.ground.metres_per_block, self.ground.scene.eye_blocks
+        looked = look_at_goal(last.stance, self._episode, scale, eye)
         moments.append(Moment(looked, LOOK_S, (*last.caption, ("", text))))
         moments.append(Moment(looked, HOLD_S, (*last.caption, ("", text))))
         stances, numbers = eased_stances(moments, self.rate_hz)
@@ -106,8 +108,13 @@ def _seconds(before: Stance, after: Stance) -> float:
     return TURN_S if before != after else WAIT_S
 
 
-def look_at_goal(stance: Stance, episode: Episode, metres_per_block: float) -> Stance:
-    """Return a stance turned to the goal object, or unchanged if that is far or unknown."""
+def look_at_goal(
+    stance: Stance, episode: Episode, metres_per_block: float, eye_blocks: float
+) -> Stance:
+    """Return a stance turned to the goal object, or unchanged if that is far or unknown.
+
+    Goals below or above the eyes are looked at with up to ``MAX_PITCH_DEG``.
+    """
     if episode.facing is None:
         return stance
     away = np.array(episode.facing) - stance.feet
@@ -115,7 +122,8 @@ def look_at_goal(stance: Stance, episode: Episode, metres_per_block: float) -> S
     if not 0.2 <= level * metres_per_block <= LOOK_M:
         return stance
     yaw = float(np.degrees(np.arctan2(-away[0], away[2])))
-    return Stance(*stance.feet, yaw, stance.pitch_deg)
+    down = float(np.degrees(np.arctan2(eye_blocks - away[1], level)))
+    return Stance(*stance.feet, yaw, min(max(down, -MAX_PITCH_DEG), MAX_PITCH_DEG))
 
 
 def eased_stances(moments: Sequence[Moment], rate_hz: float) -> tuple[list[Stance], list[int]]:
