@@ -48,7 +48,8 @@ def name_by_context(objects: Sequence[ObjectTraits], names: Named) -> list[tuple
     """
     result = list(names)
     bathroom = _has(names, BATHROOM, SURE)
-    kitchen = not bathroom and _has(names, (*KITCHEN, *CUPBOARDS), SURE)
+    cooks = _has(names, KITCHEN, SURE)
+    kitchen = not bathroom and (cooks or _has(names, CUPBOARDS))
     for number, (name, sure) in enumerate(names):
         if name == "shower" and not bathroom and not _is_labelled(objects[number]):
             result[number] = (CLASS_DISPLAY_NAMES[objects[number].class_id], sure)
@@ -57,7 +58,7 @@ def name_by_context(objects: Sequence[ObjectTraits], names: Named) -> list[tuple
     if (bathroom or kitchen) and not _has(result, BASINS):
         least = TOP_SHARE if bathroom else SINK_SHARE
         _give(result, "washbasin" if bathroom else "sink", objects, lambda one: _basin(one, least))
-    if kitchen and _has(names, KITCHEN, SURE) and not _has(result, STOVES):
+    if kitchen and cooks and not _has(result, STOVES):
         _give(result, "stove", objects, _stove)
     return result
 
