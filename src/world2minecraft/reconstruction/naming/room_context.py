@@ -15,7 +15,7 @@ from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT, class_
 Named = Sequence[tuple[str, float]]
 
 SURE = 0.6  # Of the name of the object that tells the kind of the room.
-CONFIDENCE = 0.7  # Of the fitting: 14 bathrooms of NYUv2 and 20 generated ones, docs/names.md.
+CONFIDENCE = 0.7  # Of a fitting: washbasins of 14 NYUv2 and 20 generated bathrooms, docs/names.md.
 BATHROOM = ("toilet", "bathtub", "shower curtain")
 KITCHEN = ("refrigerator", "dishwasher", "oven", "stove")
 CUPBOARDS = ("wall cabinet", "kitchen island")
@@ -24,7 +24,6 @@ BASINS = ("washbasin", "sink")
 STOVES = ("stove", "oven")
 
 BODY = ("cabinet", "counter", "sink", "dresser", "night stand", "other furniture")
-TOP = ("counter", "sink")
 BODY_SHARE, TOP_SHARE = 0.6, 0.01  # Of the votes of a washstand.
 SINK_SHARE = 0.03  # Of the votes of a kitchen's sink counter; other counters have 0.01.
 TOP_M, WIDTH_M = (0.6, 1.2), (0.35, 2.2)
@@ -55,9 +54,10 @@ def name_by_context(objects: Sequence[ObjectTraits], names: Named) -> list[tuple
             result[number] = (CLASS_DISPLAY_NAMES[objects[number].class_id], sure)
         if kitchen and name in IN_KITCHENS:
             result[number] = (IN_KITCHENS[name], sure)
-    if (bathroom or kitchen) and not _has(result, BASINS):
-        least = TOP_SHARE if bathroom else SINK_SHARE
-        _give(result, "washbasin" if bathroom else "sink", objects, lambda one: _basin(one, least))
+    if bathroom and not _has(result, BASINS):
+        _give(result, "washbasin", objects, _washstand)
+    if kitchen and not _has(result, BASINS):
+        _give(result, "sink", objects, _sink_counter)
     if kitchen and cooks and not _has(result, STOVES):
         _give(result, "stove", objects, _stove)
     return result
@@ -87,12 +87,21 @@ def _give(
         names[scores.index(max(scores))] = (name, CONFIDENCE)
 
 
-def _basin(item: ObjectTraits, least: float) -> float:
-    """Return the votes for a basin's top, or 0 for what is no washstand."""
-    if not _fits(item, TOP_M, WIDTH_M) or _share(item, BODY) < BODY_SHARE:
+def _washstand(item: ObjectTraits) -> float:
+    """Return the votes for the top of a washstand, or 0 for what is none."""
+    return _votes_for_top(item, ("counter", "sink"), TOP_SHARE)
+
+
+def _sink_counter(item: ObjectTraits) -> float:
+    """Return the votes for the sink of a counter, or 0 for what has none."""
+    return _votes_for_top(item, ("sink",), SINK_SHARE)
+
+
+def _votes_for_top(item: ObjectTraits, top: Sequence[str], least: float) -> float:
+    share = _share(item, top)
+    if not _fits(item, TOP_M, WIDTH_M) or _share(item, BODY) < BODY_SHARE or share < least:
         return 0.0
-    top = _share(item, TOP if least == TOP_SHARE else BASINS[1:])
-    return top * item.vote_count if top >= least else 0.0
+    return share * item.vote_count
 
 
 def _stove(item: ObjectTraits) -> float:
