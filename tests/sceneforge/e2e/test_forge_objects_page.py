@@ -173,8 +173,9 @@ def test_two_tabs_stay_in_step_and_saving_writes_the_files(forge, open_tab, tmp_
     other.until("s.scene.rev", 2)
     assert other.page.locator(".saved").inner_text() == "Saved", "all is undone"
     forge.key("Control+Shift+z")
-    other.until("s.scene.rev", 3)
-    assert other.page.locator(".saved").inner_text() == "Unsaved changes"
+    for tab in (forge, other):
+        tab.until("s.scene.rev", 3)
+        assert tab.page.locator(".saved").inner_text() == "Unsaved changes"
     other.key("Control+s")
     forge.until("s.scene.saved", True)
     assert forge.page.locator(".saved").inner_text() == "Saved"
