@@ -152,6 +152,8 @@ def prepare_editor(
     phone: bool = False,
     phone_host: str | None = None,
     tls: tuple[Path, Path] | None = None,
+    agent: str = "",
+    max_usd: float | None = None,
 ) -> EditorSession:
     """Prepare SceneForge without starting it.
 
@@ -173,6 +175,10 @@ def prepare_editor(
             local network.
         tls: Files of a certificate and its key (PEM), with which the phone page is served over
             HTTPS.
+        agent: Model that can walk in the room beside the planner: a provider or the address of a
+            server, as for ``w2m vln run``. Providers whose API key is set can walk as well.
+        max_usd: Cost limit of each model in US dollars. Defaults to 0.25, or to 500 requests where
+            no price is known.
 
     Raises:
         UsageError: If ``demo`` is combined with a source, if the port is in use, or if there is no
@@ -184,6 +190,7 @@ def prepare_editor(
         >>> prepare_editor(home=tmp, port=0).is_public
         False
     """
+    from world2minecraft.sceneforge.agent_walks import WalkAgents
     from world2minecraft.sceneforge.document.document_metadata import document_folder
     from world2minecraft.sceneforge.editor import Editor
     from world2minecraft.sceneforge.phone_captures import check_phone_libraries
@@ -211,6 +218,7 @@ def prepare_editor(
         max_upload_bytes=max_upload_mb << 20,
         phone=(phone_host or lan_address()) if phone else None,
         tls=tls,
+        agents=WalkAgents.configured(agent, max_usd),
     )
     if server.phone is not None:
         server.phone.access.new_code()

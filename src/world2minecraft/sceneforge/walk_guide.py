@@ -100,7 +100,7 @@ class WalkGuide:
             and ``corners_m``. Without a way, the last two are None. Without a thing of this name,
             ``thing`` is None, and ``near`` lists names that may have been meant.
         """
-        found = self._named(sentence)
+        found = self.named(sentence)
         if not found:
             subject = subject_of(sentence)
             near = names_like(subject, self.scene.landmarks)
@@ -117,7 +117,7 @@ class WalkGuide:
             "corners_m": None if way is None else _rounded(way),
         }
 
-    def _named(self, sentence: str) -> list[Landmark]:
+    def named(self, sentence: str) -> list[Landmark]:
         """Return what a sentence names; ``sofa 2`` is the object with that id, as it is listed."""
         found = landmarks_named(self.scene.landmarks, sentence)
         number = re.search(r"(\d+)\W*$", sentence)

@@ -1,13 +1,18 @@
 """Build and Walk as a person sees them: blocks by their colours, clicks, walls that stop one."""
 
 import io
+import json
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from forge_driving import opened_page
 from PIL import Image
+from tests.external_models.scripted_server import scripted
 
+from world2minecraft.sceneforge.agent_walks import WalkAgents
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.server.server_process import ForgeServer
 
@@ -228,6 +233,49 @@ def test_a_sentence_leads_to_a_thing_before_ones_eyes(forge, shot):
     until(forge, "/^Walking/.test(document.querySelector('.go-said').textContent)")
     page.keyboard.press("a")
     until(forge, "document.querySelector('.go-said').textContent === ''")
+
+
+def test_a_model_walks_and_says_what_it_thinks(browser, room, tmp_path, shot):
+    turn, go, stop = (
+        json.dumps({"thought": thought, "progress": "", "actions": moves, "done": "STOP" in moves})
+        for thought, moves in (
+            ("Where is the lamp?", ["LEFT", "LEFT", "LEFT"]),
+            ("There it is, behind the sofa.", ["RIGHT", "FORWARD"]),
+            ("I am there.", ["STOP"]),
+        )
+    )
+    with (
+        scripted([turn, go, stop]) as model,
+        ForgeServer(
+            Editor(replace(room, folder=tmp_path)), port=0, agents=WalkAgents((model.url,))
+        ) as server,
+    ):
+        context = browser.new_context(viewport={"width": 1280, "height": 760})
+        forge = opened_page(context.new_page(), server.link, hints=False)
+        build(forge)
+        page = forge.page
+        forge.key("g")
+        until(forge, "window.__forge.walk.walker !== null")
+        start = page.evaluate(FEET)
+        page.locator(".go-who").select_option(model.url)
+        page.locator(".go-input").fill("go to the lamp")
+        forge.key("Enter")
+        until(forge, "/Where is the lamp/.test(document.querySelector('.go-said').textContent)")
+        shot(forge, "walk-agent")
+        until(
+            forge, "/has stopped, [0-9.]+ m/.test(document.querySelector('.go-said').textContent)"
+        )
+        shot(forge, "walk-agent-end")
+        end = page.evaluate(FEET)
+        assert 0.15 < math.dist(start[:2], end[:2]) < 0.35
+        assert forge.mistakes == []
+        page.locator(".go-input").fill("go to the lamp")
+        model.script = lambda _asked, _number: go
+        forge.key("Enter")
+        until(forge, "/There it is/.test(document.querySelector('.go-said').textContent)")
+        page.keyboard.press("a")
+        until(forge, "document.querySelector('.go-said').textContent === ''")
+        context.close()
 
 
 def test_low_furniture_is_a_step_and_esc_leaves(forge):

@@ -25,6 +25,7 @@ w2m forge OUT --capture scan    edit a run with the photos of its capture
 w2m forge OUT --no-browser      print the link without opening a browser
 w2m forge OUT --walk            walk with the view and steps of an agent
 w2m forge --phone               scan a room with a phone on the same Wi-Fi
+w2m forge OUT --agent gemini    let a model walk in Walk mode, at most for $0.25
 """
 
 Host = Annotated[
@@ -79,6 +80,26 @@ Home = Annotated[
 PhotosOf = Annotated[
     Path | None, typer.Option("--capture", help="Capture of the run, to show its photos.")
 ]
+Agent = Annotated[
+    str,
+    typer.Option(
+        "--agent",
+        help="Model that walks where you tell it to, in Walk mode: gemini, openai, qwen or local, "
+        "optionally followed by :MODEL; or a server address. It sees views of the blocks.",
+        show_default="those whose API key is set",
+        rich_help_panel=MORE,
+    ),
+]
+MaxUsd = Annotated[
+    float | None,
+    typer.Option(
+        "--max-usd",
+        min=0,
+        help="Cost limit of each model in US dollars.",
+        show_default="0.25",
+        rich_help_panel=MORE,
+    ),
+]
 Walk = Annotated[
     bool, typer.Option("--walk", help="Walk through a world by keyboard, without editing.")
 ]
@@ -107,6 +128,8 @@ def run(
     home: Home = None,
     capture: PhotosOf = None,
     max_upload: MaxUpload = 4096,
+    agent: Agent = "",
+    max_usd: MaxUsd = None,
     tls: Tls = None,
     no_browser: NoBrowser = False,
     walk: Walk = False,
@@ -142,6 +165,8 @@ def run(
         phone=phone,
         phone_host=host,
         tls=tls,
+        agent=agent,
+        max_usd=max_usd,
     )
     _print_link(session)
     session.run(lambda: None if no_browser else open_link(session.link))

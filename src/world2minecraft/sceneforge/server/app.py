@@ -12,8 +12,14 @@ from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 
 from world2minecraft.editing.scene import COMMANDS
+from world2minecraft.sceneforge.agent_walks import WalkAgents, WalkingModels
 from world2minecraft.sceneforge.queries import QUERIES
-from world2minecraft.sceneforge.server import compare_routes, export_routes, photo_routes
+from world2minecraft.sceneforge.server import (
+    agent_routes,
+    compare_routes,
+    export_routes,
+    photo_routes,
+)
 from world2minecraft.sceneforge.server import start_routes as start
 from world2minecraft.sceneforge.server.build_preview_routes import build_routes
 from world2minecraft.sceneforge.server.error_messages import EXCEPTION_HANDLERS
@@ -36,8 +42,12 @@ def build_app(
     hosts: Iterable[str] = (),
     any_address: bool = False,
     in_notebook: bool = False,
+    agents: WalkAgents | None = None,
 ) -> Starlette:
-    """Return the application that serves a session. See ``Guard`` for the arguments."""
+    """Return the application that serves a session. See ``Guard`` for the arguments.
+
+    ``agents`` are the models that may walk in the room; None lets none walk.
+    """
     guard = Middleware(
         Guard,
         token=token,
@@ -53,12 +63,14 @@ def build_app(
             *photo_routes.routes(),
             *compare_routes.routes(),
             *export_routes.routes(),
+            *agent_routes.routes(),
             Mount("/", StaticFiles(directory=STATIC, html=True)),
         ],
         middleware=[guard, Middleware(BodyLimit)],
         exception_handlers=EXCEPTION_HANDLERS,
     )
     app.state.session, app.state.workspace = session, workspace
+    app.state.agent_turns = agent_routes.AgentTurns(WalkingModels(agents or WalkAgents()))
     return app
 
 

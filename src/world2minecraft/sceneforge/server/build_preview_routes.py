@@ -132,11 +132,19 @@ class BuildCache:
         Raises:
             InputError: If there is no floor to stand on.
         """
+        guide = await self.guide(options)
+        async with self._turn:
+            return await asyncio.to_thread(guide.answer, sentence, feet_m)
+
+    async def guide(self, options: BuildOptions) -> WalkGuide:
+        """Return the guide through a build.
+
+        Raises:
+            InputError: If there is no floor to stand on.
+        """
         async with self._turn:
             scene = await self.session.read(self._held)
-            return await self._told(
-                asyncio.to_thread(lambda: self._guided(scene, options).answer(sentence, feet_m))
-            )
+            return await self._told(asyncio.to_thread(lambda: self._guided(scene, options)))
 
     def _guided(self, scene: SceneSnapshot, options: BuildOptions) -> WalkGuide:
         """Return the guide of a build. The last one is kept: people ask more than once."""
@@ -202,7 +210,7 @@ def build_routes() -> list[BaseRoute]:
 
 async def _build(request: Request) -> Response:
     options = _options(request)
-    return _answer(request, *await _builds(request).build(options))
+    return _answer(request, *await builds_of(request).build(options))
 
 
 async def _collision(request: Request) -> Response:
@@ -210,14 +218,12 @@ async def _collision(request: Request) -> Response:
     if what not in ("build", "voxels"):
         raise UsageError(f"what must be 'build' or 'voxels', got {what!r}")
     options = _options(request) if what == "build" else None
-    return _answer(request, *await _builds(request).collision(options))
+    return _answer(request, *await builds_of(request).collision(options))
 
 
 async def _way(request: Request) -> Response:
     query = request.query_params
-    sentence = query.get("to", "").strip()
-    if not 0 < len(sentence) <= MAX_SENTENCE:
-        raise UsageError(f"to must be 1 to {MAX_SENTENCE} characters, such as: go to the lamp")
+    sentence = check_sentence(query.get("to", ""))
     try:
         x, y, z = (float(value) for value in query.get("feet_m", "").split(","))
     except ValueError as error:
@@ -226,10 +232,23 @@ async def _way(request: Request) -> Response:
         raise UsageError("feet_m must be three finite numbers, such as 1.5,2,0")
     # Entities have no blocks of their own: furniture stands where its blocks would.
     options = replace(_options(request), style="blocks")
-    return JSONResponse(await _builds(request).way(sentence, (x, y, z), options))
+    return JSONResponse(await builds_of(request).way(sentence, (x, y, z), options))
 
 
-def _builds(request: Request) -> BuildCache:
+def check_sentence(text: Any) -> str:
+    """Return what was typed, without white space at its ends.
+
+    Raises:
+        UsageError: If it is no text, or too short or long.
+    """
+    sentence = text.strip() if isinstance(text, str) else ""
+    if not 0 < len(sentence) <= MAX_SENTENCE:
+        raise UsageError(f"to must be 1 to {MAX_SENTENCE} characters, such as: go to the lamp")
+    return sentence
+
+
+def builds_of(request: Request) -> BuildCache:
+    """Return the builds of the server that received a request."""
     state = request.app.state
     if not hasattr(state, "builds"):
         state.builds = BuildCache(state.session)

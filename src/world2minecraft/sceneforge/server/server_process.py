@@ -15,6 +15,7 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.sceneforge.agent_walks import WalkAgents
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.phone_access import PhoneAccess
 from world2minecraft.sceneforge.server.app import build_app
@@ -215,6 +216,7 @@ class ForgeServer(PageServer):
         phone: Address of this machine on the local network, where a phone page is served besides.
             None serves none.
         tls: Certificate and key of the phone page, as for ``PageServer``.
+        agents: The models that may walk in the room. None lets none walk.
 
     Raises:
         UsageError: If the port is taken, or if this machine does not have the address.
@@ -235,6 +237,7 @@ class ForgeServer(PageServer):
         in_notebook: bool = False,
         phone: str | None = None,
         tls: tuple[Path, Path] | None = None,
+        agents: WalkAgents | None = None,
     ):
         self.session = Session(editor)
         self.workspace = Workspace(
@@ -252,6 +255,7 @@ class ForgeServer(PageServer):
                 hosts=named,
                 any_address=is_open,
                 in_notebook=in_notebook,
+                agents=agents,
             )
 
         super().__init__(build, host=host, port=port, token=token)

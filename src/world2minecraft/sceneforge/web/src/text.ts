@@ -402,6 +402,18 @@ export const TEXT = {
     ask: {
       label: "Where to?",
       go: "Go",
+      who: "Who walks",
+      planner: "Planner",
+      agentHint: (name: string): string => `${name} is shown views of these blocks and decides by itself. It costs money.`,
+      deciding: (name: string, step: number, cost: string): string => `${name} looks around · step ${step}${cost}`,
+      cost: (usd: number | null, calls: number): string => (usd === null ? ` · ${calls} ${calls === 1 ? "request" : "requests"}` : ` · $${usd.toFixed(4)}`),
+      thought: (text: string): string => ` “${text}”`,
+      agentEnd: {
+        stopped: (name: string): string => `${name} has stopped`,
+        "gave up": (name: string): string => `${name} gave no usable answer three times`,
+        "out of steps": (name: string): string => `${name} has used all its steps`,
+      },
+      agentGoal: (name: string, away: number): string => `, ${away.toFixed(1)} m of walking from the ${name}`,
       hint: (name: string): string => `go to the ${name}`,
       nothing: "Type what to go to, such as the sofa.",
       soon: "The blocks are still being built. Try again in a moment.",

@@ -7,6 +7,9 @@ import "./go_box.css";
 export interface GoWords {
   label: string;
   go: string;
+  who?: string;
+  planner?: string;
+  agentHint?(name: string): string;
   hint(name: string): string;
 }
 
@@ -17,6 +20,7 @@ export class GoBox {
   private readonly input: HTMLInputElement;
   private readonly names = h("datalist", { id: "go-names" });
   private readonly said = h("div", { class: "go-said", role: "status" });
+  private readonly who: HTMLSelectElement;
   private example = "";
 
   constructor(
@@ -35,7 +39,8 @@ export class GoBox {
       "aria-label": words.label,
     });
     const send = h("button", { class: "button is-main go-send", type: "submit" }, words.go);
-    const form = h("form", { class: "go-form" }, icon("search"), this.input, send, this.names);
+    this.who = h("select", { class: "go-who", name: "who", hidden: true, "aria-label": words.who ?? "" });
+    const form = h("form", { class: "go-form" }, icon("search"), this.input, this.who, send, this.names);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       asked(this.input.value.trim() || this.example);
@@ -50,6 +55,19 @@ export class GoBox {
     this.example = example ? this.words.hint(example) : "";
     this.input.placeholder = this.example || this.words.label;
     fill(this.names, ...[...new Set(names)].map((value) => h("option", { value })));
+  }
+
+  /** The models that may walk in place of the planner. */
+  offerAgents(names: readonly string[], title: (name: string) => string): void {
+    const { words } = this;
+    const options = names.map((name) => h("option", { value: name, title: words.agentHint?.(title(name)) ?? "" }, title(name)));
+    fill(this.who, h("option", { value: "" }, words.planner ?? ""), ...options);
+    this.who.hidden = !names.length;
+  }
+
+  /** The model that is chosen; "" is the planner. */
+  get agent(): string {
+    return this.who.value;
   }
 
   focus(): void {

@@ -10,22 +10,23 @@ import { nameOf } from "../names";
 import { TEXT } from "../text";
 import { fill, h } from "../ui/dom";
 import { segment } from "../ui/fields";
-import type { Vec3 } from "../wire";
 import { registerMode, registerPanel, registerStagePart, type App } from "../ui/slots";
 import type { SceneView } from "../view/view";
 import { mountAsk } from "./ask";
 import { Input } from "./input";
-import { Led } from "./led";
-import { Route } from "./route";
 import { Thumbs } from "./thumbs";
 import { Walker } from "./walker";
 
 type Ground = "blocks" | "voxels";
 
-/** A way to be led along, in metres of the room. */
+/** What walks in place of the person; `pass` says whether it is done. */
+export interface Way {
+  pass(walker: Walker, milliseconds: number): boolean;
+}
+
+/** A way, and what happens at its end. */
 export interface Lead {
-  corners_m: readonly Vec3[];
-  goal_m: Vec3;
+  way(walker: Walker): Way;
   arrived(): void;
   broken(): void; // the person walked on
 }
@@ -47,7 +48,7 @@ export class Walking {
   private readonly sky = new Color();
   private listeners = new Set<() => void>();
   private asked = 0;
-  private led: { way: Led; lead: Lead } | null = null;
+  private led: { way: Way; lead: Lead } | null = null;
 
   constructor(private readonly app: App) {
     this.view = app.view as unknown as SceneView;
@@ -75,13 +76,10 @@ export class Walking {
   /** Be led along a way; null ends it. */
   lead(lead: Lead | null): void {
     const { walker } = this;
-    this.led = null;
-    if (!walker || !lead) return;
-    const route = new Route(lead.corners_m.map((corner) => walker.blocksOf(corner)));
-    this.led = { way: new Led(route, walker.blocksOf(lead.goal_m), walker.scale), lead };
+    this.led = walker && lead ? { way: lead.way(walker), lead } : null;
   }
 
-  /** Keys and thumbs of a person count more than the planner. */
+  /** Keys and thumbs of a person count more than the planner and an agent. */
   private take(): void {
     const { led } = this;
     this.led = null;
@@ -164,7 +162,7 @@ export class Walking {
     this.app.connection.active();
   }
 
-  private follow(led: { way: Led; lead: Lead }, walker: Walker, milliseconds: number): void {
+  private follow(led: { way: Way; lead: Lead }, walker: Walker, milliseconds: number): void {
     const isDone = led.way.pass(walker, Math.min(milliseconds, MOST_STEP_MS));
     this.view.pose = walker.pose;
     this.app.connection.active();
