@@ -98,6 +98,12 @@ mutants: $(STAMP)  ## Find small code changes that no test detects (ONLY=coordin
 	fi
 	@$(BIN)/python -m tools.mutants $(if $(ONLY),--only $(ONLY))
 
+fuzz: $(STAMP)  ## Call all verbs with mutated files (MINUTES=30); faults are kept in FUZZ/.
+	@$(BIN)/python -m benchmarks.fuzz_verbs --minutes $(or $(MINUTES),30)
+
+pin-hashes: $(STAMP)  ## Write the hashes of all pinned packages after a change of constraints.txt (needs the network).
+	@$(BIN)/python tools/release/pin_hashes.py
+
 release-check: $(STAMP)  ## Build wheel and sdist, install the wheel for each Python version and run the demo.
 	@$(BIN)/python tools/release/check.py
 

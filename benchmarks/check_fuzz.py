@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.mutations import broken
 from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.minecraft.formats import read_blocks
 from world2minecraft.minecraft.nbt import Byte, Short, pack_gzip, unpack, write_nbt
@@ -146,32 +147,6 @@ def break_world(source: Path, target: Path, rng: np.random.Generator) -> None:
         way = ("zlib", "gzip", "none", "lz4")[rng.integers(4)]
         data = pack_region(chunks, compression=way)[0]
     (target / "region" / victim.name).write_bytes(data)
-
-
-def broken(data: bytes, rng: np.random.Generator) -> bytes:
-    """Return bytes with one to four changes; half the time of single bytes alone."""
-    if len(data) and rng.random() < 0.5:
-        changed = bytearray(data)
-        for at in rng.integers(0, len(data), rng.integers(1, 4)).tolist():
-            changed[at] = int(rng.integers(256))
-        return bytes(changed)
-    for _ in range(rng.integers(1, 5)):
-        at = int(rng.integers(len(data) + 1))
-        size = int(rng.integers(1, 9))
-        match int(rng.integers(6)):
-            case 0:
-                data = data[:at] + rng.bytes(size) + data[at + size :]
-            case 1:
-                data = data[:at]
-            case 2:
-                data = data[:at] + rng.bytes(size) + data[at:]
-            case 3:
-                data = data[:at] + data[at + size :]
-            case 4:
-                data = data[:at] + b"\x7f\xff\xff\xff" + data[at + 4 :]
-            case _:
-                data = data[:at] + data[at : at + 64 * size] + data[at:]
-    return data
 
 
 # Files that ask for more than they take.

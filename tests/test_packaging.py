@@ -134,6 +134,22 @@ def test_the_container_serves_the_editor_on_its_port(monkeypatch):
     assert str(given["home"]).startswith(arguments_of("VOLUME")[0])
 
 
+def test_requirement_files_hold_hashes_of_all_pins():
+    held = {}
+    for name in ("requirements.txt", "requirements-all.txt"):
+        text = (ROOT / "tools/release" / name).read_text()
+        entries = re.split(r"\n(?=\S)", text.partition("\n")[2].strip())
+        held[name] = {
+            one.partition(" ")[0]: re.findall(r"--hash=sha256:(\S+)", one) for one in entries
+        }
+    every, needed = held["requirements-all.txt"], held["requirements.txt"]
+    assert sorted(every) == sorted(PINS), "run make pin-hashes"
+    assert all(found and all(len(one) == 64 for one in found) for found in every.values())
+    assert needed.items() <= every.items()
+    names = {one.lower().partition("==")[0] for one in needed}
+    assert {re.split(r"[><=]", one.lower())[0] for one in PROJECT["dependencies"]} <= names
+
+
 def test_the_conda_recipe_needs_what_the_package_needs():
     recipe = yaml.safe_load((ROOT / "tools/release/conda/recipe.yaml").read_text())
     names = {"openexr": "openexr-python"}  # Another name on conda-forge.

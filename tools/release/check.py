@@ -2,7 +2,7 @@
 
 A wheel and an sdist are built into ``dist/`` and looked through; a wheel built of the sdist alone
 must hold the same. Then, for each Python from 3.11 to 3.14 that is found, the wheel is installed
-into a fresh environment with the pinned versions, and ``w2m demo`` makes its world there, with
+into a fresh environment with the pinned files, and ``w2m demo`` makes its world there, with
 neither a compiler nor Node to be found. Exit code 1: something is amiss; 0: all that could be tried
 went well. A Python that is not there is told, and is no failure.
 """
@@ -21,6 +21,7 @@ from pathlib import Path
 from zipfile import ZipFile
 
 ROOT = Path(__file__).resolve().parents[2]
+HASHES = ROOT / "tools/release/requirements.txt"
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 MAX_WHEEL_MB = 40.0  # What a stranger may be asked to fetch.
 PACKAGE = "world2minecraft"
@@ -140,8 +141,9 @@ def interpreter(version: str) -> str | None:
 def _install(python: str, folder: Path, wheel: Path) -> None:
     subprocess.run([python, "-m", "venv", str(folder)], check=True)
     pip = [str(_tool(folder, "python")), "-m", "pip", "install", "--quiet", "--only-binary=:all:"]
-    pins = ["--constraint", str(ROOT / "constraints.txt")]
-    subprocess.run([*pip, *pins, str(wheel)], check=True)
+    subprocess.run([*pip, "--require-hashes", "--requirement", str(HASHES)], check=True)
+    subprocess.run([*pip, "--no-deps", str(wheel)], check=True)
+    subprocess.run([*pip[:3], "check"], check=True, stdout=subprocess.DEVNULL)
 
 
 def _demo(folder: Path) -> list[str]:

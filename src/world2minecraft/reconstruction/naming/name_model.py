@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES
-from world2minecraft.core.files import read_npz
+from world2minecraft.core.files import MAX_ARRAY_BYTES, read_npz_bytes
+from world2minecraft.core.shipped_weights import read_weights, shipped
 from world2minecraft.core.vocabulary import (
     MIN_NAME_CONFIDENCE,
     label_id_nyu40,
@@ -22,7 +23,7 @@ from world2minecraft.core.vocabulary import (
 )
 from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT, class_votes
 
-WEIGHTS = Path(__file__).parents[2] / "weights" / "object_names.npz"
+WEIGHTS = shipped("object_names.npz")
 MIN_CONFIDENCE = MIN_NAME_CONFIDENCE
 MAX_WALL_M, MAX_GAP_M = 1.0, 1.0
 SMALLEST_M, SMALLEST_CHANCE = 0.04, 1e-9
@@ -119,7 +120,8 @@ def read_name_model(path: Path = WEIGHTS) -> NameModel:
         InputError: If the file does not exist.
         DamagedFileError: If the file is damaged.
     """
-    arrays = read_npz(path, (*ARRAYS, "names"))
+    data = read_weights(path)
+    arrays = read_npz_bytes(data, (*ARRAYS, "names"), path, MAX_ARRAY_BYTES)
     names = tuple(str(name) for name in arrays.pop("names"))
     return NameModel(names, arrays)
 

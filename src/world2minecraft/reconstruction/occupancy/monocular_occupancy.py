@@ -16,6 +16,7 @@ from scipy import ndimage
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.shipped_weights import shipped
 from world2minecraft.core.types import Camera, GridEvidence, Scan, View
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.geometry.unprojection import project, unproject_depth
@@ -27,7 +28,7 @@ from world2minecraft.geometry.view_region import (
 )
 from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
-SHIPPED = Path(__file__).parents[2] / "weights" / "mono.onnx"
+SHIPPED = shipped("mono.onnx")
 NEAREST_M = 0.1  # Cells nearer to the camera's plane are not in the picture.
 WALLS = [CLASS_NAMES.index(name) for name in ("wall", "window")]
 WALL_CELLS = 3.0  # So far behind its first cell a wall ends; along one seen aslant cells lie apart.

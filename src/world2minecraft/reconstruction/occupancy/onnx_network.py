@@ -17,7 +17,7 @@ import onnxruntime
 
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, first_line
-from world2minecraft.core.files import read_bytes
+from world2minecraft.core.shipped_weights import read_weights
 from world2minecraft.geometry.view_region import REGION_KINDS
 
 CONTRACT = "occupancy-1"
@@ -79,7 +79,7 @@ class OccupancyNetwork:
     """
 
     def __init__(self, path: str | Path):
-        data = read_bytes(path, MAX_BYTES)
+        data = read_weights(path, MAX_BYTES)
         self.digest = hashlib.sha256(data).hexdigest()
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = options.inter_op_num_threads = 1

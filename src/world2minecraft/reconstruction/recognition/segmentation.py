@@ -34,7 +34,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.core.errors import DamagedFileError, UsageError, first_line
-from world2minecraft.core.files import read_bytes
+from world2minecraft.core.shipped_weights import read_weights, shipped
 from world2minecraft.core.types import Camera
 from world2minecraft.reconstruction.recognition.segmentation_channels import (
     COLOUR_MEAN,
@@ -45,8 +45,8 @@ from world2minecraft.reconstruction.recognition.segmentation_channels import (
     network_size,
 )
 
-WEIGHTS = Path(__file__).parents[2] / "weights" / "segmentation.onnx"
-GENERATED_WEIGHTS = WEIGHTS.with_name("segmentation_generated.onnx")
+WEIGHTS = shipped("segmentation.onnx")
+GENERATED_WEIGHTS = shipped("segmentation_generated.onnx")
 NYU40_COUNT = 40
 COLOUR, GEOMETRY, PROBABILITY = "colour", "geometry", "probability"
 MAX_BYTES = 256 << 20
@@ -98,7 +98,7 @@ class SegmentationModel:
     def _session(self) -> Any:
         import onnxruntime  # noqa: PLC0415  # Half a second that other labellers do not need.
 
-        data = read_bytes(self.weights, MAX_BYTES)
+        data = read_weights(self.weights, MAX_BYTES)
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = options.inter_op_num_threads = 1
         options.log_severity_level = 3

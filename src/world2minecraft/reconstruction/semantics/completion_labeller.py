@@ -20,8 +20,8 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.core.errors import DamagedFileError, first_line
-from world2minecraft.core.files import read_bytes
 from world2minecraft.core.parameters import parameter
+from world2minecraft.core.shipped_weights import read_weights, shipped
 from world2minecraft.core.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.layout.parameters import GeometricParameters
@@ -42,7 +42,7 @@ from world2minecraft.reconstruction.semantics.votes_labeller import (
     is_from_network,
 )
 
-WEIGHTS = Path(__file__).parents[2] / "weights" / "completion.onnx"
+WEIGHTS = shipped("completion.onnx")
 LEARNT_VOXEL_M, VOXEL_TOLERANCE = 0.08, 0.25  # Other cells look like other things.
 MULTIPLE = 8  # Of the sides that the network takes.
 TILE, MARGIN = 96, 16  # Cells: a room is one tile; what lies at a tile's edge sees less around it.
@@ -69,7 +69,7 @@ class CompletionModel:
     def _session(self) -> Any:
         import onnxruntime  # noqa: PLC0415  # Half a second that other labellers do not need.
 
-        data = read_bytes(self.weights, MAX_BYTES)
+        data = read_weights(self.weights, MAX_BYTES)
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = THREADS
         options.log_severity_level = 3
