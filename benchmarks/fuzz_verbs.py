@@ -43,7 +43,8 @@ MAX_MEGABYTES = 4096
 GRACE_S = 0.02
 FINE_CODES = (0, 2, 3)
 MAX_FILES = 3  # Mutated in one call.
-# A verb, the seed folders or files that it reads, and what it writes. Resumed verbs keep parts.
+RESUMED = ("dataset export", "dataset build", "dataset import", "vln evaluate")  # They keep parts.
+# A verb, the seed folders or files that it reads, and what it writes.
 VERBS = (
     "scan {scan} -o {out}.png",
     "scan {mesh}",
@@ -257,7 +258,7 @@ def _forked(arguments: list[str], folder: Path) -> Outcome:
         time.monotonic() - started if not ended else usage.ru_utime + usage.ru_stime,
         usage.ru_maxrss / 1024,
         error,
-        tuple(left) if code else (),
+        tuple(left) if code and not " ".join(arguments).startswith(RESUMED) else (),
     )
 
 

@@ -8,6 +8,8 @@ import gzip
 import io
 import json
 import re
+import zipfile
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -60,7 +62,7 @@ def mutate(name: str, data: bytes, rng: np.random.Generator) -> bytes:
         return broken(data, rng)
     try:
         return known(data, rng)
-    except (ValueError, OSError, KeyError, EOFError):
+    except (ValueError, OSError, KeyError, EOFError, zlib.error, zipfile.BadZipFile):
         return broken(data, rng)  # Not of the kind that its name says.
 
 

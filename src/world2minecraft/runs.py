@@ -11,6 +11,7 @@ from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.precompile import compile_first
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.report import write_brief_report, write_report
+from world2minecraft.evaluation.scoring.truth_files import read_truth
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_plan
 from world2minecraft.reconstruction.opening import prepare_and_open
 from world2minecraft.reconstruction.parameters import Parameters
@@ -30,14 +31,17 @@ def run_capture(
 
     Raises:
         CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
+        DamagedFileError: the capture's ground truth or a file of the run is damaged.
     """
     progress = compile_first(progress)
+    truth = capture if (capture / "truth.npz").is_file() else None
+    if truth is not None:
+        read_truth(truth)  # What is damaged is said before the work, not after it.
     if start == "report":
         as_before = resume_parameters(out, start, STAGES, chosen).parameters
         scan = read_registered(prepare_and_open(capture, out, as_before, labels, progress), out)
     else:
         scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
-    truth = capture if (capture / "truth.npz").is_file() else None
     return write_report(out, scan, truth=truth, progress=progress)
 
 

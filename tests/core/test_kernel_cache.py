@@ -1,5 +1,6 @@
 """Compiled kernels are used again exactly where nothing that they depend on has changed."""
 
+import errno
 import importlib
 import itertools
 import os
@@ -8,9 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from numba.core.caching import IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
 
-from world2minecraft.core.kernel_cache import called_kernels, kernel_digest
+from world2minecraft.core.jit import njit
+from world2minecraft.core.kernel_cache import KernelLocator, called_kernels, kernel_digest
 
 CALLER = """
 from world2minecraft.core.jit import njit
@@ -140,3 +143,22 @@ def test_all_kernels_of_the_program_have_a_digest():
     assert len(kernels) > 300
     assert len(set(kernels.values())) == len(kernels)
     assert all(called_kernels(one) <= kernels.keys() for one in kernels)
+
+
+@pytest.mark.parametrize("place", ["file/kernels", "full"])
+def test_a_kernel_runs_where_its_cache_cannot_be_written(place, tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("no folder")
+    monkeypatch.setattr(KernelLocator, "folder", tmp_path / place)
+    if place == "full":
+
+        def full(*_: object) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        monkeypatch.setattr(IndexDataCacheFile, "_save_data", full)
+
+    @njit
+    def doubled(number):
+        return 2 * number
+
+    assert doubled(4) == 8 and doubled(2.5) == 5.0
+    assert not list(tmp_path.rglob("*.nbc"))

@@ -11,9 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import InputError, OutputError, UsageError
+from world2minecraft.core.file_names import free_name, portable_name
 from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.worlds import installation as installing
-from world2minecraft.minecraft.worlds.installation import check_name, free_name, install_world
+from world2minecraft.minecraft.worlds.installation import install_world
 from world2minecraft.minecraft.worlds.world_writer import write_world
 
 
@@ -109,22 +110,22 @@ def test_too_little_space_is_told_before(world, saves, monkeypatch):
     ],
 )
 def test_names_are_those_that_every_system_takes(name, expected):
-    assert check_name(name) == expected
+    assert portable_name(name) == expected
 
 
 @pytest.mark.parametrize("name", ["", "...", "///", "\0\x1f", " . "])
 def test_a_name_of_nothing_is_refused(name):
     with pytest.raises(UsageError, match="name must contain letters or digits"):
-        check_name(name)
+        portable_name(name)
 
 
 @given(st.text(max_size=80))
 def test_any_name_is_one_part_of_a_path_or_refused(name):
     try:
-        found = check_name(name)
+        found = portable_name(name)
     except UsageError:
         return
-    assert check_name(found) == found
+    assert portable_name(found) == found
     assert found == os.path.basename(found)
     assert 0 < len(found) <= 66
 

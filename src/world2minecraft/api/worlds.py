@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from world2minecraft.api.results import Run
 from world2minecraft.api.rooms import path_of
 from world2minecraft.core.errors import InputError, OutputError, UsageError
+from world2minecraft.core.file_names import readable_name
 from world2minecraft.core.locks import folder_lock
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def convert(
     options = WriteOptions(
         mc_version=mc_version,
         schem_version=schem_version,
-        name=name or goal.stem,
+        name=name or readable_name(goal.stem),
         other=world_details(place),
     )
     unread, unwritten = Losses(), Losses()

@@ -8,6 +8,7 @@
 import os
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 TRACEBACK_FLAG = "--traceback"
 
@@ -26,6 +27,8 @@ def run(arguments: Sequence[str]) -> int:
     """
     words = [word for word in arguments if word != TRACEBACK_FLAG] or ["--help"]
     wants_traceback = len(words) < len(arguments) or os.environ.get("W2M_TRACEBACK", "0") != "0"
+    for stream in (sys.stdout, sys.stderr):
+        _print_any_name(stream)
     try:
         from world2minecraft.cli.verbs import call
 
@@ -34,3 +37,9 @@ def run(arguments: Sequence[str]) -> int:
         from world2minecraft.cli.failures import report_error
 
         return report_error(error, with_traceback=wants_traceback)
+
+
+def _print_any_name(stream: Any) -> None:
+    """Let a stream escape what it cannot encode, such as file names that are not UTF-8."""
+    if getattr(stream, "errors", "") == "strict" and hasattr(stream, "reconfigure"):
+        stream.reconfigure(errors="backslashreplace")

@@ -57,12 +57,12 @@ def write_bytes(path: str | Path, data: bytes) -> None:
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write ``text`` as UTF-8 atomically.
+    """Write ``text`` as UTF-8 atomically. What is no text becomes an escape of Python.
 
     Raises:
         OutputError: If the file cannot be written.
     """
-    write_bytes(path, text.encode())
+    write_bytes(path, text.encode("utf-8", "backslashreplace"))
 
 
 def write_json(path: str | Path, value: Any) -> None:

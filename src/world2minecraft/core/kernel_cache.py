@@ -11,6 +11,7 @@ import hashlib
 import inspect
 import types
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from enum import Enum
 from functools import cache, cached_property
 from pathlib import Path
@@ -173,9 +174,12 @@ class KernelCache(NullCache):
         self.function = function
 
     @cached_property
-    def files(self) -> FunctionCache:
-        """The files of the kernel."""
-        return _KernelFiles(self.function)
+    def files(self) -> FunctionCache | NullCache:
+        """The files of the kernel, or no files where their folder cannot be written."""
+        try:
+            return _KernelFiles(self.function)
+        except OSError:
+            return NullCache()
 
     @property
     def cache_path(self) -> str:  # type: ignore[override]
@@ -183,12 +187,15 @@ class KernelCache(NullCache):
         return str(KernelLocator.folder)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the compiled code for a signature, or None."""
-        return self.files.load_overload(sig, target_context)
+        """Return the compiled code for a signature, or None if there is none that can be read."""
+        with suppress(OSError):
+            return self.files.load_overload(sig, target_context)
+        return None
 
     def save_overload(self, sig: Any, cres: Any) -> None:
-        """Save the compiled code for a signature."""
-        self.files.save_overload(sig, cres)
+        """Save the compiled code for a signature, if there is space for it."""
+        with suppress(OSError):
+            self.files.save_overload(sig, cres)
 
     def flush(self) -> None:
         """Forget all compiled code of the kernel."""

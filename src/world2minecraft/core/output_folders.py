@@ -177,7 +177,9 @@ def draft_of(folder: Path, changed: Iterable[str] = ()) -> Iterator[Path]:
             raise
         raise type(error)(folder / Path(error.path).relative_to(draft), error.reason) from error
     except OSError as error:
-        raise OutputError(folder, f"cannot be written: {error.strerror or error}") from error
+        named = Path(error.filename) if isinstance(error.filename, str) else folder
+        where = folder if named.is_relative_to(folder) else named
+        raise OutputError(where, f"cannot be written: {error.strerror or error}") from error
     finally:
         shutil.rmtree(draft, ignore_errors=True)
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.file_names import is_reserved
 from world2minecraft.core.files import read_json
 from world2minecraft.furniture.design_files import design_from_json
 from world2minecraft.furniture.materials import FIXED, Material, block_uses, kinds
@@ -62,6 +63,10 @@ def check_name(name: str) -> str:
     Raises:
         UsageError: If the name is invalid.
     """
+    if is_reserved(name):
+        raise UsageError(
+            f"Windows reserves the name {name!r}; choose another one (--name my_chair)"
+        )
     if not NAME.fullmatch(name):
         raise UsageError(
             "a furniture name must start with a letter and have up to 40 characters of a-z, 0-9 "

@@ -8,6 +8,7 @@ names that would leave the folder are rejected.
 
 import json
 import math
+import os
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
@@ -18,6 +19,7 @@ from typing import Any, NoReturn, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.file_names import is_text
 from world2minecraft.core.files import write_text
 from world2minecraft.core.output_folders import FolderKind
 from world2minecraft.navigation.types import Episode, Item, Trajectory
@@ -114,14 +116,21 @@ def to_json_line(record: Item | Trajectory | Episode) -> str:
     Raises:
         UsageError: If a value is not finite or cannot be represented in JSON.
     """
+    fields = asdict(record)
     try:
-        line = json.dumps(
-            asdict(record), ensure_ascii=False, allow_nan=False, separators=(",", ":")
-        )
-        line.encode()  # Half a surrogate pair is no text.
+        line = _compact(fields, ensure_ascii=False)
+        if not is_text(line):
+            # Paths hold bytes that are not UTF-8 as Python reads them; other texts are text.
+            os.fsencode(str(fields.get("scene", "")))
+            _compact(fields | {"scene": ""}, ensure_ascii=False).encode()
+            line = _compact(fields, ensure_ascii=True)
     except (TypeError, ValueError) as error:
         raise UsageError(f"the record cannot be written as JSON: {error}") from error
     return line
+
+
+def _compact(fields: dict[str, Any], *, ensure_ascii: bool) -> str:
+    return json.dumps(fields, ensure_ascii=ensure_ascii, allow_nan=False, separators=(",", ":"))
 
 
 def parse_record(kind: type[Record], line: str | bytes) -> Record:

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.construction import build_volume
-from world2minecraft.core.files import write_json
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume, ObjectInstance, Placement, Scan
 from world2minecraft.core.vocabulary import object_title
@@ -99,6 +100,45 @@ def repair_facts(
         "headline_before": round(repaired.headline[0], 4),
         "headline_after": round(repaired.headline[1], 4),
         "changes": [_row(change, titles[change.object_id]) for change in repaired.changes],
+    }
+
+
+def read_repairs(folder: Path) -> dict[str, Any] | None:
+    """Return the content of ``repairs.json``, or None if no furniture was compared.
+
+    Raises:
+        DamagedFileError: If the file is not such a list.
+    """
+    path = folder / REPAIRS
+    if not path.is_file():
+        return None
+    stated = read_json(path)
+    try:
+        shares = {name: float(stated[f"headline_{name}"]) for name in ("before", "after")}
+        return {
+            "views": int(stated["views"]),
+            "tried": int(stated["tried"]),
+            **{f"headline_{name}": share for name, share in shares.items()},
+            "changes": [_checked_row(row) for row in stated["changes"]],
+        }
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise DamagedFileError(path, f"not a list of repairs ({error!r})") from error
+
+
+def _checked_row(row: Any) -> dict[str, Any]:
+    figures = [f"{what}_{when}" for what in ("agreement", "iou") for when in ("before", "after")]
+    furniture = {
+        when: [
+            {"template": str(one["template"]), "quarter_turns": int(one["quarter_turns"])}
+            for one in row[when]
+        ]
+        for when in ("before", "after")
+    }
+    return {
+        "id": int(row["id"]),
+        "name": str(row["name"]),
+        **furniture,
+        **{name: float(row[name]) for name in figures},
     }
 
 

@@ -32,8 +32,8 @@ from world2minecraft.core.errors import (
     UnknownNameError,
     UsageError,
 )
+from world2minecraft.core.file_names import portable_name
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.minecraft.worlds.installation import check_name
 
 MAX_FILES = 20_000  # Ten minutes of frames with depth and confidence.
 MAX_DEPTH = 12
@@ -402,7 +402,7 @@ def is_capture(place: Path) -> bool:
 
 def _folder_name(title: str) -> str:
     try:
-        return check_name(title)
+        return portable_name(title)
     except UsageError:  # Nothing of it can be a name.
         return "capture"
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from tests.reconstruction.verification.verified_room import verified_room
 
+from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.types import Scan
 from world2minecraft.formats.objects_and_placements import (
     read_placements,
@@ -16,7 +17,7 @@ from world2minecraft.formats.objects_and_placements import (
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.reconstruction import repair_run as module
 from world2minecraft.reconstruction.parameters import Parameters, with_method, with_settings
-from world2minecraft.reconstruction.repair_run import REPAIRS, repair_run
+from world2minecraft.reconstruction.repair_run import REPAIRS, read_repairs, repair_run
 
 SETTINGS = ["repair.max_objects=7", "repair.max_candidates=2"]
 NO_SCAN: Scan = None  # type: ignore[assignment]
@@ -56,6 +57,25 @@ def test_changes_are_written_and_reported(folder):
     stage, done, total, note = told[-1]
     assert (stage, done, total) == ("repair", 1, 1)
     assert note.startswith(f"{len(facts['changes'])} of 7 objects exchanged, headline ")
+
+
+def test_a_damaged_list_of_repairs_is_refused(folder):
+    repair_run(folder, NO_SCAN, with_settings(Parameters(), SETTINGS))
+    facts = json.loads((folder / REPAIRS).read_text())
+    assert read_repairs(folder) == facts
+    row = facts["changes"][0]
+    for broken in (
+        [],
+        facts | {"headline_after": [1]},
+        facts | {"views": None},
+        facts | {"changes": [row | {"iou_after": "x"}]},
+        facts | {"changes": [row | {"before": [{"template": "box"}]}]},
+    ):
+        (folder / REPAIRS).write_text(json.dumps(broken))
+        with pytest.raises(DamagedFileError, match="not a list of repairs"):
+            read_repairs(folder)
+    (folder / REPAIRS).unlink()
+    assert read_repairs(folder) is None
 
 
 @pytest.mark.parametrize("how", ["paper", "off", "no depth"])

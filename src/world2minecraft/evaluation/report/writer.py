@@ -16,7 +16,7 @@ import numpy as np
 
 from world2minecraft import __version__
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_DISPLAY_NAMES, CLASS_NAMES
-from world2minecraft.core.files import read_json, write_bytes, write_json, write_text
+from world2minecraft.core.files import write_bytes, write_json, write_text
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume, Layout, Placement, Scan
 from world2minecraft.evaluation.report.comparison_pictures import (
@@ -42,7 +42,7 @@ from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.objects_and_placements import read_placements
 from world2minecraft.formats.scan_record import read_registration
 from world2minecraft.furniture.layout_checks import category_integrity
-from world2minecraft.reconstruction.repair_run import REPAIRS
+from world2minecraft.reconstruction.repair_run import read_repairs
 from world2minecraft.rendering.preview import plan_view, preview, preview_view, render_preview
 from world2minecraft.rendering.scene import prepare_scene
 
@@ -153,7 +153,7 @@ def write_report(
     pairs = make_pairs(scan, drawn)
     agreement, samples = compare_with_photos(scene, scan)
     facts = {"photo_agreement": agreement_facts(agreement, samples)} | facts
-    facts["repairs"] = _repairs(folder)
+    facts["repairs"] = read_repairs(folder)
     crops = [] if agreement is None else crop_objects(agreement, samples, drawn)
     facts["views"] = [
         {"view": p.name, "depth_error_m": p.depth_error_m, "depth_agrees": p.depth_agrees}
@@ -171,12 +171,6 @@ def write_report(
     write_text(folder / "report.html", _page(facts, pairs, crops, outside, true, plan, room))
     progress("report", 3, 3)
     return facts
-
-
-def _repairs(folder: Path) -> dict[str, Any] | None:
-    """Return the content of ``repairs.json``, or None if no furniture was compared."""
-    path = folder / REPAIRS
-    return read_json(path) if path.is_file() else None
 
 
 def _scan_facts(scan: Scan, folder: Path) -> dict[str, Any]:

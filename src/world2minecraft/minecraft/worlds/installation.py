@@ -1,12 +1,12 @@
 """Installation of a world in a game's saves folder under a free name."""
 
 import os
-import re
 import shutil
 import tempfile
 from pathlib import Path
 
-from world2minecraft.core.errors import InputError, OutputError, UsageError
+from world2minecraft.core.errors import InputError, OutputError
+from world2minecraft.core.file_names import free_name, portable_name
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
 from world2minecraft.minecraft.versions import game_versions
@@ -14,12 +14,8 @@ from world2minecraft.minecraft.worlds.launchers import Game
 from world2minecraft.minecraft.worlds.session_lock import LOCK_FILE
 from world2minecraft.minecraft.worlds.world_reader import LEVEL_LIMITS, read_level
 
-MAX_NAME = 60
 MAX_FILES = 100_000
 SPARE_BYTES = 16 << 20
-# What no folder may be named on Windows, whose players share worlds with others.
-_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
-_FORBIDDEN = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f]')
 
 
 def install_world(world: Path, saves: Path, name: str | None = None) -> Path:
@@ -40,7 +36,7 @@ def install_world(world: Path, saves: Path, name: str | None = None) -> Path:
         OutputError: If the folder cannot be written or the disk is full.
     """
     level = read_level(world)
-    wanted = check_name(name or str(level.get("LevelName") or world.name))
+    wanted = portable_name(name or str(level.get("LevelName") or world.name))
     files = _files_of(world)
     try:
         saves.mkdir(exist_ok=True)
@@ -59,37 +55,6 @@ def install_world(world: Path, saves: Path, name: str | None = None) -> Path:
         raise OutputError(saves, f"cannot be written: {error.strerror or error}") from error
     finally:
         shutil.rmtree(draft, ignore_errors=True)
-
-
-def check_name(name: str) -> str:
-    """Convert a name to a folder name that is valid on every operating system.
-
-    Raises:
-        UsageError: If no valid characters remain.
-    """
-    text = _FORBIDDEN.sub(" ", name)
-    text = " ".join("".join(letter for letter in text if letter.isprintable()).split())
-    text = text[:MAX_NAME].strip(". ")
-    if not text:
-        raise UsageError(f"name must contain letters or digits, got {name!r}")
-    return f"{text} world" if _RESERVED.fullmatch(text) else text
-
-
-def free_name(wanted: str, taken: set[str]) -> str:
-    """Return a name that is not taken, with the lowest number appended if necessary.
-
-    The comparison ignores case.
-
-    Example:
-        >>> free_name("Room", {"room", "Room (2)"})
-        'Room (3)'
-    """
-    known = {name.casefold() for name in taken}
-    number, name = 1, wanted
-    while name.casefold() in known:
-        number += 1
-        name = f"{wanted} ({number})"
-    return name
 
 
 def _put_under_free_name(draft: Path, saves: Path, wanted: str) -> Path:

@@ -87,11 +87,12 @@ def write_index(path: Path, rows: Iterable[list[dict[str, Any]]]) -> str:
     schema = arrow.schema([(name, arrow.type_for_alias(kind)) for name, kind in columns().items()])
     part, total = path.with_name(f".{path.name}.part"), hashlib.sha256()
     try:
-        with parquet.ParquetWriter(part, schema, compression="zstd") as writer:
-            for batch in _batches(rows):
-                _add(total, batch)
-                writer.write_table(arrow.Table.from_pylist(batch, schema))
-        with part.open("rb+") as stream:
+        with part.open("wb") as stream:  # Arrow opens no names that are not UTF-8.
+            with parquet.ParquetWriter(stream, schema, compression="zstd") as writer:
+                for batch in _batches(rows):
+                    _add(total, batch)
+                    writer.write_table(arrow.Table.from_pylist(batch, schema))
+            stream.flush()
             os.fsync(stream.fileno())
         os.replace(part, path)
     except OSError as error:
@@ -116,26 +117,28 @@ def read_index(path: Path) -> Any:
     """
     arrow, parquet = arrow_modules()
     try:
-        file = parquet.ParquetFile(path)
-        meta = file.metadata
-        size = sum(meta.row_group(n).total_byte_size for n in range(meta.num_row_groups))
-        if meta.num_rows > MAX_ROWS or size > MAX_INDEX_BYTES:
-            raise LimitError(
-                path, f"too large to be read: {meta.num_rows:,} rows with {size:,} bytes"
-            )
-        kinds = {field.name: str(field.type) for field in file.schema_arrow}
-        wrong = [name for name, kind in columns().items() if kinds.get(name) != kind]
-        if wrong:
-            raise DamagedFileError(
-                path, f"does not contain a column {wrong[0]} of type {columns()[wrong[0]]}"
-            )
-        table = file.read(columns=list(columns()))
+        with path.open("rb") as stream:  # Arrow opens no names that are not UTF-8.
+            table = _checked_table(parquet.ParquetFile(stream), path)
     except (arrow.ArrowException, OSError, ValueError) as error:
         raise DamagedFileError(path, f"not a valid index ({str(error).splitlines()[0]})") from error
     for name in table["shard"].unique().to_pylist():
         if name is None or not SHARD_NAME.fullmatch(name):
             raise DamagedFileError(path, f"contains the invalid shard name {name!r}")
     return table
+
+
+def _checked_table(file: Any, path: Path) -> Any:
+    meta = file.metadata
+    size = sum(meta.row_group(n).total_byte_size for n in range(meta.num_row_groups))
+    if meta.num_rows > MAX_ROWS or size > MAX_INDEX_BYTES:
+        raise LimitError(path, f"too large to be read: {meta.num_rows:,} rows with {size:,} bytes")
+    kinds = {field.name: str(field.type) for field in file.schema_arrow}
+    wrong = [name for name, kind in columns().items() if kinds.get(name) != kind]
+    if wrong:
+        raise DamagedFileError(
+            path, f"does not contain a column {wrong[0]} of type {columns()[wrong[0]]}"
+        )
+    return file.read(columns=list(columns()))
 
 
 def _add(total: Any, rows: Iterable[dict[str, Any]]) -> None:

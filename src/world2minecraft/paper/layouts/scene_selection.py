@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.file_names import is_reserved
 from world2minecraft.paper.layouts.compared_scene import ComparedScene
 
 MAX_NAME = 60
@@ -36,11 +37,13 @@ def folder_names(scenes: Sequence[ComparedScene]) -> list[str]:
     """Return a unique and portable folder name for each scene.
 
     Scene names come from external files, so only ASCII letters, digits, hyphens and underscores are
-    kept.
+    kept. Names that differ only in case are one name on other systems.
     """
     names: list[str] = []
     for number, one in enumerate(scenes):
         safe = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "_" for c in one.name)
         name = safe[-MAX_NAME:].strip("_") or f"scene_{number}"
-        names.append(name if name not in names else f"{name}_{number}")
+        taken = {other.casefold() for other in names}
+        is_free = name.casefold() not in taken and not is_reserved(name)
+        names.append(name if is_free else f"{name}_{number}")
     return names
