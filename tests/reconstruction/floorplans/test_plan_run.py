@@ -244,7 +244,9 @@ def test_a_plan_alone_has_a_brief_report(place, tmp_path, capsys):
     run_plan(place, out, Parameters(blocks_per_metre=2.0), no_progress, "flat")
     print_run(load(out))
     assert "1 room of a floor plan, 4.0 x 3.2 x 2.4 m, 4 objects." in capsys.readouterr().out
-    assert "flat: build report" in (out / "report.html").read_text()
+    report = (out / "report.html").read_text()
+    assert "flat: build report" in report
+    assert report.count('sandbox="allow-scripts"') == 1
     assert (out / "preview.png").is_file()
     facts = json.loads((out / "report.json").read_text())
     assert facts["rooms"][0]["floor_m2"] == pytest.approx(11.0, abs=0.01)

@@ -19,6 +19,7 @@ from world2minecraft.core.classes import CLASS_COLOURS, CLASS_DISPLAY_NAMES, CLA
 from world2minecraft.core.files import write_bytes, write_json, write_text
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume, Layout, Placement, Scan
+from world2minecraft.core.vocabulary import object_title, read_vocabulary
 from world2minecraft.evaluation.report.comparison_pictures import (
     Pair,
     as_data_uri,
@@ -34,7 +35,7 @@ from world2minecraft.evaluation.report.photo_section import (
     crop_objects,
     worst_first,
 )
-from world2minecraft.evaluation.report.room_view import room_view
+from world2minecraft.evaluation.report.room_view import named_box, room_view
 from world2minecraft.evaluation.report.truth_picture import truth_picture
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
 from world2minecraft.evaluation.scoring.truth_files import read_truth
@@ -43,7 +44,7 @@ from world2minecraft.formats.objects_and_placements import read_placements
 from world2minecraft.formats.scan_record import read_registration
 from world2minecraft.furniture.layout_checks import category_integrity
 from world2minecraft.reconstruction.repair_run import read_repairs
-from world2minecraft.rendering.preview import plan_view, preview, preview_view, render_preview
+from world2minecraft.rendering.preview import plan_view, preview_view, render_preview
 from world2minecraft.rendering.scene import prepare_scene
 
 PLAN_PX = 720
@@ -65,9 +66,17 @@ def write_brief_report(
     """
     volume = read_built(folder / "build")
     rooms = read_layouts(folder / "layout.json")
-    facts = _facts(scan, volume, rooms, read_placements(folder / "placements.json"))
+    placed = read_placements(folder / "placements.json")
+    facts = _facts(scan, volume, rooms, placed)
     across = max(volume.states.shape[0], volume.states.shape[2])
-    outside = preview(volume)
+    view = preview_view(volume)
+    outside = render_preview(view)
+    things = [
+        named_box(
+            one.object_id, _placed_title(one), one.center_m, one.size_m, 90 * one.quarter_turns
+        )
+        for one in placed
+    ]
     plan = plan_view(volume, px_per_block=max(PLAN_PX // across, 2))
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     source = (
@@ -80,11 +89,18 @@ def write_brief_report(
         version=__version__,
         outside=as_data_uri(outside),
         plan=as_data_uri(plan, lossless=True),
+        room=room_view(volume, scan.room_size_m, things, view.camera_to_room),
     )
     write_bytes(folder / "preview.png", as_png(outside))
     write_json(folder / "report.json", facts)
     write_text(folder / "report.html", page)
     return facts
+
+
+def _placed_title(one: Placement) -> str:
+    """Return what a piece of furniture shows, or its class."""
+    entry = read_vocabulary().of_template(one.template)
+    return entry.name if entry is not None else CLASS_DISPLAY_NAMES[one.class_id]
 
 
 def _facts(
@@ -167,7 +183,13 @@ def write_report(
     progress("report", 2, 3, "page")
     write_bytes(folder / "preview.png", as_png(outside))
     write_json(folder / "report.json", facts)
-    room = room_view(scene, view.camera_to_room)
+    things = [
+        named_box(
+            one.id, object_title(one.name, one.class_id), one.center_m, one.size_m, one.yaw_deg
+        )
+        for one in scene.instances
+    ]
+    room = room_view(scene.volume, scene.room_size_m, things, view.camera_to_room)
     write_text(folder / "report.html", _page(facts, pairs, crops, outside, true, plan, room))
     progress("report", 3, 3)
     return facts
