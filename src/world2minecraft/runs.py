@@ -7,6 +7,8 @@ page do the same through here.
 from pathlib import Path
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.precompile import compile_first
 from world2minecraft.core.progress import Progress, no_progress
@@ -33,7 +35,19 @@ def run_capture(
         CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
         DamagedFileError: the capture's ground truth or a file of the run is damaged.
     """
-    progress = compile_first(progress)
+    # Products are small: threads of BLAS wait for each other longer than they work.
+    with threadpool_limits(1, "blas"):
+        return _run(capture, out, chosen, start, labels, compile_first(progress))
+
+
+def _run(
+    capture: Path,
+    out: Path,
+    chosen: Parameters,
+    start: str | None,
+    labels: Path | None,
+    progress: Progress,
+) -> dict[str, Any]:
     truth = capture if (capture / "truth.npz").is_file() else None
     if truth is not None:
         read_truth(truth)  # What is damaged is said before the work, not after it.

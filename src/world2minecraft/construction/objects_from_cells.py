@@ -26,9 +26,8 @@ from world2minecraft.construction.fitting import (
     Target,
     cover_cells,
     find_symmetry,
-    fit_solid,
+    fit_once,
     shape_set,
-    solve,
     thin_cells,
 )
 from world2minecraft.construction.fitting.shapes import SUB
@@ -271,10 +270,10 @@ def fit_cells(
     centre = ends[:, :2].mean(0) + _rotate_offset(body.middle, turns) * side
     rules = Rules(calm=NOISY, flush=body.flush, legs=True, phase=body.phase, stands=stands)
     if shift:
-        fit = fit_solid(target, shapes, replace(rules, even=_even(target, body)))
+        fit = fit_once(target, kinds, replace(rules, even=_even(target, body)))
     else:
         at = np.round(centre * SUB).astype(int) % SUB
-        fit = solve(target, (int(at[0]), int(at[1])), shapes, rules)
+        fit = fit_once(target, kinds, rules, (int(at[0]), int(at[1])))
     middle = rotate_middle(fit, turns)
     xy = np.floor(centre - middle + 0.5 - TIE).astype(int)
     numbers = shapes.turns[turns][np.rot90(fit.numbers, turns)]

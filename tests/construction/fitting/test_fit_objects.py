@@ -1,6 +1,6 @@
 """Fitted objects: exact where they can be, stable, whole, symmetric, and equal when turned."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from world2minecraft.construction.fitting import (
     ShapeSet,
     Target,
     find_symmetry,
+    fit_once,
     fit_parts,
     fit_solid,
     shape_set,
@@ -206,3 +207,21 @@ def test_a_table_for_things_to_lie_on_is_flush():
 def test_no_boxes_are_refused():
     with pytest.raises(ValueError, match="at least one box"):
         fit_parts(np.zeros((0, 6)), 4.0, ALL)
+
+
+@pytest.mark.parametrize("phase", [None, (3, 5)])
+def test_a_kept_fit_is_the_fit_of_these_cells_kinds_and_rules(phase):
+    kinds = frozenset({"slab", "stairs"})
+    shapes = shape_set(kinds)
+    for seed in (1, 2, 1):
+        target = random_target(seed)
+        for rules in (Rules(), Rules(calm=4.0)):
+            kept = fit_once(target, kinds, rules, phase)
+            fit = fit_solid if phase is None else partial(solve, phase=phase)
+            plain = fit(target, shapes=shapes, rules=rules)
+            assert np.array_equal(kept.numbers, plain.numbers)
+            assert np.array_equal(kept.middle, plain.middle) and kept[2:] == plain[2:]
+            assert fit_once(random_target(seed), kinds, rules, phase) is kept
+            assert not kept.numbers.flags.writeable
+    assert fit_once(target._replace(bottom=4), kinds, rules, phase) is not kept
+    assert fit_once(target, frozenset(), rules, phase) is not kept

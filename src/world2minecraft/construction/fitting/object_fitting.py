@@ -6,9 +6,12 @@ on the lattice afterwards. Objects given as boxes may also be stretched by up to
 cost: a seat at a height of 1.8 blocks cannot be connected to legs that end at 1 or 2.
 """
 
+import hashlib
+from collections import OrderedDict
 from collections.abc import Iterator
 from itertools import product
-from typing import NamedTuple
+from threading import Lock
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +24,7 @@ from world2minecraft.construction.fitting.problem import (
     problem_at,
 )
 from world2minecraft.construction.fitting.selection import choose
-from world2minecraft.construction.fitting.shapes import SUB, ShapeSet
+from world2minecraft.construction.fitting.shapes import SUB, ShapeSet, shape_set
 from world2minecraft.construction.fitting.stabilization import broken_share, stabilize
 
 PHASE_STEP = 1  # Sub-cells: of 64 shifts the best is worth 0.03 of IoU more than of 16.
@@ -35,6 +38,7 @@ JOINT_COST = 0.5  # IoU given up where no joint touches.
 THIN_WORTH = 0.2  # IoU that all of the thin parts are worth.
 HEIGHTS = 8  # At most so many heights are tried.
 SAME = 1e-6
+MAX_KEPT = 256  # Fits; one has some kilobytes.
 
 
 class Fit(NamedTuple):
@@ -60,6 +64,59 @@ def fit_solid(target: Target, shapes: ShapeSet, rules: Rules = DEFAULT_RULES) ->
     )
     fits = [solve(target, phase, shapes, rules) for _, phase in tried[:FINALISTS]]
     return max(fits, key=lambda one: round(one.iou, 6))
+
+
+class _Fits:
+    """The latest fits by what they depend on: repair builds a room again and again."""
+
+    def __init__(self):
+        self._fits: OrderedDict[tuple[Any, ...], Fit] = OrderedDict()
+        self._lock = Lock()
+
+    def get(self, key: tuple[Any, ...]) -> Fit | None:
+        """Return a fit, or None."""
+        with self._lock:
+            if key in self._fits:
+                self._fits.move_to_end(key)
+            return self._fits.get(key)
+
+    def put(self, key: tuple[Any, ...], fit: Fit) -> None:
+        """Keep a fit, and forget the one that was not used for longest."""
+        with self._lock:
+            self._fits[key] = fit
+            while len(self._fits) > MAX_KEPT:
+                self._fits.popitem(last=False)
+
+
+_FITS = _Fits()
+
+
+def fit_once(
+    target: Target,
+    kinds: frozenset[str],
+    rules: Rules = DEFAULT_RULES,
+    phase: tuple[int, int] | None = None,
+) -> Fit:
+    """Return the result of ``fit_solid``, or of ``solve`` at a phase, and keep it for a repetition.
+
+    Args:
+        target: The occupancy to fit.
+        kinds: Kinds of shape that may be used.
+        rules: Rules of the fit.
+        phase: Position of the centre, in sub-cells along x and y. None tries all of them.
+    """
+    content = hashlib.blake2b(digest_size=16)
+    for array in (target.wanted, target.thin):
+        content.update(repr((array.shape, array.dtype.str)).encode())
+        content.update(np.ascontiguousarray(array).data)
+    key = (content.digest(), target.bottom, kinds, rules, phase)
+    if (found := _FITS.get(key)) is not None:
+        return found
+    shapes = shape_set(kinds)
+    fit = fit_solid(target, shapes, rules) if phase is None else solve(target, phase, shapes, rules)
+    fit.numbers.flags.writeable = fit.middle.flags.writeable = False
+    _FITS.put(key, fit)
+    return fit
 
 
 def score_phases(
