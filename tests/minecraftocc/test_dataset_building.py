@@ -93,6 +93,7 @@ def files_of(folder):
 def test_the_folder_holds_what_the_docs_say(made):
     assert sorted(files_of(made[0])) == [
         "README.md",
+        "checksums.json",
         "classes.json",
         "dataset.json",
         "index.parquet",
@@ -410,7 +411,7 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
     assert cli.run(["dataset", "verify", data]) == 3
     out, err = capsys.readouterr()
     assert "fault: shards/stray.txt: unexpected file" in out
-    assert "has 1 fault; delete the listed shards" in err
+    assert "has 1 fault; repair it with w2m dataset verify --repair" in err
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Build, open, verify, import and export MinecraftOcc data sets."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ from world2minecraft.core.progress import Progress, no_progress
 if TYPE_CHECKING:
     from world2minecraft.core.types import Camera
     from world2minecraft.formats.object_names import NamedObject
-    from world2minecraft.minecraftocc.building import BuildReport
+    from world2minecraft.minecraftocc.building import BuildReport, RepairReport
     from world2minecraft.minecraftocc.exporters import ExportReport
     from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
     from world2minecraft.minecraftocc.labels.camera_region import RegionRule
@@ -285,11 +285,12 @@ def build_photo_dataset(
         >>> build_photo_dataset(tmp / "PHOTO", rooms=2, images=2, size=(64, 48)).keys("test")
         ['photo_0_0001-walk-000000']
     """
+    from world2minecraft.minecraftocc.plan import plain_camera
     from world2minecraft.minecraftocc.store import write_store
     from world2minecraft.minecraftocc.synthetic_photos import PhotoRooms, photo_samples
 
     plan = PhotoRooms(rooms, images, test_share, seed, camera_named("nyu", size, None))
-    facts = {"rooms": rooms, "images": images, "test_share": test_share, "seed": seed}
+    facts = {**asdict(plan), "camera": plain_camera(plan.camera)}
     write_store(
         out,
         photo_samples(plan),
@@ -301,15 +302,17 @@ def build_photo_dataset(
 
 
 def verify_dataset(folder: str | Path, *, progress: Progress = no_progress) -> "VerifyReport":
-    """Read every file in a data set and check it against the index and its checksums.
+    """Read every file in a data set and check it against the list of its files.
+
+    Data sets of former versions have no list: of those, only the shards are checked.
 
     Args:
         folder: Folder of the data set.
-        progress: Callback that is called after each shard.
+        progress: Callback that is called after each file.
 
     Returns:
-        The number of samples, shards and bytes, a checksum over all samples, and ``faults``, with
-        one sentence for each missing, damaged or unexpected file.
+        The number of samples, shards, files and bytes, a checksum over all samples, and ``faults``,
+        with one sentence for each missing, changed or unexpected file.
 
     Raises:
         InputError: If the folder is not a data set or the data set is incomplete.
@@ -324,6 +327,40 @@ def verify_dataset(folder: str | Path, *, progress: Progress = no_progress) -> "
     from world2minecraft.minecraftocc.store import verify_store
 
     return verify_store(folder, progress)
+
+
+def repair_dataset(
+    folder: str | Path, *, jobs: int | None = None, progress: Progress = no_progress
+) -> "RepairReport":
+    """Make the damaged and missing files of a data set again from its plan and seed.
+
+    Only files with the same contents as before are replaced. Unexpected files are left alone.
+
+    Args:
+        folder: Folder of the data set.
+        jobs: Number of processes. Defaults to one per core.
+        progress: Callback that reports progress.
+
+    Returns:
+        The names of the ``repaired`` files, and one sentence for each file in ``left``, with what
+        to do.
+
+    Raises:
+        InputError: If the folder is not a data set or the data set is incomplete.
+        ConflictError: If another process writes the data set.
+        OutputError: If the folder cannot be written.
+
+    Example:
+        >>> from world2minecraft.api.datasets import repair_dataset
+        >>> (data.folder / "README.md").unlink()
+        >>> repair_dataset(data.folder).repaired
+        ('README.md',)
+    """
+    from world2minecraft.minecraftocc.building import repair_dataset as repair
+    from world2minecraft.minecraftocc.engine import open_engine
+
+    with open_engine("pool", usable_cores() if jobs is None else jobs) as engine:
+        return repair(folder, engine, progress)
 
 
 def import_dataset(

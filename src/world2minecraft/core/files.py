@@ -72,7 +72,16 @@ def write_json(path: str | Path, value: Any) -> None:
         OutputError: If the file cannot be written.
         ValueError: If the value contains NaN or infinity.
     """
-    write_text(path, json.dumps(value, indent=1, sort_keys=True, allow_nan=False) + "\n")
+    write_bytes(path, json_bytes(value))
+
+
+def json_bytes(value: Any) -> bytes:
+    """Return the contents of the file that ``write_json`` writes.
+
+    Raises:
+        ValueError: If the value contains NaN or infinity.
+    """
+    return (json.dumps(value, indent=1, sort_keys=True, allow_nan=False) + "\n").encode()
 
 
 def read_json(path: "str | Path | ArchivePath", limit_bytes: int = 256 << 20) -> Any:

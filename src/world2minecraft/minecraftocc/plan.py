@@ -45,6 +45,11 @@ PRESETS = {
 }
 
 
+def plain_camera(camera: Camera) -> dict[str, Any]:
+    """Return the size and intrinsics of a camera without distortion as a dict for JSON."""
+    return {name: one for name, one in asdict(camera).items() if name != "distortion"}
+
+
 @dataclass(frozen=True)
 class Recipe:
     """The settings for rendering, labelling and storing the images of a data set.
@@ -73,9 +78,7 @@ class Recipe:
 
     def facts(self) -> dict[str, Any]:
         """Return all settings as a dict for JSON."""
-        data = asdict(self)
-        data["camera"] = {k: v for k, v in data["camera"].items() if k != "distortion"}
-        return data
+        return {**asdict(self), "camera": plain_camera(self.camera)}
 
 
 @dataclass(frozen=True)

@@ -40,18 +40,17 @@ from world2minecraft.minecraftocc.store.folder import (
     DATASET,
     INDEX,
     KIND,
-    LEFTOVER,
     META,
     SHARDS,
     SPLITS,
-    WORLDS,
+    leftovers,
     read_meta,
     write_classes,
 )
 from world2minecraft.minecraftocc.store.index import arrow_modules
 from world2minecraft.minecraftocc.store.sample_files import FORMAT, FineTable
 from world2minecraft.minecraftocc.store.shard import PART
-from world2minecraft.minecraftocc.store.writer import finish_store
+from world2minecraft.minecraftocc.store.writer import ShardContents, finish_store
 from world2minecraft.minecraftocc.types import FineClass
 
 MAX_ROUNDS = 6
@@ -164,9 +163,20 @@ def build_dataset(
         wait_for_others(root)
         begin_dataset(root, plan)
         remove_leftovers(root)
-        report = _finished_report(root) or _Build(root, plan, engine, progress).run()
+        report = _finished_report(root) or complete_dataset(root, plan, engine, progress)
         remove_registry(root)
     return replace(report, seconds=time.monotonic() - began)
+
+
+def complete_dataset(
+    folder: Path, plan: DatasetPlan, engine: Engine, progress: Progress = no_progress
+) -> BuildReport:
+    """Make the files that a folder lacks of the data set of a plan. The caller holds its lock.
+
+    Raises:
+        World2MinecraftError: As ``build_dataset``.
+    """
+    return _Build(folder, plan, engine, progress).run()
 
 
 def begin_dataset(folder: Path, plan: DatasetPlan) -> None:
@@ -200,11 +210,9 @@ def begin_dataset(folder: Path, plan: DatasetPlan) -> None:
 
 def remove_leftovers(folder: Path) -> None:
     """Delete temporary files of an interrupted build, except for unfinished shards."""
-    for place in (folder, folder / "scenes", folder / WORLDS, *(folder / SHARDS).glob("*")):
-        for path in place.glob(".*") if place.is_dir() else ():
-            if not LEFTOVER.fullmatch(path.name):
-                continue  # Somebody's own, such as .git.
-            shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
+    for name in leftovers(folder):
+        path = folder / name
+        shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
     for path in (folder / SHARDS).glob(f"*/*{PART}"):
         if path.with_name(path.name.removesuffix(PART)).exists():
             path.unlink(missing_ok=True)
@@ -252,9 +260,9 @@ class _Build:
             "scenes": [_scene_json(scene, facts[scene.scene_id]) for scene in scenes],
             "plan": self.plan.facts(),
         }
-        rows = in_order(self.engine.run(index_shard, units, self._ticker("index", total)))
+        found = in_order(self.engine.run(index_shard, units, self._ticker("index", total)))
         whole = finish_store(
-            self.folder, [unit.name for unit in units], meta, (self._counted(one) for one in rows)
+            self.folder, [unit.name for unit in units], meta, (self._counted(one) for one in found)
         )
         return BuildReport(
             images=plan.images,
@@ -316,10 +324,10 @@ class _Build:
 
         return tick
 
-    def _counted(self, result: tuple[list[dict[str, Any]], float]) -> list[dict[str, Any]]:
-        rows, seconds = result
+    def _counted(self, result: tuple[ShardContents, float]) -> ShardContents:
+        contents, seconds = result
         self.cpu["write"] += seconds
-        return rows
+        return contents
 
 
 def _refuse_duplicate_worlds(scenes: Sequence[SceneSpec], facts: Mapping[str, SceneFacts]) -> None:

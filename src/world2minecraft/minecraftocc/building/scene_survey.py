@@ -173,7 +173,7 @@ def _make_survey(
     folder: Path, spec: SceneSpec, recipe: Recipe, known: SceneFacts | None
 ) -> SceneFacts:
     if spec.house:
-        _generate_house(folder / spec.path, recipe.seed, spec.house)
+        generate_house_world(folder / spec.path, recipe.seed, spec.house)
     source = open_source(folder, spec, recipe)
     volume = source.volume()
     if known is not None:
@@ -206,8 +206,8 @@ def _make_survey(
     return facts
 
 
-def _generate_house(target: Path, seed: int, number: int) -> None:
-    """Generate a house and write it atomically."""
+def generate_house_world(target: Path, seed: int, number: int) -> None:
+    """Generate the world of a house and write it atomically, unless it exists."""
     if target.exists():
         return
     part = target.with_name(f".{target.name}.part")

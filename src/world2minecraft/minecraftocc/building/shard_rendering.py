@@ -31,10 +31,9 @@ from world2minecraft.minecraftocc.labels.image_labels import cast_depth, label_i
 from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.plan import DatasetPlan, Recipe, SceneSpec
 from world2minecraft.minecraftocc.store.folder import read_classes, shard_name
-from world2minecraft.minecraftocc.store.index import shard_rows
 from world2minecraft.minecraftocc.store.sample_files import pack_sample
 from world2minecraft.minecraftocc.store.shard import ShardWriter
-from world2minecraft.minecraftocc.store.writer import SHARD_SAMPLES
+from world2minecraft.minecraftocc.store.writer import SHARD_SAMPLES, ShardContents, read_shard
 from world2minecraft.minecraftocc.tours import PlannedView, read_views
 from world2minecraft.minecraftocc.types import OccSample, SceneVoxels
 from world2minecraft.rendering import BlockScene, LightSettings, prepare_scene, render_volume
@@ -218,13 +217,13 @@ def render_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[int, dic
     return count - found, dict(clock.seconds)
 
 
-def index_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[list[dict[str, Any]], float]:
-    """Return the index rows for a finished shard and the CPU seconds used."""
+def index_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[ShardContents, float]:
+    """Return the index rows and the checksum of a finished shard, and the CPU seconds used."""
     clock = StageClock()
     with clock.of("write"):
-        rows = shard_rows(Path(unit.folder) / unit.name, unit.name)
-    tick(len(rows))
-    return rows, clock.seconds["write"]
+        contents = read_shard(Path(unit.folder), unit.name)
+    tick(len(contents[0]))
+    return contents, clock.seconds["write"]
 
 
 def in_order(results: Iterator[tuple[int, Any]]) -> Iterator[Any]:

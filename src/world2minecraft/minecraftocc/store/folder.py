@@ -7,6 +7,7 @@
       classes.json      the 12 classes and the numbered fine classes
       index.parquet     one row per sample: position, checksums and cells of each class
       README.md         data set card for Hugging Face, which assigns shards to splits
+      checksums.json    the size and SHA-256 of every file
       scenes/           SCENE.json (survey result), SCENE.poses.jsonl (views), SCENE.objects.json
       shards/SPLIT/     WebDataset tar files such as SCENE-000.tar
       worlds/           houses that were generated for the data set
@@ -16,6 +17,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.core.checksums import CHECKSUMS
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json, write_json, write_text
@@ -40,7 +42,9 @@ LEFTOVER = re.compile(
 )
 SHARD_NAME = re.compile(r"shards/(?:train|val|test|all)/[A-Za-z0-9_-]{1,90}\.tar")
 KIND = "minecraftocc"
-DATASET = FolderKind({META: "kind"}, (META, CLASSES, INDEX, CARD, SHARDS, SCENES, WORLDS))
+DATASET = FolderKind(
+    {META: "kind"}, (META, CLASSES, INDEX, CARD, CHECKSUMS, SHARDS, SCENES, WORLDS)
+)
 MAX_META_BYTES, MAX_FINE = 64 << 20, 65_535
 
 
@@ -78,6 +82,18 @@ def read_meta(folder: Path, finished: bool = True) -> dict[str, Any]:
             folder, "the data set is not complete; run the same w2m dataset build again"
         )
     return meta
+
+
+def leftovers(folder: Path) -> list[str]:
+    """Return the names of temporary files and folders that a killed build left in a data set."""
+    places = (folder, folder / SCENES, folder / WORLDS, *sorted((folder / SHARDS).glob("*")))
+    return [
+        path.relative_to(folder).as_posix()
+        for place in places
+        if place.is_dir()
+        for path in sorted(place.iterdir())
+        if LEFTOVER.fullmatch(path.name)  # Others are somebody's own, such as .git.
+    ]
 
 
 def objects_path(folder: Path, scene_id: str) -> Path:
@@ -118,7 +134,8 @@ def read_classes(folder: Path) -> FineTable:
 
 def write_card(folder: Path, meta: dict[str, Any]) -> None:
     """Write the data set card, which assigns shards to splits on Hugging Face."""
-    counts = {split: count for split, count in meta["images"].items() if count}
+    counts = {split: meta["images"].get(split) for split in ("train", "val", "test", "all")}
+    counts = {split: count for split, count in counts.items() if count}
     files = "".join(
         f"      - split: {split}\n        path: {SHARDS}/{split}/*.tar\n" for split in counts
     )

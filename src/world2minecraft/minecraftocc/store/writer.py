@@ -2,7 +2,7 @@
 
 import platform
 import re
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,15 +10,27 @@ import numpy as np
 import PIL
 
 from world2minecraft import __version__
+from world2minecraft.core.checksums import (
+    CHECKSUMS,
+    FileSum,
+    sum_of_bytes,
+    sum_of_file,
+    sums_of_files,
+    write_checksums,
+)
 from world2minecraft.core.errors import ConflictError, UsageError
-from world2minecraft.core.files import write_json
+from world2minecraft.core.files import json_bytes, write_bytes
 from world2minecraft.core.output_folders import draft_of, output_folder
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.store.folder import (
+    CARD,
+    CLASSES,
     DATASET,
     INDEX,
     KIND,
     META,
+    SCENES,
+    WORLDS,
     shard_name,
     write_card,
     write_classes,
@@ -56,19 +68,32 @@ def versions() -> dict[str, str]:
     }
 
 
+ShardContents = tuple[list[dict[str, Any]], FileSum]
+"""The index rows of a shard and its checksum."""
+
+
+def read_shard(folder: Path, name: str) -> ShardContents:
+    """Return the index rows of a shard and its checksum.
+
+    Raises:
+        DamagedFileError: If the shard cannot be read.
+    """
+    return shard_rows(folder / name, name), sum_of_file(folder / name)
+
+
 def finish_store(
     folder: Path,
     shards: list[str],
     meta: dict[str, Any],
-    rows: Iterable[list[dict[str, Any]]],
+    contents: Iterable[ShardContents],
 ) -> dict[str, Any]:
-    """Write the index, the data set card and ``dataset.json``, which completes the data set.
+    """Write the index, the card, the checksums and ``dataset.json``, which completes the data set.
 
     Args:
         folder: Folder of the data set.
         shards: Paths of all shards inside the folder, in order.
         meta: Further content for ``dataset.json``, including ``images`` and ``scenes``.
-        rows: Results of ``shard_rows`` for each shard, in the same order.
+        contents: Results of ``read_shard`` for each shard, in the same order.
 
     Returns:
         The content of ``dataset.json``.
@@ -76,11 +101,19 @@ def finish_store(
     Raises:
         OutputError: If a file cannot be written.
     """
-    total = write_index(folder / INDEX, rows)
+    sums: dict[str, FileSum] = {}
+
+    def rows() -> Iterator[list[dict[str, Any]]]:
+        for name, (some, sum_) in zip(shards, contents, strict=True):
+            sums[name] = sum_
+            yield some
+
+    total = write_index(folder / INDEX, rows())
     whole = {
         **meta,
         "kind": KIND,
         "format": FORMAT,
+        "checksums": CHECKSUMS,
         "complete": True,
         "conventions": CONVENTIONS,
         "shards": shards,
@@ -88,7 +121,10 @@ def finish_store(
         "versions": versions(),
     }
     write_card(folder, whole)
-    write_json(folder / META, whole)
+    data = json_bytes(whole)
+    sums |= sums_of_files(folder, (CARD, CLASSES, INDEX, SCENES, WORLDS))
+    write_checksums(folder, {**sums, META: sum_of_bytes(data)})
+    write_bytes(folder / META, data)
     return whole
 
 
@@ -167,7 +203,7 @@ def _write_shards(
     flush()
     write_classes(folder, FineTable(tuple(kinds)))
     facts = {**meta, "images": images, "scenes": [{"scene_id": one} for one in scenes]}
-    return finish_store(folder, names, facts, (shard_rows(folder / name, name) for name in names))
+    return finish_store(folder, names, facts, (read_shard(folder, name) for name in names))
 
 
 def _check_names(sample: OccSample, known: Container[str]) -> None:
