@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from world2minecraft.navigation.data.blind_baselines import BaselineRow
     from world2minecraft.navigation.data.rewording import NavigationSet
     from world2minecraft.navigation.data.set_building import BuiltSet
+    from world2minecraft.navigation.data.set_files import SetReport
+    from world2minecraft.navigation.data.set_repair import SetRepair
     from world2minecraft.navigation.data.splits import Leaks
     from world2minecraft.navigation.data.statistics import SetStatistics
     from world2minecraft.navigation.exporters import ExportResult
     from world2minecraft.navigation.types import Item
     from world2minecraft.sceneforge.server.server_process import PageServer
-
-REPLIES_FOLDER = "rewriting"  # Folder in a set for recorded model replies.
 
 
 def make_env(scene: Run | str | Path, **options: Any) -> "gymnasium.Env":
@@ -134,10 +134,9 @@ def build_navigation_set(
         True
     """
     from world2minecraft.core.machine import usable_cores
-    from world2minecraft.core.output_folders import output_folder
+    from world2minecraft.core.output_folders import draft_of, output_folder
     from world2minecraft.navigation.data.generated_scenes import make_scenes
     from world2minecraft.navigation.data.recorded_walks import parse_at
-    from world2minecraft.navigation.data.rewording import annotate_set
     from world2minecraft.navigation.data.scene_items import SceneRule
     from world2minecraft.navigation.data.set_building import BuildRule
     from world2minecraft.navigation.data.set_building import build_navigation_set as build
@@ -150,7 +149,7 @@ def build_navigation_set(
     )  # fmt: skip
     rule: BuildRule = BuildRule(
         composition, trajectories, paper_size, paper_split, unseen_share,
-        tuple(map(str, streams)), parse_at(at), work,
+        tuple(map(str, streams)), parse_at(at), rooms, houses, work,
     )  # fmt: skip
     if not (scenes or rooms or houses):
         raise UsageError("no scenes given; add scenes, or generate some (--rooms 3)")
@@ -158,10 +157,10 @@ def build_navigation_set(
     with output_folder(folder, NAVIGATION_SET, "built", force=force):
         generated = make_scenes(folder / SCENES_FOLDER, rooms, houses, seed, processes, progress)
         places = [*map(path_of, scenes), *generated]
-        built = build(places, folder, rule, progress, processes)
-        if annotations is not None:
-            annotate_set(folder, annotations)
-    return built
+        with draft_of(folder) as draft:
+            return build(
+                places, draft, rule, progress, processes, annotations=annotations, home=folder
+            )
 
 
 def export_navigation_set(
@@ -235,6 +234,68 @@ def export_navigation_set(
     rule = ExportOptions(**{name: value for name, value in choices.items() if value is not None})
     with output_folder(Path(out), NAVIGATION_SET, "written", force=True):  # It checks the folder.
         return export_set(navigation_set, to, out, rule, progress=progress)
+
+
+def verify_navigation_set(folder: str | Path, *, progress: Progress = no_progress) -> "SetReport":
+    """Read every file in a navigation set and check it against the list of its files.
+
+    Sets of former versions have no list: of those, the records are read, and their images are
+    checked.
+
+    Args:
+        folder: Folder of the navigation set.
+        progress: Callback that is called after each file.
+
+    Returns:
+        The number of items, files and bytes, and ``faults``, with one sentence for each missing,
+        changed or unexpected file.
+
+    Raises:
+        InputError: If the folder is not a navigation set.
+
+    Example:
+        >>> from world2minecraft.api.navigation import build_navigation_set, verify_navigation_set
+        >>> made = build_navigation_set([run], tmp / "set", trajectories=2, size=(64, 36))
+        >>> verify_navigation_set(tmp / "set").faults
+        ()
+    """
+    from world2minecraft.navigation.data.set_files import verify_set
+
+    return verify_set(folder, progress)
+
+
+def repair_navigation_set(
+    folder: str | Path, *, workers: int | None = None, progress: Progress = no_progress
+) -> "SetRepair":
+    """Make the damaged and missing files of a navigation set again from its options and seed.
+
+    Only files with the same contents as before are replaced. Unexpected files are left alone.
+
+    Args:
+        folder: Folder of the navigation set.
+        workers: Number of processes. Defaults to one per core.
+        progress: Callback that reports progress.
+
+    Returns:
+        The names of the ``repaired`` files, and one sentence for each file in ``left``, with what
+        to do.
+
+    Raises:
+        InputError: If the folder is not a navigation set.
+        ConflictError: If another process writes the set.
+        OutputError: If the folder cannot be written.
+
+    Example:
+        >>> from world2minecraft.api.navigation import build_navigation_set, repair_navigation_set
+        >>> made = build_navigation_set([run], tmp / "set", trajectories=2, size=(64, 36))
+        >>> (tmp / "set" / "README.md").unlink()
+        >>> repair_navigation_set(tmp / "set").repaired
+        ('README.md',)
+    """
+    from world2minecraft.core.machine import usable_cores
+    from world2minecraft.navigation.data.set_repair import repair_set
+
+    return repair_set(folder, workers or usable_cores(), progress)
 
 
 @dataclass(frozen=True, eq=False)
@@ -393,6 +454,7 @@ def _reword_folder(
     progress: Progress,
 ) -> RewordedSet:
     """Reword the navigation set in a folder, which is locked."""
+    from world2minecraft.core.output_folders import draft_of
     from world2minecraft.external_models.model_options import ModelOptions
     from world2minecraft.navigation.data.rewording import (
         ORDER,
@@ -401,7 +463,10 @@ def _reword_folder(
         select_instructions,
         write_set,
     )
+    from world2minecraft.navigation.data.set_files import check_records, update_list
+    from world2minecraft.navigation.records import REPLIES_FOLDER
 
+    check_records(folder)
     made, chat, outcomes = read_set(folder), None, Counter[str]()
     if annotations is not None:
         made = add_annotations(made, annotations)
@@ -409,7 +474,9 @@ def _reword_folder(
         chat = (model or ModelOptions()).open(rewrite, folder / REPLIES_FOLDER)
         made, outcomes = _reworded(made, chat, jobs, progress)
     made = select_instructions(made, ORDER[-1:] if plain else ORDER)
-    write_set(folder, made)
+    with draft_of(folder) as draft:
+        write_set(draft, made)
+        update_list(folder, draft)
     sources = Counter(item.instruction.source for item in made.items)
     return RewordedSet(sources, outcomes, None if chat is None else chat.ledger.to_json())
 

@@ -61,7 +61,7 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
         "dataset quality": "Measure the naturalness and sharpness of images.",
         "dataset show": "Draw one sample of a data set.",
         "dataset sheet": "Draw a contact sheet of a data set or a tour.",
-        "dataset verify": "Verify the checksums of a data set.",
+        "dataset verify": "Verify all files of a data set, and repair them.",
         "dataset export": "Export a data set to NYUv2, OccScanNet or other formats.",
         "dataset import": "Import NYUv2, OccScanNet and similar data sets.",
     },
@@ -76,6 +76,7 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
         "vln reword": "Rephrase the instructions of a navigation set.",
         "vln annotate": "Write instructions for walks in the browser.",
         "vln stats": "Summarise a navigation set, with baseline scores.",
+        "vln verify": "Verify all files of a navigation set, and repair them.",
         "vln export": "Export navigation data for trainers and simulators.",
         "vln run": "Run an agent on an instruction, with scores and video.",
         "vln evaluate": "Evaluate a model on the items of a navigation set.",
@@ -123,8 +124,9 @@ FOLDERS = ("build", "forge", "paper", "render", "train")
 # Verbs with the option --wait, which write folders that another process may write.
 WAITING_VERBS = frozenset((
     "build", "clean", "compare build", "convert", "dataset build", "dataset export",
-    "dataset import", "dataset rooms", "demo", "join", "occupy", "reconstruct", "rooms generate",
-    "rooms scan", "segment", "train", "undo", "vln build", "vln export", "vln reword",
+    "dataset import", "dataset rooms", "dataset verify", "demo", "join", "occupy", "reconstruct",
+    "rooms generate", "rooms scan", "segment", "train", "undo", "vln build", "vln export",
+    "vln reword", "vln verify",
 ))  # fmt: skip
 
 # A shell completion script sets this variable to request names.

@@ -18,6 +18,7 @@ from typing import Any, NoReturn, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
+from world2minecraft.core.checksums import CHECKSUMS
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.file_names import is_text
 from world2minecraft.core.files import write_text
@@ -27,10 +28,14 @@ from world2minecraft.navigation.types import Episode, Item, Trajectory
 ITEMS = "items.jsonl"
 TRAJECTORIES = "trajectories.jsonl"
 EPISODES = "episodes.jsonl"
-ABOUT = "dataset.json"
+ABOUT, CARD = "dataset.json", "README.md"
+IMAGES = "images"
 SCENES_FOLDER = "scenes"  # Of a set, where its scenes were made for it.
+# What people and models add to a set between commands; not part of its list of files.
+ANNOTATIONS, REPLIES_FOLDER = "annotations.jsonl", "rewriting"
 NAVIGATION_SET = FolderKind(
-    {ITEMS: ""}, (ABOUT, ITEMS, TRAJECTORIES, EPISODES, "images", SCENES_FOLDER)
+    {ITEMS: ""},
+    (ABOUT, CARD, ITEMS, TRAJECTORIES, EPISODES, CHECKSUMS, IMAGES, SCENES_FOLDER),
 )
 
 # A set of the paper's size has 3,542 items of about 2 kB.

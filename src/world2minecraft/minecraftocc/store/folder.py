@@ -137,7 +137,9 @@ def write_card(folder: Path, meta: dict[str, Any]) -> None:
     counts = {split: meta["images"].get(split) for split in ("train", "val", "test", "all")}
     counts = {split: count for split, count in counts.items() if count}
     files = "".join(
-        f"      - split: {split}\n        path: {SHARDS}/{split}/*.tar\n" for split in counts
+        f"      - split: {'full' if split == 'all' else split}\n"  # Hugging Face reserves "all".
+        f"        path: {SHARDS}/{split}/*.tar\n"
+        for split in counts
     )
     totals = ", ".join(f"{count:,} {split}" for split, count in counts.items())
     write_text(

@@ -7,7 +7,7 @@ the same kind is generated. Finished scenes are reused.
 """
 
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,6 +43,7 @@ def make_scenes(
     seed: int = 0,
     workers: int = 1,
     progress: Progress = no_progress,
+    only: Collection[str] | None = None,
 ) -> list[Path]:
     """Generate rooms and houses, and return their folders, rooms first.
 
@@ -55,6 +56,7 @@ def make_scenes(
         seed: The random seed.
         workers: The number of worker processes.
         progress: Called after each scene.
+        only: The names of the scenes to generate. None means all.
 
     Raises:
         UsageError: If a number is out of range.
@@ -70,6 +72,8 @@ def make_scenes(
     orders += [
         _Order(str(place / f"house_{n:02d}{mark}"), "house", n, seed) for n in range(1, houses + 1)
     ]
+    if only is not None:
+        orders = [one for one in orders if Path(one.folder).name in only]
     left = [one for one in orders if not (Path(one.folder) / _FINISHED[one.what]).is_file()]
     if left:
         progress("scenes", 0, len(left))

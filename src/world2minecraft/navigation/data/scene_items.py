@@ -197,7 +197,7 @@ class _TrajectoryRecorder:
         self._scene, self._split, self._rule, self._work = scene, scene_split, rule, work
         kept, small = vln_camera(*rule.size_px), vln_camera(*PREVIEW_PX)
         self._album = PictureStore(
-            folder, partial(_render, scene, kept), partial(_render, scene, small)
+            folder, partial(render_pictures, scene, kept), partial(render_pictures, scene, small)
         )
         self._ranks = RankBalancer(np.random.default_rng([rule.seed, *scene.scene_id.encode()]))
         self._scout = DistractorSampler(walker, scene.metres_per_block)
@@ -257,7 +257,10 @@ class _TrajectoryRecorder:
         ]  # fmt: skip
 
 
-def _render(scene: VlnScene, camera: Camera, stances: Sequence[Stance]) -> list[EncodedPicture]:
+def render_pictures(
+    scene: VlnScene, camera: Camera, stances: Sequence[Stance]
+) -> list[EncodedPicture]:
+    """Render and encode the views of a scene."""
     return [
         encode_picture(np.asarray(scene.picture(stance, camera, outputs=("colour",)).colour))
         for stance in stances

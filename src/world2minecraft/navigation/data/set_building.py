@@ -5,6 +5,8 @@ The output folder contains::
     OUT/dataset.json      the scenes and options of the set
     OUT/items.jsonl       questions
     OUT/trajectories.jsonl, OUT/episodes.jsonl
+    OUT/README.md         the card for Hugging Face
+    OUT/checksums.json    the size and SHA-256 of every file
     OUT/images/SCENE/TRAJECTORY/NNN.jpg
 
 The result does not depend on the number of worker processes: the random seeds derive from the names
@@ -19,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft import __version__
+from world2minecraft.core.checksums import CHECKSUMS
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, no_progress
@@ -31,6 +34,7 @@ from world2minecraft.navigation.data.item_building import (
     cut_to_paper_size,
 )
 from world2minecraft.navigation.data.recorded_walks import At, assign_streams, recorded_tours
+from world2minecraft.navigation.data.rewording import annotate_set
 from world2minecraft.navigation.data.scene_items import (
     WALK_VERSION,
     SceneItems,
@@ -38,6 +42,7 @@ from world2minecraft.navigation.data.scene_items import (
     WalkCallback,
     build_scene_items,
 )
+from world2minecraft.navigation.data.set_files import finish_set
 from world2minecraft.navigation.data.splits import (
     UNSEEN_SHARE,
     Leaks,
@@ -154,6 +159,8 @@ class BuildRule:
         unseen_share: The share of scenes to hold out otherwise.
         streams: Files with recorded walks. Scenes with recorded walks use only those.
         at: Whether recorded positions are feet or eye positions if the lines do not state it.
+        rooms: The number of rooms that were generated for the set.
+        houses: The number of houses that were generated for the set.
         work: The options for each scene.
     """
 
@@ -164,6 +171,8 @@ class BuildRule:
     unseen_share: float = UNSEEN_SHARE
     streams: tuple[str, ...] = ()
     at: At = "eye"
+    rooms: int = 0
+    houses: int = 0
     work: SceneRule = field(default_factory=SceneRule)
 
     def __post_init__(self):
@@ -222,6 +231,10 @@ def build_navigation_set(
     rule: BuildRule | None = None,
     progress: Progress = no_progress,
     workers: int = 1,
+    *,
+    annotations: str | Path | None = None,
+    home: Path | None = None,
+    recorded: Mapping[str, str] | None = None,
 ) -> BuiltSet:
     """Build a navigation set from scenes.
 
@@ -231,6 +244,10 @@ def build_navigation_set(
         rule: The options. None uses the defaults.
         progress: Called after each walk.
         workers: The number of processes, which does not affect the result.
+        annotations: File with instructions written by people, which items then use.
+        home: The folder that the set will be moved to, with the scenes that were generated for it.
+            None means ``out``.
+        recorded: The paths to record for scenes, if other than those given.
 
     Raises:
         UsageError: If no scene has the composition, two scenes have the same name, or no items
@@ -269,8 +286,24 @@ def build_navigation_set(
             "no items could be built: the scenes lack landmarks or walkable floor; choose "
             "furnished scenes, or generate some (--rooms 3)"
         )
-    _write(Path(out), how, works, items, splits, {scene_of[path]: path for path in wanted})
+    stated = {path: (recorded or {}).get(path, path) for path in wanted}
+    _state_paths(works, {scene_of[path]: (path, stated[path]) for path in wanted})
+    _write(Path(out), how, works, items, splits, {scene_of[path]: stated[path] for path in wanted})
+    if annotations is not None:
+        annotate_set(out, annotations)
+    finish_set(Path(out), home)
     return BuiltSet(items, works, find_leaks(items), [path for path in kinds if path not in wanted])
+
+
+def _state_paths(works: Sequence[SceneItems], paths: Mapping[str, tuple[str, str]]) -> None:
+    """Replace the paths of scenes in their episodes by those to record."""
+    for work in works:
+        actual, stated = paths[work.scene_id]
+        if actual != stated:
+            work.episodes = [
+                replace(one, scene=f"{stated}{one.scene.removeprefix(actual)}")
+                for one in work.episodes
+            ]
 
 
 def _split_as_the_paper(works: Sequence[SceneItems], seed: int) -> None:
@@ -306,6 +339,12 @@ def _write(
     write_episodes(out / EPISODES, [one for work in works for one in work.episodes])
     about: dict[str, Any] = {
         "format": "minecraftvln-1",
+        "checksums": CHECKSUMS,
+        "build": {
+            name: value
+            for name, value in asdict(how).items()
+            if name not in ("composition", "streams", "work")
+        },
         "version": __version__,
         "oracle_version": WALK_VERSION,
         "composition": how.composition,

@@ -18,10 +18,9 @@ from world2minecraft.navigation.language.instruction_checking import (
     goal_name,
     landmark_names_of,
 )
-from world2minecraft.navigation.records import read_trajectories
+from world2minecraft.navigation.records import ANNOTATIONS, read_trajectories
 from world2minecraft.navigation.types import Trajectory
 
-ANNOTATIONS = "annotations.jsonl"
 MAX_IMAGE_BYTES = 32 << 20
 MAX_ANNOTATOR = 60
 KINDS = {".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".png": "image/png"}
