@@ -91,7 +91,7 @@ def kinds_of(folder):
     return sorted(name for name in starts.values() if name != "dataset.json")
 
 
-@settings(max_examples=12)
+@settings(max_examples=6)
 @given(data=st.data())
 def test_any_damaged_files_are_made_again(made, one_copy, data):
     names = st.sampled_from(kinds_of(made))

@@ -224,6 +224,7 @@ def _rewrite_build(build: Path, history: "History") -> None:
     """Write a build with changed blocks, keeping the name of its world."""
     from world2minecraft.construction import WORLD_NAME, write_build
     from world2minecraft.core.files import read_json
+    from world2minecraft.core.whole_reads import changing
     from world2minecraft.formats.object_names import read_world_names
     from world2minecraft.formats.world_labels import read_scene
     from world2minecraft.minecraft.worlds.world_reader import read_level
@@ -233,8 +234,9 @@ def _rewrite_build(build: Path, history: "History") -> None:
     name, version = read_level(build / "world").get("LevelName"), read_scene(build).mc_version
     objects = read_world_names(build)
     title = str(name or WORLD_NAME)
-    write_build(build, history.volume, mc_version=version, name=title, objects=objects)
-    if (build / "forms.json").is_file():
-        formats = ",".join(read_json(build / "forms.json"))
-        chosen = Parameters(formats=formats, mc_version=version)
-        write_further_forms(build.parent, history.volume, chosen)
+    with changing(build.parent, "repaired"), changing(build, "repaired"):
+        write_build(build, history.volume, mc_version=version, name=title, objects=objects)
+        if (build / "forms.json").is_file():
+            formats = ",".join(read_json(build / "forms.json"))
+            chosen = Parameters(formats=formats, mc_version=version)
+            write_further_forms(build.parent, history.volume, chosen)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -159,10 +159,8 @@ class Run:
             InputError: If the folder does not contain ``room.npz``.
             DamagedFileError: If ``room.npz`` does not contain a valid grid.
         """
-        from world2minecraft.formats.run_arrays import read_room
-
-        grid, scan_to_room = read_room(self.folder / "room.npz")
-        return Room(grid, {one.id: _name_of(one) for one in self._instances(grid)}, scan_to_room)
+        grid, scan_to_room, instances, _ = self._files
+        return Room(grid, {one.id: _name_of(one) for one in instances}, scan_to_room)
 
     @cached_property
     def objects(self) -> tuple[RoomObject, ...]:
@@ -172,7 +170,7 @@ class Run:
             InputError: If a file of the run is missing.
             DamagedFileError: If a file of the run cannot be read.
         """
-        templates = self._templates()
+        _, _, instances, templates = self._files
         return tuple(
             RoomObject(
                 id=one.id,
@@ -184,7 +182,7 @@ class Run:
                 confidence=one.confidence,
                 template=templates.get(one.id, ""),
             )
-            for one in self._instances(self.room.grid)
+            for one in instances
         )
 
     @cached_property
@@ -210,22 +208,28 @@ class Run:
         Raises:
             InputError: If the run has no build.
         """
+        from world2minecraft.core.whole_reads import read_whole
         from world2minecraft.evaluation.report.finished_run import read_built
 
-        return read_built(self.folder / "build")
+        return read_whole(self.folder, lambda: read_built(self.folder / "build"))
 
-    def _instances(self, grid: OccupancyGrid) -> tuple[ObjectInstance, ...]:
-        from world2minecraft.formats.objects_and_placements import read_objects
+    @cached_property
+    def _files(self) -> "_RunFiles":
+        """The files of the scene, all of one state of the folder."""
+        from world2minecraft.core.whole_reads import read_whole
 
-        path = self.folder / "objects.json"
-        return read_objects(path, grid) if path.is_file() else ()
+        return read_whole(self.folder, self._read_files)
 
-    def _templates(self) -> dict[int, str]:
-        from world2minecraft.formats.objects_and_placements import read_placements
+    def _read_files(self) -> "_RunFiles":
+        from world2minecraft.formats.objects_and_placements import read_objects, read_placements
+        from world2minecraft.formats.run_arrays import read_room
 
-        path = self.folder / "placements.json"
-        placements = read_placements(path) if path.is_file() else ()
-        return {one.object_id: one.template for one in placements if one.template != "cells"}
+        grid, scan_to_room = read_room(self.folder / "room.npz")
+        objects, placed = self.folder / "objects.json", self.folder / "placements.json"
+        instances = read_objects(objects, grid) if objects.is_file() else ()
+        placements = read_placements(placed) if placed.is_file() else ()
+        templates = {one.object_id: one.template for one in placements if one.template != "cells"}
+        return _RunFiles(grid, scan_to_room, instances, templates)
 
     def __repr__(self) -> str:
         return f"Run({str(self.folder)!r})"
@@ -250,6 +254,15 @@ class Run:
             return _img(self.room.plan())
         with Image.open(path) as picture:
             return _img(picture.resize((640, 480)))
+
+
+class _RunFiles(NamedTuple):
+    """The contents of the files of a run that belong together."""
+
+    grid: OccupancyGrid
+    scan_to_room: np.ndarray
+    instances: tuple[ObjectInstance, ...]
+    templates: dict[int, str]
 
 
 def load(path: str | Path) -> "Run | GeneratedRoom | Dataset":

@@ -1,6 +1,7 @@
 """Share a room as one file: a page that opens from disk, or a film of the room coming together."""
 
 import os
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,14 +83,17 @@ def share(
         frames = write_film(path_of(source), target, progress)
         return SharedFile(target, target.stat().st_size, frames=frames)
     from world2minecraft.core.files import write_bytes
+    from world2minecraft.core.whole_reads import unchanged
     from world2minecraft.sceneforge.share.page import room_page
     from world2minecraft.sceneforge.share.room_data import SharedRoom
 
     progress("share", 0, 1)  # Before any work: kernels are compiled now, if they are not yet.
-    room = SharedRoom.read(path_of(source), title)
-    progress("share", 1, 1)
-    place = None if capture is None else Path(capture)
-    page, count = room_page(room, photos, place, progress)
+    room_folder = path_of(source)
+    with unchanged(room_folder) if room_folder.is_dir() else nullcontext():
+        room = SharedRoom.read(room_folder, title)
+        progress("share", 1, 1)
+        place = None if capture is None else Path(capture)
+        page, count = room_page(room, photos, place, progress)
     write_bytes(target, page)
     return SharedFile(target, len(page), things=len(room.landmarks), photos=count)
 

@@ -8,12 +8,13 @@ import json
 import os
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from world2minecraft.core.errors import InputError, OutputError, UsageError
 from world2minecraft.core.locks import LOCK_FILE, folder_lock
+from world2minecraft.core.whole_reads import CHANGING, changing
 
 FREE_BYTES = 64 << 20  # A reconstruction of one room writes 1 to 20 MB.
 DRAFT, REPLACED = ".part", ".replaced"  # In the output folder, while a command writes it.
@@ -26,12 +27,16 @@ class FolderKind:
 
     Attributes:
         markers: Files that mark a folder as the program's own, each with a key that it contains if
-            it is JSON, or an empty text if its name suffices.
+            it is JSON, or in its first line if it is JSON lines, or an empty text if its name
+            suffices.
         names: Files and folders that commands of this kind write, as patterns such as ``*.png``.
+        in_place: Whether commands replace files one by one, so that readers of other processes
+            refuse the folder meanwhile.
     """
 
     markers: Mapping[str, str]
     names: tuple[str, ...]
+    in_place: bool = False
 
 
 @contextmanager
@@ -69,8 +74,10 @@ def output_folder(
         with folder_lock(folder, work) as lock:
             was_empty = not others_in(folder, source)
             shutil.rmtree(folder / DRAFT, ignore_errors=True)  # Of a killed process.
+            changes = kind.in_place and not was_empty
             try:
-                yield
+                with changing(folder, work) if changes else nullcontext():
+                    yield
             except BaseException:
                 rest = others_in(folder, source) if was_empty else []
                 if not keep:
@@ -122,7 +129,7 @@ def is_owned(folder: Path, kind: FolderKind) -> bool:
 def others_in(folder: Path, source: Path | None = None) -> list[Path]:
     """Return the contents of a folder except the lock, the draft and what contains the source."""
     found = folder.iterdir() if folder.is_dir() else ()
-    others = sorted(path for path in found if path.name not in (LOCK_FILE, DRAFT))
+    others = sorted(path for path in found if path.name not in (LOCK_FILE, DRAFT, CHANGING))
     if source is None:
         return others
     place = source.resolve()
@@ -170,8 +177,9 @@ def draft_of(folder: Path, changed: Iterable[str] = ()) -> Iterator[Path]:
             if (folder / name).is_dir():
                 shutil.copytree(folder / name, draft / name, symlinks=True)
         yield draft
-        for path in sorted(draft.iterdir(), key=lambda path: path.stat().st_mtime_ns):
-            _put_in_place(path, folder / path.name)
+        with changing(folder, "replaced"):
+            for path in sorted(draft.iterdir(), key=lambda path: path.stat().st_mtime_ns):
+                _put_in_place(path, folder / path.name)
     except InputError as error:
         if not Path(error.path).is_relative_to(draft):
             raise
@@ -206,8 +214,12 @@ def _is_marker(path: Path, key: str) -> bool:
     if not path.is_file() or not key:
         return path.is_file()
     try:
-        too_large = path.stat().st_size > MAX_MARKER_BYTES
-        data = None if too_large else json.loads(path.read_bytes())
+        with path.open("rb") as stream:
+            data = json.loads(
+                stream.readline(MAX_MARKER_BYTES)
+                if path.suffix == ".jsonl"
+                else stream.read(MAX_MARKER_BYTES)
+            )
     except OSError:
         return True  # Windows: a lock that is held.
     except (ValueError, RecursionError):

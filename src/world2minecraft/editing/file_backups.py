@@ -27,6 +27,7 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.core.files import read_bytes, read_json, write_bytes, write_json
 from world2minecraft.core.types import BlockEdit
+from world2minecraft.core.whole_reads import changing, remove_mark
 from world2minecraft.editing.journal import write_journal
 from world2minecraft.minecraft.worlds.level_dat import UNDO_FOLDER as FOLDER
 from world2minecraft.minecraft.worlds.session_lock import session_lock
@@ -130,8 +131,9 @@ def commit_step(
         _forget(step)
         raise _as_output_error(world, error) from error
     try:
-        for number, entry in enumerate(step.files):
-            _exchange(step, number, entry)
+        with changing(world, "changed"):
+            for number, entry in enumerate(step.files):
+                _exchange(step, number, entry)
     except OSError as error:
         _restore(step)
         raise _as_output_error(world, error) from error
@@ -154,6 +156,7 @@ def recover(world: Path) -> list[Step]:
             reason = f"{changed[0]} has changed since a build was interrupted"
             raise ConflictError(world, f"{reason}; restore the old files with w2m undo --force")
         _restore(step)
+    remove_mark(world)  # Of a process that was killed when all its files were in place.
     with suppress(OSError):
         (world / FOLDER).rmdir()  # Where it is empty.
     return cut_off
@@ -270,15 +273,16 @@ def _exchange(step: Step, number: int, entry: FileChange) -> None:
 
 
 def _restore(step: Step) -> None:
-    for number, entry in reversed([*enumerate(step.files)]):
-        target = step.world / entry.path
-        if entry.before is None:
-            target.unlink(missing_ok=True)
-        elif _checksum(target) != entry.before:
-            copy = step.folder / "old" / str(number)
-            os.chmod(copy, entry.mode)
-            os.utime(copy, ns=(entry.time_ns, entry.time_ns))
-            os.replace(copy, target)  # Cut off after this, the file is as it was before.
+    with changing(step.world, "changed"):
+        for number, entry in reversed([*enumerate(step.files)]):
+            target = step.world / entry.path
+            if entry.before is None:
+                target.unlink(missing_ok=True)
+            elif _checksum(target) != entry.before:
+                copy = step.folder / "old" / str(number)
+                os.chmod(copy, entry.mode)
+                os.utime(copy, ns=(entry.time_ns, entry.time_ns))
+                os.replace(copy, target)  # Cut off after this, the file is as it was before.
     for name in sorted(step.made, reverse=True):
         with suppress(OSError):
             (step.world / name).rmdir()  # Where nothing came into it since.

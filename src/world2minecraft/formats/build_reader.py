@@ -1,6 +1,7 @@
 """Read any build as a volume: a run folder, its build, a world, or a block file."""
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,6 +11,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.core.whole_reads import unchanged
 from world2minecraft.formats.volume_crop import Box, crop_volume, trim_air
 from world2minecraft.formats.volume_formats import find_blocks, read_volume, with_scene_labels
 from world2minecraft.minecraft.worlds.world_writer import read_level, read_world
@@ -78,6 +80,13 @@ def read_build(
     """
     if not path.exists():
         raise InputError(path, "not found")
+    with unchanged(path) if path.is_dir() else nullcontext():
+        return _read_build(path, box, choose)
+
+
+def _read_build(
+    path: Path, box: Box | None, choose: Callable[[Path], tuple[Box, str]]
+) -> BuildSource:
     blocks = find_blocks(path)
     if (blocks / "level.dat").is_file():
         source = _read_world(blocks, path, box, choose)

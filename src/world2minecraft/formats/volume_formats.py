@@ -6,6 +6,7 @@ file.
 """
 
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Literal
@@ -15,6 +16,7 @@ import numpy as np
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.core.whole_reads import unchanged
 from world2minecraft.formats.object_names import name_table, read_run_names, read_world_names
 from world2minecraft.formats.world_labels import Scene, read_scene
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
@@ -172,6 +174,11 @@ def read_volume(path: str | Path, losses: Losses | None = None) -> BlockVolume:
     source, counted = Path(path), Losses() if losses is None else losses
     if not source.exists():
         raise InputError(source, "not found")
+    with unchanged(source) if source.is_dir() else nullcontext():
+        return _read_volume(source, counted)
+
+
+def _read_volume(source: Path, counted: Losses) -> BlockVolume:
     for form in scene_formats():
         if form.is_at(source):
             return form.read(source, counted)

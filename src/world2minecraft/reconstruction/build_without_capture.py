@@ -14,6 +14,7 @@ from world2minecraft.core.files import write_bytes
 from world2minecraft.core.output_folders import draft_of, output_folder
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.formats.occupancy_files import read_occupancy
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.minecraft.formats import FORMATS, read_blocks
@@ -89,7 +90,7 @@ def blocks_of(
         return read_blocks(source)
     if source.is_dir():
         check_finished(source)
-        return built_volume(source, parameters)
+        return read_whole(source, lambda: built_volume(source, parameters))
     grid = read_occupancy(source, classes)
     with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
         folder = Path(scratch)
@@ -107,6 +108,7 @@ def is_block_file(source: Path) -> bool:
 
 def _copy_run(source: Path, out: Path) -> None:
     check_finished(source)
-    for name in (*BUILT_FROM, *MORE_FILES):
-        if (source / name).is_file():
-            write_bytes(out / name, (source / name).read_bytes())
+    names = [name for name in (*BUILT_FROM, *MORE_FILES) if (source / name).is_file()]
+    files = read_whole(source, lambda: [(source / name).read_bytes() for name in names])
+    for name, data in zip(names, files, strict=True):
+        write_bytes(out / name, data)

@@ -33,6 +33,7 @@ RUN = FolderKind(
         "preview.png", "repairs.json", "report.html", "report.json", "room.npz", "run.json",
         "scan.json",
     ),
+    in_place=True,
 )  # fmt: skip
 BUILT_FROM = ("room.npz", "objects.json", "placements.json")  # Files from which a world is built.
 

@@ -20,6 +20,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.errors import InputError, LimitError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.editing.scene import objects_of
 from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects_and_placements import read_objects, read_placements
@@ -169,6 +170,10 @@ def read_source_rooms(source: Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
 
 
 def _read_run(folder: Path) -> OpenedScene:
+    return read_whole(folder, lambda: _read_run_files(folder))
+
+
+def _read_run_files(folder: Path) -> OpenedScene:
     if not (folder / "room.npz").is_file():
         raise InputError(folder, "room.npz not found; create a run with w2m reconstruct")
     grid, scan_to_room = read_room(folder / "room.npz")

@@ -171,6 +171,14 @@ def test_hugging_face_reads_it(tmp_path, monkeypatch, pictures):
         np.testing.assert_array_equal(depth, np.rint(whole.depth_m * 1000))
 
 
+def test_hugging_face_reads_a_set_without_splits(tmp_path, monkeypatch):
+    monkeypatch.setenv("HF_HUB_OFFLINE", "1")
+    datasets = pytest.importorskip("datasets")
+    write_store(tmp_path / "data", [replace(one, split="") for one in samples(2)], files=PNG)
+    read = datasets.load_dataset(str(tmp_path / "data"), cache_dir=str(tmp_path / "cache"))
+    assert {split: len(rows) for split, rows in read.items()} == {"full": 4}
+
+
 # Damage.
 
 

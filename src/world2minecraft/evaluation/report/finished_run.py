@@ -14,6 +14,7 @@ from world2minecraft.core.types import (
     OccupancyGrid,
     Placement,
 )
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects_and_placements import read_objects, read_placements
 from world2minecraft.formats.run_arrays import read_evidence, read_room
@@ -37,11 +38,16 @@ class FinishedScene:
 
 
 def read_finished(folder: Path) -> FinishedScene:
-    """Read the files of a finished run.
+    """Read the files of a finished run, all of one state of the folder.
 
     Raises:
         InputError: If a file is missing or damaged.
+        ConflictError: If another process is changing the run.
     """
+    return read_whole(folder, lambda: _read_finished(folder))
+
+
+def _read_finished(folder: Path) -> FinishedScene:
     grid, _ = read_room(folder / "room.npz")
     return FinishedScene(
         rooms=read_rooms(folder, grid),

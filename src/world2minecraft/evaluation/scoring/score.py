@@ -15,6 +15,7 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
+from world2minecraft.core.whole_reads import unchanged
 from world2minecraft.evaluation.metrics.calibration import count_calibration
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.evaluation.metrics.surface_scores import (
@@ -115,10 +116,13 @@ def evaluate_reconstruction(out: Path, truth: Path) -> dict[str, Any]:
 
     Raises:
         InputError: If a file of the run or of the ground truth is missing or damaged.
+        ConflictError: If another process is changing the run.
     """
-    known = truth_of_run(out, truth)
-    grid, scan_to_room = read_room(out / "room.npz")
-    return score_run(out, see_truth(known, used_frames(out, known), scan_to_room, grid.voxel_m))
+    with unchanged(out):
+        known = truth_of_run(out, truth)
+        grid, scan_to_room = read_room(out / "room.npz")
+        seen = see_truth(known, used_frames(out, known), scan_to_room, grid.voxel_m)
+        return score_run(out, seen)
 
 
 def see_truth(

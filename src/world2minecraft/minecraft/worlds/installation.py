@@ -8,6 +8,7 @@ from pathlib import Path
 from world2minecraft.core.errors import InputError, OutputError
 from world2minecraft.core.file_names import free_name, portable_name
 from world2minecraft.core.files import read_bytes, write_bytes
+from world2minecraft.core.whole_reads import unchanged
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
 from world2minecraft.minecraft.versions import game_versions
 from world2minecraft.minecraft.worlds.launchers import Game
@@ -33,6 +34,7 @@ def install_world(world: Path, saves: Path, name: str | None = None) -> Path:
     Raises:
         InputError: If the world is not found.
         UsageError: If the name has no valid characters for a folder name.
+        ConflictError: If another process changes the world meanwhile.
         OutputError: If the folder cannot be written or the disk is full.
     """
     level = read_level(world)
@@ -46,10 +48,11 @@ def install_world(world: Path, saves: Path, name: str | None = None) -> Path:
         raise OutputError(saves, f"cannot be written: {error.strerror or error}") from error
     try:
         os.chmod(draft, 0o755)
-        for source in files:
-            target = draft / source.relative_to(world)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(source, target)
+        with unchanged(world):
+            for source in files:
+                target = draft / source.relative_to(world)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(source, target)
         return _put_under_free_name(draft, saves, wanted)
     except OSError as error:
         raise OutputError(saves, f"cannot be written: {error.strerror or error}") from error

@@ -9,6 +9,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.minecraft.bit_packing import SECTION, unpack_section
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, tree_bytes, unpack
 from world2minecraft.minecraft.signs import upgrade_signs
@@ -50,8 +51,13 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
         InputError: If the world is not found.
         DamagedFileError: If a file of the world is damaged.
         LimitError: If the world is too large. Use a box in this case.
+        ConflictError: If another process is changing the world.
     """
     root = Path(folder)
+    return read_whole(root, lambda: _read_world(root, box))
+
+
+def _read_world(root: Path, box: Box | None) -> BlockVolume:
     read_level(root)
     regions = region_files(root)
     if not regions:

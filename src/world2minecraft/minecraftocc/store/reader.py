@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError, UsageError
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.formats.object_names import NamedObject
 from world2minecraft.minecraftocc.object_table import read_object_table
 from world2minecraft.minecraftocc.store.folder import INDEX, objects_path, read_classes, read_meta
@@ -201,8 +202,12 @@ def open_store(path: str | Path) -> OccStore:
             sample.colour, sample.depth_m, sample.occ.labels
     """
     folder = Path(path)
-    meta = read_meta(folder)
-    return OccStore(folder, meta, read_classes(folder), read_index(folder / INDEX))
+    return read_whole(
+        folder,
+        lambda: OccStore(
+            folder, read_meta(folder), read_classes(folder), read_index(folder / INDEX)
+        ),
+    )
 
 
 def _data(stream: io.BytesIO, member: Any) -> bytes:

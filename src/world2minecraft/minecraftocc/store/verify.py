@@ -13,6 +13,7 @@ from world2minecraft.core.checksums import (
 )
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.progress import Progress, no_progress
+from world2minecraft.core.whole_reads import unchanged
 from world2minecraft.minecraftocc.store.folder import (
     DATASET,
     INDEX,
@@ -70,8 +71,14 @@ def verify_store(folder: str | Path, progress: Progress = no_progress) -> Verify
         InputError: If the folder is not a data set, or if the data set is not complete.
         DamagedFileError: If the data set has no list of files and its index or ``dataset.json``
             cannot be read.
+        ConflictError: If another process changes the data set meanwhile.
     """
     root = Path(folder)
+    with unchanged(root):
+        return _verify(root, progress)
+
+
+def _verify(root: Path, progress: Progress) -> VerifyReport:
     sums, faults = _read_list(root)
     if not sums:
         return _verify_unlisted(root, faults, progress)

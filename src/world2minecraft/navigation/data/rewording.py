@@ -15,6 +15,7 @@ from pathlib import Path
 from world2minecraft.core.errors import BudgetError, ServerError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.progress import Progress, no_progress
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.navigation.language.human_instructions import (
     read_annotations,
     with_annotations,
@@ -56,6 +57,10 @@ def read_set(folder: str | Path) -> NavigationSet:
         InputError: If a file is missing or invalid.
     """
     place = Path(folder)
+    return read_whole(place, lambda: _read_set(place))
+
+
+def _read_set(place: Path) -> NavigationSet:
     walks = read_trajectories(place)
     return NavigationSet(
         read_items(place), walks, read_episodes(place), _names(place / ABOUT, walks)

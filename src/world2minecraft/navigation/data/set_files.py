@@ -16,6 +16,7 @@ from world2minecraft.core.checksums import (
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json, write_text
 from world2minecraft.core.progress import Progress, no_progress
+from world2minecraft.core.whole_reads import unchanged
 from world2minecraft.navigation.records import (
     ABOUT,
     ANNOTATIONS,
@@ -134,8 +135,14 @@ def verify_set(folder: str | Path, progress: Progress = no_progress) -> SetRepor
     Raises:
         InputError: If the folder is not a navigation set.
         DamagedFileError: If a set without a list has an invalid record.
+        ConflictError: If another process changes the set meanwhile.
     """
     root = Path(folder)
+    with unchanged(root):
+        return _verify(root, progress)
+
+
+def _verify(root: Path, progress: Progress) -> SetReport:
     if not (root / CHECKSUMS).is_file():
         fault = (f"{CHECKSUMS}: missing",) if _states_list(root) else ()
         return _verify_unlisted(root, fault, progress)

@@ -10,6 +10,7 @@ from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageEr
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.core.output_folders import others_in
 from world2minecraft.core.progress import Progress, no_progress
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.navigation.exporters import easyr1, llamafactory
 from world2minecraft.navigation.exporters.options import ExportedFile, ExportOptions, group_items
 from world2minecraft.navigation.exporters.pictures import SetPictures
@@ -83,7 +84,7 @@ def export_set(
     choices = {"format": format, **chosen.as_data()}
     _check_folder(root, choices)
     progress("export", 0, 2, "reading")
-    write = _plan_export(source, format, chosen)
+    write = read_whole(source, lambda: _plan_export(source, format, chosen))
     progress("export", 1, 2, "writing")
     write_json(root / RECORD, {"choices": choices, "version": __version__})
     written = write(root)

@@ -1,6 +1,7 @@
 """Read finished runs, join them, and write the result as one run with its world."""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from world2minecraft.core.files import write_json
 from world2minecraft.core.output_folders import check_writable
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.formats.layout import read_rooms, write_layouts
 from world2minecraft.formats.objects_and_placements import (
     read_objects,
@@ -47,15 +49,8 @@ def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
         raise UsageError(f"expected 2 to {MAX_RUNS} finished runs to join, got {len(folders)}")
     runs: list[Run] = []
     for folder in folders:
-        check_finished(folder)
-        grid, _ = read_room(folder / "room.npz")
-        layouts = read_rooms(folder, grid)
-        if not layouts:
-            raise InputError(folder, "layout.json is missing or empty; reconstruct the room again")
         name = _name(folder, [run.name for run in runs])
-        objects = read_objects(folder / "objects.json", grid)
-        placed = read_placements(folder / "placements.json")
-        runs.append(Run(name, grid, objects, placed, layouts))
+        runs.append(read_whole(folder, partial(_read_run, folder, name)))
     sizes = sorted({run.grid.voxel_m for run in runs})
     if len(sizes) > 1:
         raise UsageError(
@@ -63,6 +58,17 @@ def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
             "them with the same cell size (--voxel)"
         )
     return tuple(runs)
+
+
+def _read_run(folder: Path, name: str) -> Run:
+    check_finished(folder)
+    grid, _ = read_room(folder / "room.npz")
+    layouts = read_rooms(folder, grid)
+    if not layouts:
+        raise InputError(folder, "layout.json is missing or empty; reconstruct the room again")
+    objects = read_objects(folder / "objects.json", grid)
+    placed = read_placements(folder / "placements.json")
+    return Run(name, grid, objects, placed, layouts)
 
 
 def _name(folder: Path, taken: Sequence[str]) -> str:

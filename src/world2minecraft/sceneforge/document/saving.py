@@ -15,6 +15,7 @@ from typing import Any
 
 from world2minecraft.core.errors import ConflictError, InputError
 from world2minecraft.core.files import read_json, write_bytes, write_json
+from world2minecraft.core.whole_reads import changing
 from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.formats.objects_and_placements import write_objects, write_placements
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
@@ -130,9 +131,10 @@ def saved_hashes(document: Path) -> set[str]:
 
 
 def _finish(document: Path, target: Path, pending: Mapping[str, Any]) -> None:
-    for name, value in pending["files"].items():
-        if sha256(target / name) != value:
-            write_bytes(target / name, (document / STAGED / name).read_bytes())
+    with changing(target, "saved"):
+        for name, value in pending["files"].items():
+            if sha256(target / name) != value:
+                write_bytes(target / name, (document / STAGED / name).read_bytes())
     known = sorted(pending["files"].values())
     write_json(document / SAVED_FILE, {"rev": pending["rev"], "known": known})
     _remove_staged(document / STAGED)
