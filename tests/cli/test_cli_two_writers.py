@@ -113,6 +113,7 @@ WRITERS = {
         out, rooms=2, images=2, size=(32, 24)
     ),
     "vln build": lambda out, run: w2m.build_navigation_set([run], out, size=(64, 36)),
+    "render": lambda out, run: w2m.render_files(run, out, view="orbit", frames=2, size=(64, 36)),
 }
 
 
@@ -240,6 +241,20 @@ def test_a_folder_of_somebody_else_is_left_alone(verb, run, images, tmp_path, ca
     assert f"error: {folder} contains other files (notes.txt, objects.json, room.npz); " in error
     assert f"choose another folder, or pass force (--force) to {replaced}" in error
     assert contents(folder) == before and not (folder / ".lock").exists()
+
+
+def test_pictures_of_somebody_else_are_left_alone(run, tmp_path, capsys):
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    (folder / "000000.png").write_text("mine")
+    words = ["render", str(run), "--orbit", "--frames", "2", "--size", "64x36", "-o", str(folder)]
+    assert cli.run(words) == 2
+    error = capsys.readouterr().err
+    assert "contains other files (000000.png); choose another folder, or pass force" in error
+    assert contents(folder) == {"000000.png": b"mine"}
+    assert cli.run([*words, "--force"]) == 0
+    assert (folder / "000000.png").read_bytes() != b"mine"
+    assert cli.run(words) == 0  # It is the program's own now.
 
 
 def test_force_replaces_what_was_told_and_keeps_the_rest(run, tmp_path):

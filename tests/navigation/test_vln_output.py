@@ -13,6 +13,7 @@ from world2minecraft.api.navigation import build_navigation_set
 from world2minecraft.cli import model_options
 from world2minecraft.cli.vln.live_view import live_view
 from world2minecraft.core.errors import UsageError
+from world2minecraft.core.locks import Lock
 from world2minecraft.navigation.agents.types import Decision
 from world2minecraft.navigation.types import Move
 
@@ -109,3 +110,26 @@ def test_the_command_has_the_defaults_of_the_api():
     assert model_options.DEFAULTS.value() == ModelOptions()
     cold = dataclasses.replace(model_options.DEFAULTS, temperature=-1.0)
     assert cold.value().temperature is None
+
+
+@pytest.mark.parametrize("verb", ["run", "evaluate"])
+def test_results_of_somebody_else_are_left_alone(verb, folder, flat_path, tmp_path, capsys):
+    out, own = tmp_path / "mine", "answers.jsonl" if verb == "evaluate" else "trace.jsonl"
+    out.mkdir()
+    (out / own).write_text("mine")
+    words = {
+        "run": [str(flat_path), "Go to the piano", "--no-video"],
+        "evaluate": [str(folder), "--agent", "oracle", "--split", "all"],
+    }[verb]
+    words = ["vln", verb, *words, "--out", str(out)]
+    assert cli.run(words) == 2
+    error = capsys.readouterr().err
+    assert f"contains other files ({own}); choose another folder, or pass force" in error
+    assert [path.name for path in out.iterdir()] == [own] and (out / own).read_text() == "mine"
+    assert cli.run([*words, "--force"]) == 0
+    assert (out / own).read_text() != "mine"
+    assert cli.run(words) == 0  # It is the program's own now.
+    lock = Lock(out / ".lock", "written")
+    lock.acquire()
+    assert cli.run(words) == 3 and "is being written by process" in capsys.readouterr().err
+    lock.release()

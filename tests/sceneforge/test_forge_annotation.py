@@ -1,13 +1,14 @@
 """The annotation page's server: what it shows, checks and keeps, and whom it lets in."""
 
 import json
+import threading
 
 import numpy as np
 import pytest
 from PIL import Image
 from starlette.testclient import TestClient
 
-from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.navigation.language.human_instructions import (
     read_annotations,
     with_annotations,
@@ -138,6 +139,40 @@ def test_a_set_must_be_one(tmp_path, folder):
     (folder / "annotations.jsonl").write_text(json.dumps({**line, "level": "dance"}))
     with pytest.raises(DamagedFileError, match="line 1: level must be one of goal, route"):
         AnnotationStore(folder)
+
+
+def test_a_file_of_somebody_else_is_left_alone(folder):
+    """Lines with further values would lose them, so they are not rewritten without force."""
+    (folder / "mine.csv").write_text("trajectory_id,instruction\nt0,Walk to the piano.\n")
+    with pytest.raises(UsageError, match="written as JSON lines; choose a name such as mine.jsonl"):
+        AnnotationStore(folder, folder / "mine.csv")
+    out = folder / "mine.jsonl"
+    line = {"trajectory_id": "t0", "instruction": "Walk to the piano over there.", "note": "mine"}
+    out.write_text(json.dumps(line))
+    before = out.read_bytes()
+    with pytest.raises(UsageError, match="contains other data than annotations; choose another"):
+        AnnotationStore(folder, out)
+    assert out.read_bytes() == before
+    AnnotationStore(folder, out, force=True).add(1, "goal", GOOD["text"], "Ada")
+    assert [name for name, _ in read_annotations(out)] == ["t0", "t1"]
+
+
+def test_two_pages_lose_no_line_of_each_other(folder):
+    pages = [AnnotationStore(folder), AnnotationStore(folder)]
+    texts = [f"Walk over to the piano, please, {n} steps." for n in range(6)]
+
+    def write(page):
+        for text in texts[page::2]:
+            pages[page].add(1, "goal", text, "Ada")
+
+    threads = [threading.Thread(target=write, args=(page,)) for page in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    found = read_annotations(folder / "annotations.jsonl")
+    assert sorted(one.text for _, one in found) == texts
+    assert not list(folder.glob(".annotations*"))
 
 
 def test_the_server_serves(folder):

@@ -76,6 +76,7 @@ def run_agent(
     video: bool = True,
     server: str = "",
     max_pixels: int = MAX_PX,
+    force: bool = False,
     model: ModelOptions | None = None,
     observers: "Sequence[Observer]" = (),
     on_page: Callable[[str], object] = webbrowser.open,
@@ -108,13 +109,16 @@ def run_agent(
         server: HOST or HOST:PORT of a game server that contains the scene. The agent then controls
             a player on this server.
         max_pixels: Maximum image size in pixels for a model. Larger images are scaled down.
+        force: Write into a folder that contains other files.
         model: Options for the language model.
         observers: Callbacks that are called during each walk. See
             ``navigation.running.episode_runner.Observer``.
         on_page: Callback that receives the URL of the page on which a human controls the walk.
 
     Raises:
-        UsageError: If a name or an option is invalid.
+        UsageError: If a name or an option is invalid, or the folder contains other files without
+            ``force``.
+        ConflictError: If another process writes the folder.
         InputError: If the scene or the goal is not found.
         ServerError: If a model does not reply.
         BudgetError: If a limit on requests or cost is reached.
@@ -125,7 +129,8 @@ def run_agent(
         >>> walk.summary["spl"] > 0.9
         True
     """
-    from world2minecraft.navigation.agent_runs import RunRequest, check_out, run_walks
+    from world2minecraft.core.output_folders import output_folder
+    from world2minecraft.navigation.agent_runs import AGENT_RUN, RunRequest, check_out, run_walks
     from world2minecraft.navigation.agents import make_agent
     from world2minecraft.navigation.running.sentence_goals import GoalRequest
 
@@ -142,14 +147,15 @@ def run_agent(
         return {"model": chats[0].name, "cost": chats[0].ledger.to_json()} if chats else {}
 
     how: dict[str, Any] = {"map_kind": map_kind, "max_px": max_pixels}
-    walker = (
-        make_agent(agent, chat, chunk=chunk, history=history, **how)
-        if isinstance(agent, str)
-        else agent
-    )
     wish = GoalRequest(instruction, goal, _stance(start), moves, max_steps)
     request = RunRequest(place, folder, wish, count, seed, video, server, observers)
-    episodes, result = run_walks(request, walker, on_page, facts)
+    with output_folder(folder, AGENT_RUN, "written", force=force):
+        walker = (
+            make_agent(agent, chat, chunk=chunk, history=history, **how)
+            if isinstance(agent, str)
+            else agent
+        )
+        episodes, result = run_walks(request, walker, on_page, facts)
     return AgentRun(folder, result, episodes, **facts())
 
 
@@ -194,6 +200,7 @@ def evaluate_agent(
     training: str = "none",
     jobs: int = 1,
     max_pixels: int = MAX_PX,
+    force: bool = False,
     model: ModelOptions | None = None,
     progress: Progress = no_progress,
 ) -> AgentAnswers:
@@ -219,11 +226,14 @@ def evaluate_agent(
         training: How the model was trained, for result tables: ``none``, ``sft`` or ``rft``.
         jobs: Number of concurrent requests.
         max_pixels: Maximum image size in pixels for a model. Larger images are scaled down.
+        force: Write into a folder that contains other files.
         model: Options for the language model.
         progress: Callback that is called after each answer.
 
     Raises:
-        UsageError: If a name or an option is invalid.
+        UsageError: If a name or an option is invalid, or the folder contains other files without
+            ``force``.
+        ConflictError: If another process writes the folder.
         InputError: If the set cannot be read.
         ServerError: If the model does not reply.
         BudgetError: If a limit on requests or cost is reached.
@@ -234,6 +244,8 @@ def evaluate_agent(
         >>> w2m.evaluate_agent(tmp / "set", "oracle", out=tmp / "answers", split="all")
         AgentAnswers(..., oracle, ... items)
     """
+    from world2minecraft.core.output_folders import output_folder
+    from world2minecraft.navigation.agent_runs import AGENT_RUN
     from world2minecraft.navigation.records import read_items
     from world2minecraft.navigation.running.item_evaluation import (
         TRAININGS,
@@ -253,19 +265,20 @@ def evaluate_agent(
     folder = Path(out) if out is not None else default_run_folder(name)
     images = place if place.is_dir() else place.parent
     chat: ChatModel | None = None
-    if not isinstance(agent, str):
-        answerer = agent
-    elif chat := _chat_of(agent, folder, model):
-        answerer = _vlm_answerer(chat, images, style, max_pixels)
-    else:
-        training = "baseline"
-        answerer, items = _baseline(agent, every, items, images)
-    found = evaluate(items, answerer, jobs=jobs, progress=progress)
-    write_result(
-        folder,
-        found,
-        {"agent": answerer.name, "training": training, "style": style, "split": split},
-    )
+    with output_folder(folder, AGENT_RUN, "written", force=force):
+        if not isinstance(agent, str):
+            answerer = agent
+        elif chat := _chat_of(agent, folder, model):
+            answerer = _vlm_answerer(chat, images, style, max_pixels)
+        else:
+            training = "baseline"
+            answerer, items = _baseline(agent, every, items, images)
+        found = evaluate(items, answerer, jobs=jobs, progress=progress)
+        write_result(
+            folder,
+            found,
+            {"agent": answerer.name, "training": training, "style": style, "split": split},
+        )
     cost = {} if chat is None else chat.ledger.to_json()
     return AgentAnswers(folder, read_run_result(folder), len(items), cost)
 

@@ -506,7 +506,11 @@ class AnnotationPage:
 
 
 def annotation_page(
-    navigation_set: str | Path, out: str | Path | None = None, *, port: int | None = None
+    navigation_set: str | Path,
+    out: str | Path | None = None,
+    *,
+    port: int | None = None,
+    force: bool = False,
 ) -> AnnotationPage:
     """Prepare the web page on which people write instructions. Call ``run`` to serve it.
 
@@ -515,15 +519,16 @@ def annotation_page(
         out: File to append annotations to. Defaults to ``annotations.jsonl`` in the folder of the
             set.
         port: Port to listen on. Defaults to 8484, or to any free port if 8484 is in use.
+        force: Keep only the instructions of a file that contains other data.
 
     Raises:
         InputError: If the set cannot be read or contains no walks.
-        UsageError: If the port is in use.
+        UsageError: If the port is in use, or the file contains other data without ``force``.
     """
     from world2minecraft.sceneforge.annotation.app import annotation_server
     from world2minecraft.sceneforge.annotation.store import AnnotationStore
 
-    store = AnnotationStore(Path(navigation_set), None if out is None else Path(out))
+    store = AnnotationStore(Path(navigation_set), None if out is None else Path(out), force)
     return AnnotationPage(annotation_server(store, port), store.out, len(store.walks))
 
 

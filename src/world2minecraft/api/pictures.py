@@ -128,6 +128,7 @@ def render_files(
     device: str = "auto",
     threads: int | None = None,
     jobs: int = 1,
+    force: bool = False,
     progress: Progress = no_progress,
 ) -> "DrawnFiles":
     """Render a build to image files with their camera poses, without the game or a display.
@@ -170,15 +171,18 @@ def render_files(
         device: ``auto``, ``cpu`` or ``gpu``.
         threads: Number of threads. Defaults to all cores.
         jobs: Number of processes that render a folder or an animation.
+        force: Write into a folder that contains other files.
         progress: Callback that is called after each image, or after each path tracing pass.
 
     Returns:
         The written path, the camera poses and notes.
 
     Raises:
-        UsageError: If an argument is out of range or two arguments exclude each other.
+        UsageError: If an argument is out of range, two arguments exclude each other, or the folder
+            contains other files without ``force``.
         UnknownNameError: If a view or an output layer is unknown.
         InputError: If the build, the poses or a resource pack cannot be read.
+        ConflictError: If another process writes the folder.
         OutputError: If the files cannot be written.
 
     Example:
@@ -197,7 +201,7 @@ def render_files(
         tuple(Path(pack) for pack in packs), photo, photo_samples, device,
         _thread_count(threads), jobs,
     )  # fmt: skip
-    return _draw(path_of(source), out, seen, choice, outputs, files, settings, box, progress)
+    return _draw(path_of(source), out, seen, choice, outputs, files, settings, box, force, progress)
 
 
 def _draw(
@@ -209,11 +213,13 @@ def _draw(
     files: "FileFormats",
     settings: "DrawSettings",
     box: Box | None,
+    force: bool,
     progress: Progress,
 ) -> "DrawnFiles":
     """Check the arguments before any work, then read the build and render it."""
+    from world2minecraft.core.output_folders import check_owned, output_folder
     from world2minecraft.rendering.output import parse_layers
-    from world2minecraft.rendering.picture_files.destination import choose_target
+    from world2minecraft.rendering.picture_files.destination import RENDERED, choose_target
     from world2minecraft.rendering.picture_files.drawing import draw_files
     from world2minecraft.rendering.picture_files.source import read_source
 
@@ -226,7 +232,12 @@ def _draw(
         view.frames or len(view.poses) or None,
     )
     settings.light_of(view.kind)  # Raises where a value is out of range.
-    return draw_files(read_source(source, box), view, choice, target, settings, progress)
+    if target.medium != "folder":
+        return draw_files(read_source(source, box), view, choice, target, settings, progress)
+    check_owned(target.path, RENDERED, force)
+    read = read_source(source, box)
+    with output_folder(target.path, RENDERED, "rendered", force=force, keep=False):
+        return draw_files(read, view, choice, target, settings, progress)
 
 
 def _thread_count(asked: int | None) -> int:

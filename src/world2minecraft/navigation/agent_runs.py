@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.core.output_folders import FolderKind
 from world2minecraft.navigation.agents.types import Agent
 from world2minecraft.navigation.records import (
     EPISODES,
@@ -27,10 +28,18 @@ from world2minecraft.navigation.running.film import FILM_FILE, Film
 from world2minecraft.navigation.running.human_agent import HumanAgent
 from world2minecraft.navigation.running.sentence_goals import GoalRequest, episode_of_sentence
 from world2minecraft.navigation.running.simulator import SceneSimulator, Simulator
-from world2minecraft.navigation.running.trace import TraceWriter
+from world2minecraft.navigation.running.trace import TRACE_FILE, VIEWS_FOLDER, TraceWriter
 from world2minecraft.navigation.scene import VlnScene, open_scene
 from world2minecraft.navigation.types import Episode
 
+# A run or an evaluation of an agent. Both write result.json last.
+AGENT_RUN = FolderKind(
+    {"result.json": "kind", "replies.jsonl": "question"},
+    (
+        "result.json", EPISODES, "episodes", TRACE_FILE, VIEWS_FOLDER, FILM_FILE, "answers.jsonl",
+        "replies.jsonl",
+    ),
+)  # fmt: skip
 PageCallback = Callable[[str], object]
 
 

@@ -3,6 +3,7 @@
 import json
 from typing import TYPE_CHECKING
 
+from world2minecraft.cli.panels import Force
 from world2minecraft.cli.render import options as option
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ def run(
     device: option.Device = "auto",
     threads: option.Threads = None,
     jobs: option.Jobs = 1,
+    force: Force = False,
     as_json: option.AsJson = False,
 ) -> None:
     """Render a build without the game, a display or a graphics card.
@@ -82,7 +84,7 @@ def run(
             quality=quality, fps=fps, light=light, hour=hour, brightness=brightness,
             exposure=exposure, sun_shadow=sun_shadow, samples=samples, texture_px=textures,
             packs=pack or (), photo=photo, photo_samples=photo_samples, device=device,
-            threads=threads, jobs=jobs,
+            threads=threads, jobs=jobs, force=force,
             progress=compile_first(progress, "pictures"),
         )  # fmt: skip
     if as_json:

@@ -35,7 +35,19 @@ NoBrowser = Annotated[
 ]
 
 
-def run(folder: Folder, out: Out = None, port: Port = None, no_browser: NoBrowser = False) -> None:
+Replace = Annotated[
+    bool,
+    typer.Option("--force", help="Keep only the instructions of a file with other data."),
+]
+
+
+def run(
+    folder: Folder,
+    out: Out = None,
+    port: Port = None,
+    no_browser: NoBrowser = False,
+    force: Replace = False,
+) -> None:
     """Show each walk as images, and record the instructions that a person writes on three levels.
 
     The page reports problems while you write: a missing or ambiguous goal, turns that differ from
@@ -44,11 +56,11 @@ def run(folder: Folder, out: Out = None, port: Port = None, no_browser: NoBrowse
 
     Raises:
         InputError: If the set contains no walks or cannot be read.
-        UsageError: If the port is in use.
+        UsageError: If the port is in use, or the file contains other data.
     """
     from world2minecraft.api.navigation import annotation_page
 
-    page = annotation_page(folder, out, port=port)
+    page = annotation_page(folder, out, port=port, force=force)
     print(f"{page.walks} walks; instructions are appended to {page.out}")
     print(f"SceneForge: {page.link}", flush=True)
     print(f"next: w2m vln reword {folder} --annotations {page.out}")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from world2minecraft.cli import model_options as option
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import MORE, Force
 
 if TYPE_CHECKING:
     from world2minecraft.api.agents import AgentAnswers
@@ -77,6 +77,7 @@ def run(
     jobs: Jobs = 1,
     json_out: Json = False,
     max_pixels: option.MaxPixels = option.MAX_PIXELS,
+    force: Force = False,
     *,
     model_options: option.ModelOptions,
 ) -> None:
@@ -110,6 +111,7 @@ def run(
             training=training,
             jobs=jobs,
             max_pixels=max_pixels,
+            force=force,
             model=model_options.value(),
             progress=progress,
         )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from world2minecraft.cli import model_options as option
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import MORE, Force
 
 if TYPE_CHECKING:
     from world2minecraft.api.agents import AgentRun
@@ -130,6 +130,7 @@ def run(
     video: Video = True,
     server: Server = "",
     max_pixels: option.MaxPixels = option.MAX_PIXELS,
+    force: Force = False,
     no_browser: NoBrowser = False,
     *,
     model_options: option.ModelOptions,
@@ -173,6 +174,7 @@ def run(
             video=video,
             server=server,
             max_pixels=max_pixels,
+            force=force,
             model=model_options.value(),
             observers=[shown],
             on_page=on_page,

@@ -10,6 +10,7 @@ import numpy as np
 
 from world2minecraft.core.errors import OutputError, UsageError
 from world2minecraft.core.files import write_bytes, write_json
+from world2minecraft.core.output_folders import FolderKind
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.core.types.capture import MAX_SIDE_PX
 from world2minecraft.rendering import Picture
@@ -28,6 +29,10 @@ from world2minecraft.rendering.picture_files.shot_selection import Kind, Medium
 from world2minecraft.rendering.views import Shot, tour_line, write_lines
 
 LINES_FILE, NAMES_FILE = "poses.jsonl", "names.json"
+RENDERED = FolderKind(
+    {LINES_FILE: "camera_to_room"},
+    (LINES_FILE, NAMES_FILE, *(f"*{end}" for end in (*COLOUR_SUFFIXES, *DEPTH_SUFFIXES))),
+)
 _NUMBERS = ("block", "opaque", "state", "class", "instance", "face")
 
 

@@ -7,11 +7,14 @@ may have several instructions, from one or more people.
 
 import json
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import InputError, UsageError
-from world2minecraft.core.files import read_bytes, write_text
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.files import parse_json_lines, read_bytes, write_text
+from world2minecraft.core.locks import Lock, acquire_or_wait, wait_for_locks
 from world2minecraft.navigation.language.human_instructions import read_annotations
 from world2minecraft.navigation.language.instruction_checking import (
     check_instruction,
@@ -23,6 +26,7 @@ from world2minecraft.navigation.types import Trajectory
 
 MAX_IMAGE_BYTES = 32 << 20
 MAX_ANNOTATOR = 60
+KEYS = {"trajectory_id", "annotator_id", "instruction", "language", "level"}
 KINDS = {".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".png": "image/png"}
 
 
@@ -33,13 +37,21 @@ class AnnotationStore:
         folder: Folder of the data set, with ``trajectories.jsonl`` and the images it refers to.
         out: Annotation file to write. None writes ``annotations.jsonl`` in the folder.
 
+        force: Whether to replace an annotation file that was not written by this class.
+
     Raises:
+        UsageError: If the annotation file contains other data, without ``force``.
         InputError: If the data set has no walks, or if a file cannot be read.
         DamagedFileError: If a line of the annotation file is invalid.
     """
 
-    def __init__(self, folder: Path, out: Path | None = None):
+    def __init__(self, folder: Path, out: Path | None = None, force: bool = False):
         self.folder, self.out = folder, out or folder / ANNOTATIONS
+        if self.out.suffix.lower() == ".csv":
+            raise UsageError(
+                f"{self.out}: annotations are written as JSON lines; choose a name such as "
+                f"{self.out.with_suffix('.jsonl').name}"
+            )
         self.walks: list[Trajectory] = read_trajectories(folder)
         if not self.walks:
             raise InputError(folder, "contains no walks; create a data set with w2m vln build")
@@ -48,6 +60,11 @@ class AnnotationStore:
         self._names = {scene: landmark_names_of(self.walks, scene) for scene in sorted(scenes)}
         self._lock = threading.Lock()
         self._lines = self._read()
+        if not force and self.out.exists() and not _is_plain(self.out):
+            raise UsageError(
+                f"{self.out} contains other data than annotations; choose another file (--out), or "
+                "pass force (--force) to keep only its instructions"
+            )
 
     def listed(self) -> list[dict[str, Any]]:
         """Return a summary of each walk, with the number of instructions written for it."""
@@ -141,13 +158,27 @@ class AnnotationStore:
             "language": language,
             "level": level,
         }
-        with self._lock:
+        with self._lock, self._file_lock():
+            self._lines = self._read()  # Another page may have added to it.
             if line not in self._lines:
-                lines = [*self._lines, line]
-                texts = [json.dumps(each, ensure_ascii=False) for each in lines]
-                write_text(self.out, "\n".join(texts) + "\n")
-                self._lines = lines
+                self._lines = [*self._lines, line]
+                write_text(self.out, self._text())
         return line
+
+    def _text(self) -> str:
+        return "".join(f"{json.dumps(each, ensure_ascii=False)}\n" for each in self._lines)
+
+    @contextmanager
+    def _file_lock(self) -> Iterator[None]:
+        """Hold the lock of the annotation file, after other pages have released it."""
+        self.out.parent.mkdir(parents=True, exist_ok=True)
+        lock = Lock(self.out.with_name(f".{self.out.name}.lock"), "annotated")
+        with wait_for_locks():
+            acquire_or_wait(lock)
+        try:
+            yield
+        finally:
+            lock.remove()
 
     def _walk(self, number: int) -> Trajectory:
         if not 0 <= number < len(self.walks):
@@ -169,3 +200,12 @@ class AnnotationStore:
             }
             lines.append(line)
         return lines
+
+
+def _is_plain(path: Path) -> bool:
+    """Return whether a file has only lines that this module writes, so that none loses a value."""
+    try:
+        rows = parse_json_lines(path.read_text("utf-8"), path)
+    except (DamagedFileError, UnicodeDecodeError):
+        return False
+    return all(row.keys() <= KEYS for _, row in rows)
