@@ -125,8 +125,8 @@ FOLDERS = ("build", "forge", "paper", "render", "train")
 WAITING_VERBS = frozenset((
     "build", "clean", "compare build", "convert", "dataset build", "dataset export",
     "dataset import", "dataset rooms", "dataset verify", "demo", "join", "occupy", "reconstruct",
-    "rooms generate", "rooms scan", "segment", "train", "undo", "vln build", "vln export",
-    "vln reword", "vln verify",
+    "render", "rooms generate", "rooms scan", "segment", "train", "undo", "vln build",
+    "vln evaluate", "vln export", "vln reword", "vln run", "vln verify",
 ))  # fmt: skip
 
 # A shell completion script sets this variable to request names.
