@@ -203,7 +203,7 @@ def test_huge_images_are_refused_from_their_header(tmp_path, views, size):
     ("bend", "words"),
     [
         (np.diag([-1.0, 1, 1, 1]), "is mirrored (determinant -1.000)"),
-        (np.diag([2.0, 2, 2, 1]), "is scaled by 2; poses must be rigid"),
+        (np.diag([2.0, 2, 2, 1]), "is scaled by 2; divide the rotation by the scale"),
         (
             np.array([[1, 0.02, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]),
             "is not orthonormal",

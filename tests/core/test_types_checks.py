@@ -7,6 +7,7 @@ from world2minecraft.core import types
 
 EYE = np.eye(4)
 MIRROR = np.diag([-1.0, 1.0, 1.0, 1.0])
+IS_MIRRORED = "but is mirrored (determinant -1.000); check for an axis flipped on export"
 SHEARED = EYE + np.outer([1.0, 0, 0, 0], [0, 0.01, 0, 0])
 OFF_LAST_ROW = EYE + np.outer([0, 0, 0, 1.0], [0, 0, 0.5, 0])
 CAMERA = types.Camera(4, 3, 2.0, 2.0, 2.0, 1.5)
@@ -149,17 +150,19 @@ BAD = [
     (
         types.View,
         dict(camera_to_scan=MIRROR),
-        f"camera_to_scan must be a rotation and a translation, got {MIRROR.tolist()}",
+        f"camera_to_scan must be a rotation and a translation, {IS_MIRRORED}",
     ),
     (
         types.View,
         dict(depth_to_colour=SHEARED),
-        f"depth_to_colour must be a rotation and a translation, got {SHEARED.tolist()}",
+        "depth_to_colour must be a rotation and a translation, but has a rotation that is not "
+        "orthonormal; export it again",
     ),
     (
         types.View,
         dict(camera_to_scan=OFF_LAST_ROW),
-        "camera_to_scan must end with the row 0 0 0 1, got [0.0, 0.0, 0.5, 1.0]",
+        "camera_to_scan must be a rotation and a translation, but ends with the row "
+        "[0.0, 0.0, 0.5, 1.0], not 0 0 0 1; transpose the matrix",
     ),
     (types.View, dict(camera_to_scan=np.eye(3)), "camera_to_scan must have shape 4x4, got (3, 3)"),
     (types.View, dict(colour_camera=None), "colour and colour_camera must be given together"),
@@ -221,7 +224,7 @@ BAD = [
     (
         types.GridEvidence,
         dict(grid_to_scan=MIRROR),
-        f"grid_to_scan must be a rotation and a translation, got {MIRROR.tolist()}",
+        f"grid_to_scan must be a rotation and a translation, {IS_MIRRORED}",
     ),
     (
         types.FusedEvidence,

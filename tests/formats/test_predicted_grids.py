@@ -248,9 +248,16 @@ def test_huge_shapes_are_refused_before_memory_is_taken(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"cam_pose": np.diag([1, 1, -1, 1.0])}, "cam_pose is not a rotation and a translation"),
-        ({"cam_pose": np.eye(3)}, "cam_pose must be 4 x 4 numbers below 1,000 km"),
-        ({"voxel_origin": np.full(3, np.nan)}, "voxel_origin must be 3 numbers below 1,000 km"),
+        (
+            {"cam_pose": np.diag([1, 1, -1, 1.0])},
+            "cam_pose is not a rotation and a translation: it is mirrored (determinant -1.000); "
+            "check for an axis flipped on export",
+        ),
+        ({"cam_pose": np.eye(3)}, "cam_pose must have shape 4x4, got (3, 3)"),
+        (
+            {"voxel_origin": np.full(3, 1e30)},
+            "voxel_origin is up to 1e+30 m, the limit is 2.1e+07 m; check the unit",
+        ),
         ({"voxel_m": np.array(7.0)}, "voxel_m must be 0.005 to 1 m, got 7"),
     ],
 )

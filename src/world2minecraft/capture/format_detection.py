@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from world2minecraft.capture.options import ScanOptions
+from world2minecraft.capture.pose_validation import move_near_origin
 from world2minecraft.capture.source_types import Capture, ConfigurableSource, Source
 from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
 from world2minecraft.core.errors import CaptureError
@@ -82,7 +83,8 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
     for inner in _candidate_places(place):
         for source in sources:
             if source.recognise(inner):
-                return replace(_read_source(source, inner, options), folder=place)
+                found = replace(_read_source(source, inner, options), folder=place)
+                return move_near_origin(found)
     kind = (
         "is empty"
         if empty

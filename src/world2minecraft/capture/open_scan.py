@@ -83,6 +83,7 @@ def open_scan(
         depth_kind=validated.capture.depth_kind,
         world_up=validated.capture.world_up,
         frame_sigmas=alignment.sigmas,
+        source_to_scan=validated.capture.source_to_scan,
     )
 
 

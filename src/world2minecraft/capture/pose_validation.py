@@ -1,18 +1,22 @@
 """Validation of camera poses: repair of small errors, and rejection of wrong poses."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.capture.source_types import FrameFiles
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import read_bytes
+from world2minecraft.core.types import checks
 
 ORTHONORMAL_TOLERANCE = 1e-3  # The shared kitchen is off by 4e-4; a scale of 1.001 is no slip.
 ROUNDING = 1e-12  # Rotations that are orthonormal to this tolerance are not changed.
 MAX_DISTANCE_M = 25.0  # Maximum distance from the cameras' centre within one room.
 MAX_POSE_BYTES = 10_000
+MAX_NEAR_M, OFFSET_STEP_M = 1000.0, 100.0  # A room keeps its coordinates; a survey is moved.
 
 
 def read_pose(path: AnyPath) -> np.ndarray:
@@ -53,36 +57,49 @@ def repair_pose(pose: np.ndarray, where: AnyPath, frame: str) -> np.ndarray:
     Raises:
         CaptureError: If the rotation is mirrored, scaled or not a rotation.
     """
+    if fault := checks.rigid_fault(pose, ORTHONORMAL_TOLERANCE):
+        raise CaptureError(where, f"the pose of {frame} {fault}")
     rotation = pose[:3, :3]
-    if not np.allclose(pose[3], [0, 0, 0, 1], rtol=0, atol=1e-6):
-        raise CaptureError(
-            where,
-            f"the last row of the pose of {frame} must be 0 0 0 1, got {pose[3].tolist()}; "
-            "transpose the matrix",
-        )
-    left, sizes, right = np.linalg.svd(rotation)
-    if np.linalg.det(rotation) < 0:
-        raise CaptureError(
-            where,
-            f"the pose of {frame} is mirrored (determinant {np.linalg.det(rotation):.3f}); "
-            "poses must be rotations, check for an axis flipped on export",
-        )
+    left, _, right = np.linalg.svd(rotation)
     off = np.abs(rotation @ rotation.T - np.eye(3)).max()
-    if off > ORTHONORMAL_TOLERANCE:
-        kind = (
-            f"is scaled by {sizes.mean():.4g}"
-            if np.ptp(sizes) < 0.01 * sizes[0]
-            else "is not orthonormal"
-        )
-        raise CaptureError(
-            where,
-            f"the rotation of {frame} {kind}; poses must be rigid: divide by the scale, or "
-            "export again",
-        )
     repaired = np.eye(4)
     repaired[:3, :3] = left @ right if off > ROUNDING else rotation
     repaired[:3, 3] = pose[:3, 3]
     return repaired
+
+
+def move_near_origin(capture: Capture) -> Capture:
+    """Return a capture with its poses near the origin, and what moved them.
+
+    Georeferenced positions, millions of metres from the origin, have a precision of half a metre in
+    float32. The first pose decides, so that parts of a capture are moved like the whole.
+    """
+    places = (
+        np.asarray(frame.camera_to_world, np.float64)[:3, 3]
+        for frame in capture.frames
+        if frame.camera_to_world is not None and not is_lost(frame.camera_to_world)
+    )
+    first = next(places, np.zeros(3))
+    if not MAX_NEAR_M < np.abs(first).max() <= checks.MAX_COORDINATE_M:
+        return capture
+    move = np.eye(4)
+    move[:3, 3] = -np.round(first / OFFSET_STEP_M) * OFFSET_STEP_M
+    frames = tuple(
+        frame
+        if frame.camera_to_world is None
+        else replace(frame, camera_to_world=move @ frame.camera_to_world)
+        for frame in capture.frames
+    )
+    room = capture.room and (capture.room[0] @ invert_rigid(move), capture.room[1])
+    x, y, z = -move[:3, 3]
+    note = f"camera positions are georeferenced; ({x:.0f}, {y:.0f}, {z:.0f}) m was subtracted"
+    return replace(
+        capture,
+        frames=frames,
+        room=room,
+        notes=(*capture.notes, f"{note} and is stored in source_to_scan of scan.json"),
+        source_to_scan=move @ capture.source_to_scan,
+    )
 
 
 def check_camera_spread(

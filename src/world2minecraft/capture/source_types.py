@@ -88,6 +88,8 @@ class Capture:
         scale_sigma: Relative standard deviation of the scale, as in ``Scan``.
         skipped: Names of frames skipped earlier, with reasons.
         room: ``scan_to_room`` and the room size in metres if stated, for captures without depth.
+        source_to_scan: Transform from the coordinates of the files to those of ``frames``, float64
+            [4, 4]: an axis change and a scale for meshes, a shift for georeferenced poses.
     """
 
     folder: AnyPath
@@ -104,6 +106,7 @@ class Capture:
     scale_sigma: float = 0.0
     skipped: tuple[tuple[str, str], ...] = ()
     room: tuple[np.ndarray, np.ndarray] | None = None
+    source_to_scan: np.ndarray = field(default_factory=lambda: np.eye(4))
 
 
 class Source(Protocol):

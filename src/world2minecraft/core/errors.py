@@ -24,6 +24,9 @@ import difflib
 from collections.abc import Iterable
 from typing import Any
 
+# What Python raises for values of a wrong form, type or range that a file contains.
+MALFORMED = (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError)
+
 
 class World2MinecraftError(Exception):
     """Base class for all exceptions in this module."""

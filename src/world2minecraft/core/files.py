@@ -28,6 +28,7 @@ from world2minecraft.core.errors import (
 
 FIXED_DATE = (2020, 1, 1, 0, 0, 0)
 MAX_ARRAY_BYTES = 4 << 30  # A 400 x 400 x 100 grid of FusedEvidence takes about 1 GiB.
+MAX_ARRAYS_BYTES = 6 << 30  # A home of 600 million cells takes 5.4 GB.
 
 
 def write_bytes(path: str | Path, data: bytes) -> None:
@@ -169,13 +170,15 @@ def read_npz(path: str | Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
     Raises:
         InputError: If the file does not exist.
         DamagedFileError: If the file is not a valid ``.npz`` file or lacks an array.
-        LimitError: If an array is larger than ``MAX_ARRAY_BYTES``.
+        LimitError: If an array is larger than ``MAX_ARRAY_BYTES``, or all together are larger than
+            ``MAX_ARRAYS_BYTES``.
     """
     source = Path(path)
     if not source.is_file():
         raise InputError(source, "not found")
     try:
         with zipfile.ZipFile(source) as archive:
+            _check_total(archive, names, source)
             return {name: _read_member(archive, name, source) for name in names}
     except UNREADABLE as error:
         raise DamagedFileError(source, f"is not a readable .npz ({error})") from error
@@ -231,6 +234,16 @@ def read_npy(path: str | Path) -> np.ndarray:
             return np.lib.format.read_array(stream, allow_pickle=False)
     except UNREADABLE as error:
         raise DamagedFileError(source, f"is not a readable .npy ({error})") from error
+
+
+def _check_total(archive: zipfile.ZipFile, names: tuple[str, ...], source: Path) -> None:
+    """Raise LimitError if the named arrays need too much memory together."""
+    wanted = {f"{name}.npy" for name in names}
+    total = sum(entry.file_size for entry in archive.infolist() if entry.filename in wanted)
+    if total > MAX_ARRAYS_BYTES:
+        raise LimitError(
+            source, f"holds {total:,} bytes of arrays; the limit is {MAX_ARRAYS_BYTES:,}"
+        )
 
 
 def _read_member(

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import (
+    MALFORMED,
     ConflictError,
     DamagedFileError,
     InputError,
@@ -326,7 +327,7 @@ def _read_step(folder: Path) -> Step:
                 r"dimensions(/minecraft(/overworld(/(region|entities))?)?)?", name
             ):
                 raise ValueError(f"unexpected folder {name!r}")
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"is not a valid manifest ({error})") from error
     return step
 

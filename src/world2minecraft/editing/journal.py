@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, LimitError, OutputError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, LimitError, OutputError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import BlockEdit, BlockEntity, Blocks, Entity
 from world2minecraft.editing.record_log import RecordFile, pack_record
@@ -63,7 +63,7 @@ def unpack_edit(data: bytes, path: str | Path) -> BlockEdit:
             class_id=_none_if_negative(root["class_id"]),
             instance=_none_if_negative(root["instance"]),
         )
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"does not contain a valid block edit ({error})") from error
 
 

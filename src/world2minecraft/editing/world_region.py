@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError, UsageError
 from world2minecraft.core.types import BlockEntity, Entity
 from world2minecraft.minecraft.entities import entity_nbt, entity_tags
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
@@ -308,7 +308,7 @@ class WorldEntities:
         try:
             for nbt in held:
                 entity_from_nbt(nbt)
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except MALFORMED as error:
             raise DamagedFileError(
                 region.path, "contains an entity without an id or a position"
             ) from error

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import BudgetError, DamagedFileError, UsageError
+from world2minecraft.core.errors import MALFORMED, BudgetError, DamagedFileError, UsageError
 from world2minecraft.core.files import load_plain_yaml, read_bytes
 from world2minecraft.external_models.chat_messages import Question, Reply
 
@@ -51,7 +51,7 @@ def read_prices(path: str | Path = PRICES_FILE) -> dict[str, Price]:
     try:
         table = load_plain_yaml(read_bytes(path, MAX_PRICES_BYTES))
         prices = {str(name): Price(*map(float, pair)) for name, pair in table.items()}
-    except (AttributeError, TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(
             path, "not a valid price table; expected lines such as `MODEL: [1.25, 10.0]`"
         ) from error

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.core.whole_reads import unchanged
@@ -106,7 +106,7 @@ def level_spawn(level: dict[str, Any]) -> tuple[int, int, int]:
             x, y, z = (int(value) for value in level["spawn"]["pos"])
         else:
             x, y, z = (int(level[key]) for key in ("SpawnX", "SpawnY", "SpawnZ"))
-    except (KeyError, TypeError, ValueError):
+    except MALFORMED:
         return 0, 64, 0
     return x, y, z
 
@@ -151,7 +151,7 @@ def _box_of(scene: dict[str, Any], path: Path) -> Box:
     try:
         x, y, z = (int(value) for value in scene["corner"])
         east, up, south = (int(value) for value in scene["size"])
-    except (KeyError, TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"is not a valid scene ({error})") from error
     return (
         x - SCENE_MARGIN,
@@ -169,7 +169,7 @@ def _with_labels(volume: BlockVolume, scene: dict[str, Any], folder: Path) -> Bl
         return with_scene_labels(volume, folder)
     try:
         return replace(volume, block_to_room=np.array(scene["block_to_room"], np.float64))
-    except (KeyError, TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(folder / "scene.json", f"is not a valid scene ({error})") from error
 
 
@@ -177,5 +177,5 @@ def _start_of(scene: dict[str, Any]) -> PlayerStart | None:
     try:
         x, y, z = (float(value) for value in scene["spawn"]["position"])
         return PlayerStart(x, y, z, float(scene["spawn"]["yaw_deg"]))
-    except (KeyError, TypeError, ValueError):
+    except MALFORMED:
         return None

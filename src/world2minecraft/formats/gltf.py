@@ -25,7 +25,13 @@ from PIL import Image
 
 from world2minecraft import __version__
 from world2minecraft.core.classes import CLASS_NAMES
-from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.errors import (
+    MALFORMED,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    UsageError,
+)
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.core.vocabulary import nyu40_of
@@ -140,7 +146,7 @@ def view_bytes(tree: dict[str, Any], numbers: memoryview, index: Any, path: str 
         start, size = int(view.get("byteOffset", 0)), int(view["byteLength"])
         if int(index) < 0 or int(view["buffer"]) != 0:
             raise ValueError("the buffer view is in another file")
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"does not contain buffer view {str(index)[:20]}") from error
     if start < 0 or size < 0 or start + size > len(numbers):
         raise DamagedFileError(path, f"buffer view {index} extends beyond the binary chunk")
@@ -221,7 +227,7 @@ def unpack_volume(data: bytes, path: str | Path) -> BlockVolume:
             block_entities=tuple(map(_block_entity, tree["block_entities"])),
             entities=tuple(map(_entity, tree["entities"])),
         )
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"does not contain a valid block volume ({error})") from error
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import Layout, OccupancyGrid, Opening
 from world2minecraft.formats.scan_record import read_room_size
@@ -39,7 +39,7 @@ def read_layouts(path: str | Path) -> tuple[Layout, ...]:
     for number, row in enumerate(rows):
         try:
             layouts.append(layout_from_json(row))
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except MALFORMED as error:
             raise DamagedFileError(path, f"row {number} is not valid ({error})") from error
     return tuple(layouts)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.classes import CLASS_NAMES, class_id
-from world2minecraft.core.errors import DamagedFileError, World2MinecraftError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, World2MinecraftError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import ObjectInstance, checks
 from world2minecraft.core.vocabulary import object_title
@@ -76,7 +76,7 @@ def names_of_rows(rows: Any, path: Path) -> tuple[NamedObject, ...]:
                 confidence = float(row.get("name_confidence", 0.0))
                 named = (int(row["id"]), class_id(row["class"]), str(row["name"]), confidence)
                 found.append(NamedObject(*named))
-        except (KeyError, TypeError, ValueError, AttributeError, World2MinecraftError) as error:
+        except (*MALFORMED, World2MinecraftError) as error:
             raise DamagedFileError(path, f"object {number} is not valid ({error})") from error
     return tuple(found)
 

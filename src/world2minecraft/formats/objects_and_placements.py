@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, class_id
-from world2minecraft.core.errors import DamagedFileError, World2MinecraftError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, World2MinecraftError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import Alternative, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.core.vocabulary import read_vocabulary
@@ -129,7 +129,7 @@ def _rows(path: str | Path, reader):
     for number, row in enumerate(rows):
         try:
             yield reader(row)
-        except (KeyError, TypeError, ValueError, AttributeError, World2MinecraftError) as error:
+        except (*MALFORMED, World2MinecraftError) as error:
             raise DamagedFileError(path, f"row {number} is not valid ({error})") from error
 
 

@@ -24,13 +24,20 @@ the default shape is the smallest that contains all voxels.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, SemanticClass
-from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.errors import (
+    MALFORMED,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    UsageError,
+)
 from world2minecraft.core.files import npz_array_names, read_json, read_npy, read_npz
 from world2minecraft.core.types import OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.formats.class_ids import EMBODIED_EMPTY, read_class_set
@@ -38,6 +45,8 @@ from world2minecraft.formats.paper_json import MAX_CELLS, read_occ_json
 from world2minecraft.formats.run_arrays import GRID_ARRAYS, read_room
 
 DEFAULT_VOXEL_M = 0.08  # The paper's.
+MAX_ROOM_M = 1000.0  # Coordinates beyond are of a map, not of a room.
+MAX_FLOOR_M = 3.0  # A floor farther from z = 0 has another height datum, or is another storey.
 CELLS, METRES = "cells", "metres"
 _HOLDERS = (
     "voxels", "occupancy", "occ", "centers", "centres", "center_points", "cells", "points",
@@ -141,10 +150,36 @@ def labels_grid(
             voxel_m=voxel_m,
             origin_m=np.zeros(3) if origin_m is None else origin_m,
         )
-    except (ValueError, TypeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(
             source, f"does not contain a valid grid of class ids ({error})"
         ) from error
+
+
+def to_room_frame(grid: OccupancyGrid) -> tuple[OccupancyGrid, np.ndarray]:
+    """Move a georeferenced grid into the room frame, and return it with ``grid_to_room``.
+
+    In the room frame, the top of the floor is z = 0. A grid that lies more than ``MAX_ROOM_M`` away
+    or whose lowest floor is more than ``MAX_FLOOR_M`` above or below z = 0 is moved by whole cells:
+    its corner to x = y = 0 and the top of its floor to z = 0. Other grids are returned unchanged,
+    with the identity as float64 [4, 4].
+    """
+    floor_m = _floor_cells(grid) * grid.voxel_m
+    is_near = np.abs(grid.origin_m[:2]).max() <= MAX_ROOM_M
+    if is_near and abs(grid.origin_m[2] + floor_m) <= MAX_FLOOR_M:
+        return grid, np.eye(4)
+    origin_m = np.array([0.0, 0.0, -floor_m])
+    grid_to_room = np.eye(4)
+    grid_to_room[:3, 3] = origin_m - grid.origin_m
+    return replace(grid, origin_m=origin_m), grid_to_room
+
+
+def _floor_cells(grid: OccupancyGrid) -> int:
+    """Return the number of layers up to the top of the lowest floor, or below all that is held."""
+    counts = np.equal(grid.labels, SemanticClass.FLOOR).sum(axis=(0, 1))
+    if counts.any():
+        return int((counts >= 0.5 * counts.max()).argmax()) + 1
+    return int(grid.occupied.any(axis=(0, 1)).argmax())
 
 
 def inner_corner_m(grid: OccupancyGrid) -> np.ndarray:
@@ -205,7 +240,7 @@ def read_any_occ(path: str | Path) -> tuple[OccupancyGrid, str]:
             labels = _fill_grid(path, cells, classes, _first_of(keys, _SHAPES, None))
         low = np.array(origin, np.float64)
         return labels_grid(labels, path, voxel_m, np.round(low / voxel_m) * voxel_m), unit
-    except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
+    except (*MALFORMED, RecursionError) as error:
         raise DamagedFileError(
             path, f"does not contain voxels in a supported form ({error})"
         ) from error
@@ -232,7 +267,7 @@ def read_any_centers(path: str | Path, grid: OccupancyGrid, unit: str) -> tuple[
         if not in_metres:
             points = grid.origin_m + (points + 0.5) * grid.voxel_m
         return tuple(map(Center, points, map(int, classes)))
-    except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
+    except (*MALFORMED, RecursionError) as error:
         raise DamagedFileError(
             path, f"does not contain centres in a supported form ({error})"
         ) from error

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES
-from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, LimitError
 from world2minecraft.core.files import read_json, write_text
-from world2minecraft.core.types import OBSERVED, ObjectInstance, OccupancyGrid
+from world2minecraft.core.types import OBSERVED, ObjectInstance, OccupancyGrid, checks
 
 MAX_CELLS = 200_000_000
 _CHUNK = 1 << 18  # Rows that are made into text at once.
@@ -68,7 +68,10 @@ def read_occ_json(path: str | Path) -> OccupancyGrid:
         shape = tuple(int(side) for side in value["shape"])
         voxels = np.array(value["voxels"], np.int64).reshape(-1, 4)
         voxel_m, origin_m = float(value["voxel_m"]), np.array(value["origin_m"], np.float64)
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        checks.voxel_size(voxel_m)
+        checks.extent(shape, voxel_m)
+        origin_m = checks.coordinates("origin_m", origin_m, (3,))
+    except MALFORMED as error:
         raise DamagedFileError(
             path, f"is not an occ.json file of this program ({error})"
         ) from error

@@ -29,7 +29,13 @@ import numpy as np
 from world2minecraft.core.archives import UNREADABLE
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import invert_rigid
-from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
+from world2minecraft.core.errors import (
+    MALFORMED,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    UnknownNameError,
+)
 from world2minecraft.core.files import npz_array_names, read_npy, read_npz
 from world2minecraft.core.types import checks
 from world2minecraft.formats.class_ids import EMBODIED_EMPTY, ClassSet, read_class_set
@@ -246,7 +252,7 @@ def _place(arrays: dict[str, Any], path: Path) -> dict[str, Any]:
         if name in arrays:
             found["camera_to_world"] = _rigid(arrays[name], path, name)
     if "voxel_m" in arrays:
-        side = float(_numbers(arrays["voxel_m"], (), "voxel_m", path))
+        side = _numbers(arrays["voxel_m"], (), "voxel_m", path).item()
         if not 0.005 <= side <= 1:
             raise DamagedFileError(path, f"voxel_m must be 0.005 to 1 m, got {side:g}")
         found["voxel_m"] = side
@@ -265,25 +271,24 @@ def _place(arrays: dict[str, Any], path: Path) -> dict[str, Any]:
 def _numbers(values: Any, shape: tuple[int, ...], name: str, path: Path) -> np.ndarray:
     try:
         numbers = np.asarray(values, np.float64)
-    except (TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"{name} does not consist of numbers") from error
     if shape == () and numbers.size == 1:
         numbers = numbers.reshape(())
-    if numbers.shape != shape or not np.isfinite(numbers).all() or np.abs(numbers).max() > 1e6:
-        count = "one number" if shape == () else " x ".join(map(str, shape)) + " numbers"
-        raise DamagedFileError(path, f"{name} must be {count} below 1,000 km")
-    return numbers
+    try:
+        return checks.coordinates(name, numbers, shape)
+    except ValueError as error:
+        raise DamagedFileError(path, str(error)) from error
 
 
 def _rigid(values: Any, path: Path, name: str = "cam_pose") -> np.ndarray:
     """Return a rigid transform with an exact rotation."""
     stored = _numbers(values, (4, 4), name, path)
     left, _, right = np.linalg.svd(stored[:3, :3])
-    turn = left @ right
-    if np.abs(turn - stored[:3, :3]).max() > MAX_SKEW or np.linalg.det(turn) < 0:
-        raise DamagedFileError(path, f"{name} is not a rotation and a translation")
+    if fault := checks.rigid_fault(stored, MAX_SKEW):
+        raise DamagedFileError(path, f"{name} is not a rotation and a translation: it {fault}")
     rigid = np.eye(4)
-    rigid[:3, :3], rigid[:3, 3] = turn, stored[:3, 3]
+    rigid[:3, :3], rigid[:3, 3] = left @ right, stored[:3, 3]
     return checks.transform(name, rigid)
 
 

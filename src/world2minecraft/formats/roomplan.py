@@ -76,8 +76,8 @@ class PlanObject:
 
     def __post_init__(self):
         put = object.__setattr__
-        put(self, "center_m", checks.floats("center_m", self.center_m, (3,)))
-        put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
+        put(self, "center_m", checks.coordinates("center_m", self.center_m, (3,)))
+        put(self, "size_m", checks.lengths("size_m", self.size_m, (3,)))
         if (self.size_m <= 0).any():
             raise ValueError(f"size_m must be above 0, got {self.size_m.tolist()}")
 
@@ -285,10 +285,9 @@ def _transform(path: AnyPath, item: dict[str, Any], where: str) -> np.ndarray:
         held = [value for column in held for value in column]
     columns = _numbers(path, held, 16, f"{where}.transform").reshape(4, 4)
     pose = columns.T
-    turn = pose[:3, :3]
-    if np.abs(turn @ turn.T - np.eye(3)).max() > 0.02 or not np.allclose(pose[3], [0, 0, 0, 1]):
+    if fault := checks.rigid_fault(pose, 0.02):
         raise DamagedFileError(
-            path, f"{where}.transform must be a rigid transform in column-major order"
+            path, f"{where}.transform must be a rigid transform in column-major order, but {fault}"
         )
     if np.abs(pose[:3, 3]).max() > MAX_DISTANCE_M:
         raise DamagedFileError(

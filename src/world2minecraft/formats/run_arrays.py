@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_npz, write_npz
-from world2minecraft.core.types import FusedEvidence, OccupancyGrid
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid, checks
 
 GRID_ARRAYS = ("labels", "confidence", "colour", "source", "instance", "voxel_m", "origin_m")
 EVIDENCE_ARRAYS = (
@@ -48,8 +48,8 @@ def read_room(path: str | Path) -> tuple[OccupancyGrid, np.ndarray]:
     scan_to_room = arrays.pop("scan_to_room")
     try:
         arrays["voxel_m"] = float(arrays["voxel_m"])  # type: ignore[assignment]
-        return OccupancyGrid(**arrays), np.asarray(scan_to_room, np.float64).reshape(4, 4)  # type: ignore[arg-type]
-    except (ValueError, TypeError) as error:
+        return OccupancyGrid(**arrays), checks.transform("scan_to_room", scan_to_room)  # type: ignore[arg-type]
+    except MALFORMED as error:
         raise DamagedFileError(path, f"does not contain a valid room ({error})") from error
 
 
@@ -70,7 +70,7 @@ def read_evidence(path: str | Path) -> FusedEvidence:
     try:
         arrays["voxel_m"] = float(arrays["voxel_m"])  # type: ignore[assignment]
         return FusedEvidence(**arrays)  # type: ignore[arg-type]
-    except (ValueError, TypeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"does not contain valid evidence ({error})") from error
 
 

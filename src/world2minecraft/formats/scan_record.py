@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
-from world2minecraft.core.types import Corrections, FrameSigmas, Scan
+from world2minecraft.core.types import Corrections, FrameSigmas, Scan, checks
 
 POSE_ARRAYS = ("names", "pose_change", "depth_scale")
 MAX_NAME_LENGTH = 60
@@ -44,7 +44,7 @@ def read_poses(path: str | Path) -> Corrections:
     try:
         names = tuple(str(name) for name in arrays["names"])
         return Corrections(names, arrays["pose_change"], arrays["depth_scale"])
-    except (ValueError, TypeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"does not contain valid corrections ({error})") from error
 
 
@@ -56,6 +56,7 @@ def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | N
             "source": scan.source,
             "name": scan.name,
             "scan_to_room": scan.scan_to_room.tolist(),
+            "source_to_scan": scan.source_to_scan.tolist(),
             "room_size_m": scan.room_size_m.tolist(),
             "frame_sigmas": None if scan.frame_sigmas is None else asdict(scan.frame_sigmas),
             "frames_used": list(scan.frames_used),
@@ -148,7 +149,7 @@ def with_recorded_alignment(scan: Scan, path: str | Path) -> Scan:
             notes=tuple(str(note) for note in found["notes"]),
             frame_sigmas=_frame_sigmas(found.get("frame_sigmas")),
         )
-    except (KeyError, TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(
             path, f"does not contain a valid room alignment ({error})"
         ) from error
@@ -167,9 +168,9 @@ def read_room_size(path: str | Path) -> np.ndarray:
         DamagedFileError: If the file does not contain a valid size.
     """
     try:
-        size = np.array(read_json(path)["room_size_m"], np.float64).reshape(3)
-    except (KeyError, TypeError, ValueError) as error:
+        size = checks.lengths("room_size_m", read_json(path)["room_size_m"], (3,))
+    except MALFORMED as error:
         raise DamagedFileError(path, f"does not contain a valid room_size_m ({error})") from error
-    if not (np.isfinite(size).all() and (size > 0).all()):
+    if (size <= 0).any():
         raise DamagedFileError(path, f"room_size_m must be above 0, got {size.tolist()}")
     return size

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import npz_array_names, read_json, read_npz, write_json, write_npz
 from world2minecraft.core.types import BlockVolume, checks
 from world2minecraft.formats.object_names import NamedObject, names_of_rows, rows_of_names
@@ -148,5 +148,5 @@ def read_scene(folder: str | Path) -> Scene:
             dict(raw.get("light", {})),
             names_of_rows(raw.get("objects", []), source / "scene.json"),
         )
-    except (KeyError, TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(source / "scene.json", f"is not a valid scene ({error})") from error

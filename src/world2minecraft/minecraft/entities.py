@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES
-from world2minecraft.core.errors import UsageError
+from world2minecraft.core.errors import MALFORMED, UsageError
 from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.nbt import Float
@@ -169,7 +169,7 @@ def _parse_display(entity: Entity) -> DisplayCube | None:
         matrix = (
             placed @ _entity_rotation(entity.nbt) @ _matrix_of(entity.nbt.get("transformation"))
         )
-    except (KeyError, TypeError, ValueError, AttributeError, UsageError):
+    except (*MALFORMED, UsageError):
         return None  # The file is not ours, and a game that reads it draws nothing either.
     if not np.isfinite(matrix).all() or abs(matrix).max() > 1e9:
         return None
@@ -180,7 +180,7 @@ def _parse_display(entity: Entity) -> DisplayCube | None:
 def _parse_painting(entity: Entity) -> DisplayCube | None:
     try:
         state, matrix = painting_cube(entity.nbt, entity.position)
-    except (KeyError, TypeError, ValueError):
+    except MALFORMED:
         return None
     return DisplayCube(state, matrix, *owner_of(entity))
 

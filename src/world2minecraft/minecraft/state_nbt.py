@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, UsageError
 from world2minecraft.minecraft.block_renames import read_state, write_state
 from world2minecraft.minecraft.block_states import MAX_TEXT, BlockState, parse_state
 
@@ -53,5 +53,5 @@ def palette_texts(entries: Any, data_version: Any, path: str | Path) -> list[str
     """
     try:
         return [read_state(state_text(entry), int(data_version)) for entry in entries]
-    except (UsageError, AttributeError, TypeError, ValueError, IndexError) as error:
+    except (*MALFORMED, UsageError) as error:
         raise DamagedFileError(path, f"contains an invalid palette entry: {error}") from error

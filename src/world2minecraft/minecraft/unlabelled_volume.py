@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.coordinates import block_to_room
-from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, LimitError
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
 
 MAX_CELLS = 64 << 20  # 400 blocks a side; a volume of this size takes 340 MB.
@@ -19,8 +19,6 @@ MAX_STATES = 0xFFFF
 MAX_FILE_BYTES = 96 << 20  # As it lies on disk: packed and unpacked are held together.
 # Where a file says to stand in its world; the formats have no place for it, and ignore the tag.
 OWN_TAG = "World2Minecraft"
-# What a tree raises that has the right keys and other things under them.
-MISSHAPEN = (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError)
 Corner = tuple[int, int, int]
 
 
@@ -117,7 +115,7 @@ def stated_corner(tree: Mapping[str, Any], path: str | Path) -> Corner | None:
         return None
     try:
         x, y, z = (int(value) for value in tree[OWN_TAG]["Corner"])
-    except MISSHAPEN as error:
+    except MALFORMED as error:
         raise DamagedFileError(
             path, f"contains a tag {OWN_TAG} without a Corner of three numbers"
         ) from error

@@ -20,7 +20,7 @@ from world2minecraft.core.coordinates import (
     paper_focal_px,
     paper_rotation,
 )
-from world2minecraft.core.errors import UsageError
+from world2minecraft.core.errors import MALFORMED, UsageError
 from world2minecraft.core.types import Camera
 
 CONVENTIONS = {
@@ -145,5 +145,5 @@ def camera_from_record(record: Mapping[str, Any]) -> tuple[Camera, np.ndarray]:
             raise ValueError("K must be a 3x3 and E a 4x4 matrix of finite numbers")
         size = int(record["width"]), int(record["height"])
         return Camera(*size, k[0, 0], k[1, 1], k[0, 2], k[1, 2]), e
-    except (KeyError, TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise UsageError(f"not a valid camera record ({error})") from error

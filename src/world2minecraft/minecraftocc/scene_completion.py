@@ -17,8 +17,15 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import npz_array_names, read_npz
-from world2minecraft.core.types import Camera, FusedEvidence, OccupancyGrid, PointEvidence, View
-from world2minecraft.core.types.checks import transform
+from world2minecraft.core.types import (
+    Camera,
+    FusedEvidence,
+    OccupancyGrid,
+    PointEvidence,
+    View,
+    checks,
+)
+from world2minecraft.formats.predicted_grids import MAX_SKEW
 from world2minecraft.formats.sscnet import HEADER_BYTES
 from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA, decode_depth
 from world2minecraft.reconstruction.fusion import (
@@ -117,10 +124,11 @@ def read_grid_place(path: Path) -> GridPlace:
             path, "does not contain an origin (3 numbers) and a camera pose (16 numbers)"
         )
     try:
-        pose = transform("camera_to_world", _rigid(numbers[3:].reshape(4, 4)))
+        stored = checks.transform("camera_to_world", numbers[3:].reshape(4, 4), MAX_SKEW)
+        origin_m = checks.coordinates("origin_m", numbers[:3], (3,))
     except ValueError as error:
         raise DamagedFileError(path, str(error)) from error
-    return GridPlace(numbers[:3].astype(np.float64), pose)
+    return GridPlace(origin_m, _rigid(stored))
 
 
 def _rigid(pose: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 from torch import Tensor, nn
 
-from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.networks.config import RunConfig, config_text, parse_config
 
@@ -82,7 +82,7 @@ def read_facts(path: Path) -> dict[str, Any]:
     _, texts = _read(path, with_tensors=False)
     try:
         return dict(json.loads(texts[FACTS]))
-    except (KeyError, ValueError, TypeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, "not a checkpoint of w2m train") from error
 
 

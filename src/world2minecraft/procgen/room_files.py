@@ -15,7 +15,7 @@ from world2minecraft.core.archives import UNREADABLE
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, class_id
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
-from world2minecraft.core.types import Layout, LayoutObject, Opening
+from world2minecraft.core.types import Layout, LayoutObject, Opening, checks
 from world2minecraft.formats.objects_and_placements import round_metres
 from world2minecraft.procgen.rooms.room import Room
 
@@ -165,9 +165,12 @@ def _check_arrays(path: Path, arrays: dict[str, np.ndarray], objects: int) -> No
         if values.dtype != dtype or values.shape != shape:
             given = f"{values.dtype} {values.shape}"
             raise DamagedFileError(path, f"array {name} has an invalid dtype or shape: {given}")
-    if not np.isfinite(arrays["origin_m"]).all():
-        raise DamagedFileError(path, "origin_m must be finite")
     voxel_m = float(arrays["voxel_m"])
+    try:
+        checks.coordinates("origin_m", arrays["origin_m"], (3,))
+        checks.extent(labels.shape, voxel_m)
+    except ValueError as error:
+        raise DamagedFileError(path, str(error)) from error
     if not math.isfinite(voxel_m) or not VOXEL_RANGE_M[0] <= voxel_m <= VOXEL_RANGE_M[1]:
         raise DamagedFileError(path, f"voxel_m must be from 0.005 to 0.5, got {voxel_m}")
     if labels.max() >= CLASS_COUNT:

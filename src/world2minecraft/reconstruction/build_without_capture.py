@@ -15,8 +15,8 @@ from world2minecraft.core.output_folders import draft_of, output_folder
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.core.whole_reads import read_whole
-from world2minecraft.formats.occupancy_files import read_occupancy
-from world2minecraft.formats.run_arrays import write_room
+from world2minecraft.formats.occupancy_files import read_occupancy, to_room_frame
+from world2minecraft.formats.run_arrays import read_room, write_room
 from world2minecraft.minecraft.formats import FORMATS, read_blocks
 from world2minecraft.reconstruction.file_stages import built_volume, run_stage
 from world2minecraft.reconstruction.parameters import Parameters
@@ -24,6 +24,7 @@ from world2minecraft.reconstruction.run_folder import BUILT_FROM, RUN, check_fin
 
 # Runs from a grid alone have no scan, those of the first versions no rooms.
 MORE_FILES = ("scan.json", "layout.json")
+FROM_GRID = ("find", "furnish", "build")
 BUILT = replace(
     RUN, names=("build", *BUILT_FROM, *MORE_FILES, "occ.json", "centers.json", "centers.npz")
 )
@@ -59,11 +60,10 @@ def rebuild(
         raise UsageError(f"classes requires an occupancy grid, but {source} is a run folder")
     with output_folder(out, BUILT, "built", force=force), draft_of(out, ("build",)) as draft:
         if source.is_dir():
-            _copy_run(source, draft)
-            stages: tuple[str, ...] = ("build",)
+            stages = _copy_run(source, draft)
         else:
-            write_room(draft / "room.npz", read_occupancy(source, classes), np.eye(4))
-            stages = ("find", "furnish", "build")
+            _write_grid(draft, source, classes)
+            stages = FROM_GRID
         for stage in stages:
             run_stage(stage, draft, parameters, progress)
 
@@ -90,12 +90,13 @@ def blocks_of(
         return read_blocks(source)
     if source.is_dir():
         check_finished(source)
-        return read_whole(source, lambda: built_volume(source, parameters))
-    grid = read_occupancy(source, classes)
+        if is_in_room_frame(source):
+            return read_whole(source, lambda: built_volume(source, parameters))
+        source = source / "room.npz"
     with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
         folder = Path(scratch)
-        write_room(folder / "room.npz", grid, np.eye(4))
-        for stage in ("find", "furnish"):
+        _write_grid(folder, source, classes)
+        for stage in FROM_GRID[:-1]:
             run_stage(stage, folder, parameters, progress)
         return built_volume(folder, parameters)
 
@@ -106,9 +107,35 @@ def is_block_file(source: Path) -> bool:
     return any(format_.can_read and format_.is_at(source) for format_ in found)
 
 
-def _copy_run(source: Path, out: Path) -> None:
+def is_in_room_frame(run: Path) -> bool:
+    """Return whether the cells of a run lie in the room frame, where its other files place them."""
+    grid, _ = read_room(run / "room.npz")
+    return to_room_frame(grid)[0] is grid
+
+
+def _write_grid(out: Path, source: Path, classes: str = "") -> None:
+    """Write ``room.npz`` of an occupancy file in the room frame.
+
+    Its ``scan_to_room`` transforms the frame of the file to that of the room, so that
+    georeferenced coordinates can be restored.
+    """
+    grid, grid_to_room = to_room_frame(read_occupancy(source, classes))
+    scan_to_room = read_room(source)[1] if source.name == "room.npz" else np.eye(4)
+    write_room(out / "room.npz", grid, grid_to_room @ scan_to_room)
+
+
+def _copy_run(source: Path, out: Path) -> tuple[str, ...]:
+    """Copy what a run is built from, and return the stages that build it.
+
+    If its cells were georeferenced, the objects are found again: the other files of the run do not
+    lie at those coordinates.
+    """
     check_finished(source)
+    if not is_in_room_frame(source):
+        _write_grid(out, source / "room.npz")
+        return FROM_GRID
     names = [name for name in (*BUILT_FROM, *MORE_FILES) if (source / name).is_file()]
     files = read_whole(source, lambda: [(source / name).read_bytes() for name in names])
     for name, data in zip(names, files, strict=True):
         write_bytes(out / name, data)
+    return ("build",)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_json
 from world2minecraft.reconstruction.parameters import Parameters, first_reader
 
@@ -142,7 +142,7 @@ def _with_value(value: Any, path: Sequence[str], was: Any, out: Path) -> Any:
         return replace(value, **{path[0]: _with_value(inner, path[1:], was, out)})
     try:
         return replace(value, **{path[0]: tuple(was) if isinstance(was, list) else was})
-    except (TypeError, ValueError, UsageError) as error:
+    except (*MALFORMED, UsageError) as error:
         raise DamagedFileError(
             out / "manifest.json", f"contains an invalid value for {path[0]}: {was!r}"
         ) from error

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import InputError
+from world2minecraft.core.errors import MALFORMED, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.evaluation.metrics.editing_effort import (
     PAPER_REFINED,
@@ -58,7 +58,7 @@ def automatic_s(source: Path) -> float | None:
     try:
         seconds = read_json(source / "run.json", 1 << 20)["stage_s"].values()
         return float(sum(map(float, seconds)))
-    except (InputError, KeyError, TypeError, ValueError, AttributeError):
+    except (*MALFORMED, InputError):
         return None
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from world2minecraft.core.classes import OBJECT_CLASSES
-from world2minecraft.core.coordinates import cell_centers_m
+from world2minecraft.core.coordinates import apply, cell_centers_m
 from world2minecraft.core.errors import InputError, LimitError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
 from world2minecraft.core.whole_reads import read_whole
@@ -29,6 +29,7 @@ from world2minecraft.formats.occupancy_files import (
     read_any_centers,
     read_any_occ,
     read_occupancy,
+    to_room_frame,
 )
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.furniture.front_estimation import (
@@ -177,6 +178,8 @@ def _read_run_files(folder: Path) -> OpenedScene:
     if not (folder / "room.npz").is_file():
         raise InputError(folder, "room.npz not found; create a run with w2m reconstruct")
     grid, scan_to_room = read_room(folder / "room.npz")
+    if to_room_frame(grid)[0] is not grid:
+        return _read_file(folder / "room.npz")  # The other files do not lie at its coordinates.
     rooms = read_source_rooms(folder, grid)
     inputs = tuple(folder / name for name in RUN_FILES if (folder / name).is_file())
     if (folder / "objects.json").is_file():
@@ -191,8 +194,9 @@ def _read_run_files(folder: Path) -> OpenedScene:
 
 
 def _read_file(source: Path) -> OpenedScene:
-    grid = read_occupancy(source)
-    scan_to_room = read_room(source)[1] if source.name == "room.npz" else np.eye(4)
+    grid, grid_to_room = to_room_frame(read_occupancy(source))
+    stored = read_room(source)[1] if source.name == "room.npz" else np.eye(4)
+    scan_to_room = grid_to_room @ stored
     grid, objects = detect_objects(grid)
     is_run = source.name == "room.npz"
     folder = source.parent if is_run else source.parent / source.stem
@@ -206,10 +210,13 @@ def _read_paper(source: Path) -> OpenedScene:
     inputs, centers = (source,), None
     if beside != source and beside.is_file():
         centers, inputs = read_any_centers(beside, grid, unit), (source, beside)
+    grid, grid_to_room = to_room_frame(grid)
+    if centers is not None:
+        centers = [one._replace(position_m=apply(grid_to_room, one.position_m)) for one in centers]
     grid, objects = detect_objects(grid, (), centers)
     is_run = source.name == "occ.json" and not (source.parent / "room.npz").exists()
     folder = source.parent if is_run else source.parent / source.stem
-    fields = (source.name, folder, inputs, grid, np.eye(4), objects)
+    fields = (source.name, folder, inputs, grid, grid_to_room, objects)
     return OpenedScene(*fields, source=source, is_run=is_run)
 
 

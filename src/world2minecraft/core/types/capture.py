@@ -169,7 +169,9 @@ class Scan:
     (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report, ``name`` is the name of
     the scene, and ``depth_kind`` is the source of the depth, which determines its errors.
     ``world_up`` is a unit vector in the scan frame if the capture records the up direction.
-    ``frame_sigmas`` is None if the capture states the room frame.
+    ``frame_sigmas`` is None if the capture states the room frame. ``source_to_scan`` transforms the
+    coordinates of the capture's files to the scan frame: a shift for georeferenced poses, also a
+    change of axes and a scale for meshes.
     """
 
     views: ViewStream
@@ -185,15 +187,17 @@ class Scan:
     depth_kind: Literal["sensor", "stereo", "network", "exact"] = "sensor"
     world_up: np.ndarray | None = None
     frame_sigmas: FrameSigmas | None = None
+    source_to_scan: np.ndarray = field(default_factory=lambda: IDENTITY)
 
     def __post_init__(self):
         put = object.__setattr__
+        put(self, "source_to_scan", checks.floats("source_to_scan", self.source_to_scan, (4, 4)))
         if self.world_up is not None:
             put(self, "world_up", checks.floats("world_up", self.world_up, (3,)))
             if abs(np.linalg.norm(self.world_up) - 1) > 1e-6:
                 raise ValueError(f"world_up must be a unit vector, got {self.world_up.tolist()}")
         put(self, "scan_to_room", checks.transform("scan_to_room", self.scan_to_room))
-        put(self, "room_size_m", checks.floats("room_size_m", self.room_size_m, (3,)))
+        put(self, "room_size_m", checks.lengths("room_size_m", self.room_size_m, (3,)))
         if (self.room_size_m <= 0).any():
             raise ValueError(f"room_size_m must be above 0, got {self.room_size_m.tolist()}")
         if self.scale not in ("metric", "estimated", "unknown"):

@@ -28,8 +28,8 @@ class Opening:
 
     def __post_init__(self):
         put = object.__setattr__
-        put(self, "start_m", checks.floats("start_m", self.start_m, (2,)))
-        put(self, "end_m", checks.floats("end_m", self.end_m, (2,)))
+        put(self, "start_m", checks.coordinates("start_m", self.start_m, (2,)))
+        put(self, "end_m", checks.coordinates("end_m", self.end_m, (2,)))
         if self.kind not in ("window", "door", "doorway"):
             raise ValueError(f"kind must be window, door or doorway, got {self.kind!r}")
         if not 0 <= self.sill_m < self.head_m:
@@ -54,8 +54,8 @@ class LayoutObject:
 
     def __post_init__(self):
         put = object.__setattr__
-        put(self, "center_m", checks.floats("center_m", self.center_m, (3,)))
-        put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
+        put(self, "center_m", checks.coordinates("center_m", self.center_m, (3,)))
+        put(self, "size_m", checks.lengths("size_m", self.size_m, (3,)))
         if (self.size_m <= 0).any():
             raise ValueError(f"size_m must be above 0, got {self.size_m.tolist()}")
         checks.floats("yaw_deg", [self.yaw_deg], (1,))
@@ -78,11 +78,12 @@ class Layout:
 
     def __post_init__(self):
         put = object.__setattr__
-        polygon = checks.floats("floor_polygon_m", self.floor_polygon_m, (None, 2))
+        polygon = checks.coordinates("floor_polygon_m", self.floor_polygon_m, (None, 2))
         if len(polygon) < 3:
             raise ValueError(f"floor_polygon_m must have 3 or more corners, got {len(polygon)}")
         put(self, "floor_polygon_m", polygon)
         checks.positive("wall_height_m", self.wall_height_m)
-        checks.floats("floor_z_m", [self.floor_z_m], (1,))
+        checks.lengths("wall_height_m", [self.wall_height_m], (1,))
+        checks.coordinates("floor_z_m", [self.floor_z_m], (1,))
         put(self, "openings", tuple(self.openings))
         put(self, "objects", tuple(self.objects))

@@ -40,8 +40,8 @@ class ObjectInstance:
             raise ValueError(f"id must be 1 to 65535, got {self.id}")
         if self.class_id not in OBJECT_CLASSES:
             raise ValueError(f"class_id must be an object class, 5 to 11, got {self.class_id}")
-        put(self, "center_m", checks.floats("center_m", self.center_m, (3,)))
-        put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
+        put(self, "center_m", checks.coordinates("center_m", self.center_m, (3,)))
+        put(self, "size_m", checks.lengths("size_m", self.size_m, (3,)))
         checks.floats("yaw_deg", [self.yaw_deg], (1,))
         put(self, "cells", checks.array("cells", self.cells, np.int32, (None, 3)))
         checks.object_name(self.name)
@@ -90,8 +90,8 @@ class Placement:
     def __post_init__(self):
         put = object.__setattr__
         checks.identifier("template", self.template)
-        put(self, "center_m", checks.floats("center_m", self.center_m, (3,)))
-        put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
+        put(self, "center_m", checks.coordinates("center_m", self.center_m, (3,)))
+        put(self, "size_m", checks.lengths("size_m", self.size_m, (3,)))
         if self.quarter_turns not in (0, 1, 2, 3):
             raise ValueError(f"quarter_turns must be 0 to 3, got {self.quarter_turns}")
         put(self, "iou", checks.fraction("iou", self.iou))

@@ -38,8 +38,9 @@ class OccupancyGrid:
         put(self, "colour", checks.array("colour", self.colour, np.uint8, (*shape, 3)))
         put(self, "source", checks.array("source", self.source, np.uint8, shape))
         put(self, "instance", checks.array("instance", self.instance, np.uint16, shape))
-        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
+        put(self, "voxel_m", checks.voxel_size(self.voxel_m))
         put(self, "origin_m", checks.origin(self.origin_m, self.voxel_m))
+        checks.extent(shape, self.voxel_m)
         if self.source.max() > COMPLETED:
             raise ValueError(f"source must be 0, 1 or 2, got {int(self.source.max())}")
         if not np.array_equal(labels == 255, self.source == UNSEEN):
@@ -119,7 +120,7 @@ class GridEvidence:
         probabilities = checks.array("probabilities", self.probabilities, np.float16, shape)
         put(self, "probabilities", probabilities)
         put(self, "seen", checks.array("seen", self.seen, np.bool_, probabilities.shape[:3]))
-        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
+        put(self, "voxel_m", checks.voxel_size(self.voxel_m))
         put(self, "grid_to_scan", checks.transform("grid_to_scan", self.grid_to_scan))
         if self.colour is not None:
             shape = (*probabilities.shape[:3], 3)
@@ -153,6 +154,6 @@ class FusedEvidence:
         for name in ("colour_sum", "offset_sum"):
             put(self, name, checks.array(name, getattr(self, name), np.float32, (*shape, 3)))
         put(self, "hits", checks.array("hits", self.hits, np.uint16, shape))
-        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
+        put(self, "voxel_m", checks.voxel_size(self.voxel_m))
         put(self, "origin_m", checks.origin(self.origin_m, self.voxel_m))
         put(self, "scan_to_room", checks.transform("scan_to_room", self.scan_to_room))

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, UsageError
 from world2minecraft.core.types import Alternative, GridCells, Operation, Placement, SceneObject
 from world2minecraft.editing.record_log import Record, RecordFile
 from world2minecraft.editing.scene.cell_patch import cells_of_runs, runs_of_cells
@@ -88,7 +88,7 @@ def unpack_operation(data: bytes, shape: Shape, path: str | Path) -> Operation:
             actor=str(root["actor"]),
             time_s=float(root["time_s"]),
         )
-    except (KeyError, TypeError, ValueError, AttributeError, UsageError) as error:
+    except (*MALFORMED, UsageError) as error:
         raise DamagedFileError(
             path, f"does not contain a valid scene operation ({error})"
         ) from error
@@ -109,7 +109,7 @@ def unpack_objects(data: bytes, path: str | Path) -> tuple[SceneObject, ...]:
     _, root = read_nbt(data, path, OPERATION_LIMITS)
     try:
         return tuple(map(_unpack_object, root["objects"]))
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"does not contain valid scene objects ({error})") from error
 
 
@@ -298,7 +298,7 @@ class SceneJournal:
         try:
             actor, time_s = json.loads(content or b'["", 0]')
             return str(actor), float(time_s)
-        except (ValueError, TypeError) as error:
+        except MALFORMED as error:
             raise DamagedFileError(self.file.path, f"contains an invalid step ({error})") from error
 
     def line_after(self, line: Timeline, steps: Sequence[Step]) -> Timeline:

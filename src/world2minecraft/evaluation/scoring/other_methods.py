@@ -20,7 +20,7 @@ import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN, class_id
 from world2minecraft.core.coordinates import invert_rigid
-from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import npz_array_names, read_json, read_npy, read_npz
 from world2minecraft.core.types import LayoutObject, OccupancyGrid
 from world2minecraft.core.types.checks import floats, positive, transform
@@ -83,7 +83,7 @@ def read_foreign(path: Path) -> ForeignResult:
         if "confidence" in arrays:
             stated = np.where(grid.labels == UNKNOWN, 0, arrays["confidence"]).astype(np.float16)
             grid = replace(grid, confidence=stated)
-    except (ValueError, TypeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"not a valid result ({error})") from error
     objects = tuple(
         replace(item, center_m=item.center_m + moved[:3, 3])
@@ -142,7 +142,7 @@ def _objects(path: Path) -> tuple[LayoutObject, ...]:
             yaw_deg = float(row.get("yaw_deg", 0.0))
             number_of_class = class_id(str(row["class"]))
             objects.append(LayoutObject(number_of_class, row["center_m"], row["size_m"], yaw_deg))
-        except (KeyError, TypeError, ValueError, AttributeError, UnknownNameError) as error:
+        except (*MALFORMED, UnknownNameError) as error:
             reason = f"row {number} is not a valid {{class, center_m, size_m, yaw_deg}} ({error})"
             raise DamagedFileError(path, reason) from error
     return tuple(objects)

@@ -17,7 +17,7 @@ import numpy as np
 
 from world2minecraft.capture import open_scan
 from world2minecraft.core.coordinates import invert_rigid
-from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, UsageError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan, View
@@ -51,7 +51,7 @@ def recorded_parameters(out: Path) -> Parameters:
     path = out / "manifest.json"
     try:
         return _restored(Parameters(), read_json(path)["parameters"])
-    except (KeyError, TypeError, ValueError, UsageError) as error:
+    except (*MALFORMED, UsageError) as error:
         raise DamagedFileError(path, f"does not contain valid parameters ({error})") from error
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass, class_id
-from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import npz_array_names, read_json, read_npz
 from world2minecraft.core.types import Layout, LayoutObject, checks
 from world2minecraft.formats.layout import layout_from_json
@@ -103,7 +103,7 @@ def read_truth(folder: Path) -> Truth:
         objects = tuple(_object(row) for row in stated["objects"])
         layouts = _layouts(stated)
         capture = folder / str(stated.get("capture", ""))
-    except (KeyError, TypeError, ValueError, AttributeError, UnknownNameError) as error:
+    except (*MALFORMED, UnknownNameError) as error:
         raise DamagedFileError(
             folder / "truth.json", f"not a valid ground truth ({error})"
         ) from error
@@ -122,7 +122,7 @@ def read_truth(folder: Path) -> Truth:
             surface=_surface(path),
             capture=capture,
         )
-    except (TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"not a valid ground truth ({error})") from error
 
 

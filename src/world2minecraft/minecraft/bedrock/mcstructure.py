@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.minecraft.bedrock.block_entities import (
@@ -94,7 +94,7 @@ def read_mcstructure(path: str | Path, losses: Losses | None = None) -> BlockVol
     tree = read_little(read_bytes(source, MAX_BYTES), source, LIMITS)
     try:
         return _volume_of(tree, source, counted)
-    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+    except MALFORMED as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is not a valid Bedrock structure{missing}") from error
 

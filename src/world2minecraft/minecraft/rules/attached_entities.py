@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.minecraft.unlabelled_volume import MISSHAPEN
+from world2minecraft.core.errors import MALFORMED
 
 TILE = ("TileX", "TileY", "TileZ")
 _REACH = 2.0  # Blocks from the middle of the largest painting, 4 x 4, to the block it names.
@@ -66,6 +66,6 @@ def named_block(nbt: Mapping[str, Any]) -> tuple[int, int, int] | None:
     try:
         held = nbt["block_pos"] if "block_pos" in nbt else [nbt[key] for key in TILE]
         x, y, z = (int(value) for value in held)
-    except MISSHAPEN:
+    except MALFORMED:
         return None
     return x, y, z

@@ -14,7 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.errors import (
+    MALFORMED,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    UsageError,
+)
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.bit_packing import (
@@ -40,7 +46,6 @@ from world2minecraft.minecraft.state_nbt import palette_texts, state_entry
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     MAX_FILE_BYTES,
-    MISSHAPEN,
     build_palette,
     check_size,
     enclosing_box,
@@ -239,7 +244,7 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
             name: _region_volume(region, boxes[name], shift, game, source)
             for name, region in named.items()
         }
-    except MISSHAPEN as error:
+    except MALFORMED as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is not a valid Litematica file{missing}") from error
     if losses is not None:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.minecraft.bit_packing import read_legacy_keys
@@ -29,7 +29,6 @@ from world2minecraft.minecraft.schematics.pre_flattening import (
 )
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
-    MISSHAPEN,
     build_palette,
     check_size,
     unlabelled_volume,
@@ -61,7 +60,7 @@ def read_schematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
     del raw
     try:
         return _volume_of(root, source, Losses() if losses is None else losses)
-    except MISSHAPEN as error:
+    except MALFORMED as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is not a valid legacy schematic{missing}") from error
 

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.bit_packing import read_varints, write_varints
@@ -28,7 +28,6 @@ from world2minecraft.minecraft.rules.attached_entities import move_attachment
 from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
-    MISSHAPEN,
     build_palette,
     check_size,
     unlabelled_volume,
@@ -116,7 +115,7 @@ def read_schem(path: str | Path, losses: Losses | None = None) -> BlockVolume:
         if losses is not None:
             losses.add("biomes", int("BiomeData" in tree or "Biomes" in tree))
         return _volume_of(tree, source)
-    except MISSHAPEN as error:
+    except MALFORMED as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is not a valid Sponge schematic{missing}") from error
 
@@ -233,7 +232,7 @@ def _shift(tree: Mapping[str, Any], version: int) -> Corner:
     """
     try:
         x, y, z = (int(step) for step in tree["Metadata"]["WorldEdit"]["Origin"])
-    except MISSHAPEN:
+    except MALFORMED:
         return 0, 0, 0
     return (-x, -y, -z) if version == 3 else (0, 0, 0)
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, LimitError, UsageError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, LimitError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
@@ -34,7 +34,6 @@ from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.state_nbt import palette_texts, state_entry
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
-    MISSHAPEN,
     build_palette,
     check_size,
     own_tag,
@@ -88,7 +87,7 @@ class BlockList:
             return cls(
                 np.array(places, np.int32).reshape(len(states), 3), np.array(states, np.int32), nbt
             )
-        except MISSHAPEN as error:
+        except MALFORMED as error:
             raise DamagedFileError(path, "contains a block without position or index") from error
 
 
@@ -395,7 +394,7 @@ def parse_structure(
     del raw
     try:
         return _volume_of(root, source, Losses() if losses is None else losses, variant)
-    except MISSHAPEN as error:
+    except MALFORMED as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is not a valid structure file{missing}") from error
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.core.errors import InputError, ServerError, UsageError, one_line
+from world2minecraft.core.errors import MALFORMED, InputError, ServerError, UsageError, one_line
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume
@@ -361,7 +361,7 @@ class LiveBuilder:
             held = read_json(self._note)
             known = {key: held[key] for key in ("server", "plan")}
             done = int(held["done"])
-        except (InputError, KeyError, TypeError, ValueError):
+        except (*MALFORMED, InputError):
             return 0
         if known != self._key() or not 0 <= done <= len(self._plan.work):
             return 0

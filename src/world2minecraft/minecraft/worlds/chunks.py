@@ -13,7 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.errors import (
+    MALFORMED,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    UsageError,
+)
 from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.bit_packing import (
     SECTION,
@@ -36,7 +42,6 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.state_nbt import state_entry, state_text
-from world2minecraft.minecraft.unlabelled_volume import MISSHAPEN
 from world2minecraft.minecraft.versions import GameVersion
 
 FIRST_DATA_VERSION = 1451  # 17w47a, the first with palettes of named blocks.
@@ -128,7 +133,7 @@ def read_section(
             raise ValueError
         words = words.view(np.uint64)
         height = int(blocks["Y"] if y is None else y)
-    except (*MISSHAPEN, UsageError) as error:
+    except (*MALFORMED, UsageError) as error:
         raise DamagedFileError(path, f"chunk {place} contains a damaged section") from error
     is_sized = 1 <= len(palette) <= SECTION
     packed = repack_section_words(words, len(palette), straddles=straddles) if is_sized else None

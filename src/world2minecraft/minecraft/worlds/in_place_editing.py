@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import AIR, BlockEntity
 from world2minecraft.minecraft.bit_packing import (
@@ -261,7 +261,7 @@ def read_sections(root: dict[str, Any], path: Path, numbers: StateNumbers) -> di
             local = [numbers.number(state_text(entry), entry) for entry in blocks["palette"]]
             words = blocks.get("data", np.zeros(0, np.int64)).view(np.uint64)
             place = int(section["Y"])
-        except (KeyError, TypeError, AttributeError, ValueError, UsageError) as error:
+        except (*MALFORMED, UsageError) as error:
             raise DamagedFileError(path, f"contains a damaged section ({error})") from error
         cells = np.zeros((16, 16, 16), np.uint16)
         is_sized = 1 <= len(local) <= SECTION
@@ -322,7 +322,7 @@ def read_block_entities(root: dict[str, Any], path: Path) -> list[BlockEntity]:
             rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
             position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
             found.append(BlockEntity(position, str(nbt["id"]), rest))
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except MALFORMED as error:
             raise DamagedFileError(
                 path, "contains a block entity without ID or position"
             ) from error

@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.core.whole_reads import read_whole
@@ -16,7 +16,6 @@ from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     MAX_STATES,
-    MISSHAPEN,
     build_palette,
     unlabelled_volume,
 )
@@ -211,7 +210,7 @@ def _block_entities(root: dict[str, Any], path: Path) -> Iterator[BlockEntity]:
             rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
             position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
             yield BlockEntity(position, str(nbt["id"]), rest)
-        except MISSHAPEN as error:
+        except MALFORMED as error:
             raise DamagedFileError(
                 path, "contains a block entity without ID or position"
             ) from error
@@ -260,7 +259,7 @@ def _entities(held: Any, path: Path) -> list[Entity]:
     """Return the entities of an NBT list."""
     try:
         return [_entity(nbt) for nbt in held]
-    except MISSHAPEN as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, "contains an entity without ID or position") from error
 
 

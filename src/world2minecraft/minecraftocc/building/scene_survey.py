@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.core.errors import ConflictError, DamagedFileError
+from world2minecraft.core.errors import MALFORMED, ConflictError, DamagedFileError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraftocc.building.process_registry import registered_task
@@ -128,7 +128,7 @@ def read_facts(folder: Path, scene_id: str) -> SceneFacts:
             metres_per_block=float(raw["metres_per_block"]),
             notes=tuple(raw["notes"]),
         )
-    except (KeyError, TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(
             path, f"not a valid scene survey ({error!r}); delete the file and build again"
         ) from error

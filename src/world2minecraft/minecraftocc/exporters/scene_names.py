@@ -8,7 +8,7 @@ the output folder, so a resumed or extended export keeps its names.
 from dataclasses import dataclass
 from pathlib import Path
 
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_json, write_json
 
 TABLE = "names.json"
@@ -88,7 +88,7 @@ def _read(path: Path) -> dict[str, NamedSample]:
         found = {str(key): NamedSample(*row) for key, row in read_json(path).items()}
         for row in found.values():
             int(row.frame)
-    except (TypeError, ValueError, AttributeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(
             path, f"not a valid table of names ({error}); delete the file"
         ) from error

@@ -19,7 +19,7 @@ from world2minecraft.capture.depth_images import check_depth_kind
 from world2minecraft.capture.images import read_colour, read_header, read_raw
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.coordinates import invert_rigid
-from world2minecraft.core.errors import DamagedFileError, UnknownNameError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, UnknownNameError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.minecraftocc.formats.image_conventions import DepthCode, decode_depth
@@ -197,7 +197,7 @@ def checked_numbers(values: Any, shape: tuple[int, ...], what: str, name: Path) 
     """
     try:
         numbers = np.array(values, np.float64)
-    except (TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(name, f"the {what} does not consist of numbers") from error
     if numbers.shape != shape or not np.isfinite(numbers).all():
         raise DamagedFileError(name, f"the {what} must be a {shape} array of finite numbers")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError
 from world2minecraft.core.files import npz_array_names, read_npz
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
@@ -53,7 +53,7 @@ def _read(path: Path) -> OccSample:
     arrays = read_npz(path, (*NEEDED, *pictures))
     try:
         return _sample(arrays)
-    except (ValueError, TypeError, KeyError, AttributeError, IndexError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"not a valid sample ({error})") from error
 
 

@@ -12,7 +12,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import InputError, WorkerError
+from world2minecraft.core.errors import MALFORMED, InputError, WorkerError
 from world2minecraft.core.files import read_bytes, read_json
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.importers.format_detection import IMPORTED, open_occupancy
@@ -138,7 +138,7 @@ def _rooms_of_views(path: Path) -> int | None:
     try:
         lines = read_bytes(path, MAX_VIEWS_BYTES).splitlines()
         rooms = [json.loads(line)["room"] for line in lines if line.strip()]
-    except (InputError, ValueError, KeyError, TypeError):  # Scenes without such a file are usual.
+    except (*MALFORMED, InputError):  # Scenes without such a file are usual.
         return None
     return len(set(rooms)) if all(isinstance(room, int) for room in rooms) else None
 

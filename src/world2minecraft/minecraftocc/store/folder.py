@@ -19,7 +19,7 @@ from typing import Any
 
 from world2minecraft.core.checksums import CHECKSUMS
 from world2minecraft.core.classes import CLASS_NAMES
-from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.core.locks import LOCK_FILE
 from world2minecraft.core.output_folders import FolderKind
@@ -128,7 +128,7 @@ def read_classes(folder: Path) -> FineTable:
         if len(rows) > MAX_FINE:
             raise ValueError(f"more than {MAX_FINE:,} fine classes")
         return FineTable(tuple(FineClass(str(row["block"]), str(row["design"])) for row in rows))
-    except (KeyError, TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"not a valid list of classes ({error})") from error
 
 

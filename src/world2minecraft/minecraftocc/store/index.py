@@ -12,7 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.classes import CLASS_NAMES
-from world2minecraft.core.errors import DamagedFileError, LimitError, MissingExtraError, OutputError
+from world2minecraft.core.errors import (
+    MALFORMED,
+    DamagedFileError,
+    LimitError,
+    MissingExtraError,
+    OutputError,
+)
 from world2minecraft.minecraftocc.store.folder import SHARD_NAME
 from world2minecraft.minecraftocc.store.sample_files import DEPTH, FACTS, IMAGE_FORMATS, LABELS
 from world2minecraft.minecraftocc.store.shard import StoredSample, stored_samples
@@ -66,7 +72,7 @@ def shard_rows(path: Path, name: str) -> list[dict[str, Any]]:
         return [_row(sample, name) for sample in samples]
     except OSError as error:
         raise DamagedFileError(path, f"cannot be read: {error.strerror or error}") from error
-    except (KeyError, TypeError, ValueError, IndexError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(
             path, f"contains a sample with incomplete JSON ({error!r})"
         ) from error

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK, apply
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.navigation.exporters.options import ExportedFile
 from world2minecraft.navigation.records import resolve_scene_path
@@ -76,7 +76,7 @@ def _block_to_room(path: Path) -> np.ndarray:
         transform = np.array(read_json(path)["block_to_room"], np.float64)
         if transform.shape != (4, 4) or not np.isfinite(transform).all():
             raise ValueError(f"block_to_room has shape {transform.shape} or is not finite")
-    except (KeyError, TypeError, ValueError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(
             path, f"block_to_room must be a finite 4 x 4 matrix ({error})"
         ) from error

@@ -13,7 +13,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, OutputError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, OutputError
 from world2minecraft.core.files import parse_json_lines, read_bytes, write_bytes
 from world2minecraft.navigation.agents.types import Decision, Observation
 from world2minecraft.navigation.agents.vlm_agent import encode_jpeg
@@ -175,7 +175,7 @@ def stances_of(lines: Sequence[Mapping[str, Any]], path: Path) -> list[Stance]:
         try:
             values = {key: float(value) for key, value in line["stance"].items()}
             stances.append(Stance(**values))
-        except (AttributeError, TypeError, ValueError) as error:
+        except MALFORMED as error:
             raise DamagedFileError(path, f"line {number} has no valid stance ({error})") from error
         if not np.isfinite(list(values.values())).all():
             raise DamagedFileError(path, f"line {number} has a stance that is not finite")

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.classes import CLASS_NAMES, class_id
-from world2minecraft.core.errors import DamagedFileError, World2MinecraftError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, World2MinecraftError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import Layout, LayoutObject, Placement
 from world2minecraft.formats.layout import layout_from_json, layout_to_json
@@ -87,7 +87,7 @@ def read_scene(path: str | Path) -> ComparedScene:
             is_height_stated=bool(data["is_height_stated"]),
             collided=None if data["collided"] is None else int(data["collided"]),
         )
-    except (KeyError, TypeError, ValueError, AttributeError, World2MinecraftError) as error:
+    except (*MALFORMED, World2MinecraftError) as error:
         raise DamagedFileError(path, f"not a valid scene of w2m compare ({error})") from error
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
 
@@ -74,7 +74,7 @@ def _tables() -> dict[str, ConfidenceTable]:
     stated = read_json(TABLES)
     try:
         return {name: ConfidenceTable(**row) for name, row in stated["labellers"].items()}
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(TABLES, f"is not a valid confidence table file ({error})") from error
 
 

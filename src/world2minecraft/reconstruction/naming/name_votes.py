@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import npz_array_names, read_npz, write_npz
 from world2minecraft.core.types import OccupancyGrid, checks
 from world2minecraft.core.vocabulary import label_id_names, label_id_nyu40
@@ -178,5 +178,5 @@ def read_name_votes(path: Path) -> NameVotes:
             if name in known:
                 votes[:, NYU40_COUNT + known[name]] = stored[:, NYU40_COUNT + column]
         return NameVotes(arrays["cubes"], votes)
-    except (ValueError, TypeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"does not contain votes ({error})") from error

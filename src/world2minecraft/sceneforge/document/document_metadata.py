@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 
-from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError
+from world2minecraft.core.errors import MALFORMED, ConflictError, DamagedFileError, OutputError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.sceneforge.document import saving
 from world2minecraft.sceneforge.document.recovery import BASE_FILE, recover
@@ -104,7 +104,7 @@ def read_identity(folder: Path) -> Identity:
             {_place(name, folder): str(value) for name, value in data["inputs"].items()},
             bool(data["is_demo"]),
         )
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"is not a SceneForge document ({error})") from error
 
 

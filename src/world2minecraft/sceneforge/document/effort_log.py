@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import InputError
+from world2minecraft.core.errors import MALFORMED, InputError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import Operation
 
@@ -102,6 +102,6 @@ def _events(data: bytes) -> list[dict[str, Any]]:
                 event["cells"], event["rev"] = int(event["cells"]), int(event["rev"])
                 event["kind"], event["counts_as"] = str(event["kind"]), str(event["counts_as"])
             events.append(event)
-        except (ValueError, TypeError, KeyError, RecursionError):
+        except (*MALFORMED, RecursionError):
             continue
     return events

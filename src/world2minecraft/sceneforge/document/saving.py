@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import ConflictError, InputError
+from world2minecraft.core.errors import MALFORMED, ConflictError, InputError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.core.whole_reads import changing
 from world2minecraft.editing.scene import instances_of, placements_of
@@ -153,5 +153,5 @@ def _read_record(document: Path) -> dict[str, Any]:
         files = {str(name): str(value) for name, value in pending["files"].items()}
         found = {"rev": rev, "known": list(record["known"])}
         return found | ({"pending": {"rev": later, "files": files}} if files else {})
-    except (InputError, KeyError, TypeError, ValueError, AttributeError):
+    except (*MALFORMED, InputError):
         return {"rev": 0, "known": []}

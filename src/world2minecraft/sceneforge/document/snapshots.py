@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_npz, write_npz
 from world2minecraft.core.types import OccupancyGrid, SceneObject
 from world2minecraft.editing.scene import SceneDraft, Timeline
@@ -84,7 +84,7 @@ def read_state(path: Path) -> State:
             str(data["generation"]),
             _line(data["line"]),
         )
-    except (KeyError, TypeError, ValueError, RecursionError) as error:
+    except (*MALFORMED, RecursionError) as error:
         raise DamagedFileError(path, f"is not a valid scene snapshot ({error})") from error
 
 

@@ -289,7 +289,14 @@ def _read_once(path: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> C
         notes=notes,
         depth_kind="exact",
         world_up=np.array([0.0, 0.0, 1.0]),
+        source_to_scan=file_to_world @ _translation(-loaded.offset),
     )
+
+
+def _translation(offset: np.ndarray) -> np.ndarray:
+    move = np.eye(4)
+    move[:3, 3] = offset
+    return move
 
 
 def estimate_world_frame(
