@@ -6,14 +6,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.rendering.light_worlds import PALETTE, SLOW_SHAPES, random_world
 
-from world2minecraft.minecraft.rules.light import DIMS, SHUT, SOLID
-from world2minecraft.rendering.light import light_field
-from world2minecraft.rendering.light.propagation import (
+from world2minecraft.minecraft.rules.light import (
+    DIMS,
+    SHUT,
+    SOLID,
     light_tables,
     light_units,
     opacity_word,
     rounded_reach,
 )
+from world2minecraft.rendering.light import light_field
 
 TOP = 15
 

@@ -10,12 +10,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.rules.light import MAX_REACH
 from world2minecraft.rendering.block_elements import BlockModel, ModelSource
 from world2minecraft.rendering.block_models import BuiltinModels
 from world2minecraft.rendering.empty_space_boxes import find_empty_boxes
 from world2minecraft.rendering.light import LightField, light_field
 from world2minecraft.rendering.light.exposure import standing_cells
-from world2minecraft.rendering.light.propagation import MAX_REACH
 from world2minecraft.rendering.off_grid_elements import (
     CellElements,
     EntityLabels,

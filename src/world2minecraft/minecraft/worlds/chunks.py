@@ -2,8 +2,8 @@
 
 From 1.13 to 1.17, the content of a chunk is in a compound named ``Level``, and the world is 256
 blocks high and starts at layer 0. Palette indices are packed without gaps until 1.15, and entities
-are stored in the chunk until 1.16. Because 1.13 does not compute light when it loads a chunk,
-sections for it are written with full skylight.
+are stored in the chunk until 1.16. Chunks are written with their light and heightmaps, which are
+those of the volume in empty surroundings (``stored_light``).
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -31,6 +31,7 @@ from world2minecraft.minecraft.bit_packing import (
 from world2minecraft.minecraft.block_renames import read_state
 from world2minecraft.minecraft.nbt import (
     BYTE,
+    BYTES,
     COMPOUND,
     END,
     LIST,
@@ -43,15 +44,18 @@ from world2minecraft.minecraft.nbt import (
 )
 from world2minecraft.minecraft.state_nbt import state_entry, state_text
 from world2minecraft.minecraft.versions import GameVersion
+from world2minecraft.minecraft.worlds.stored_light import (
+    FIRST_WITHOUT_GAPS,
+    LIGHT_BYTES,
+    StoredLight,
+)
 
 FIRST_DATA_VERSION = 1451  # 17w47a, the first with palettes of named blocks.
 FIRST_1_14 = 1901  # 18w43a: the game lights chunks on loading, and calls the last status full.
 FIRST_1_15 = 2203  # 19w36a: a biome for each 4 x 4 x 4 blocks.
-FIRST_WITHOUT_GAPS = 2529  # 20w17a, of 1.16: no number over two words.
 FIRST_ENTITY_FILES = 2681  # 20w45a, of 1.17: entities in files of their own.
 FIRST_WITHOUT_LEVEL = 2844  # 21w43a, of 1.18.
 VOID_BIOME_ID = 127
-_LIGHT_BYTES = 2048
 PALETTES = ("palette", "Palette")  # Since 1.18, and before.
 MAX_STATE_TEXTS = 100_000  # Texts of states of one world, some of them the same in other orders.
 VOID_BIOME = "minecraft:the_void"
@@ -189,15 +193,21 @@ def old_sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) ->
 class OldChunkWriter:
     """A writer of the chunks of one volume for a game from 1.13 to 1.17."""
 
-    def __init__(self, states: np.ndarray, palette: Sequence[str], version: GameVersion):
+    def __init__(
+        self,
+        states: np.ndarray,
+        palette: Sequence[str],
+        corner: tuple[int, int, int],
+        version: GameVersion,
+    ):
         self._packer = SectionPacker(states, palette, version.level_data_version)
-        self._height = states.shape[1]
+        self._corner, self._height = corner, states.shape[1]
         self._version = version.level_data_version
+        self._light = StoredLight(states, palette, corner, version)
 
     def chunk(
         self,
         place: tuple[int, int],
-        corner: tuple[int, int, int],
         block_entities: Sequence[Mapping[str, Any]] = (),
         entities: Sequence[Mapping[str, Any]] = (),
     ) -> bytes | None:
@@ -205,17 +215,22 @@ class OldChunkWriter:
 
         Args:
             place: The chunk's position (x, z) in the world, in chunks.
-            corner: The world position of the volume's first cell.
             block_entities: NBT of the block entities in this chunk.
             entities: NBT of the entities in this chunk, for games that store them in chunks.
         """
         held = entities if self._version < FIRST_ENTITY_FILES else ()
-        sections = [
-            self._section(y, *packed)
-            for y, packed in self._packer.column(place, corner, self._height)
-        ]
-        if not (sections or block_entities or held):
+        blocks = dict(self._packer.column(place, self._corner, self._height))
+        if not (blocks or block_entities or held):
             return None
+        light = self._light.sections(place, blocks)
+        air = None
+        if self._version < FIRST_1_14:  # Its sections are 0 to 15, and all have blocks.
+            air = ([self._packer.entries[0]], np.zeros(0, np.uint64))
+            light = {y: tags for y, tags in light.items() if 0 <= y < 16}
+        sections = [
+            self._section(y, blocks.get(y, air), light.get(y, {}))
+            for y in sorted({*blocks, *light})
+        ]
         level = {
             "xPos": place[0],
             "zPos": place[1],
@@ -225,7 +240,7 @@ class OldChunkWriter:
             "Biomes": np.full(
                 1024 if self._version >= FIRST_1_15 else 256, VOID_BIOME_ID, np.int32
             ),
-            "Heightmaps": {},
+            "Heightmaps": self._light.heightmaps(place),
             "Structures": {"References": {}, "Starts": {}},
             "TileTicks": [],
             "LiquidTicks": [],
@@ -234,55 +249,68 @@ class OldChunkWriter:
             "Entities": [dict(entity) for entity in held],
         }
         if self._version >= FIRST_1_14:
-            level["isLightOn"] = Byte(0)  # The game lights the chunk when it loads it.
+            level["isLightOn"] = Byte(1)
         head = write_nbt({"DataVersion": self._version})[:-1]
         body = write_nbt({"Level": {**level, "Sections": sections}})[3:]
         return head + body
 
-    def _section(self, y: int, entries: list[dict[str, Any]], words: np.ndarray) -> dict[str, Any]:
-        section: dict[str, Any] = {"Y": Byte(y), "Palette": entries}
-        if self._version < FIRST_WITHOUT_GAPS or not len(words):
-            words = straddle_section_words(words, len(entries))
-        section["BlockStates"] = words.view(np.int64)
-        if self._version < FIRST_1_14:
-            section["BlockLight"] = np.zeros(_LIGHT_BYTES, np.int8)
-            section["SkyLight"] = np.full(_LIGHT_BYTES, -1, np.int8)
-        return section
+    def _section(
+        self,
+        y: int,
+        packed: tuple[list[dict[str, Any]], np.ndarray] | None,
+        light: Mapping[str, bytes],
+    ) -> dict[str, Any]:
+        section: dict[str, Any] = {"Y": Byte(y)}
+        if packed is not None:
+            entries, words = packed
+            if self._version < FIRST_WITHOUT_GAPS or not len(words):
+                words = straddle_section_words(words, len(entries))
+            section |= {"Palette": entries, "BlockStates": words.view(np.int64)}
+        if self._version < FIRST_1_14:  # It lights nothing on loading, and expects both.
+            section["BlockLight"] = np.zeros(LIGHT_BYTES, np.int8)
+            section["SkyLight"] = np.full(LIGHT_BYTES, -1, np.int8)
+        return section | {name: np.frombuffer(levels, np.int8) for name, levels in light.items()}
 
 
 class ChunkWriter:
     """A writer of the chunks of one volume for a game since 1.18."""
 
-    def __init__(self, states: np.ndarray, palette: Sequence[str], version: GameVersion):
+    def __init__(
+        self,
+        states: np.ndarray,
+        palette: Sequence[str],
+        corner: tuple[int, int, int],
+        version: GameVersion,
+    ):
         self._packer = SectionPacker(states, palette, version.level_data_version)
+        self._light = StoredLight(states, palette, corner, version)
+        self._corner = corner
         self._entries = [write_nbt(entry)[3:] for entry in self._packer.entries]
         self._height = states.shape[1]
         self._version = version
         self._biomes = _named_tag(COMPOUND, "biomes", write_nbt({"palette": [VOID_BIOME]})[3:])
+        self._air = self._block_tags([0], np.zeros(0, np.uint64))
 
     def chunk(
         self,
         place: tuple[int, int],
-        corner: tuple[int, int, int],
         block_entities: Sequence[Mapping[str, Any]] = (),
     ) -> bytes | None:
         """Return the NBT of a chunk, or None if it is empty.
 
         Args:
             place: The chunk's position (x, z) in the world, in chunks.
-            corner: The world position of the volume's first cell.
             block_entities: NBT of the block entities in this chunk.
         """
-        low = corner[1] >> 4
-        high = (corner[1] + self._height - 1) >> 4
-        sections = []
-        for y in range(low, high + 1):
-            at = (place[0] * 16 - corner[0], y * 16 - corner[1], place[1] * 16 - corner[2])
-            section = self._section(y, np.array(at, np.int64))
-            if section is not None:
-                sections.append(section)
-        if not sections and not block_entities:
+        blocks = dict(self._blocks(place))
+        if not blocks and not block_entities:
             return None
+        light = self._light.sections(place, blocks)
+        lowest = self._version.min_y >> 4
+        sections = [
+            self._section(y, blocks.get(y, self._air if y >= lowest else b""), light.get(y, {}))
+            for y in sorted({*blocks, *light})
+        ]
         root = {
             "DataVersion": self._version.level_data_version,
             "xPos": place[0],
@@ -291,8 +319,8 @@ class ChunkWriter:
             "Status": "minecraft:full",
             "LastUpdate": Long(0),
             "InhabitedTime": Long(0),
-            "isLightOn": Byte(0),  # The game lights the chunk when it loads it.
-            "Heightmaps": {},
+            "isLightOn": Byte(1),
+            "Heightmaps": self._light.heightmaps(place),
             "structures": {"References": {}, "starts": {}},
             "block_ticks": [],
             "fluid_ticks": [],
@@ -302,13 +330,17 @@ class ChunkWriter:
         head = _named_tag(LIST, "sections", bytes([COMPOUND]) + len(sections).to_bytes(4, "big"))
         return b"".join([write_nbt(root)[:-1], head, *sections, bytes([END])])
 
-    def _section(self, y: int, origin: np.ndarray) -> bytes | None:
-        packed = self._packer.numbers(origin)
-        if packed is None:
-            return None
-        met, words = packed
+    def _blocks(self, place: tuple[int, int]) -> Iterator[tuple[int, bytes]]:
+        """Yield the y and the tags of the blocks of each section that is not all air."""
+        x, low, z = self._corner
+        for y in range(low >> 4, (low + self._height - 1 >> 4) + 1):
+            at = (place[0] * 16 - x, y * 16 - low, place[1] * 16 - z)
+            packed = self._packer.numbers(np.array(at, np.int64))
+            if packed is not None:
+                yield y, self._block_tags(*packed)
+
+    def _block_tags(self, met: list[int], words: np.ndarray) -> bytes:
         parts = [
-            _named_tag(BYTE, "Y", (y & 255).to_bytes(1, "big")),
             _named_tag(COMPOUND, "block_states", b""),
             _named_tag(LIST, "palette", bytes([COMPOUND]) + len(met).to_bytes(4, "big")),
             *[self._entries[number] for number in met],
@@ -316,7 +348,13 @@ class ChunkWriter:
         if len(words):
             parts += [_named_tag(LONGS, "data", len(words).to_bytes(4, "big"))]
             parts += [words.astype(">u8").tobytes()]
-        return b"".join([*parts, bytes([END]), self._biomes, bytes([END])])
+        return b"".join([*parts, bytes([END]), self._biomes])
+
+    def _section(self, y: int, blocks: bytes, light: Mapping[str, bytes]) -> bytes:
+        parts = [_named_tag(BYTE, "Y", (y & 255).to_bytes(1, "big")), blocks]
+        for name, levels in light.items():
+            parts += [_named_tag(BYTES, name, len(levels).to_bytes(4, "big")), levels]
+        return b"".join([*parts, bytes([END])])
 
 
 class _ChunkReader(NbtReader):

@@ -160,11 +160,10 @@ def _chunk_writer(
 ) -> Callable[[Place, list[dict[str, Any]]], bytes | None]:
     """Return a function that writes a chunk, given its position and block entities."""
     if version.level_data_version >= FIRST_WITHOUT_LEVEL:
-        today = ChunkWriter(volume.states, volume.palette, version)
-        return lambda place, held: today.chunk(place, volume.corner, held)
-    old = OldChunkWriter(volume.states, volume.palette, version)
+        return ChunkWriter(volume.states, volume.palette, volume.corner, version).chunk
+    old = OldChunkWriter(volume.states, volume.palette, volume.corner, version)
     entities = _entities_by_chunk(volume.entities)
-    return lambda place, held: old.chunk(place, volume.corner, held, entities.get(place, ()))
+    return lambda place, held: old.chunk(place, held, entities.get(place, ()))
 
 
 def _chunk_places(volume: BlockVolume) -> Iterator[Place]:

@@ -7,10 +7,15 @@ geometric mean of the light at surfaces, like a camera's meter reading if all su
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.rules.light import SHUT, SOLID, neighbour_steps
+from world2minecraft.minecraft.rules.light import (
+    BRIGHTEST,
+    SHUT,
+    SOLID,
+    light_units,
+    neighbour_steps,
+)
 from world2minecraft.rendering.light.light_field import LightField
 from world2minecraft.rendering.light.light_settings import LightSettings
-from world2minecraft.rendering.light.propagation import BRIGHTEST, light_units
 
 # The light that surfaces shall have by day, at night under lamps, at night without: a night stays
 # a night.

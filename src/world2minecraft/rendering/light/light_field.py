@@ -17,11 +17,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.rules.light import SOLID, pad_margin
-from world2minecraft.rendering.light.propagation import (
+from world2minecraft.minecraft.rules.light import (
+    SOLID,
     flood_block,
     flood_sky,
     light_tables,
+    pad_margin,
     rounded_reach,
 )
 

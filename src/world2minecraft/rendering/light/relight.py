@@ -7,19 +7,20 @@ remaining light around the region then spreads back in. The result equals a comp
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.rules.light import flood_light, neighbour_steps
+from world2minecraft.minecraft.rules.light import (
+    BRIGHTEST,
+    enters,
+    falls_into,
+    flood_light,
+    light_tables,
+    light_units,
+    neighbour_steps,
+)
 from world2minecraft.rendering.light.light_field import (
     MAX_STATES,
     LightField,
     fill_lattice,
     quarter_level_table,
-)
-from world2minecraft.rendering.light.propagation import (
-    BRIGHTEST,
-    enters,
-    falls_into,
-    light_tables,
-    light_units,
 )
 
 

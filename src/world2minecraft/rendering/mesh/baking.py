@@ -13,6 +13,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.entities import display_cubes
+from world2minecraft.minecraft.rules.light import MAX_REACH
 from world2minecraft.rendering.atlas import Atlas, to_srgb
 from world2minecraft.rendering.block_elements import BlockModel, ModelSource
 from world2minecraft.rendering.block_models import BuiltinModels
@@ -22,7 +23,6 @@ from world2minecraft.rendering.cutaway import (
     without_partitions,
 )
 from world2minecraft.rendering.light.light_field import BLOCK_SHIFT, COUNT_SHIFT, light_field
-from world2minecraft.rendering.light.propagation import MAX_REACH
 from world2minecraft.rendering.mesh.quads import (
     INSIDE,
     Quads,
