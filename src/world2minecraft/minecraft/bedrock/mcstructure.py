@@ -24,7 +24,7 @@ from world2minecraft.minecraft.bedrock.block_entities import (
     palette_entry,
 )
 from world2minecraft.minecraft.bedrock.nbt_little_endian import read_little, write_little
-from world2minecraft.minecraft.bedrock.states import bedrock_to_java, is_preserved, java_to_bedrock
+from world2minecraft.minecraft.bedrock.states import changed_properties, java_to_bedrock
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 from world2minecraft.minecraft.nbt import NbtLimits
@@ -35,6 +35,8 @@ FORMAT_VERSION = 1
 MAX_BYTES = 96 << 20  # 12 million blocks, eight bytes each; the numbers are read in place.
 LIMITS = NbtLimits(bytes=MAX_BYTES)
 WATER = "minecraft:water[level=0]"
+# Plants whose stems are blocks of their own in Java, and the direction in which they grow.
+GROWING = {"cave_vines": -1, "weeping_vines": -1, "kelp": 1, "twisting_vines": 1}
 IN_WATER = ("kelp", "kelp_plant", "seagrass", "tall_seagrass", "bubble_column")
 NOTHING = -1
 
@@ -43,7 +45,8 @@ def write_mcstructure(volume: BlockVolume, path: str | Path, losses: Losses | No
     """Write a volume as a structure file for Bedrock 1.20 and later.
 
     The volume's corner is written as ``structure_world_origin``. Blocks that do not exist in
-    Bedrock Edition become air and are counted by name in ``losses``.
+    Bedrock Edition become air. They are counted by name in ``losses``, and so is each property of a
+    block that is not the same when the file is read back.
 
     Raises:
         UsageError: If the volume is empty, or larger than the reader accepts.
@@ -54,7 +57,6 @@ def write_mcstructure(volume: BlockVolume, path: str | Path, losses: Losses | No
         raise UsageError(
             f"a .mcstructure file must have 1 to 12 million blocks, got {volume.states.size:,}"
         )
-    _count_losses(volume, counted)
     palette, numbers, is_wet = _bedrock_palette(volume.palette)
     cells = np.ascontiguousarray(volume.states).ravel()  # x, y, z with z fastest, as ours are.
     water = palette.index(palette_entry(*_bedrock(WATER)))
@@ -76,6 +78,7 @@ def write_mcstructure(volume: BlockVolume, path: str | Path, losses: Losses | No
         },
         "structure_world_origin": np.array(volume.corner, np.int32),
     }
+    _count_losses(volume, _volume_of(tree, Path(path), Losses()), counted)
     write_bytes(path, write_little(tree))
 
 
@@ -161,17 +164,20 @@ def _position_data(volume: BlockVolume) -> dict[str, Any]:
     return result
 
 
-def _count_losses(volume: BlockVolume, losses: Losses) -> None:
-    counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))
-    for state, count in zip(volume.palette, counts.tolist(), strict=True):
-        bedrock = java_to_bedrock(state)
-        if bedrock is None:
-            losses.add(f"blocks of {parse_state(state).name}, which Bedrock does not have", count)
-            continue
-        back = bedrock_to_java(*bedrock) or AIR
-        back = java_state(back, bedrock_data(state) or {})
-        if not is_preserved(state, back):
-            losses.add("blocks with properties that Bedrock cannot represent", count)
+def _count_losses(volume: BlockVolume, back: BlockVolume, losses: Losses) -> None:
+    """Count what differs in ``back``, the volume that is read from what was written."""
+    pairs = volume.states.astype(np.int64) * len(back.palette) + back.states
+    codes, counts = np.unique(pairs, return_counts=True)
+    for code, count in zip(codes.tolist(), counts.tolist(), strict=True):
+        state, again = (
+            volume.palette[code // len(back.palette)],
+            back.palette[code % len(back.palette)],
+        )
+        name = parse_state(state).name
+        if java_to_bedrock(state) is None:
+            losses.add(f"blocks of {name}, which Bedrock does not have", count)
+        for key in changed_properties(state, again) if java_to_bedrock(state) else ():
+            losses.add(f"{key} of {name}, which Bedrock does not keep", count)
     state_at = _states_by_place(volume)
     for entity in volume.block_entities:
         data = bedrock_data(state_at.get(entity.block_pos, AIR), (entity.id, entity.nbt))
@@ -230,8 +236,27 @@ def _volume_of(tree: Mapping[str, Any], source: Path, losses: Losses) -> BlockVo
             block_entities.append(BlockEntity(place, *java))  # type: ignore[arg-type]
     losses.add("entities", len(structure.get("entities", [])))
     # What Bedrock leaves to its neighbours a Java file must state.
-    states, palette = update_connections(states, palette)
+    states, palette = update_connections(*_with_stems(states, palette))
     return _trim_palette(states, palette, (x, y, z), block_entities)
+
+
+def _with_stems(states: np.ndarray, palette: tuple[str, ...]) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return the states with the stems of growing plants, which Bedrock does not tell from tips."""
+    names = [state.partition("[")[0].removeprefix("minecraft:") for state in palette]
+    states, result = states.copy(), list(palette)
+    for tip, grows in GROWING.items():
+        kinds = [n for n, name in enumerate(names) if name in (tip, f"{tip}_plant")]
+        if not kinds:
+            continue
+        is_plant = np.pad(np.isin(states, kinds), ((0, 0), (1, 1), (0, 0)))
+        has_next = is_plant[:, 1 + grows : 1 + grows + states.shape[1]]
+        for number in [n for n in kinds if names[n] == tip]:
+            berries = parse_state(palette[number]).get("berries")
+            stem = f"minecraft:{tip}_plant" + (f"[berries={berries}]" if berries else "")
+            if stem not in result:
+                result.append(stem)
+            states[has_next & (states == number)] = result.index(stem)
+    return states, tuple(result)
 
 
 def _trim_palette(

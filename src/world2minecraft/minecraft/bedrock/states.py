@@ -17,6 +17,7 @@ from world2minecraft.minecraft.block_states import BlockState, complete, parse_s
 from world2minecraft.minecraft.block_table import block_table
 from world2minecraft.minecraft.nbt import Byte
 
+AIRS = {"minecraft:air", "minecraft:cave_air", "minecraft:void_air"}
 TABLE_FILE = "data/bedrock_states.json.gz"
 
 
@@ -79,27 +80,23 @@ def bedrock_to_java(name: str, states: Mapping[str, Any]) -> str | None:
     return str(BlockState(block.name, block.values_at(found[1])))
 
 
-def is_preserved(state: str, back: str) -> bool:
-    """Return whether a Java state survives conversion to Bedrock and back.
+def changed_properties(state: str, back: str) -> tuple[str, ...]:
+    """Return the properties in which a Java state differs from what its Bedrock state becomes.
 
-    Properties that the game computes from neighbouring blocks are ignored.
+    If the block differs, the result is ``blocks``. What the game computes again as time passes is
+    ignored: the distance of leaves, snow on grass and whether somebody lies in a bed.
+
+    Example:
+        >>> changed_properties("minecraft:oak_button[face=floor,facing=east]",
+        ...                    "minecraft:oak_button[face=floor,facing=north]")
+        ('facing',)
     """
     before, after = complete(parse_state(state)), complete(parse_state(back))
     if before.name != after.name:
-        return False
-    ours, theirs = dict(before.properties), dict(after.properties)
-    changed = {key for key in ours if ours[key] != theirs.get(key)}
-    return changed <= _computed(before.name)
-
-
-def _computed(name: str) -> set[str]:
-    """Return the properties of a block that the game computes from neighbouring blocks."""
-    sides = {"north", "east", "south", "west"}
-    if name.endswith("_stairs"):
-        return {"shape", "waterlogged"}
-    if name.endswith(("_pane", "_bars", "_fence")):
-        return sides | {"waterlogged"}
-    return {"waterlogged", "distance", "snowy", "occupied"}
+        return () if {before.name, after.name} <= AIRS else ("blocks",)
+    theirs = dict(after.properties)
+    changed = (key for key, value in before.properties if theirs.get(key) != value)
+    return tuple(key for key in changed if key not in ("distance", "occupied", "snowy"))
 
 
 def _value(text: str) -> Any:
