@@ -45,7 +45,7 @@ class Scene:
         semantic = checks.labels("semantic", self.semantic, (None, None, None))
         put(self, "semantic", semantic)
         put(self, "instance", checks.array("instance", self.instance, np.uint16, semantic.shape))
-        put(self, "block_to_room", checks.floats("block_to_room", self.block_to_room, (4, 4)))
+        put(self, "block_to_room", checks.similarity("block_to_room", self.block_to_room))
         checks.floats("spawn", self.spawn, (3,))
         if self.design is not None:
             put(self, "design", checks.array("design", self.design, np.uint16, semantic.shape))

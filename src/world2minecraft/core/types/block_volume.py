@@ -72,7 +72,7 @@ class BlockVolume:
         if len(corner) != 3:
             raise ValueError(f"corner must be three integers, got {self.corner}")
         put(self, "corner", corner)
-        put(self, "block_to_room", checks.floats("block_to_room", self.block_to_room, (4, 4)))
+        put(self, "block_to_room", checks.similarity("block_to_room", self.block_to_room))
 
     def __repr__(self) -> str:
         size = " x ".join(str(side) for side in self.states.shape)

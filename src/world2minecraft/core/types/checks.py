@@ -75,6 +75,22 @@ def transform(name: str, value: Any, tolerance: float = RIGID_TOLERANCE) -> np.n
     return result
 
 
+def similarity(name: str, value: Any) -> np.ndarray:
+    """Return a 4x4 transform from blocks or cells to metres: a rigid one with a uniform scale."""
+    result = floats(name, value, (4, 4))
+    scale = float(np.linalg.norm(result[:3, 0]))
+    low, high = VOXEL_RANGE_M
+    if not low <= scale <= high:
+        raise ValueError(
+            f"{name} must scale by {low:g} to {high:g} m, got {scale:g}; check the unit"
+        )
+    rigid = result.copy()
+    rigid[:3, :3] /= scale
+    if fault := rigid_fault(rigid, RIGID_TOLERANCE):
+        raise ValueError(f"{name} must be a rotation, a scale and a translation, but {fault}")
+    return result
+
+
 def rigid_fault(matrix: np.ndarray, tolerance: float) -> str:
     """Return why a 4x4 matrix is not a rigid transform of metres, and what to do; else "".
 

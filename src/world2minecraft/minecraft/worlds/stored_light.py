@@ -129,11 +129,11 @@ class StoredLight:
         found = np.zeros((len(HEIGHTMAPS), states.shape[0], states.shape[2]), np.uint16)
         surface_heights(states, traits, found)
         found[found > 0] += corner[1] - version.min_y
-        heights = np.zeros((len(HEIGHTMAPS), *kinds[1:-1, 0, 1:-1].shape), np.uint16)
+        places = (int(last[0] - first[0] + 1), int(last[2] - first[2] + 1))
+        heights = np.zeros((len(HEIGHTMAPS), 16 * places[0], 16 * places[1]), np.uint16)
         x, z = start[0], start[2]
         heights[:, x : x + states.shape[0], z : z + states.shape[2]] = found
-        chunks = heights.reshape(len(HEIGHTMAPS), heights.shape[1] // 16, 16, -1, 16)
-        places = chunks.shape[1], chunks.shape[3]
+        chunks = heights.reshape(len(HEIGHTMAPS), places[0], 16, places[1], 16)
         is_gapless = version.level_data_version >= FIRST_WITHOUT_GAPS
         pack = pack_heights if is_gapless else pack_straddling_heights
         # Of each chunk (x, z), the columns in the order z, x.

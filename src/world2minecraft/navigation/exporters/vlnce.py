@@ -23,6 +23,7 @@ import numpy as np
 from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK, apply
 from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_json, write_bytes, write_json
+from world2minecraft.core.types import checks
 from world2minecraft.navigation.exporters.options import ExportedFile
 from world2minecraft.navigation.records import resolve_scene_path
 from world2minecraft.navigation.types import SPLITS, Episode, Move, Stance
@@ -73,14 +74,9 @@ def rotation(stance: Stance) -> list[float]:
 
 def _block_to_room(path: Path) -> np.ndarray:
     try:
-        transform = np.array(read_json(path)["block_to_room"], np.float64)
-        if transform.shape != (4, 4) or not np.isfinite(transform).all():
-            raise ValueError(f"block_to_room has shape {transform.shape} or is not finite")
+        return checks.similarity("block_to_room", read_json(path)["block_to_room"])
     except MALFORMED as error:
-        raise DamagedFileError(
-            path, f"block_to_room must be a finite 4 x 4 matrix ({error})"
-        ) from error
-    return transform
+        raise DamagedFileError(path, f"does not contain a valid transform ({error})") from error
 
 
 def write_vlnce(
