@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from true_rooms import write_capture
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.evaluation.scoring import read_truth
 from world2minecraft.evaluation.scoring.pose_errors import frame_error
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.runs import run_capture
 
 
 @pytest.mark.parametrize("turns", [0, 1, 2, 3])
@@ -33,3 +36,12 @@ def test_a_damaged_truth_is_named(tmp_path):
     (tmp_path / "truth.json").write_text('{"objects": [{"class": "chair"}]}')
     with pytest.raises(DamagedFileError, match="not a valid ground truth"):
         read_truth(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["truth.json", "truth.npz"])
+def test_a_run_says_that_the_truth_is_damaged_before_any_work(name, tmp_path):
+    room = write_capture(tmp_path / "capture")
+    (room / name).write_bytes((room / name).read_bytes()[:-40])
+    with pytest.raises(DamagedFileError, match=name):
+        run_capture(room, tmp_path / "OUT", Parameters())
+    assert not (tmp_path / "OUT").exists()

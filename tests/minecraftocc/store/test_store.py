@@ -22,6 +22,7 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.minecraftocc.store import open_store, verify_store, write_store
 from world2minecraft.minecraftocc.store import writer as writing_module
+from world2minecraft.minecraftocc.store.index import read_index
 from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 
 PNG = SampleFiles("png")
@@ -316,6 +317,18 @@ def test_inconsistent_rows_are_refused(copied, column, value, text):
     pq.write_table(changed, copied / "index.parquet")
     with pytest.raises(DamagedFileError, match=text):
         next(open_store(copied).samples())
+
+
+def test_an_index_whose_texts_are_no_utf_8_is_refused(copied):
+    import pyarrow.parquet as pq
+
+    path = copied / "index.parquet"
+    table = pq.read_table(path)
+    key = table["key"][0].as_py().encode()
+    pq.write_table(table, path, compression="none", use_dictionary=False)
+    path.write_bytes(path.read_bytes().replace(key, b"\xff" + key[1:]))
+    with pytest.raises(DamagedFileError, match="not a valid index"):
+        read_index(path)
 
 
 def test_an_index_with_missing_columns_or_extra_rows_is_refused(copied, monkeypatch):

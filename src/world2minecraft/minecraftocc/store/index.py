@@ -144,7 +144,9 @@ def _checked_table(file: Any, path: Path) -> Any:
         raise DamagedFileError(
             path, f"does not contain a column {wrong[0]} of type {columns()[wrong[0]]}"
         )
-    return file.read(columns=list(columns()))
+    table = file.read(columns=list(columns()))
+    table.validate(full=True)  # Texts must be UTF-8.
+    return table
 
 
 def _add(total: Any, rows: Iterable[dict[str, Any]]) -> None:
