@@ -58,6 +58,16 @@ def named(*pairs):
     return [name for name, _ in name_instances(items, (ROOM,), votes_for(*(v for _, v in pairs)))]
 
 
+def test_votes_name_what_the_model_does_not_know():
+    names = read_vocabulary().names
+    told = {entry.nyu40 for entry in names.values() if entry.class_id in OBJECT_CLASSES}
+    told -= {names[name].nyu40 for name in read_name_model().names}
+    votes = np.eye(40)[[number - 1 for number in told]] * VOTES
+    items = [box(OBJS, 1, 1, (0.5, 0.5, 0.5))] * len(told)
+    found = name_objects(traits_of(items, ROOM, votes))
+    assert [names[name].nyu40 for name, _ in found] == list(told) != []
+
+
 def test_the_model_gives_names_of_the_vocabulary():
     model = read_name_model()
     assert set(model.names) <= set(read_vocabulary().names)
@@ -73,6 +83,8 @@ def test_the_model_gives_names_of_the_vocabulary():
         (FURN, (0.4, 0.9, 2.0), 0.0, "bookshelf", "bookcase"),
         (BED, (2.0, 1.6, 0.6), 0.0, "bed", "bed"),
         (OBJS, (0.08, 0.8, 0.6), 1.3, "picture", "picture"),
+        (OBJS, (0.1, 1.2, 1.4), 0.9, "blinds", "blind"),
+        (OBJS, (0.3, 0.5, 0.2), 0.5, "pillow", "cushion"),
     ],
 )
 def test_votes_and_size_name_objects(class_id, size, bottom, vote, name):

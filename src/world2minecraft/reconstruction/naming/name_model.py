@@ -139,12 +139,13 @@ def name_objects(
     chosen = model or read_name_model()
     names, nyu40 = tuple(read_vocabulary().names), label_id_nyu40()[NYU40_COUNT:] - 1
     order = [names.index(name) for name in chosen.names]
+    only = _names_without_model(chosen.names)
     chance = np.zeros((len(objects), len(names)), np.float32)
     chance[:, order] = chosen.probabilities(features_of(objects))
     result = []
     for item, row in zip(objects, chance, strict=True):
         within = np.bincount(nyu40, row, NYU40_COUNT)[nyu40]
-        shares = item.votes[nyu40] * row / np.maximum(within, SMALLEST_CHANCE)
+        shares = item.votes[nyu40] * np.where(only, 1, row / np.maximum(within, SMALLEST_CHANCE))
         if len(item.votes) > NYU40_COUNT:
             shares += item.votes[NYU40_COUNT:]
         if not item.votes.any():
@@ -154,6 +155,19 @@ def name_objects(
         confidence = calibrated(float(shares[best]), item.vote_count)
         sure = confidence >= MIN_CONFIDENCE
         result.append((names[best] if sure else CLASS_DISPLAY_NAMES[item.class_id], confidence))
+    return result
+
+
+def _names_without_model(known: tuple[str, ...]) -> np.ndarray:
+    """Return which names of the vocabulary are the first of an NYU40 class unknown to the model.
+
+    Generated rooms have no blinds, cushions, papers and people, so votes alone decide on these.
+    """
+    seen = {read_vocabulary().names[name].nyu40 for name in known}
+    result = np.zeros(len(read_vocabulary().names), bool)
+    for number, entry in enumerate(read_vocabulary().names.values()):
+        result[number] = entry.class_id in OBJECT_CLASSES and entry.nyu40 not in seen
+        seen.add(entry.nyu40)
     return result
 
 
