@@ -1,16 +1,17 @@
-"""Names of the labelled surface of real frames: those of reconstructions, and of their segmenter.
+"""Names of the labelled surface of real frames: of objects, of votes, and of the segmenter.
 
 ``python -m benchmarks.check_surface_names DATA --keep DIR [--frames 22]``
 
 ``DATA`` is the folder of shared inputs. Validation frames of NYUv2 are reconstructed once. A
 labelled pixel takes the best name of the object in whose cell it lies, or the class of a cell of
 the structure, or of those that touch it if it is empty. Printed is the share of pixels whose NYU40
-class is the labelled one, beside that of the segmentation network alone, which sees the same
-picture. Other props are left out. Classes that annotators do not separate count as the same with
-``--alike``.
+class is the labelled one, beside those of the class with the most votes in the cell, and of the
+segmentation network alone, which sees the same picture. Other props are left out. Classes that
+annotators do not separate count as the same with ``--alike``.
 """
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -20,11 +21,19 @@ from benchmarks.real_captures.scenes import NYU_FOLDER, sample_nyu
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
 from world2minecraft.core.vocabulary import OTHER_NYU40, alike_nyu40, read_vocabulary
+from world2minecraft.reconstruction.naming.name_votes import (
+    NAME_VOTES,
+    NameVotes,
+    class_votes,
+    read_name_votes,
+    votes_of_cells,
+)
 from world2minecraft.reconstruction.recognition.segmentation import SegmentationModel
 from world2minecraft.reconstruction.recognition.segmentation_channels import sample_nearest
 
 NEAR = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 STRUCTURE = ("ceiling", "floor", "wall", "window")
+KINDS = ("names", "votes", "segmenter")
 
 
 def named_cells(grid: OccupancyGrid, names: dict[int, str]) -> np.ndarray:
@@ -36,6 +45,14 @@ def named_cells(grid: OccupancyGrid, names: dict[int, str]) -> np.ndarray:
     for number, name in names.items():
         ids[grid.instance == number] = vocabulary[name].nyu40
     ids[grid.source == UNSEEN] = 0
+    return ids
+
+
+def voted_cells(grid: OccupancyGrid, votes: NameVotes) -> np.ndarray:
+    """Return the NYU40 id with the most votes in each cell, uint8 [X, Y, Z]; 0 without votes."""
+    ids = np.zeros(grid.shape, np.uint8)
+    cells, rows = votes_of_cells(votes, grid)
+    ids[tuple(cells.T)] = class_votes(rows).argmax(axis=1) + 1
     return ids
 
 
@@ -59,20 +76,25 @@ def right_share(found: np.ndarray, true: np.ndarray, *, alike: bool) -> float:
     return float(right.mean())
 
 
-def frame_shares(data: Path, folder: Path, number: int, *, alike: bool) -> tuple[float, float]:
-    """Return the share of right pixels of a frame, by the reconstruction and by the segmenter."""
-    grid, found = best_names(run_frame(data, folder, number))
+def frame_shares(data: Path, folder: Path, number: int, *, alike: bool) -> list[float]:
+    """Return the share of right pixels of a frame by ``KINDS``."""
+    run = run_frame(data, folder, number)
+    grid, found = best_names(run)
     surface = labelled_surface(data, folder, number, grid)
     named = named_cells(grid, {one.item.id: one.name for one in found})
-    ids = names_at(named, surface.cells)
+    voted = voted_cells(grid, read_name_votes(run / NAME_VOTES))
     view = surface.view
     probability = SegmentationModel().predict(view.colour, view.depth_m, view.depth_camera)
     height, width = view.depth_m.shape
     likely = sample_nearest(probability.argmax(axis=2) + 1, width, height).reshape(-1)
     known = surface.nyu40 != OTHER_NYU40
-    pairs = (ids, likely[surface.pixels])
-    names, segmenter = (right_share(one[known], surface.nyu40[known], alike=alike) for one in pairs)
-    return names, segmenter
+    kinds = (names_at(named, surface.cells), names_at(voted, surface.cells), likely[surface.pixels])
+    return [right_share(one[known], surface.nyu40[known], alike=alike) for one in kinds]
+
+
+def told(shares: Sequence[float]) -> str:
+    """Return the shares of ``KINDS`` in words."""
+    return ", ".join(f"{kind} {share:.3f}" for kind, share in zip(KINDS, shares, strict=True))
 
 
 def main() -> None:
@@ -86,9 +108,8 @@ def main() -> None:
     rows = []
     for number in sample_nyu(chosen.data / NYU_FOLDER, chosen.frames):
         rows.append(frame_shares(chosen.data, chosen.keep, number, alike=chosen.alike))
-        print(f"{number:04d}: names {rows[-1][0]:.3f}, segmenter {rows[-1][1]:.3f}", flush=True)
-    names, segmenter = np.mean(rows, axis=0)
-    print(f"mean: names {names:.3f}, segmenter {segmenter:.3f}")
+        print(f"{number:04d}: {told(rows[-1])}", flush=True)
+    print(f"mean: {told(np.mean(rows, axis=0).tolist())}")
 
 
 if __name__ == "__main__":

@@ -73,6 +73,7 @@ from world2minecraft.reconstruction.semantics import (
 from world2minecraft.reconstruction.semantics.known_surfaces import label_known_surface
 from world2minecraft.reconstruction.semantics.labeller_choice import choose_labeller
 from world2minecraft.reconstruction.semantics.votes_labeller import is_from_network
+from world2minecraft.reconstruction.semantics.wall_things import label_wall_things
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:
@@ -87,6 +88,9 @@ def label_stage(folder: Path, chosen: Parameters) -> None:
     if from_photos:
         grid = remove_wall_guesses(grid, rooms)
     grid = label_grid(grid, evidence, chosen, from_photos=from_photos)
+    votes = _name_votes(folder)
+    if votes is not None and not chosen.find.paper_compat:
+        grid = label_wall_things(grid, votes)
     if chosen.known is not None:
         grid = label_known_surface(grid, evidence, *chosen.known)
     if from_photos:

@@ -14,6 +14,7 @@ from world2minecraft.core.vocabulary import label_id_names, label_id_of, nyu40_n
 from world2minecraft.reconstruction.naming import name_votes
 from world2minecraft.reconstruction.naming.name_votes import (
     CUBE_M,
+    CubeIndex,
     NameVoteMap,
     NameVotes,
     class_votes,
@@ -49,6 +50,17 @@ def test_each_pixel_votes_once_in_the_cube_of_its_point(seed, count):
     assert {tuple(cube) for cube in found.cubes.tolist()} == set(wanted)
     for cube, row in zip(found.cubes.tolist(), found.votes, strict=True):
         assert np.allclose(row, wanted[tuple(cube)], atol=1e-5)
+
+
+@given(st.integers(0, 1 << 30), st.integers(0, 30))
+def test_cubes_are_found_by_place(seed, count):
+    rng = np.random.default_rng(seed)
+    cubes = np.unique(rng.integers(-3, 4, (count, 3)), axis=0)
+    cubes = rng.permutation(cubes).astype(np.int32)
+    wanted = rng.integers(-5, 6, (60, 3))
+    rows = {tuple(cube): row for row, cube in enumerate(cubes.tolist())}
+    expected = [rows.get(tuple(cube), -1) for cube in wanted.tolist()]
+    assert CubeIndex(cubes).find(wanted).tolist() == expected
 
 
 def test_labels_vote_beside_a_network():

@@ -45,6 +45,30 @@ class NameVotes:
         object.__setattr__(self, "votes", votes)
 
 
+class CubeIndex:
+    """The places of cubes, int [N, 3], for look-up."""
+
+    def __init__(self, cubes: np.ndarray):
+        self._low = cubes.min(axis=0, initial=np.iinfo(np.int32).max).astype(np.int64)
+        self._shape = np.maximum(cubes.max(axis=0, initial=-1) + 1 - self._low, 0)
+        numbers = self._numbers(cubes)
+        self._order = np.argsort(numbers, kind="stable")
+        self._sorted = numbers[self._order]
+
+    def find(self, cubes: np.ndarray) -> np.ndarray:
+        """Return the row of each cube, int [M, 3], as int64 [M], or -1 if it is not among them."""
+        inside = ((cubes >= self._low) & (cubes < self._low + self._shape)).all(axis=1)
+        found = np.full(len(cubes), -1)
+        wanted = self._numbers(cubes[inside])
+        place = np.minimum(np.searchsorted(self._sorted, wanted), len(self._sorted) - 1)
+        found[inside] = np.where(self._sorted[place] == wanted, self._order[place], -1)
+        return found
+
+    def _numbers(self, cubes: np.ndarray) -> np.ndarray:
+        x, y, z = (cubes.astype(np.int64) - self._low).T
+        return (x * self._shape[1] + y) * self._shape[2] + z
+
+
 class NameVoteMap:
     """Collects the votes of views."""
 

@@ -18,7 +18,12 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import Camera, Scan, View, checks
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
-from world2minecraft.reconstruction.naming.name_votes import CUBE_M, NameVotes, class_votes
+from world2minecraft.reconstruction.naming.name_votes import (
+    CUBE_M,
+    CubeIndex,
+    NameVotes,
+    class_votes,
+)
 from world2minecraft.reconstruction.recognition.segmentation import SegmentationModel, splat_depth
 from world2minecraft.reconstruction.recognition.segmentation_channels import (
     sample_nearest,
@@ -144,23 +149,13 @@ class _VoteTable:
     """The class with the most votes of each cube, for look-up by place."""
 
     def __init__(self, votes: NameVotes):
-        self.low = votes.cubes.min(axis=0).astype(np.int64)
-        self.shape = votes.cubes.max(axis=0) + 1 - self.low
-        self.numbers = self._number(votes.cubes)
-        self.order = np.argsort(self.numbers, kind="stable")
+        self.index = CubeIndex(votes.cubes)
         self.best = (class_votes(votes.votes).argmax(axis=1) + 1).astype(np.uint8)
 
     def find(self, cubes: np.ndarray) -> np.ndarray:
         """Return the class of each cube, int64 [N, 3], as uint8 [N], or 0 without votes."""
-        inside = ((cubes >= self.low) & (cubes < self.low + self.shape)).all(axis=1)
-        wanted = np.where(inside, self._number(cubes), -1)
-        place = np.searchsorted(self.numbers, wanted, sorter=self.order)
-        place = self.order[np.minimum(place, len(self.order) - 1)]
-        return np.where(self.numbers[place] == wanted, self.best[place], 0).astype(np.uint8)
-
-    def _number(self, cubes: np.ndarray) -> np.ndarray:
-        x, y, z = (cubes.astype(np.int64) - self.low).T
-        return (x * self.shape[1] + y) * self.shape[2] + z
+        rows = self.index.find(cubes)
+        return np.where(rows >= 0, self.best[rows], 0).astype(np.uint8)
 
 
 def _seen_by_votes(table: _VoteTable, sample: PhotoSample) -> np.ndarray:
