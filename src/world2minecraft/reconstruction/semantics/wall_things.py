@@ -30,7 +30,7 @@ THINGS = (
     (("mirror",), 0.5),
     (("whiteboard",), 0.5),
 )
-MIN_AREA_M2 = 0.1
+MIN_AREA_M2 = 0.15  # A kitchen has smaller parts between its papers that are none of these.
 
 
 def label_wall_things(grid: OccupancyGrid, votes: NameVotes) -> OccupancyGrid:
