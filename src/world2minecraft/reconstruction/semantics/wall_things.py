@@ -64,6 +64,7 @@ def _in_large_parts(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return which cells, int64 [N, 3], belong to a connected part of ``MIN_AREA_M2``."""
     mask = np.zeros(grid.shape, bool)
     mask[tuple(cells.T)] = True
-    parts, _ = ndimage.label(mask, np.ones((3, 3, 3)))
+    parts = np.zeros(grid.shape, np.int32)
+    ndimage.label(mask, np.ones((3, 3, 3)), output=parts)
     sizes = np.bincount(parts.reshape(-1))
     return sizes[parts[tuple(cells.T)]] * grid.voxel_m**2 >= MIN_AREA_M2
