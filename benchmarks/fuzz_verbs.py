@@ -149,10 +149,11 @@ def main() -> None:
         _load_modules()
         check_seeds(verbs, seeds, Path(folder) / "seeds_checked")
         end = time.monotonic() + 60 * chosen.minutes
-        workers = [
-            os.fork() or _work(verbs, seeds, Path(folder), chosen, job, end)
-            for job in range(chosen.jobs)
-        ]
+        workers = list[int]()
+        for job in range(chosen.jobs):
+            workers.append(os.fork())
+            if not workers[-1]:
+                _work(verbs, seeds, Path(folder), chosen, job, end)
         codes = [os.waitpid(worker, 0)[1] for worker in workers]
         counts = Counter(Path(folder, "ends.txt").read_text().splitlines())
     for what, count in sorted(counts.items()):
@@ -243,19 +244,21 @@ def _forked(arguments: list[str], folder: Path) -> Outcome:
     child = os.fork()
     if child == 0:
         _be_called(arguments, folder)
-    ended, usage = 0, None
-    while not ended and time.monotonic() - started < MAX_WALL_S:
+    ended = os.wait4(child, os.WNOHANG)
+    while not ended[0] and time.monotonic() - started < MAX_WALL_S:
         time.sleep(GRACE_S)
-        ended, status, usage = os.wait4(child, os.WNOHANG)
-    if not ended:
+        ended = os.wait4(child, os.WNOHANG)
+    hangs = not ended[0]
+    if hangs:
         os.killpg(child, signal.SIGKILL)
-        _, status, usage = os.wait4(child, 0)
+        ended = os.wait4(child, 0)
+    _, status, usage = ended
     code = os.waitstatus_to_exitcode(status)
     left = sorted({path.name for path in folder.iterdir()} - before - {"stdout", "stderr"})
     error = (folder / "stderr").read_text(errors="replace")
     return Outcome(
         code,
-        time.monotonic() - started if not ended else usage.ru_utime + usage.ru_stime,
+        MAX_WALL_S if hangs else usage.ru_utime + usage.ru_stime,
         usage.ru_maxrss / 1024,
         error,
         tuple(left) if code and not " ".join(arguments).startswith(RESUMED) else (),

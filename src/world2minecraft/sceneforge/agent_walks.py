@@ -62,8 +62,8 @@ class WalkAgents:
         """
         known = os.environ if environment is None else environment
         keyed = [name for name, one in ENDPOINTS.items() if known.get(one.key_name, "").strip()]
-        names = dict.fromkeys([*([chosen] if chosen else []), *keyed])
-        return WalkAgents(tuple(names), max_usd)
+        first = [chosen] if chosen else []
+        return WalkAgents((*first, *(name for name in keyed if name != chosen)), max_usd)
 
     def open(self, name: str) -> ChatModel:
         """Open a model with its cost limit.
@@ -162,7 +162,8 @@ class AgentWalk:
             raise InputError(scene.path, "nobody can stand there; walk to the floor first")
         x, _, z = to_blocks[:3, :3] @ np.array(self.look_m, np.float64)
         yaw_deg = float(np.degrees(np.arctan2(-x, z)))
-        return Stance(*(float(value) for value in graph[away.argmin()]), yaw_deg)
+        near = graph[away.argmin()]
+        return Stance(float(near[0]), float(near[1]), float(near[2]), yaw_deg)
 
     def _told(self, stance: Stance) -> dict[str, Any]:
         yaw = np.radians(stance.yaw_deg)
