@@ -324,7 +324,10 @@ def test_processes_write_the_bytes_of_one(build, tmp_path, monkeypatch):
 def test_what_cannot_be_written_ends_the_command(build, tmp_path, capsys):
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "000001.png").mkdir()
-    assert render(build, "--tour", "--frames", "3", "--out", "full") == 3
+    words = ("--tour", "--frames", "3", "--out", "full")
+    assert render(build, *words) == 2
+    assert "full contains other files (000001.png)" in capsys.readouterr().err
+    assert render(build, *words, "--force") == 3
     assert "000001.png" in capsys.readouterr().err
 
 
