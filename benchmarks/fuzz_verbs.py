@@ -146,7 +146,7 @@ def main() -> None:
         seeds = chosen.seeds or Path(folder) / "seeds"
         if not seeds.exists():
             make_seeds(seeds)
-        _load_modules()
+        load_modules()
         check_seeds(verbs, seeds, Path(folder) / "seeds_checked")
         end = time.monotonic() + 60 * chosen.minutes
         workers = list[int]()
@@ -338,7 +338,7 @@ def _seed_commands() -> Iterator[str]:
     yield "evaluate reconstruction run scan"
 
 
-def _load_modules() -> None:
+def load_modules() -> None:
     """Import what the verbs import, so that each call starts at once."""
     for package in pkgutil.walk_packages(world2minecraft.__path__, "world2minecraft."):
         if not package.name.startswith(("world2minecraft.networks", "world2minecraft.__main__")):
