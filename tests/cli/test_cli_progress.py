@@ -39,9 +39,9 @@ def test_a_long_stage_prints_its_progress_and_time_left():
         lines("images", done, 2000, "9.1 a second")
         now[0] += 11
     told = stream.getvalue().splitlines()
-    assert told[1] == "images: 300 of 2,000, 9.1 a second, 3 min left"
-    assert told[-2] == "images: 1,800 of 2,000, 9.1 a second, 22 s left"
-    assert told[-1] == "images: done in 220.0 s (9.1 a second)"
+    assert told[1] == "Rendering images: 300 of 2,000, 9.1 a second, 3 min left"
+    assert told[-2] == "Rendering images: 1,800 of 2,000, 9.1 a second, 22 s left"
+    assert told[-1] == "Rendering images: done in 220.0 s (9.1 a second)"
     assert len(told) == 8
 
 

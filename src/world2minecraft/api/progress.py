@@ -32,6 +32,8 @@ STAGE_TEXTS = {
     "furnish": "Matching furniture",
     "fuse": "Fusing depth into voxels",
     "houses": "Generating houses",
+    "images": "Rendering images",
+    "index": "Writing the index",
     "join": "Joining rooms",
     "judge": "Grading rooms",
     "label": "Labelling voxels",

@@ -101,9 +101,10 @@ def _print_summary(data: "Dataset") -> None:
     for note in report.notes:
         print(f"note: {note}")
     splits = ", ".join(f"{count:,} {split}" for split, count in report.images.items())
-    total, shards = sum(report.images.values()), report.shards
+    total = sum(report.images.values())
+    shards = f"{report.shards:,} shard{'s' * (report.shards != 1)}"
     seconds = format_duration(report.seconds)
-    print(f"{folder}: {total:,} images ({splits}) in {shards:,} shards, {seconds}")
+    print(f"{folder}: {total:,} images ({splits}) in {shards}, {seconds}")
     if report.made:
         each = report.milliseconds
         stages = ", ".join(f"{title} {each[stage]:.0f}" for stage, title in STAGES.items())

@@ -48,7 +48,8 @@ def run(
     if as_json:
         return
     size = report.bytes / 1e6
-    print(f"{folder}: {report.samples:,} samples in {report.shards:,} shards, {size:,.0f} MB: ok")
+    shards = f"{report.shards:,} shard{'s' * (report.shards != 1)}"
+    print(f"{folder}: {report.samples:,} samples in {shards}, {size:,.0f} MB: ok")
     if not report.files:
         print("  note   of a former version: only shards are checked; --repair adds a list")
     print(f"  sum    {report.sha256}")
@@ -85,5 +86,7 @@ def print_faults(folder: Path, report: Any, made: Any, as_json: bool, command: s
     if report.faults:
         count = len(report.faults)
         text = f"has {count:,} fault{'s' * (count > 1)}"
-        advice = f"repair it with {command} --repair" if made is None else "see the lines above"
+        advice = (
+            f"repair it with {command} {folder} --repair" if made is None else "see the lines above"
+        )
         raise DamagedFileError(folder, f"{text}; {advice}")
