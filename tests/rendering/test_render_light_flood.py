@@ -1,5 +1,7 @@
 """Sky and block light, against a slow reading of the game's rules."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -25,6 +27,12 @@ def covered(state: str, side: int) -> frozenset:
     return SLOW_SHAPES.get(state, {}).get(side, frozenset())
 
 
+@cache
+def is_shut(state: str, other: str, side: int) -> bool:
+    """Whether no light passes from one cell to the other by this side."""
+    return covered(state, side) | covered(other, side ^ 1) == ALL
+
+
 ALL = frozenset((p, q) for p in (0, 1) for q in (0, 1))
 STEPS = [(-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1)]
 GIVES = ("minecraft:glowstone", "minecraft:lantern")
@@ -34,31 +42,24 @@ DIM = ("minecraft:water", "minecraft:oak_leaves[persistent=true]")
 
 def slow_light(states: np.ndarray, kind: str) -> np.ndarray:
     """Raise any cell by any neighbour until nothing changes."""
-    shape = states.shape
-    light = np.zeros(shape, int)
-    names = np.array(PALETTE, object)[states]
-
-    def at(cell):
-        inside = all(0 <= c < n for c, n in zip(cell, shape, strict=True))
-        if inside:
-            return names[cell], light[cell]
-        return "outside", TOP if kind == "sky" and cell[1] >= 0 else 0
-
+    names = {cell: PALETTE[states[cell]] for cell in np.ndindex(states.shape)}
+    light = dict.fromkeys(names, 0)
     changed = True
     while changed:
         changed = False
-        for cell in np.ndindex(shape):
-            best = 15 if kind == "block" and names[cell] in GIVES else 0
-            if names[cell] not in SOLIDS:
+        for cell, name in names.items():
+            best = 15 if kind == "block" and name in GIVES else 0
+            if name not in SOLIDS:
                 for side, step in enumerate(STEPS):
-                    other, level = at(tuple(np.add(cell, step).tolist()))
-                    if covered(names[cell], side) | covered(other, side ^ 1) == ALL:
+                    other = (cell[0] + step[0], cell[1] + step[1], cell[2] + step[2])
+                    level = light.get(other, TOP if kind == "sky" and other[1] >= 0 else 0)
+                    if is_shut(name, names.get(other, "outside"), side):
                         continue
                     straight = kind == "sky" and side == 3 and level == TOP
-                    best = max(best, level if straight and names[cell] not in DIM else level - 1)
+                    best = max(best, level if straight and name not in DIM else level - 1)
             if best > light[cell]:
                 light[cell], changed = best, True
-    return light
+    return np.array(list(light.values())).reshape(states.shape)
 
 
 @pytest.mark.parametrize("seed", range(6))
