@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run
+from world2minecraft.sceneforge.document.effort_log import read_effort
 from world2minecraft.sceneforge.editor import Editor
 
 
@@ -96,3 +97,12 @@ def test_what_cannot_be_told_is_said(tmp_path, monkeypatch, capsys, words, code,
     monkeypatch.chdir(tmp_path)
     assert run(["forge", "stats", *words]) == code
     assert reason in capsys.readouterr().err
+
+
+def test_damaged_lines_of_a_log_are_skipped(tmp_path):
+    good = {"step": "do", "time_s": 5.0, "cells": 2, "rev": 1, "kind": "paint", "counts_as": "add"}
+    damaged = [{"class_id": [1]}, {"cells": "x"}, {"time_s": None}, {"step": []}, {"rev": {}}]
+    lines = [good, good | {"class_id": 4}, *(good | one for one in damaged), 7]
+    text = "\n".join(map(json.dumps, lines)) + "\n{"
+    (tmp_path / "effort.jsonl").write_text(text)
+    assert read_effort(tmp_path) == lines[:2]

@@ -134,3 +134,14 @@ def test_a_room_of_red_counters_and_a_blue_sofa_is_built_so():
     volume = build_volume(sketch.grid(), [sofa], (), corner_m=sketch.corner_m, blocks_per_metre=4.0)
     held = {volume.palette[i] for i in volume.states[volume.instance == 1]}
     assert "minecraft:blue_wool" in held
+
+
+@pytest.mark.parametrize("name", ["curtain", "curtain_single"])
+@given(rgb=st.tuples(*[st.integers(0, 255)] * 3))
+def test_curtains_are_of_cloth_and_never_of_stone_or_wood(name, rgb):
+    design, states = _states(name, rgb)
+    cloth = [
+        state for block, state in zip(design.blocks, states, strict=True) if "chain" not in state
+    ]
+    soft = set(load_palette("vanilla").blocks[int(SemanticClass.SOFA)])
+    assert set(cloth) <= soft and len(set(cloth)) == 1

@@ -143,7 +143,8 @@ def recolour_design(
         own, at = [states[index] for index in indices], cells[indices]
         colour = _colour(at, own_colours)
         if material.kind == "cloth" and all(map(is_full_cube, own)):
-            cubes = [one for one in palette.blocks[class_id] if not is_wooden(one)]
+            soft = palette.blocks[int(SemanticClass.SOFA)]  # A curtain of stone is a pillar.
+            cubes = [one for one in palette.blocks[class_id] if one in soft and not is_wooden(one)]
             renewed = [_cube_of(colour, own[0], cubes, parameters)] * len(own)
         elif material.kind not in (PLAIN, FIXED):
             renewed = _change_material(own, material.kind, colour, parameters)

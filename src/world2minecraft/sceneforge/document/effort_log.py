@@ -101,6 +101,8 @@ def _events(data: bytes) -> list[dict[str, Any]]:
             if event["step"] in ("do", "undo", "redo"):
                 event["cells"], event["rev"] = int(event["cells"]), int(event["rev"])
                 event["kind"], event["counts_as"] = str(event["kind"]), str(event["counts_as"])
+                if event.get("class_id") is not None:
+                    event["class_id"] = int(event["class_id"])
             events.append(event)
         except (*MALFORMED, RecursionError):
             continue
