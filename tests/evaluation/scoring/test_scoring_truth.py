@@ -45,3 +45,29 @@ def test_a_run_says_that_the_truth_is_damaged_before_any_work(name, tmp_path):
     with pytest.raises(DamagedFileError, match=name):
         run_capture(room, tmp_path / "OUT", Parameters())
     assert not (tmp_path / "OUT").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("origin_m", [1e30, 0, 0], "check the unit"),
+        ("voxel_m", 1e-9, "check the unit"),
+        ("voxel_m", 2e5, "not millimetres"),
+        ("camera_to_truth", "scaled", "is scaled by 1000"),
+        ("camera_to_truth", "far", "moves by 1e"),
+        ("depth_scale", -1.0, "must be above 0"),
+    ],
+)
+def test_a_truth_with_impossible_numbers_is_refused(name, value, told, tmp_path):
+    folder = write_capture(tmp_path / "capture")
+    with np.load(folder / "truth.npz") as archive:
+        arrays = dict(archive)
+    if name == "camera_to_truth":
+        value = arrays[name].copy()
+        value[0, :3, :3] *= 1e3 if told.startswith("is") else 1
+        value[0, :3, 3] = 1e30 if told.startswith("moves") else 0
+    elif name == "depth_scale":
+        value = np.full(len(arrays["frame_names"]), value)
+    np.savez(folder / "truth.npz", **(arrays | {name: np.array(value)}))
+    with pytest.raises(DamagedFileError, match=told):
+        read_truth(folder)

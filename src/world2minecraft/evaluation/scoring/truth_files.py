@@ -17,6 +17,7 @@ from world2minecraft.core.types import Layout, LayoutObject, checks
 from world2minecraft.formats.layout import layout_from_json
 
 ARRAYS = ("labels", "voxel_m", "origin_m", "truth_room_to_scan")
+POSE_TOLERANCE = 1e-2  # Poses of other data sets are rounded.
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +58,14 @@ class Truth:
     def __post_init__(self):
         put = object.__setattr__
         put(self, "labels", checks.labels("labels", self.labels, (None, None, None)))
-        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
-        put(self, "origin_m", checks.floats("origin_m", self.origin_m, (3,)))
+        put(self, "voxel_m", checks.voxel_size(self.voxel_m))
+        checks.extent(self.labels.shape, self.voxel_m)
+        put(self, "origin_m", checks.coordinates("origin_m", self.origin_m, (3,)))
         put(self, "truth_to_scan", checks.transform("truth_room_to_scan", self.truth_to_scan))
+        for frame, pose in (self.camera_to_truth or {}).items():
+            checks.transform(f"camera_to_truth of {frame}", pose, POSE_TOLERANCE)
+        for frame, scale in (self.depth_scale or {}).items():
+            checks.positive(f"depth_scale of {frame}", scale)
         if self.surface is not None:
             shape = self.labels.shape
             put(self, "surface", checks.array("surface", self.surface, np.bool_, shape))
