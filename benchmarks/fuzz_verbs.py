@@ -121,7 +121,7 @@ class Outcome:
             return f"no end after {MAX_SECONDS:.0f} s"
         if self.code < 0:
             return f"ended by {signal.Signals(-self.code).name}"
-        if "Traceback" in self.error or "unexpected" in self.error:
+        if "Traceback" in self.error or "error: unexpected " in self.error:
             return "unexpected error"
         if self.code not in FINE_CODES:
             return f"exit code {self.code}"
