@@ -37,6 +37,12 @@ def room(tmp_path) -> Path:
     return tmp_path / "room.npz"
 
 
+def run_in(environment: dict[str, str], words: list[str]) -> subprocess.CompletedProcess:
+    """Run the command line in a process with more environment variables."""
+    command = [sys.executable, "-m", "world2minecraft", *words]
+    return subprocess.run(command, env=os.environ | environment, capture_output=True, check=False)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_a_room_is_built_and_converted_under_any_name(name, room, tmp_path, capsys):
     place = tmp_path / "here" / name
@@ -88,12 +94,7 @@ def test_the_c_locale_prints_and_reads_any_name(room, tmp_path):
     own = shutil.copy(room, place / f"{LATIN}.npz")
     locale = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     words = ["build", str(own), "--out", str(place / "OUT")]
-    done = subprocess.run(
-        [sys.executable, "-m", "world2minecraft", *words],
-        env=os.environ | locale,
-        capture_output=True,
-        check=False,
-    )
+    done = run_in(locale, words)
     assert done.returncode == 0, done.stderr
     assert os.fsencode(place) in done.stdout
 
@@ -104,12 +105,7 @@ def test_a_home_that_cannot_be_written_is_no_obstacle(room, tmp_path):
     nowhere = dict.fromkeys(folders, str(tmp_path / "home" / "nobody"))
     nowhere["NUMBA_CACHE_DIR"] = str(KERNEL_CACHE)  # Compiling takes long.
     words = ["build", str(room), "--out", str(tmp_path / "OUT")]
-    done = subprocess.run(
-        [sys.executable, "-m", "world2minecraft", *words],
-        env=os.environ | nowhere,
-        capture_output=True,
-        check=False,
-    )
+    done = run_in(nowhere, words)
     assert done.returncode == 0, done.stderr
 
 

@@ -7,6 +7,7 @@ import pytest
 from house_of_blocks import cottage
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.damaged_folders import files_of, flip
 
 from world2minecraft import cli
 from world2minecraft.api.datasets import build_photo_dataset, export_dataset, import_dataset
@@ -51,17 +52,6 @@ def one_copy(made, tmp_path_factory):
 @pytest.fixture
 def copied(made, tmp_path):
     return shutil.copytree(made, tmp_path / "copy")
-
-
-def files_of(folder):
-    paths = [path for path in folder.rglob("*") if path.is_file()]
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
-
-
-def flip(path, place=-1):
-    data = bytearray(path.read_bytes())
-    data[place] ^= 1
-    path.write_bytes(data)
 
 
 def repair(folder):

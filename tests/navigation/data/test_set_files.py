@@ -6,6 +6,7 @@ import shutil
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.damaged_folders import files_of, flip
 
 import world2minecraft as w2m
 from world2minecraft import cli
@@ -35,17 +36,6 @@ def one_copy(made, tmp_path_factory):
 @pytest.fixture
 def copied(made, tmp_path):
     return shutil.copytree(made, tmp_path / "copy")
-
-
-def files_of(folder):
-    paths = [path for path in folder.rglob("*") if path.is_file()]
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
-
-
-def flip(path, place=-2):
-    data = bytearray(path.read_bytes())
-    data[place] ^= 1
-    path.write_bytes(data)
 
 
 def test_every_file_of_a_set_is_listed(made):
