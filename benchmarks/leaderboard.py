@@ -243,7 +243,7 @@ def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-FILE, PAGE = DOCS / "leaderboard.yaml", DOCS / "scan-benchmark.md"
+FILE, PAGE = DOCS / "leaderboard.yaml", DOCS / "results" / "scan-benchmark.md"
 COLUMN_OF = {
     "precision": "P", "recall": "R", "iou": "IoU", "miou": "mIoU", "f1": "F1", "fronts": "turned",
     "calibration": "ECE",

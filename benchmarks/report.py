@@ -1,4 +1,4 @@
-"""The report of all targets, ``docs/how-good.md``: measure, store and write it.
+"""The report of all targets, ``docs/results/how-good.md``: measure, store and write it.
 
 ``python -m benchmarks.report --out RESULTS`` measures. ``--list`` prints what would run, how long
 it takes and what it requires, by area; ``--only NAME ...`` selects areas, lines or runs by name
@@ -228,7 +228,11 @@ def _known(areas: Sequence[Area], results: Mapping[str, Result]) -> list[str]:
 
 
 def _earlier(line: Line) -> str:
-    return f" Earlier figures: [{line.page}]({line.page}.md)." if line.page else ""
+    return f" Earlier figures: {_link(line.page)}." if line.page else ""
+
+
+def _link(page: str) -> str:
+    return f"[{page.rpartition('/')[2]}](../{page}.md)"
 
 
 def _section(area: Area, runs: Mapping[str, Run], results: Mapping[str, Result]) -> str:
@@ -248,7 +252,7 @@ def _row(line: Line, run: Run | None, result: Result | None) -> str:
         measured = f"a person looks: {line.look}" + (f"; {measured}" if measured else "")
     if result is None:
         why = f"not run here: {reason_of(line, run)}"
-        told = f"; earlier figures: [{line.page}]({line.page}.md)" if line.page else ""
+        told = f"; earlier figures: {_link(line.page)}" if line.page else ""
         measured, word = (f"{measured}; {why}" if measured else why) + told, ""
     else:
         changed = " with changes" if result["is_changed"] else ""
@@ -259,7 +263,7 @@ def _row(line: Line, run: Run | None, result: Result | None) -> str:
 
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "how-good.md"
+PAGE = ROOT / "docs" / "results" / "how-good.md"
 IDLE_LOAD = 0.5  # A core, as ``make bench`` asks.
 LAST_CHARACTERS = 600  # Of what a run that broke has printed.
 PROGRAMS = {

@@ -7,7 +7,7 @@
 ``python -m benchmarks.scan_benchmark score FOLDER RESULTS [--stages] [--json FILE] [--verbose]``
 scores ``RESULTS/NAME`` of each truth: a run of ``w2m reconstruct``, or another method's
 ``labels.npz`` and ``objects.json``. Truths of ``w2m evaluate scannet SCANS --out FOLDER/truth``
-are scored alike. docs/scan-benchmark.md has the rules; the file of ``--json`` is what
+are scored alike. docs/results/scan-benchmark.md has the rules; the file of ``--json`` is what
 ``python -m benchmarks.leaderboard add`` takes.
 """
 

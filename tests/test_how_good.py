@@ -223,7 +223,7 @@ PAGE = """## What falls short
 
 | asked | measured | | command | commit, date |
 |---|---|---|---|---|
-| **fast**: 15 ms | not run here: needs an idle machine, since it measures time and takes 9 minutes of a free core; earlier figures: [render-speed](render-speed.md) |  | `make bench` |  |
+| **fast**: 15 ms | not run here: needs an idle machine, since it measures time and takes 9 minutes of a free core; earlier figures: [render-speed](../render-speed.md) |  | `make bench` |  |
 | **demo**: works | not run here: no time yet |  | `w2m demo` |  |
 | **real data**: IoU 52 | not run here: it is not at hand |  |  |  |
 """  # noqa: E501

@@ -1,4 +1,4 @@
-"""The steps for Windows in docs/install.md, run line by line on the system at hand."""
+"""The steps for Windows in docs/how-to/install.md, run line by line on the system at hand."""
 
 import os
 import re
@@ -16,7 +16,9 @@ SCRIPTS = "Scripts" if os.name == "nt" else "bin"
 
 
 def documented_steps() -> list[str]:
-    (block,) = re.findall(r"```powershell\n(.*?)```", (ROOT / "docs/install.md").read_text(), re.S)
+    (block,) = re.findall(
+        r"```powershell\n(.*?)```", (ROOT / "docs/how-to/install.md").read_text(), re.S
+    )
     return block.splitlines()
 
 

@@ -50,7 +50,7 @@ def test_the_page_holds_what_the_file_says():
 
 
 def test_our_rows_are_the_figures_of_the_page_of_fidelity():
-    page = (leaderboard.DOCS / "fidelity.md").read_text()
+    page = (leaderboard.DOCS / "results" / "fidelity.md").read_text()
     cells = [
         [cell.strip().split(" (")[0] for cell in line.strip("|").split("|")]
         for line in page.splitlines()

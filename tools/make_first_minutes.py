@@ -1,4 +1,4 @@
-"""Make the pictures of docs/first-five-minutes.md from generated rooms.
+"""Make the pictures of docs/tutorials/first-five-minutes.md from generated rooms.
 
 Run by hand when the pages look otherwise; it needs chromium and the page built::
 

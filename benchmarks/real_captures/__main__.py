@@ -5,7 +5,8 @@
 
 A row per scene: whether it ran, or why not; the tilt and the height of its floor against a
 reference; the share of labelled surface with its true class; the number of objects; the share of
-wall surface labelled wall; stability; and CPU time. docs/real-captures.md explains the columns.
+wall surface labelled wall; stability; and CPU time. docs/results/real-captures.md explains the
+columns.
 ``DIR/NAME`` holds the run of a scene and its contact sheet, ``sheet.png``; ``DIR/results.json`` and
 ``DIR/table.md`` hold all results; the last line of the latter is one of the table over time.
 

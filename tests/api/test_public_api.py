@@ -40,7 +40,7 @@ def test_every_public_name_is_documented(name):
 
 
 def test_the_page_of_the_api_shows_the_exceptions():
-    page = (ROOT / "docs" / "api.md").read_text()
+    page = (ROOT / "docs" / "reference" / "api.md").read_text()
     tree = dedent((w2m.errors.__doc__ or "").partition("::\n\n")[2].partition("\n\nEach")[0])
     assert tree.count("Error") >= 13 and tree in page
 

@@ -372,7 +372,7 @@ def test_a_layout_none_of_whose_frames_is_there(tmp_path):
     (tmp_path / "results").mkdir()
     Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(tmp_path / "results" / "frame_one.jpg")
     np.savetxt(tmp_path / "traj.txt", np.eye(4).reshape(1, 16))
-    _refused(tmp_path, "has the layout of a replica capture", "see docs/captures.md")
+    _refused(tmp_path, "has the layout of a replica capture", "see docs/how-to/captures.md")
 
 
 def test_a_7_scenes_folder_without_a_readable_image(tmp_path):

@@ -9,7 +9,7 @@ import pytest
 from world2minecraft.cli.verbs import EXAMPLES, VERBS, load
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 TAKES = {verb: load(verb) for verb in VERBS}
 
 

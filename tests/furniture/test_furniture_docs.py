@@ -1,11 +1,11 @@
-"""The tables of docs/furniture-library.md are the library's."""
+"""The tables of docs/reference/furniture-library.md are the library's."""
 
 from pathlib import Path
 
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.furniture.library import templates_to_markdown
 
-PAGES = Path(__file__).resolve().parents[2] / "docs"
+PAGES = Path(__file__).resolve().parents[2] / "docs" / "reference"
 PAGE = PAGES / "furniture.md"
 
 

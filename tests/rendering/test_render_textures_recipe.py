@@ -147,7 +147,7 @@ def test_the_sheet_shows_them_all():
 
 
 def test_the_docs_have_the_table_of_today():
-    page = Path(__file__).resolve().parents[2] / "docs" / "textures.md"
+    page = Path(__file__).resolve().parents[2] / "docs" / "reference" / "textures.md"
     assert generator_table() in page.read_text(encoding="utf-8")
 
 

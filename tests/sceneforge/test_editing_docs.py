@@ -7,7 +7,7 @@ from world2minecraft.editing.scene import COMMANDS
 from world2minecraft.editing.scene.voxel_commands import CellCommand
 from world2minecraft.sceneforge.queries import CELL_QUERIES, Doubtful
 
-PAGE = (Path(__file__).parents[2] / "docs" / "forge-editing.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "forge-editing.md").read_text()
 ROWS = dict(re.findall(r"^\| `(\w+)` \| (.*)$", PAGE, re.M))
 
 

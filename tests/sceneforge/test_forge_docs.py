@@ -1,4 +1,4 @@
-"""What docs/forge.md shows is what a server does."""
+"""What docs/reference/forge.md shows is what a server does."""
 
 import re
 import shutil
@@ -12,7 +12,7 @@ from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.server.app import routes
 
-TEXT = (Path(__file__).resolve().parents[2] / "docs" / "forge.md").read_text()
+TEXT = (Path(__file__).resolve().parents[2] / "docs" / "reference" / "forge.md").read_text()
 
 
 @pytest.fixture(scope="module")

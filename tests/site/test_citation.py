@@ -15,8 +15,8 @@ def test_the_citation_file_fits_the_program():
     assert {"cff-version", "message", "title", "authors", "license"} <= set(cited)
     assert cited["license"] == "Apache-2.0"
     (paper,) = cited["references"]
-    assert paper["title"] in (ROOT / "docs" / "licences.md").read_text()
+    assert paper["title"] in (ROOT / "docs" / "reference" / "licences.md").read_text()
     assert all(
-        one["family-names"] in (ROOT / "docs" / "licences.md").read_text()
+        one["family-names"] in (ROOT / "docs" / "reference" / "licences.md").read_text()
         for one in paper["authors"]
     )

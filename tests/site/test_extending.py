@@ -1,4 +1,4 @@
-"""The package that ``docs/extending.md`` is made of works as it stands, installed beside ours."""
+"""The package that ``docs/how-to/extending.md`` is made of works as it stands."""
 
 import json
 import re
@@ -21,7 +21,7 @@ from world2minecraft.navigation.agents.registry import AGENTS
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.semantics import LABELLERS
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "extending.md").read_text()
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "extending.md").read_text()
 FILES = {
     found[1]: one["body"]
     for one in FENCE.finditer(PAGE)

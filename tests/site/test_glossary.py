@@ -9,7 +9,7 @@ FILE = re.compile(r"\.(npz|json|onnx|md|py)$", re.IGNORECASE)
 
 
 def test_every_name_of_the_symbols_is_in_the_code():
-    page = (REPOSITORY / "docs" / "glossary.md").read_text(encoding="utf-8")
+    page = (REPOSITORY / "docs" / "reference" / "glossary.md").read_text(encoding="utf-8")
     table = page.partition("## Symbols")[2].partition("## Words")[0]
     rows = [line.split("|")[3] for line in table.splitlines() if line.startswith("| ")][1:]
     quoted = [text for row in rows for text in re.findall(r"`([^`]+)`", row)]

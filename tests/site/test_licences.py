@@ -18,7 +18,9 @@ def shipped():
 
 def patterns():
     """The files that the rows of the page name; a bare name lies beside the one before it."""
-    for row in re.findall(r"^\| (`.+?`.*?) \|", (ROOT / "docs/licences.md").read_text(), re.M):
+    for row in re.findall(
+        r"^\| (`.+?`.*?) \|", (ROOT / "docs/reference/licences.md").read_text(), re.M
+    ):
         folder = ""
         for name in re.findall(r"`([^`]+)`", row):
             folder = name.rpartition("/")[0] or folder

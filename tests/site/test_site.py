@@ -12,8 +12,8 @@ from world2minecraft.cli.verbs import VERBS
 
 ROOT = Path(__file__).resolve().parents[2]
 CARDS = (ROOT / "src" / "world2minecraft" / "weights").glob("*.md")
-GENERATED = {"verbs.md", "benchmarks.md", "contributing.md", "changes.md"}
-GENERATED |= {f"network-{card.stem}.md" for card in CARDS}
+GENERATED = {"reference/verbs.md", "results/benchmarks.md", "contributing.md", "changes.md"}
+GENERATED |= {f"reference/network-{card.stem}.md" for card in CARDS}
 
 
 class _Loader(yaml.SafeLoader):
@@ -58,7 +58,7 @@ def test_a_site_without_a_warning_holds_all_of_it(tmp_path):
     front = (tmp_path / "index.html").read_text()
     sentence = re.search(r"Real rooms become [^.]+\.", (ROOT / "README.md").read_text())[0]
     assert sentence in front and "<!-- README" not in front
-    verbs = (tmp_path / "verbs.html").read_text()
+    verbs = (tmp_path / "reference" / "verbs.html").read_text()
     assert all(f'id="{verb.replace(" ", "-")}"' in verbs for verb in VERBS)
     api = (tmp_path / "api" / "reconstruction.fusion.html").read_text()
     assert 'id="world2minecraft.reconstruction.fusion.extract_grid.extract_grid"' in api

@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -34,13 +35,16 @@ def test_a_section_that_is_not_there_is_told():
 def test_links_of_the_root_are_turned():
     text = "[a](docs/a.md#b) ![p](docs/images/p.png) [c](CONTRIBUTING.md#x) [d](https://d/docs/)"
     turned = "[a](a.md#b) ![p](images/p.png) [c](contributing.md#x) [d](https://d/docs/)"
-    assert readme._in_the_site(text) == turned
+    assert readme._in_the_site(text, "index.md") == turned
+    deeper = readme._in_the_site(text, "reference/a.md")
+    assert deeper.startswith("[a](../a.md#b) ![p](../images/p.png) [c](../contributing.md#x)")
 
 
 def test_links_out_of_the_docs_lead_to_pages_of_the_site():
-    text = "[a](../CHANGELOG.md#x) [b](../src/world2minecraft/weights/mono.md)"
-    turned = "[a](changes.md#x) [b](network-mono.md)"
-    assert readme.on_page_markdown(text, page=None) == turned
+    page = SimpleNamespace(file=SimpleNamespace(src_uri="how-to/a.md"))
+    text = "[a](../../CHANGELOG.md#x) [b](../../src/world2minecraft/weights/mono.md)"
+    turned = "[a](../changes.md#x) [b](../reference/network-mono.md)"
+    assert readme.on_page_markdown(text, page=page) == turned
 
 
 def test_examples_of_a_docstring_are_fenced():
@@ -100,10 +104,10 @@ def test_lists_and_tables_are_read_as_github_reads_them(written, read):
     assert dialect.on_page_markdown(written) == read
 
 
-def test_a_page_without_a_line_follows_those_like_it():
-    nav = [{"Home": "index.md"}, {"Walks": ["vln-a.md", {"Deep": "vln-b.md"}]}, {"Reference": []}]
-    for page in ("vln-z.md", "layout-baselines.md", "solo.md"):
+def test_a_page_without_a_line_goes_to_the_section_of_its_folder():
+    nav = [{"Home": "index.md"}, {"How-to guides": [{"Deep": "how-to/a.md"}]}, {"Reference": []}]
+    for page in ("how-to/b.md", "reference/c.md"):
         places._place(nav, page)
-    assert nav[1] == {"Walks": ["vln-a.md", "vln-z.md", {"Deep": "vln-b.md"}]}
-    assert nav[2] == {"Reference": ["layout-baselines.md", "solo.md"]}
-    assert set(places._pages(nav)) >= {"index.md", "vln-b.md", "vln-z.md", "solo.md"}
+    assert nav[1] == {"How-to guides": [{"Deep": "how-to/a.md"}, "how-to/b.md"]}
+    assert nav[2] == {"Reference": ["reference/c.md"]}
+    assert set(places._pages(nav)) == {"index.md", "how-to/a.md", "how-to/b.md", "reference/c.md"}

@@ -5,7 +5,7 @@
 The package index is asked for the files of the versions in ``constraints.txt``. The wheels of
 Python 3.11 to 3.14 for all platforms are listed, and source archives of packages without wheels.
 ``requirements.txt`` holds what ``pip install world2minecraft`` needs, ``requirements-all.txt`` all
-of ``constraints.txt``. pip refuses other files (docs/install.md).
+of ``constraints.txt``. pip refuses other files (docs/how-to/install.md).
 """
 
 import json

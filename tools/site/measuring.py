@@ -7,7 +7,7 @@ from typing import Any
 from mkdocs.structure.files import File
 
 FOLDER = Path(__file__).parents[2] / "benchmarks"
-PAGE = "benchmarks.md"
+PAGE = "results/benchmarks.md"
 HEAD = """# Benchmarks
 
 Every figure of these pages comes from a command that anyone can run, in a clone of the repository.

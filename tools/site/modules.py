@@ -12,7 +12,7 @@ from typing import Any
 from mkdocs.structure.files import File
 
 SOURCE = Path(__file__).parents[2] / "src" / "world2minecraft"
-LEFT_OUT = {"api", "cli", "sceneforge"}  # docs/api.md shows the first.
+LEFT_OUT = {"api", "cli", "sceneforge"}  # docs/reference/api.md shows the first.
 # What ``nav`` says where these pages belong.
 PLACE = "API"
 

@@ -1,47 +1,37 @@
-"""MkDocs hook: a page that ``nav`` does not name still has its place, after those like it.
+"""MkDocs hook: a page that ``nav`` does not name goes to the end of the section of its folder."""
 
-``vln-server.md`` follows the last page of ``nav`` whose name begins with ``vln-``; a page without
-its like goes to the end of the section ``Reference``. A line in ``mkdocs.yml`` gives a better one.
-"""
-
+from collections.abc import Iterator
 from typing import Any
 
-REST = "Reference"
+SECTIONS = {
+    "tutorials": "Tutorials",
+    "how-to": "How-to guides",
+    "reference": "Reference",
+    "explanation": "Explanation",
+    "results": "Results",
+}
 
 
 def on_files(files: Any, config: Any) -> Any:
-    """Add to the navigation whatever lies in ``docs`` and is not named there."""
+    """Add to the navigation the pages of ``docs`` that it does not name."""
     named = set(_pages(config.nav))
     for page in sorted(file.src_uri for file in files.documentation_pages()):
-        if page not in named and "/" not in page:
+        if page not in named and page.partition("/")[0] in SECTIONS:
             _place(config.nav, page)
     return files
 
 
 def _place(nav: list[Any], page: str) -> None:
-    """Put a page after the last one of its kind, or at the end of the rest."""
-    kind = page.partition("-")[0] + "-"
-    lists = [entries for entries in _lists(nav) if any(_is_like(one, kind) for one in entries)]
-    if "-" in page and lists:
-        entries = lists[-1]
-        last = max(index for index, one in enumerate(entries) if _is_like(one, kind))
-        entries.insert(last + 1, page)
-        return
-    (rest,) = [entry[REST] for entry in nav if isinstance(entry, dict) and REST in entry]
-    rest.append(page)
+    section = SECTIONS[page.partition("/")[0]]
+    (entries,) = [entry[section] for entry in nav if section in entry]
+    entries.append(page)
 
 
-def _is_like(entry: Any, kind: str) -> bool:
-    return isinstance(entry, str) and entry.startswith(kind)
-
-
-def _lists(entries: list[Any]) -> list[list[Any]]:
-    """Return a list of entries and all lists in it."""
-    inner = [value for one in entries if isinstance(one, dict) for value in one.values()]
-    return [entries, *(found for one in inner if isinstance(one, list) for found in _lists(one))]
-
-
-def _pages(entries: list[Any]) -> list[str]:
-    flat = [one for found in _lists(entries) for one in found]
-    titled = [value for one in flat if isinstance(one, dict) for value in one.values()]
-    return [one for one in [*flat, *titled] if isinstance(one, str)]
+def _pages(entries: list[Any]) -> Iterator[str]:
+    """Yield the pages that a list of entries and all lists in it name."""
+    for entry in entries:
+        if isinstance(entry, str):
+            yield entry
+        else:
+            for value in entry.values():
+                yield from _pages([value] if isinstance(value, str) else value)

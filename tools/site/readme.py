@@ -17,28 +17,32 @@ ROOT = Path(__file__).parents[2]
 CARDS = ROOT / "src" / "world2minecraft" / "weights"
 # Where a page of the repository's root stands in the site.
 PAGES = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changes.md"}
-CARD_LINK = re.compile(r"\]\(\.\./src/world2minecraft/weights/(\w+)\.md")
+CARD_FOLDER = "reference"
+CARD_LINK = re.compile(r"\]\((?:\.\./)+src/world2minecraft/weights/(\w+)\.md")
 SLOT = re.compile(r"^<!-- README(?:: (.+?))? -->$", re.MULTILINE)
 
 
 def on_files(files: Any, config: Any) -> Any:
     """Add the pages that lie outside ``docs``."""
     for name, page in PAGES.items():
-        text = _in_the_site((ROOT / name).read_text("utf-8"))
+        text = _in_the_site((ROOT / name).read_text("utf-8"), page)
         files.append(File.generated(config, page, content=text))
     for card in sorted(CARDS.glob("*.md")):
-        page = f"network-{card.stem}.md"
-        files.append(File.generated(config, page, content=_in_the_site(card.read_text("utf-8"))))
+        page = f"{CARD_FOLDER}/network-{card.stem}.md"
+        text = _in_the_site(card.read_text("utf-8"), page)
+        files.append(File.generated(config, page, content=text))
     return files
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     """Fill a page's slots from the README, and turn its links."""
     readme = (ROOT / "README.md").read_text("utf-8")
-    filled = SLOT.sub(lambda slot: _in_the_site(section(readme, slot[1])), markdown)
-    for name, place in PAGES.items():
-        filled = filled.replace(f"](../{name}", f"]({place}")
-    return CARD_LINK.sub(r"](network-\1.md", filled)
+    place = page.file.src_uri
+    up = "../" * place.count("/")
+    filled = SLOT.sub(lambda slot: _in_the_site(section(readme, slot[1]), place), markdown)
+    for name, target in PAGES.items():
+        filled = filled.replace(f"]({up}../{name}", f"]({up}{target}")
+    return CARD_LINK.sub(rf"]({up}{CARD_FOLDER}/network-\1.md", filled)
 
 
 def section(text: str, title: str | None) -> str:
@@ -56,9 +60,10 @@ def section(text: str, title: str | None) -> str:
     return bodies[title].strip()
 
 
-def _in_the_site(text: str) -> str:
-    """Return a text of the root with its links as pages of ``docs`` write them."""
-    text = re.sub(r"\]\((?:\.\./)*docs/", "](", text)
+def _in_the_site(text: str, place: str) -> str:
+    """Return a text of the repository's root with the links of a page at ``place`` in the site."""
+    up = "../" * place.count("/")
+    text = re.sub(r"\]\((?:\.\./)*docs/", f"]({up}", text)
     for name, page in PAGES.items():
-        text = text.replace(f"]({name}", f"]({page}")
+        text = text.replace(f"]({name}", f"]({up}{page}")
     return text

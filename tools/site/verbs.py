@@ -6,7 +6,7 @@ from mkdocs.structure.files import File
 
 from world2minecraft.cli.verbs import VERBS, load
 
-PAGE = "verbs.md"
+PAGE = "reference/verbs.md"
 WIDTH = 100
 
 

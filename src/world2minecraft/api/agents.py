@@ -44,7 +44,7 @@ class AgentRun:
 
     @property
     def summary(self) -> Mapping[str, Any]:
-        """The mean scores, such as ``spl``, ``ne_m`` and ``success_1m``. See docs/vln-scores.md."""
+        """The mean scores, such as ``spl`` and ``ne_m``. See docs/reference/vln-scores.md."""
         return self.result["summary"]
 
     def walk_folder(self, number: int = 0) -> Path:

@@ -70,7 +70,7 @@ def score_layouts(
 ) -> LayoutScores:
     """Score room layouts from any method with the same metrics.
 
-    Boxes are scored before they are converted to blocks. docs/layout-baselines.md defines
+    Boxes are scored before they are converted to blocks. docs/results/layout-baselines.md defines
     out-of-bounds objects and collisions.
 
     Args:

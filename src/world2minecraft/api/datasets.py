@@ -262,7 +262,7 @@ def build_photo_dataset(
     """Build a data set of photo-like images of generated rooms, as a substitute for real photos.
 
     The ground truth comes from the generated rooms and uses 8 cm cells, following the conventions
-    of NYUv2. See docs/training.md.
+    of NYUv2. See docs/how-to/training.md.
 
     Args:
         out: Output folder, which must be new or empty.
@@ -448,7 +448,7 @@ def export_dataset(
     """Export a data set in the format of NYUv2, OccScanNet or EmbodiedOcc-ScanNet, or as npz files.
 
     Call the function again with the same arguments to resume an interrupted export.
-    docs/occupancy-formats.md describes all files.
+    docs/reference/occupancy-formats.md describes all files.
 
     Args:
         source: A ``Dataset``, or a folder that ``open_dataset`` can open.

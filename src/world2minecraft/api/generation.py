@@ -407,7 +407,7 @@ def evaluate(
         progress: Callback that reports the scored stages if ``stages`` is True.
 
     Returns:
-        Scores by group, such as ``["occupancy"]["iou"]``. They are described in docs/metrics.md.
+        Scores by group, such as ``["occupancy"]["iou"]``. See docs/reference/metrics.md.
 
     Raises:
         InputError: If a file is missing or cannot be read.

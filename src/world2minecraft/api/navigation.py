@@ -39,8 +39,8 @@ def make_env(scene: Run | str | Path, **options: Any) -> "gymnasium.Env":
     Args:
         scene: A run, a run folder, a world or a block file.
         **options: Options for ``navigation.environment.env.VlnEnv``, such as ``actions``,
-            ``observations``, ``episodes`` and ``render_mode``. See docs/vln-environment.md for a
-            list.
+            ``observations``, ``episodes`` and ``render_mode``. See
+            docs/reference/vln-environment.md for a list.
 
     Raises:
         MissingExtraError: If Gymnasium is not installed.

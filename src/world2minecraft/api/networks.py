@@ -188,7 +188,7 @@ def export_network(
     """Export a trained occupancy network as a single ONNX file, which runs without torch.
 
     The ONNX model is compared with the network on one image. If their outputs differ, the function
-    raises an error and writes no file. docs/networks-onnx.md describes the file.
+    raises an error and writes no file. docs/how-to/networks-onnx.md describes the file.
 
     Args:
         run: Run folder or weights file.
@@ -258,8 +258,8 @@ def evaluate_network(
 ) -> dict[str, Any]:
     """Score occupancy predictions with the published protocols.
 
-    The scores have confidence intervals over scenes. docs/occupancy-scores.md describes which cells
-    each protocol counts and how it handles unknown cells.
+    The scores have confidence intervals over scenes. docs/reference/occupancy-scores.md describes
+    which cells each protocol counts and how it handles unknown cells.
 
     Args:
         predicted: A run folder, a weights file, an ``.onnx`` file, or saved predictions (one file,

@@ -146,7 +146,7 @@ class Run:
     """A folder with a reconstructed or built room. Its files are read on first use.
 
     Attributes:
-        folder: Folder of the run. Its files are described in docs/file-formats.md.
+        folder: Folder of the run. Its files are described in docs/reference/file-formats.md.
     """
 
     folder: Path

@@ -111,7 +111,7 @@ def reconstruct(
 
     Args:
         capture: Photos, a video, the export of a scanning app, RGB-D frames, a mesh, a point cloud
-            or a RoomPlan file. ``docs/captures.md`` lists all formats.
+            or a RoomPlan file. ``docs/how-to/captures.md`` lists all formats.
         out: Output folder.
         labels: Folder with one 2D label image per frame.
         method: ``best``, or ``paper`` to use only the steps in the paper.
@@ -132,7 +132,7 @@ def reconstruct(
             such as ``hf:ORG/NAME``.
         predictor: ``depth``, or ``mono:FILE.onnx`` for a monocular occupancy network.
         predictions: Grids that another network predicted: a folder with one file per view, or one
-            file for the whole scene. ``docs/predictions.md`` describes the files.
+            file for the whole scene. ``docs/how-to/predictions.md`` describes the files.
         convention: Axes of the predictions: ``w2m``, ``monoscene``, ``iso``, ``embodiedocc`` or
             ``sscnet``. Detected where the files leave no doubt.
         classes: Class ids of the predictions: ``nyu12``, ``embodied``, ``occscannet`` or a YAML

@@ -5,7 +5,8 @@ which of its blocks represent which furniture (``mod_furniture``) and what its b
 (``mod_block_classes``). If a palette lists ``blocks``, the build is restricted to them
 (``palette_restriction``). A file may extend another palette with ``extends``, so a user's file
 needs only a name and the blocks. Every block is checked against the game's block table, except
-blocks of other namespaces, which belong to mods. The format is described in docs/palettes.md.
+blocks of other namespaces, which belong to mods. The format is described in
+docs/how-to/palettes.md.
 """
 
 import json

@@ -148,7 +148,7 @@ class Shell:
 
 
 def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParameters) -> Shell:
-    """Build the shell of a room or a house by the rules described in docs/building.md.
+    """Build the shell of a room or a house by the rules described in docs/explanation/building.md.
 
     Walls are found over all storeys at once, so that they are above one another. The other parts
     are found storey by storey.

@@ -219,7 +219,8 @@ def fov_deg_of_focal_px(side_px: int, focal_px: float) -> float:
     return float(np.degrees(2 * np.arctan(side_px / (2 * focal_px))))
 
 
-# The paper's own formulas, for ``paper_compat``; docs/conventions.md describes their two errors.
+# The paper's own formulas, for ``paper_compat``; docs/reference/conventions.md describes their
+# two errors.
 
 
 def paper_rotation(game_yaw_deg: float, game_pitch_deg: float) -> np.ndarray:

@@ -1,7 +1,7 @@
 """The furniture library: parametric templates with a defined front, as parts, cells and blocks.
 
 Custom designs can be added as data files in ``designs/``, or through the entry point group
-``world2minecraft.template``; see docs/furniture.md.
+``world2minecraft.template``; see docs/reference/furniture.md.
 """
 
 from world2minecraft.furniture.block_designs import BlockDesign, DesignBlock, block_design

@@ -3,7 +3,7 @@
 A template is a data file in ``designs/``, a file of the user, or a ``Template`` of another package
 that is registered in the entry point group ``world2minecraft.template``. Objects are only matched
 against templates with ``matched``; other templates of the family are chosen after the match.
-docs/furniture-library.md contains the table, by class.
+docs/reference/furniture-library.md contains the table, by class.
 """
 
 from collections.abc import Iterable

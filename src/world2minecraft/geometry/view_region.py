@@ -23,7 +23,7 @@ from world2minecraft.core.types import checks
 DEFAULT_SHAPE = (60, 60, 36)  # x right, y forward, z up: 60x36x60 as the papers write it
 DEFAULT_VOXEL_M = 0.08
 REGION_KINDS = ("paper", "free")
-AXIS_OFFSET_CELLS = 0  # Both by the sweep of docs/occupancy-labels.md.
+AXIS_OFFSET_CELLS = 0  # Both by the sweep of docs/reference/occupancy-labels.md.
 DIAGONAL_OFFSET_CELLS = 4
 FLOOR_LAYERS = 1  # Of the box, below the floor's top face.
 _STEP = 1e-6  # Cells: a place so near a border is on it.

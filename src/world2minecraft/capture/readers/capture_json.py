@@ -1,7 +1,7 @@
 """Reader and writer of the project's own layout: ``capture.json`` with image files.
 
-docs/captures.md describes the layout. ``write_plain`` writes views in this layout. Reading them
-returns equal views, except that depth is rounded to whole units, unless it is stored as float
+docs/how-to/captures.md describes the layout. ``write_plain`` writes views in this layout. Reading
+them returns equal views, except that depth is rounded to whole units, unless it is stored as float
 metres.
 """
 

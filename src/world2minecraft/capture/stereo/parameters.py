@@ -7,7 +7,7 @@ from world2minecraft.core.parameters import fact_by_name, parameter
 
 @dataclass(frozen=True)
 class StereoParameters:
-    """Parameters of multi-view stereo. docs/stereo.md contains measurements of their effect.
+    """Parameters of multi-view stereo (docs/explanation/stereo.md).
 
     Attributes:
         width_px: Width in pixels that photos are downscaled to.
@@ -52,13 +52,21 @@ class StereoParameters:
     angle_deg: float = parameter(
         4.0, unit="degrees", origin="9 degrees increase the error by a third", limits=(0.1, 60)
     )
-    window_px: int = parameter(9, unit="px", origin="docs/stereo.md", limits=(3, 15))
-    noise: float = parameter(4.0, unit="grey levels", origin="docs/stereo.md", limits=(0, 100))
+    window_px: int = parameter(9, unit="px", origin="docs/explanation/stereo.md", limits=(3, 15))
+    noise: float = parameter(
+        4.0, unit="grey levels", origin="docs/explanation/stereo.md", limits=(0, 100)
+    )
     small_step: float = parameter(20.0, unit="cost", origin="not recorded", limits=(0, 10_000))
-    large_step: float = parameter(240.0, unit="cost", origin="docs/stereo.md", limits=(0, 10_000))
-    guide_cost: float = parameter(120.0, unit="cost", origin="docs/stereo.md", limits=(0, 254))
-    agreeing: int = parameter(1, unit="photos", origin="docs/stereo.md", limits=(1, 32))
-    agreement: float = parameter(0.03, unit="share", origin="docs/stereo.md", limits=(1e-4, 0.5))
+    large_step: float = parameter(
+        240.0, unit="cost", origin="docs/explanation/stereo.md", limits=(0, 10_000)
+    )
+    guide_cost: float = parameter(
+        120.0, unit="cost", origin="docs/explanation/stereo.md", limits=(0, 254)
+    )
+    agreeing: int = parameter(1, unit="photos", origin="docs/explanation/stereo.md", limits=(1, 32))
+    agreement: float = parameter(
+        0.03, unit="share", origin="docs/explanation/stereo.md", limits=(1e-4, 0.5)
+    )
     island_share: float = parameter(
         0.003,
         unit="share",

@@ -50,7 +50,8 @@ def run(
 ) -> None:
     """Score room layouts of any method with the same rules.
 
-    Bounding boxes are scored before they are converted to blocks. docs/layout-baselines.md defines
+    Bounding boxes are scored before they are converted to blocks.
+    docs/results/layout-baselines.md defines
     out of bounds and collisions. A second table uses the rules of other methods.
 
     Raises:

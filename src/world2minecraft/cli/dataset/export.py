@@ -85,7 +85,7 @@ def run(
     """Export a data set in the format of NYUv2, OccScanNet, EmbodiedOcc-ScanNet, or as npz files.
 
     Images are cropped and resampled if the format requires a specific camera. Repeat the command to
-    resume an interrupted export. docs/occupancy-formats.md describes all files.
+    resume an interrupted export. docs/reference/occupancy-formats.md describes all files.
     """
     from world2minecraft.api import export_dataset
     from world2minecraft.api.progress import show_progress

@@ -95,7 +95,8 @@ def run(
 ) -> None:
     """Score occupancy predictions with published protocols and confidence intervals over scenes.
 
-    docs/occupancy-scores.md defines what each protocol counts and how it treats unknown cells.
+    docs/reference/occupancy-scores.md defines what each protocol counts and how it treats unknown
+    cells.
     """
     from world2minecraft.api import evaluate_network
     from world2minecraft.api.networks import scores_latex

@@ -196,7 +196,7 @@ def _print_link(session: "EditorSession") -> None:
     if session.is_public:
         print(
             f"warning: anyone with the link who can reach {session.host} can edit, and the "
-            "connection is not encrypted; an SSH tunnel is safer (docs/forge.md)"
+            "connection is not encrypted; an SSH tunnel is safer (docs/reference/forge.md)"
         )
     for note in session.notes:
         print(f"note: {note}")

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 w2m furniture list                    list all pieces by class
 w2m furniture list --class furniture  list one class
-w2m furniture list --markdown         print the tables in docs/furniture-library.md
+w2m furniture list --markdown         print the tables in docs/reference/furniture-library.md
 w2m furniture list fridge --json      search names and titles, and print JSON
 """
 

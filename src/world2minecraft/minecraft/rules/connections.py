@@ -4,8 +4,8 @@ The game does not update blocks of a world file when it loads them, so a pane wi
 properties stays unconnected. This module sets the properties that every block would have after an
 update: the corners of stairs; the sides of panes, bars and fences; gates lowered between walls; the
 sides and posts of walls; the halves of doors and double chests; the distance of leaves from a log;
-snow on grass; the smoke of campfires on hay. Redstone is not changed. docs/states.md lists the
-rules.
+snow on grass; the smoke of campfires on hay. Redstone is not changed. docs/reference/states.md
+lists the rules.
 
 A block is recognised as stairs, a fence and so on by the end of its name and its properties, so
 that blocks of mods and newer games are connected too if they follow the game's naming. Directions

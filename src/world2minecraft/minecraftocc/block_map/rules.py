@@ -76,7 +76,7 @@ class Words:
 
 @dataclass(frozen=True, eq=False)
 class BlockMap:
-    """A table that assigns blocks to classes. ``docs/block-maps.md`` describes its YAML file."""
+    """A table that assigns blocks to classes, of the form in docs/reference/block-maps.md."""
 
     name: str
     about: str

@@ -2,7 +2,7 @@
 
 Samples with their splits are written to a folder one at a time. Each file is written atomically,
 and the last file of a sample marks it as finished, so an interrupted export can be resumed.
-``docs/occupancy-formats.md`` describes all files and keys.
+``docs/reference/occupancy-formats.md`` describes all files and keys.
 """
 
 from world2minecraft.minecraftocc.exporters.export import EXPORT, ExportReport, export_samples

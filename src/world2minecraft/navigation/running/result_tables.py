@@ -21,8 +21,8 @@ MAX_RESULT_BYTES = 256 << 20
 _WALKED = ("ne_m", "spl", "soft_spl", "ndtw", "sdtw", "cls", "collisions", "steps")
 HEADS_NOTE = (
     "NE: remaining walking distance to the goal in metres; SR: share of episodes with "
-    "STOP within the given distance; SPL and SDTW at 3 m; docs/vln-scores.md explains all "
-    "columns"
+    "STOP within the given distance; SPL and SDTW at 3 m; "
+    "docs/reference/vln-scores.md explains all columns"
 )
 _TITLES = {"next_view": "Next-View", "next_action": "Next-Action"}
 _HEADS = ("Base", "Extend", "Combined")

@@ -18,7 +18,7 @@ from world2minecraft.networks.segmentation.frames import IGNORED, LabelledFrame
 from world2minecraft.networks.segmentation.network import SegmentationNet
 from world2minecraft.networks.segmentation.scores import frame_logits, sampled_labels
 
-UNDONE_SHARE = 0.75  # Of the logarithm of the class weights; see docs/segmentation.md.
+UNDONE_SHARE = 0.75  # Of the logarithm of the class weights; see docs/explanation/segmentation.md.
 INPUTS = ({"colour": True, "depth": True}, {"depth": False}, {"colour": False})
 EVERY_PX = 8  # Neighbouring pixels say the same.
 TEMPERATURES = (0.3, 5.0)

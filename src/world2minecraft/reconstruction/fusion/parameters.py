@@ -11,7 +11,7 @@ ABOVE_0, NOT_BELOW_0, SHARE = "above 0", "0 or more", "0 to 1"
 
 @dataclass(frozen=True)
 class FusionParameters:
-    """Parameters of the fusion; docs/fusion.md describes their effects on generated rooms.
+    """Parameters of the fusion; docs/results/fusion.md has their effects on generated rooms.
 
     voxel_m: Cell size.
     hit_log_odds: Log-odds added to a cell by a view that sees a surface in it.
@@ -88,11 +88,13 @@ class FusionParameters:
     pose_growth: float = parameter(
         0.0015, unit="m per m", origin="a rotation error of 0.09 degrees", bounds=NOT_BELOW_0
     )
-    merge_m: float = parameter(0.016, unit="m", origin="docs/fusion.md", bounds=NOT_BELOW_0)
+    merge_m: float = parameter(
+        0.016, unit="m", origin="docs/explanation/fusion.md", bounds=NOT_BELOW_0
+    )
     merge_sigmas: float = parameter(
         3.0, unit="sigmas", origin="covers nearly all noise of a surface", bounds=NOT_BELOW_0
     )
-    sure_m: float = parameter(0.003, unit="m", origin="docs/fusion.md", bounds=ABOVE_0)
+    sure_m: float = parameter(0.003, unit="m", origin="docs/explanation/fusion.md", bounds=ABOVE_0)
 
     def __post_init__(self):
         for name in names_where(self, bounds=ABOVE_0):

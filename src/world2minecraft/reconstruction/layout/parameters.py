@@ -11,7 +11,7 @@ Range = tuple[float, float]
 
 CATALOGUE = "catalogue: common European and American furniture, with room for cells of 0.08 m"
 TRIAL = "tuned on generated rooms and a real kitchen"
-ROOMS = "chosen on generated rooms; docs/labels.md"
+ROOMS = "chosen on generated rooms; docs/explanation/labels.md"
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT, class_
 Named = Sequence[tuple[str, float]]
 
 SURE = 0.6  # Of the name of the object that tells the kind of the room.
-CONFIDENCE = 0.7  # Of a fitting: washbasins of 14 NYUv2 and 20 generated bathrooms, docs/names.md.
+# Of a fitting: washbasins of 14 NYUv2 and 20 generated bathrooms, docs/explanation/names.md.
+CONFIDENCE = 0.7
 BATHROOM = ("toilet", "bathtub", "shower curtain")
 KITCHEN = ("refrigerator", "dishwasher", "oven", "stove")
 CUPBOARDS = ("wall cabinet", "kitchen island")

@@ -1,7 +1,8 @@
 """The ONNX file of a monocular occupancy network, validated before it is run.
 
 The network gets an image with its camera and the pose of the grid relative to that camera, and
-returns the probabilities of the 12 classes. The format is described in docs/networks-onnx.md.
+returns the probabilities of the 12 classes. The format is described in
+docs/how-to/networks-onnx.md.
 ``METADATA`` lists the entries that a file must contain, so that shapes, frames and class order are
 explicit.
 """
@@ -97,7 +98,7 @@ class OccupancyNetwork:
             self.facts = _facts(self._session)
         except ValueError as error:
             raise DamagedFileError(
-                path, f"{error}; the required format is described in docs/networks-onnx.md"
+                path, f"{error}; the required format is described in docs/how-to/networks-onnx.md"
             ) from None
         self._path = path
         self._wanted = {entry.name for entry in self._session.get_inputs()}

@@ -30,13 +30,13 @@ class RegistrationParameters:
         0.10, unit="m", origin="surfaces of this width are flat within sensor noise", bounds=ABOVE_0
     )
     jitter_m: float = parameter(
-        0.008, unit="m", origin="a first guess; docs/alignment.md", bounds=ABOVE_0
+        0.008, unit="m", origin="a first guess; docs/explanation/alignment.md", bounds=ABOVE_0
     )
     jitter_deg: float = parameter(
-        0.3, unit="degrees", origin="a first guess; docs/alignment.md", bounds=ABOVE_0
+        0.3, unit="degrees", origin="a first guess; docs/explanation/alignment.md", bounds=ABOVE_0
     )
     scale_sigma: float = parameter(
-        0.03, unit="share", origin="a first guess; docs/alignment.md", bounds=BELOW_HALF
+        0.03, unit="share", origin="a first guess; docs/explanation/alignment.md", bounds=BELOW_HALF
     )
     least_scale_sigma: float = parameter(
         0.003,
@@ -44,7 +44,9 @@ class RegistrationParameters:
         origin="0.1 % is estimated for generated scans without scale errors",
         bounds=BELOW_HALF,
     )
-    held_share: float = parameter(0.15, unit="share", origin="docs/alignment.md", bounds=BELOW_HALF)
+    held_share: float = parameter(
+        0.15, unit="share", origin="docs/explanation/alignment.md", bounds=BELOW_HALF
+    )
 
     def __post_init__(self):
         if not 0 <= self.passes <= 20:

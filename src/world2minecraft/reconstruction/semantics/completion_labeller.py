@@ -192,7 +192,9 @@ class CompletionParameters:
         "loses 0.092, 0.069, 0.034 and 0.005 beside no votes",
     )
     sure: float = parameter(
-        0.8, unit="chance", origin="chosen once on the held-out rooms; docs/completion.md"
+        0.8,
+        unit="chance",
+        origin="chosen once on the held-out rooms; docs/explanation/completion.md",
     )
     reach_cells: int = parameter(3, unit="cells", origin="not recorded")
     clear_cells: int = parameter(

@@ -180,7 +180,7 @@ def _stated_names(path: AnyPath, classes: dict[str, Any]) -> tuple[tuple[int, st
     if not any(label_id_of(name) for name in names.values()):
         raise CaptureError(
             path,
-            'states no known name; use names such as "wall" and "toilet", which docs/semantics.md '
-            'describes, or state the "classes" nyu12 or nyu40',
+            'states no known name; use names such as "wall" and "toilet", which '
+            'docs/explanation/semantics.md describes, or state the "classes" nyu12 or nyu40',
         )
     return tuple(sorted(names.items()))

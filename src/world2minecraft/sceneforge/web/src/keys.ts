@@ -1,5 +1,5 @@
 // THE table of keys and gestures: what listens to keys, the help page, the palette, the tooltips and
-// docs/forge-keys.md are all made from it.
+// docs/reference/forge-keys.md are all made from it.
 
 import type { Mode } from "./store";
 import { TEXT } from "./text";

@@ -1,4 +1,4 @@
-// docs/forge-keys.md, made from the table of keys: `npm run keys` writes it, a test compares it.
+// docs/reference/forge-keys.md, made from the table of keys: `npm run keys` writes it, a test compares it.
 
 import { BINDINGS, GROUPS, type Binding } from "./keys";
 import { TEXT } from "./text";
