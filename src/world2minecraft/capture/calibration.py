@@ -9,6 +9,8 @@ other half.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from PIL import Image
@@ -89,10 +91,8 @@ def estimate_colour_camera(views: Iterable[View]) -> ColourCameraEstimate | None
     enlarged = stated.width_px / WORK_WIDTH_PX
     matrix = np.array([stated.fx_px, stated.fy_px, stated.cx_px, stated.cy_px]) / enlarged
     scale, shift_x, shift_y = _search_camera(fitted, matrix)
-    before, after = (
-        _alignment_score(held_out, matrix, *values)
-        for values in ((1.0, 0.0, 0.0), (scale, shift_x, shift_y))
-    )
+    cameras = np.array([(1.0, 0.0, 0.0), (scale, shift_x, shift_y)])
+    before, after = _alignment_scores(_pack(held_out), matrix, cameras).tolist()
     gain = after / max(before, 1e-3)
     clear = gain > MIN_GAIN and after > MIN_SCORE
     return ColourCameraEstimate(scale, shift_x * enlarged, shift_y * enlarged, gain, clear)
@@ -149,14 +149,11 @@ def _colour_gradient(pixels: np.ndarray, axis: int) -> np.ndarray:
 
 def _search_camera(frames: Sequence[_DepthEdges], matrix: np.ndarray) -> tuple[float, float, float]:
     """Return the best scale and shifts by a coarse search with local refinement."""
-    scores = {
-        (scale, x, y): _alignment_score(frames, matrix, scale, x, y)
-        for scale in SCALES.tolist()
-        for x in SHIFTS_PX.tolist()
-        for y in SHIFTS_PX.tolist()
-    }
-    best = max(scores, key=lambda values: scores[values])
-    score = scores[best]
+    maps = _pack(frames)
+    coarse = list(product(SCALES.tolist(), SHIFTS_PX.tolist(), SHIFTS_PX.tolist()))
+    scores = _alignment_scores(maps, matrix, np.array(coarse))
+    first = int(np.argmax(scores))
+    best, score = coarse[first], scores[first]
     for scale_step, shift_step in REFINEMENTS:
         moved = True
         while moved:
@@ -168,35 +165,77 @@ def _search_camera(frames: Sequence[_DepthEdges], matrix: np.ndarray) -> tuple[f
                     best[1] + b * shift_step,
                     best[2] + c * shift_step,
                 )
-                found = _alignment_score(frames, matrix, *other)
+                found = _alignment_scores(maps, matrix, np.array([other]))[0]
                 if found > score + 1e-9:
                     best, score, moved = other, found, True
     return best
 
 
-def _alignment_score(
-    frames: Sequence[_DepthEdges], matrix: np.ndarray, scale: float, shift_x: float, shift_y: float
-) -> float:
+class _EdgeMaps(NamedTuple):
+    """The depth edges and gradient maps of frames, one after another.
+
+    Attributes:
+        rays: Edges of all maps, float64 [N, 2].
+        ends: End of each map's edges in ``rays``, int64 [M].
+        change: Pixels of all maps, float32 [P].
+        starts: Start of each map in ``change``, int64 [M].
+        sizes: Height and width of each map, int64 [M, 2].
+    """
+
+    rays: np.ndarray
+    ends: np.ndarray
+    change: np.ndarray
+    starts: np.ndarray
+    sizes: np.ndarray
+
+
+def _pack(frames: Sequence[_DepthEdges]) -> _EdgeMaps:
+    rays = [rays for frame in frames for rays in frame.rays]
+    change = [change for frame in frames for change in frame.change]
+    pixels = np.cumsum([0, *(one.size for one in change)])
+    return _EdgeMaps(
+        np.concatenate(rays),
+        np.cumsum([len(one) for one in rays]),
+        np.concatenate([one.reshape(-1) for one in change]),
+        pixels[:-1],
+        np.array([one.shape for one in change], np.int64),
+    )
+
+
+def _alignment_scores(maps: _EdgeMaps, matrix: np.ndarray, cameras: np.ndarray) -> np.ndarray:
     """Return the mean colour gradient at the depth edges that project into the image.
 
     Edges outside the image are ignored; a camera for which most edges are outside is rejected.
+
+    Args:
+        maps: Edges and gradients.
+        matrix: Stated fx, fy, cx and cy at the size of the maps.
+        cameras: Scale of the focal length and shifts of the centre, float64 [K, 3].
+
+    Returns:
+        The score of each camera, float64 [K].
     """
-    total, inside = 0.0, 0
-    for frame in frames:
-        for rays, change in zip(frame.rays, frame.change, strict=True):
-            added, met = _sum_at_pixels(rays, change, matrix, scale, shift_x, shift_y)
-            total, inside = total + added, inside + met
-    return total / inside if inside > MIN_INSIDE_SHARE * _edge_count(frames) else -1.0
+    totals, inside = _sums_at_pixels(maps, matrix, cameras)
+    enough = inside > MIN_INSIDE_SHARE * len(maps.rays)
+    return np.where(enough, totals / np.maximum(inside, 1), -1.0)
 
 
 @njit
-def _sum_at_pixels(rays, change, matrix, scale, shift_x, shift_y):
-    height, width = change.shape
-    total, inside = 0.0, 0
-    for index in range(len(rays)):
-        u = int(np.floor(rays[index, 0] * matrix[0] * scale + matrix[2] + shift_x))
-        v = int(np.floor(rays[index, 1] * matrix[1] * scale + matrix[3] + shift_y))
-        if 0 <= u < width and 0 <= v < height:
-            total += change[v, u]
-            inside += 1
-    return total, inside
+def _sums_at_pixels(maps, matrix, cameras):
+    """Return the summed gradients at the edges of each camera, and how many are in the image."""
+    totals, inside = np.zeros(len(cameras)), np.zeros(len(cameras), np.int64)
+    for k in range(len(cameras)):
+        scale, shift_x, shift_y = cameras[k]
+        first = 0
+        for m in range(len(maps.ends)):
+            height, width = maps.sizes[m]
+            total = 0.0
+            for n in range(first, maps.ends[m]):
+                u = int(np.floor(maps.rays[n, 0] * matrix[0] * scale + matrix[2] + shift_x))
+                v = int(np.floor(maps.rays[n, 1] * matrix[1] * scale + matrix[3] + shift_y))
+                if 0 <= u < width and 0 <= v < height:
+                    total += maps.change[maps.starts[m] + v * width + u]
+                    inside[k] += 1
+            first = maps.ends[m]
+            totals[k] += total
+    return totals, inside

@@ -170,6 +170,10 @@ def picture_of(arrays: PixelArrays, outputs: Collection[str]) -> Picture:
 def _mean_of_squares(colour: np.ndarray, samples: int) -> np.ndarray:
     """Return the mean of every samples x samples of pixels."""
     height, width = colour.shape[0] // samples, colour.shape[1] // samples
-    squares = colour.reshape(height, samples, width, samples, 3).astype(np.uint16)
+    squares = colour.reshape(height, samples, width, samples, 3)
     count = samples * samples
-    return ((squares.sum(axis=(1, 3)) + count // 2) // count).astype(np.uint8)
+    total = np.full((height, width, 3), count // 2, np.uint16)
+    for row in range(samples):
+        for column in range(samples):
+            total += squares[:, row, :, column]
+    return (total // np.uint16(count)).astype(np.uint8)

@@ -7,6 +7,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import apply, look_at
+from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.cutaway import (
     arrange_side_by_side,
@@ -88,6 +89,7 @@ def render_preview(view: PreviewView) -> np.ndarray:
         outputs=("colour",),
         light=NEUTRAL,
         samples=SUPERSAMPLE,
+        threads=usable_cores(),
     )
     return _colour_of(picture)
 
@@ -207,6 +209,7 @@ def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
         down,
         outputs=("colour",),
         samples=SUPERSAMPLE,
+        threads=usable_cores(),
         light=NEUTRAL,
         background=(BACKDROP[0], BACKDROP[0]),
     )

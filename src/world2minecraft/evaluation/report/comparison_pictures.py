@@ -9,6 +9,7 @@ from PIL import Image
 
 from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.view_stream import views_named
+from world2minecraft.core.parallel import map_parallel
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.geometry.undistort import pinhole_camera
 from world2minecraft.reconstruction.verification.photo_samples import evenly_spread
@@ -46,7 +47,8 @@ class Pair:
 def make_pairs(scan: Scan, scene: BlockScene) -> list[Pair]:
     """Return up to six pairs: of each sixth of the frames used, one that shows many things."""
     chosen = choose_views(scan, scene)
-    return [_pair(view, scan, scene) for view in views_named(scan.views, chosen)]
+    views = list(views_named(scan.views, chosen))
+    return map_parallel(lambda view: _pair(view, scan, scene), views)
 
 
 def choose_views(scan: Scan, scene: BlockScene) -> list[str]:
@@ -60,7 +62,8 @@ def choose_views(scan: Scan, scene: BlockScene) -> list[str]:
     if len(known) < len(scan.frames_used):
         return evenly_spread(scan.frames_used, PAIRS)
     parts = np.array_split(np.arange(len(known)), min(PAIRS, len(known)))
-    return [known[max(part, key=lambda n: _things(known[n], scan, scene))].name for part in parts]
+    things = map_parallel(lambda frame: _things(frame, scan, scene), known)
+    return [known[max(part, key=lambda n: things[n])].name for part in parts]
 
 
 def _things(frame: FrameFiles, scan: Scan, scene: BlockScene) -> int:

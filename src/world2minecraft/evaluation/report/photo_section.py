@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.parallel import map_parallel
 from world2minecraft.core.types import Scan
 from world2minecraft.evaluation.report.finished_run import FinishedScene
 from world2minecraft.reconstruction.naming.name_votes import NAME_VOTES, read_name_votes
@@ -39,14 +40,18 @@ class Crop:
 
 
 def compare_with_photos(
-    scene: FinishedScene, scan: Scan
+    scene: FinishedScene, scan: Scan, drawn: BlockScene | None = None
 ) -> tuple[PhotoAgreement | None, tuple[PhotoSample, ...]]:
-    """Compare the world of a run with its photos, and return the samples that were compared."""
+    """Compare the world of a run with its photos, and return the samples that were compared.
+
+    ``drawn`` is the scene of its volume, if it is already prepared.
+    """
     path = scene.folder / NAME_VOTES
     samples = sample_photos(scan, read_name_votes(path) if path.is_file() else None)
     if not samples:
         return None, ()
-    found = compare_world(samples, scene.grid, scene.instances, scene.placements, scene.volume)
+    volume = scene.volume if drawn is None else drawn
+    found = compare_world(samples, scene.grid, scene.instances, scene.placements, volume)
     return found, samples
 
 
@@ -97,17 +102,21 @@ def crop_objects(
     found: PhotoAgreement, samples: Sequence[PhotoSample], scene: BlockScene
 ) -> list[Crop]:
     """Return a crop of each object, in the order of ``found.objects``."""
-    pictures: dict[int, np.ndarray] = {}
+
+    def draw(view: int) -> np.ndarray:
+        sample = samples[view]
+        height, width = sample.picture.shape[:2]
+        camera = sample.camera.scaled_to(width, height)
+        drawn = render_volume(scene, camera, sample.camera_to_room, light=NEUTRAL).colour
+        if drawn is None:
+            raise RuntimeError("the renderer returned no colour image")
+        return drawn
+
+    shown = sorted({one.best_view for one in found.objects})
+    pictures = dict(zip(shown, map_parallel(draw, shown), strict=True))
     crops = []
     for one in found.objects:
         sample = samples[one.best_view]
-        height, width = sample.picture.shape[:2]
-        if one.best_view not in pictures:
-            camera = sample.camera.scaled_to(width, height)
-            drawn = render_volume(scene, camera, sample.camera_to_room, light=NEUTRAL).colour
-            if drawn is None:
-                raise RuntimeError("the renderer returned no colour image")
-            pictures[one.best_view] = drawn
         rows, columns = _crop_box(one.box_px, sample)
         crops.append(
             Crop(

@@ -167,7 +167,7 @@ def write_report(
     progress("report", 1, 3, "images")
     drawn = prepare_scene(scene.volume)
     pairs = make_pairs(scan, drawn)
-    agreement, samples = compare_with_photos(scene, scan)
+    agreement, samples = compare_with_photos(scene, scan, drawn)
     facts = {"photo_agreement": agreement_facts(agreement, samples)} | facts
     facts["repairs"] = read_repairs(folder)
     crops = [] if agreement is None else crop_objects(agreement, samples, drawn)

@@ -15,6 +15,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.parallel import read_ahead
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import FusedEvidence, GridEvidence, PointEvidence, Scan
 from world2minecraft.reconstruction.fusion.integration import (
@@ -234,7 +235,7 @@ def fuse_views(
     """
     map_ = EvidenceMap(scan.scan_to_room, parameters)
     total, done = len(scan.views), 0
-    for item in evidence:
+    for item in read_ahead(evidence):
         map_.add(item)
         done = min(done + 1, total)
         progress("fuse", done, total, item.view)

@@ -93,7 +93,7 @@ class NameVoteMap:
             pixels: Flat index of the network's pixel that shows each point, int [N].
             probabilities: Probabilities of NYU40 classes 1 to 40 by pixel, float [P, 40].
         """
-        shown, first = np.unique(pixels, return_index=True)
+        shown, first = _first_of_each(pixels, len(probabilities))
         cubes = np.floor(points_m[first] / CUBE_M).astype(np.int32)
         summed = _summed(cubes, probabilities[shown].astype(np.float32))
         self._cubes.append(summed.cubes)
@@ -107,7 +107,7 @@ class NameVoteMap:
             pixels: Flat index of the pixel of the label image that shows each point, int [N].
             label_ids: Label ids by pixel, uint16 [P]; 0 does not vote.
         """
-        shown, first = np.unique(pixels, return_index=True)
+        shown, first = _first_of_each(pixels, len(label_ids))
         voting = label_ids[shown] > 0
         cubes = np.floor(points_m[first[voting]] / CUBE_M).astype(np.int32)
         kept, owner = np.unique(cubes, axis=0, return_inverse=True)
@@ -124,6 +124,14 @@ class NameVoteMap:
         width = max(votes.shape[1] for votes in self._votes)
         votes = [np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in self._votes]
         return _summed(np.concatenate(self._cubes), np.concatenate(votes))
+
+
+def _first_of_each(values: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the different values below ``count`` in order, and the first place of each."""
+    first = np.full(count, -1, np.int64)
+    first[values[::-1]] = np.arange(len(values) - 1, -1, -1)
+    shown = np.flatnonzero(first >= 0)
+    return shown, first[shown]
 
 
 def _summed(cubes: np.ndarray, votes: np.ndarray) -> NameVotes:

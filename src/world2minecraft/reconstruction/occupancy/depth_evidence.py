@@ -12,9 +12,9 @@ from typing import Protocol
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.jit import njit
+from world2minecraft.core.parallel import read_ahead
 from world2minecraft.core.types import Camera, PointEvidence, Scan, View
 from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
 from world2minecraft.reconstruction.naming.name_votes import NameVoteMap
@@ -140,8 +140,10 @@ class Voter(Protocol):
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
-    ) -> np.ndarray:
+    ) -> np.ndarray | None:
         """Return the votes of N points, float32 [N, 12], with a sum of at most 1 per point.
+
+        The result is None if the voter does not vote on this view.
 
         Args:
             view: View with a colour image.
@@ -179,7 +181,7 @@ class DepthPredictor:
         alone = len(scan.views) == 1 and scan.depth_kind == "sensor"
         is_rendered = scan.depth_kind == "exact"
         voters = [voter for voter in self.voters if not (is_rendered and voter.photos_only)]
-        for view in scan.views:
+        for view in read_ahead(scan.views):
             if view.depth_m is not None:
                 yield self.lift(view, scan.scan_to_room, alone=alone, voters=voters)
 
@@ -230,14 +232,16 @@ class DepthPredictor:
 def _votes(
     voters: Sequence[Voter], view: View, scan_to_room, points_m, colour_px
 ) -> np.ndarray | None:
-    """Return the sum of the votes for the points of a view, float16 [N, 12], or None without."""
+    """Return the sum of the votes for the points of a view, float16 [N, 12], or None."""
     if not voters or colour_px is None:
         return None
     to_room = np.eye(4) if scan_to_room is None else scan_to_room
-    total = np.zeros((len(points_m), CLASS_COUNT), np.float32)
+    total: np.ndarray | None = None
     for voter in voters:
-        total += voter.votes(view, to_room, points_m, colour_px)
-    return total.astype(np.float16)
+        found = voter.votes(view, to_room, points_m, colour_px)
+        if found is not None:
+            total = found if total is None else total + found
+    return None if total is None else total.astype(np.float16)
 
 
 def _trust(view: View, pixels: np.ndarray) -> np.ndarray | None:

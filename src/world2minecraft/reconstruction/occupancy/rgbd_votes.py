@@ -64,15 +64,14 @@ class RgbdVoter:
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
-    ) -> np.ndarray:
-        """Return the votes of N points, float32 [N, 12]; see ``Voter``."""
-        nothing = np.zeros((len(points_m), CLASS_COUNT), np.float32)
+    ) -> np.ndarray | None:
+        """Return the votes of N points, float32 [N, 12], or None; see ``Voter``."""
         camera = view.colour_camera
         if view.colour is None or camera is None or view.labels is not None:
-            return nothing
+            return None
         pose = scan_to_room @ view.camera_to_scan
         if not self._is_new(pose):
-            return nothing
+            return None
         width, height = network_size(camera.width_px, camera.height_px)
         rows, columns = np.divmod(colour_px.astype(np.int64), camera.width_px)
         depth_m = splat_depth(

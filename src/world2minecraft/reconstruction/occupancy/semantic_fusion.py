@@ -179,10 +179,10 @@ class PixelVoter:
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
-    ) -> np.ndarray:
-        """Return the votes of N points, float32 [N, 12]; see ``Voter``."""
+    ) -> np.ndarray | None:
+        """Return the votes of N points, float32 [N, 12], or None; see ``Voter``."""
         if view.colour is None:
-            return np.zeros((len(points_m), CLASS_COUNT), np.float32)
+            return None
         shares, label_ids = self.prediction(view.colour)
         in_room_m = apply(scan_to_room, points_m.astype(np.float64))
         self.names.add_labels(in_room_m, colour_px, label_ids.reshape(-1))
@@ -236,14 +236,14 @@ class CellVoter:
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
-    ) -> np.ndarray:
-        """Return the votes of N points, float32 [N, 12]; see ``Voter``.
+    ) -> np.ndarray | None:
+        """Return the votes of N points, float32 [N, 12], or None; see ``Voter``.
 
         Points in cells that are predicted to be empty vote with a low weight.
         """
-        result = np.zeros((len(points_m), CLASS_COUNT), np.float32)
         if view.colour is None:
-            return result
+            return None
+        result = np.zeros((len(points_m), CLASS_COUNT), np.float32)
         predicted = self.predictor.look(view, scan_to_room)
         at_m = apply(invert_rigid(predicted.grid_to_scan), points_m.astype(np.float64))
         cells = np.floor(at_m / predicted.voxel_m).astype(np.int64)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.core.parallel import map_parallel
 from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.core.vocabulary import nyu40_classes, read_vocabulary
 from world2minecraft.reconstruction.verification.built_names import (
@@ -27,7 +28,7 @@ from world2minecraft.reconstruction.verification.photo_agreement import (
     things_of_photo,
 )
 from world2minecraft.reconstruction.verification.photo_samples import PhotoSample
-from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.scene import BlockScene, prepare_scene
 
 RESAMPLES = 500
 NAMES_LISTED, MIN_SHARE = 3, 0.01  # Of what photos show at an object.
@@ -119,7 +120,7 @@ def compare_world(
     grid: OccupancyGrid,
     instances: Sequence[ObjectInstance],
     placements: Sequence[Placement],
-    volume: BlockVolume,
+    volume: BlockVolume | BlockScene,
 ) -> PhotoAgreement | None:
     """Compare the built world with photos, or return None if they measured no surface.
 
@@ -128,7 +129,7 @@ def compare_world(
         grid: Grid with the class and the object of each cell.
         instances: Objects of the room.
         placements: Their furniture.
-        volume: The built world.
+        volume: The built world, or its scene.
     """
     things = built_things(instances, placements)
     shown = [things_of_photo(sample, grid) for sample in samples]
@@ -163,7 +164,7 @@ def compare_views(
     samples: Sequence[PhotoSample],
     shown: Sequence[np.ndarray],
     things: Mapping[int, BuiltThing],
-    volume: BlockVolume,
+    volume: BlockVolume | BlockScene,
     voxel_m: float,
 ) -> list[ViewAgreement]:
     """Compare the world with each photo.
@@ -172,15 +173,13 @@ def compare_views(
         samples: Samples of the photos.
         shown: What each of them shows, from ``things_of_photo``.
         things: What the world's things show, from ``built_things``.
-        volume: The built world.
+        volume: The built world, or its scene.
         voxel_m: Cell size of the grid in metres.
     """
-    scene = prepare_scene(volume)
-    tolerance_m = max(1 / volume.blocks_per_metre, 2 * voxel_m)
-    return [
-        compare_view(sample, thing, scene, things, tolerance_m)
-        for sample, thing in zip(samples, shown, strict=True)
-    ]
+    scene = prepare_scene(volume) if isinstance(volume, BlockVolume) else volume
+    tolerance_m = max(1 / scene.cells_per_metre, 2 * voxel_m)
+    pairs = list(zip(samples, shown, strict=True))
+    return map_parallel(lambda pair: compare_view(*pair, scene, things, tolerance_m), pairs)
 
 
 def share_right(samples: Sequence[PhotoSample], views: Sequence[ViewAgreement]) -> float:

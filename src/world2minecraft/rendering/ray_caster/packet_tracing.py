@@ -37,24 +37,28 @@ def trace_packet(space, bounds, corners, cells):
     Args:
         space: Box of each cell, int32 [X, Y, Z].
         bounds: Bounds of the boxes, int16 [V, 6].
-        corners: Origins and directions of the four corner rays, float64 [4, 6]. If they do not
-            start in the same box, the result is ``(DIVERGED, NO_FACE, 0)``.
+        corners: Origins and directions of the four corner rays, float64 [4, 6]. If they start
+            neither in the same box nor outside the grid, the result is ``(DIVERGED, NO_FACE, 0)``.
         cells: Scratch memory, int64 [4, 3]. Its first two rows receive the first and the last cell
             of ``layer`` that the packet covers.
     """
     row = _box_of_origins(space, bounds, corners)
     face, layer = NO_FACE, 0
-    if row < 0:
-        return PacketHit(DIVERGED, NO_FACE, 0)
     low, high = cells[2], cells[3]
-    for _ in range(MAX_BOXES):
-        ahead = _common_exit(bounds, row, corners, low, high)
+    for step in range(MAX_BOXES):
+        if row >= 0:
+            ahead = _common_exit(bounds, row, corners, low, high)
+        else:
+            ahead = _common_entry(space.shape, corners, low, high) if step == 0 else NO_FACE
         if ahead == NO_FACE:
             return PacketHit(DIVERGED, face, layer)
         axis = ahead // 2
-        behind = int(bounds[row, axis + 3]) if ahead % 2 == 0 else int(bounds[row, axis]) - 1
-        if behind < 0 or behind >= space.shape[axis]:
-            return PacketHit(MISS, ahead, behind)
+        if row >= 0:
+            behind = int(bounds[row, axis + 3]) if ahead % 2 == 0 else int(bounds[row, axis]) - 1
+            if behind < 0 or behind >= space.shape[axis]:
+                return PacketHit(MISS, ahead, behind)
+        else:
+            behind = 0 if ahead % 2 == 0 else space.shape[axis] - 1
         low[axis], high[axis] = behind, behind
         kind = _uniform_kind(space, bounds, low, high)
         if kind != FULL and kind < 0:
@@ -87,6 +91,36 @@ def _box_of_origins(space, bounds, corners):
             if at < bounds[row, axis] or at >= bounds[row, axis + 3]:
                 return -1
     return row
+
+
+@inlined
+def _common_entry(shape, corners, low, high):
+    """Return the face by which all corner rays enter the grid from outside, or NO_FACE.
+
+    Then so do all rays between them, because a face is convex. ``low`` and ``high`` become the
+    first and last cells of the part of the face that the packet covers.
+    """
+    common = NO_FACE
+    for corner in range(4):
+        enter, leave, face = 0.0, np.inf, NO_FACE
+        for axis in range(3):
+            d = away_from_zero(corners[corner, axis + 3])
+            at = corners[corner, axis]
+            near, far = (0 - at) / d, (shape[axis] - at) / d
+            if d < 0:
+                near, far = far, near
+            if near > enter:
+                enter, face = near, 2 * axis + (0 if d > 0 else 1)
+            leave = min(leave, far)
+        if face == NO_FACE or enter >= leave or (corner > 0 and face != common):
+            return NO_FACE
+        common = face
+        for axis in range(3):
+            at = corners[corner, axis] + enter * corners[corner, axis + 3]
+            cell = floor_clamped(at, 0, shape[axis])
+            low[axis] = cell if corner == 0 else min(low[axis], cell)
+            high[axis] = cell if corner == 0 else max(high[axis], cell)
+    return common
 
 
 @inlined
