@@ -1,5 +1,7 @@
 """What a view adds to the map's sums, against a slow reading of each rule on its own."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -273,3 +275,26 @@ def test_axis_aligned_ray_carves_every_cell_before_surface(axis, side, way, carv
     found = np.argwhere(log_odds < 0) + low
     assert sorted(side * found[:, axis]) == list(range(carved))
     assert not np.delete(found, axis, axis=1).any()
+
+
+def test_votes_of_pixels_count_like_votes_of_points():
+    rng = np.random.default_rng(3)
+    points_m = rng.uniform(0.4, 0.6, (2000, 3)).astype(np.float32)
+    weight = np.full(2000, 0.01, np.float32)
+    votes = rng.random((7, 12)).astype(np.float16)
+    rows = rng.integers(0, 7, 2000).astype(np.int32)
+    compact = PointEvidence("v", np.zeros(3), points_m, weight, votes=votes, vote_rows=rows)
+    assert np.array_equal(compact.point_votes, votes[rows])
+    maps = [EvidenceMap(np.eye(4)) for _ in range(2)]
+    maps[0].add(compact)
+    maps[1].add(replace(compact, votes=votes[rows], vote_rows=None))
+    sums = [one.fused().votes for one in maps]
+    assert sums[0].any() and np.array_equal(*sums)
+
+
+@pytest.mark.parametrize("row", [-1, 7])
+def test_rows_of_votes_must_exist(row):
+    votes, rows = np.zeros((7, 12), np.float16), np.array([0, row], np.int32)
+    points_m, weight = np.zeros((2, 3), np.float32), np.ones(2, np.float32)
+    with pytest.raises(ValueError, match="below the number of votes, 7"):
+        PointEvidence("v", np.zeros(3), points_m, weight, votes=votes, vote_rows=rows)

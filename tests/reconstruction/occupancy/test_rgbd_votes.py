@@ -50,7 +50,7 @@ def voter() -> tuple[RgbdVoter, Halves]:
 
 
 def lift(made: RgbdVoter, seen: View):
-    return DepthPredictor(voters=[made]).lift(seen, np.eye(4)).votes
+    return DepthPredictor(voters=[made]).lift(seen, np.eye(4)).point_votes
 
 
 def votes_of(made: RgbdVoter, seen: View) -> np.ndarray:
@@ -67,13 +67,13 @@ def view(**changes) -> View:
 
 def test_pixels_without_a_likely_class_do_not_vote():
     found = DepthPredictor(voters=[voter()[0]]).lift(view())
-    assert found.votes is not None
+    assert found.point_votes is not None
     at_px = np.asarray(found.points_m, np.float64) @ view().camera_to_scan[:3, :3]
     at_px -= view().camera_to_scan[:3, 3] @ view().camera_to_scan[:3, :3]
     left = at_px[:, 0] / at_px[:, 2] * CAMERA.fx_px + CAMERA.cx_px < CAMERA.width_px / 2
-    assert (found.votes[left, SemanticClass.CHAIR] > 0.7).all()
-    assert not found.votes[~left].any()
-    assert (found.votes.sum(axis=1) <= 1.001).all()
+    assert (found.point_votes[left, SemanticClass.CHAIR] > 0.7).all()
+    assert not found.point_votes[~left].any()
+    assert (found.point_votes.sum(axis=1) <= 1.001).all()
 
 
 def test_the_network_gets_depth_gravity_and_height():
@@ -113,7 +113,7 @@ def test_views_of_meshes_get_no_votes_by_default(kind, votes):
     made.photos_only = True
     scan = Scan([seen], np.eye(4), np.ones(3), ("v",), depth_kind=kind)
     (found,) = DepthPredictor(voters=[made]).predict(scan)
-    assert (found.votes is not None and bool(found.votes.any())) is votes
+    assert (found.point_votes is not None and bool(found.point_votes.any())) is votes
     assert voters("auto")[0].photos_only
     assert not voters("nyu")[0].photos_only
 

@@ -54,13 +54,13 @@ def view(**changes) -> View:
 def test_each_point_has_the_votes_of_the_pixel_that_shows_it():
     network = Halves()
     found = DepthPredictor(voters=[PixelVoter(network)]).lift(view())
-    assert found.votes is not None and found.votes.dtype == np.float16
+    assert found.point_votes is not None and found.point_votes.dtype == np.float16
     at_px = project(apply(np.linalg.inv(view().camera_to_scan), found.points_m), CAMERA)
     left, right = at_px[:, 0] < 70, at_px[:, 0] > 90  # Between, the halves are read between.
-    np.testing.assert_allclose(found.votes[left][:, 5], 1)
-    np.testing.assert_allclose(found.votes[right][:, 5], 0.125, atol=1 / 255)
-    np.testing.assert_allclose(found.votes[right][:, 7], 0.75, atol=1 / 255)
-    np.testing.assert_allclose(found.votes[right].sum(axis=1), 0.875, atol=2 / 255)
+    np.testing.assert_allclose(found.point_votes[left][:, 5], 1)
+    np.testing.assert_allclose(found.point_votes[right][:, 5], 0.125, atol=1 / 255)
+    np.testing.assert_allclose(found.point_votes[right][:, 7], 0.75, atol=1 / 255)
+    np.testing.assert_allclose(found.point_votes[right].sum(axis=1), 0.875, atol=2 / 255)
 
 
 def test_labels_vote_for_their_fine_names():
@@ -89,9 +89,9 @@ def test_a_depth_camera_in_another_place_is_heeded():
     moved = view(depth_m=depth_m, depth_camera=lens, depth_to_colour=aside)
     found = DepthPredictor(voters=[PixelVoter(Halves())]).lift(moved)
     at_px = project(apply(np.linalg.inv(moved.camera_to_scan), found.points_m), CAMERA)
-    assert found.votes is not None
-    np.testing.assert_allclose(found.votes[at_px[:, 0] < 70][:, 5], 1)
-    assert (found.votes[at_px[:, 0] > 90][:, 7] > 0.7).all()
+    assert found.point_votes is not None
+    np.testing.assert_allclose(found.point_votes[at_px[:, 0] < 70][:, 5], 1)
+    assert (found.point_votes[at_px[:, 0] > 90][:, 7] > 0.7).all()
 
 
 def test_a_second_run_costs_nothing():
@@ -176,12 +176,12 @@ def test_monocular_network_votes_by_the_cell_of_a_point(tmp_path):
     found = DepthPredictor(voters=[CellVoter(mono)]).lift(view(), np.eye(4))
     said = mono.look(view(), np.eye(4))
     forward = apply(np.linalg.inv(said.grid_to_scan), found.points_m.astype(float))[:, 1]
-    assert found.votes is not None
-    voted = found.votes.any(axis=1)
+    assert found.point_votes is not None
+    voted = found.point_votes.any(axis=1)
     assert voted.mean() > 0.9
-    assert (found.votes[voted & (forward < 1.6)][:, 8] > 0.99).all()
-    assert (found.votes[voted & (forward >= 1.6)][:, 10] > 0.99).all()
-    assert not found.votes[:, 0].any()
+    assert (found.point_votes[voted & (forward < 1.6)][:, 8] > 0.99).all()
+    assert (found.point_votes[voted & (forward >= 1.6)][:, 10] > 0.99).all()
+    assert not found.point_votes[:, 0].any()
 
 
 def test_voters_are_for_depth_alone(tmp_path):

@@ -67,8 +67,10 @@ class PointEvidence:
     ``z^2 / (fx fy)``. Fusion divides the sum of weights in a cell by the area of the cell's face to
     determine how much of the cell the view observed. ``normals`` are unit vectors towards the
     camera, or (0, 0, 0) if unknown. Without normals, surfaces are assumed to face the camera.
-    ``labels`` are a compact form of ``votes`` with one full vote for one class. ``trust`` is the
-    reliability of each point, 0 to 1. Without it, all points have trust 1.
+    ``labels`` are a compact form of ``votes`` with one full vote for one class. Points that share
+    votes, such as those of one pixel of a network, have one row of ``votes`` and its number in
+    ``vote_rows``; without ``vote_rows``, each point has a row. ``trust`` is the reliability of each
+    point, 0 to 1. Without it, all points have trust 1.
     """
 
     view: str
@@ -76,10 +78,11 @@ class PointEvidence:
     points_m: np.ndarray  # float32 [N, 3]
     weight: np.ndarray  # float32 [N]
     colour: np.ndarray | None = None  # uint8 [N, 3]
-    votes: np.ndarray | None = None  # float16 [N, 12]
+    votes: np.ndarray | None = None  # float16 [N or P, 12]
     normals: np.ndarray | None = None  # float32 [N, 3], scan frame
     labels: np.ndarray | None = None  # uint8 [N], class ids; 0 and 255 vote for nothing
     trust: np.ndarray | None = None  # float32 [N], 0 to 1
+    vote_rows: np.ndarray | None = None  # int32 [N], rows of votes
 
     def __post_init__(self):
         put = object.__setattr__
@@ -90,14 +93,27 @@ class PointEvidence:
         if self.colour is not None:
             put(self, "colour", checks.array("colour", self.colour, np.uint8, (count, 3)))
         if self.votes is not None:
-            shape = (count, CLASS_COUNT)
+            shape = (count if self.vote_rows is None else None, CLASS_COUNT)
             put(self, "votes", checks.array("votes", self.votes, np.float16, shape))
+        if self.vote_rows is not None:
+            rows = checks.array("vote_rows", self.vote_rows, np.int32, (count,))
+            put(self, "vote_rows", rows)
+            limit = 0 if self.votes is None else len(self.votes)
+            if len(rows) and not 0 <= int(rows.min()) <= int(rows.max()) < limit:
+                raise ValueError(f"vote_rows must be below the number of votes, {limit}")
         if self.normals is not None:
             put(self, "normals", checks.array("normals", self.normals, np.float32, (count, 3)))
         if self.labels is not None:
             put(self, "labels", checks.array("labels", self.labels, np.uint8, (count,)))
         if self.trust is not None:
             put(self, "trust", checks.array("trust", self.trust, np.float32, (count,)))
+
+    @property
+    def point_votes(self) -> np.ndarray | None:
+        """The votes of each point, float16 [N, 12], or None without votes."""
+        if self.votes is None or self.vote_rows is None:
+            return self.votes
+        return self.votes[self.vote_rows]
 
 
 @dataclass(frozen=True, eq=False)

@@ -170,7 +170,10 @@ class EvidenceMap:
         if evidence.labels is not None:
             add_labels(evidence.labels, rows, blocks.votes)
         if evidence.votes is not None:
-            add_votes(evidence.votes.astype(np.float32), rows, blocks.votes)
+            of_point = evidence.vote_rows
+            if of_point is None:
+                of_point = np.arange(len(rows), dtype=np.int32)
+            add_votes(evidence.votes.astype(np.float32), of_point, rows, blocks.votes)
 
     def _add_grid(self, evidence: GridEvidence) -> None:
         found = grid_gains(evidence, self.scan_to_room, self.parameters)

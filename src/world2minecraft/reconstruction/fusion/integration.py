@@ -260,12 +260,19 @@ def add_labels(labels, rows, votes):
 
 
 @njit
-def add_votes(shares, rows, votes):
-    """Add the votes float32 [N, 12] of points to their records, int32 [N]; record 0 is ignored."""
-    for n in range(len(shares)):
+def add_votes(shares, of_point, rows, votes):
+    """Add the votes of points to their records; record 0 is ignored.
+
+    Args:
+        shares: Votes, float32 [P, 12].
+        of_point: Row of ``shares`` of each point, int32 [N].
+        rows: Record of each point, int32 [N].
+        votes: Sums of the records, float32 [R, 12], modified in place.
+    """
+    for n in range(len(rows)):
         if rows[n] > 0:
             for label in range(shares.shape[1]):
-                votes[rows[n], label] += shares[n, label]
+                votes[rows[n], label] += shares[of_point[n], label]
 
 
 @njit

@@ -138,10 +138,16 @@ def _summed(cubes: np.ndarray, votes: np.ndarray) -> NameVotes:
     """Return the sums of votes in the same cube."""
     if not len(cubes):
         return NameVotes(cubes, votes)
-    kept, owner = np.unique(cubes, axis=0, return_inverse=True)
-    order = np.argsort(owner.reshape(-1), kind="stable")
-    starts = np.searchsorted(owner.reshape(-1)[order], np.arange(len(kept)))
-    return NameVotes(kept, np.add.reduceat(votes[order], starts, axis=0))
+    order, starts = _group(cubes)
+    return NameVotes(cubes[order[starts]], np.add.reduceat(votes[order], starts, axis=0))
+
+
+def _group(cubes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the order that sorts cubes, int [N, 3], and where each different one begins."""
+    order = np.lexsort(cubes.T[::-1])
+    placed = cubes[order]
+    changes = (placed[1:] != placed[:-1]).any(axis=1)
+    return order, np.flatnonzero(np.concatenate([[True], changes]))
 
 
 def votes_of_objects(votes: NameVotes, grid: OccupancyGrid, count: int) -> np.ndarray:

@@ -8,7 +8,7 @@ its neighbours, as far as the surface has no jump. Squares at jumps have no norm
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -127,6 +127,23 @@ def _spread(normals, turn, pixels, width_px, side):
     return result
 
 
+class PointVotes(NamedTuple):
+    """Votes of a view's points, with a sum of at most 1 per point.
+
+    Attributes:
+        shares: Votes, float32 [P, 12].
+        rows: Row of each point in ``shares``, int32 [N], or None if each point has its own.
+    """
+
+    shares: np.ndarray
+    rows: np.ndarray | None = None
+
+    @property
+    def dense(self) -> np.ndarray:
+        """The votes of each point, float32 [N, 12]."""
+        return self.shares if self.rows is None else self.shares[self.rows]
+
+
 class Voter(Protocol):
     """An object that votes for the classes of a view's surface points, such as a network.
 
@@ -140,10 +157,8 @@ class Voter(Protocol):
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
-    ) -> np.ndarray | None:
-        """Return the votes of N points, float32 [N, 12], with a sum of at most 1 per point.
-
-        The result is None if the voter does not vote on this view.
+    ) -> PointVotes | None:
+        """Return the votes of N points, or None if the voter does not vote on this view.
 
         Args:
             view: View with a colour image.
@@ -214,6 +229,9 @@ class DepthPredictor:
         if view.label_ids is not None and colour_px is not None and scan_to_room is not None:
             in_room_m = apply(scan_to_room, points_m.astype(np.float64))
             self.names.add_labels(in_room_m, colour_px, view.label_ids.reshape(-1))
+        votes = _votes(
+            self.voters if voters is None else voters, view, scan_to_room, points_m, colour_px
+        )
         return PointEvidence(
             view=view.name,
             camera_m=camera_to_scan[:3, 3],
@@ -223,25 +241,23 @@ class DepthPredictor:
             normals=facing_of_depth(near_m, camera, camera_to_scan, pixels),
             labels=labels,
             trust=_trust(view, pixels),
-            votes=_votes(
-                self.voters if voters is None else voters, view, scan_to_room, points_m, colour_px
-            ),
+            votes=None if votes is None else votes.shares.astype(np.float16),
+            vote_rows=None if votes is None else votes.rows,
         )
 
 
 def _votes(
     voters: Sequence[Voter], view: View, scan_to_room, points_m, colour_px
-) -> np.ndarray | None:
-    """Return the sum of the votes for the points of a view, float16 [N, 12], or None."""
+) -> PointVotes | None:
+    """Return the sum of the votes for the points of a view, or None without votes."""
     if not voters or colour_px is None:
         return None
     to_room = np.eye(4) if scan_to_room is None else scan_to_room
-    total: np.ndarray | None = None
-    for voter in voters:
-        found = voter.votes(view, to_room, points_m, colour_px)
-        if found is not None:
-            total = found if total is None else total + found
-    return None if total is None else total.astype(np.float16)
+    every = [voter.votes(view, to_room, points_m, colour_px) for voter in voters]
+    found = [votes for votes in every if votes is not None]
+    if len(found) < 2:
+        return found[0] if found else None
+    return PointVotes(np.sum([votes.dense for votes in found], axis=0, dtype=np.float32))
 
 
 def _trust(view: View, pixels: np.ndarray) -> np.ndarray | None:

@@ -14,6 +14,7 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.types import View
 from world2minecraft.core.vocabulary import nyu40_classes
 from world2minecraft.reconstruction.naming.name_votes import NameVoteMap
+from world2minecraft.reconstruction.occupancy.depth_evidence import PointVotes
 from world2minecraft.reconstruction.recognition.segmentation import (
     NYU40_COUNT,
     SegmentationModel,
@@ -64,8 +65,8 @@ class RgbdVoter:
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
-    ) -> np.ndarray | None:
-        """Return the votes of N points, float32 [N, 12], or None; see ``Voter``."""
+    ) -> PointVotes | None:
+        """Return the votes of N points, or None; see ``Voter``."""
         camera = view.colour_camera
         if view.colour is None or camera is None or view.labels is not None:
             return None
@@ -90,7 +91,7 @@ class RgbdVoter:
         pixels = at[0] * shares.shape[1] + at[1]
         in_room_m = apply(scan_to_room, points_m.astype(np.float64))
         self.names.add(in_room_m, pixels, found.reshape(-1, NYU40_COUNT))
-        return shares[at]
+        return PointVotes(shares.reshape(-1, CLASS_COUNT), pixels.astype(np.int32))
 
     def _is_new(self, pose: np.ndarray) -> bool:
         """Return whether no earlier view was close to a camera-to-room pose, and remember it."""

@@ -111,8 +111,8 @@ class SavedGridPredictor:
         else:
             return item
         votes = point_votes(item.points_m, item.camera_m, grid, place, voxel_m)
-        others = 0 if item.votes is None else item.votes.astype(np.float32)
-        return replace(item, votes=(votes + others).astype(np.float16))
+        others = 0 if item.point_votes is None else item.point_votes.astype(np.float32)
+        return replace(item, votes=(votes + others).astype(np.float16), vote_rows=None)
 
     def _describe(self, files: GridFiles, scan: Scan) -> tuple[str, ...]:
         """Return notes on which grids are used and how they are placed."""

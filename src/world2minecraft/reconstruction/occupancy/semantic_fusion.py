@@ -28,7 +28,7 @@ from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import View
 from world2minecraft.core.vocabulary import VOCABULARY_FILE, label_id_of, read_vocabulary
 from world2minecraft.reconstruction.naming.name_votes import NameVoteMap
-from world2minecraft.reconstruction.occupancy.depth_evidence import Voter
+from world2minecraft.reconstruction.occupancy.depth_evidence import PointVotes, Voter
 from world2minecraft.reconstruction.occupancy.label_names import label_classes
 from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
 from world2minecraft.reconstruction.occupancy.parameters import (
@@ -179,14 +179,15 @@ class PixelVoter:
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
-    ) -> np.ndarray | None:
-        """Return the votes of N points, float32 [N, 12], or None; see ``Voter``."""
+    ) -> PointVotes | None:
+        """Return the votes of N points, or None; see ``Voter``."""
         if view.colour is None:
             return None
         shares, label_ids = self.prediction(view.colour)
         in_room_m = apply(scan_to_room, points_m.astype(np.float64))
         self.names.add_labels(in_room_m, colour_px, label_ids.reshape(-1))
-        return shares.reshape(-1, CLASS_COUNT)[colour_px].astype(np.float32) / np.float32(FULL)
+        shares = shares.reshape(-1, CLASS_COUNT).astype(np.float32) / np.float32(FULL)
+        return PointVotes(shares, colour_px.astype(np.int32))
 
     def prediction(self, colour: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the prediction for an image.
@@ -236,8 +237,8 @@ class CellVoter:
 
     def votes(
         self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
-    ) -> np.ndarray | None:
-        """Return the votes of N points, float32 [N, 12], or None; see ``Voter``.
+    ) -> PointVotes | None:
+        """Return the votes of N points, or None; see ``Voter``.
 
         Points in cells that are predicted to be empty vote with a low weight.
         """
@@ -251,7 +252,7 @@ class CellVoter:
         held = held[predicted.seen[tuple(cells[held].T)]]
         result[held] = predicted.probabilities[tuple(cells[held].T)]
         result[:, 0] = 0
-        return result
+        return PointVotes(result)
 
 
 def _told_of(network: Segmenter, unknown: tuple[str, ...], own: str) -> tuple[str, ...]:
