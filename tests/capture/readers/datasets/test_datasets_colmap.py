@@ -4,7 +4,7 @@ import struct
 
 import numpy as np
 import pytest
-from writing import save, save_text, zipped
+from tests.capture.readers.datasets.writing import save, save_text, zipped
 
 from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import ScanOptions

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from writing import save, zipped
+from tests.capture.readers.datasets.writing import save, zipped
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.depth_images import DepthEncoding, read_depth

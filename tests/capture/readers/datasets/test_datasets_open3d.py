@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from writing import millimetres, save, save_text, zipped
+from tests.capture.readers.datasets.writing import millimetres, save, save_text, zipped
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.format_detection import find_capture

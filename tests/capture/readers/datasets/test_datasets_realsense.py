@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from writing import quaternion, zipped
+from tests.capture.readers.datasets.writing import quaternion, zipped
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.format_detection import find_capture

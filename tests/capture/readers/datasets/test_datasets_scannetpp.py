@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lz4.block import compress
-from writing import save, zipped
+from tests.capture.readers.datasets.writing import save, zipped
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.format_detection import find_capture

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation, Slerp
-from writing import quaternion, save, save_text, zipped
+from tests.capture.readers.datasets.writing import quaternion, save, save_text, zipped
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.format_detection import find_capture

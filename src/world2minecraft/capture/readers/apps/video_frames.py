@@ -46,6 +46,8 @@ class VideoDecoder:
         try:
             self._container: Any = av.open(path.open("rb"), "r")
             self._stream: Any = self._container.streams.video[0]
+            if self._stream.codec_context is None:
+                raise ValueError("its codec is unknown")
             self._stream.codec_context.thread_count = 1
             self.size = (self._stream.codec_context.width, self._stream.codec_context.height)
             self.times, self.key_times = self._times()

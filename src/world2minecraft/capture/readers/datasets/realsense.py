@@ -40,6 +40,8 @@ from world2minecraft.geometry.rotations import pose_from_quaternion
 
 MAX_CHUNK_BYTES = 256 << 20  # Recorders close a chunk at 0.75 MB or after one large picture.
 IMAGE = "sensor_msgs/msg/Image"
+CAMERA_INFO, TRANSFORM = "sensor_msgs/msg/CameraInfo", "geometry_msgs/msg/Transform"
+FLOAT = "std_msgs/msg/Float32"
 # How each encoding is kept: dtype, channels, and the order that makes it RGB.
 ENCODINGS: dict[str, tuple[str, int, tuple[int, ...]]] = {
     "rgb8": ("u1", 3, (0, 1, 2)),
@@ -126,32 +128,33 @@ class Bag:
                 found.setdefault(connection.topic, []).extend(entry.time for entry in entries)
         return {topic: ImageStream(topic, tuple(sorted(times))) for topic, times in found.items()}
 
-    def first(self, topic: str) -> Any:
-        """Return the first message of a topic, or None."""
-        return next(self._messages(topic, None), None)
+    def first(self, topic: str, kind: str) -> Any:
+        """Return the first message of a topic that is of a kind, or None."""
+        return next(self._messages(topic, kind, None), None)
 
-    def message(self, topic: str, time_ns: int) -> Any:
-        """Return the message of a topic at a given time.
+    def image(self, topic: str, time_ns: int) -> Any:
+        """Return the image message of a topic at a given time.
 
         Raises:
             DamagedFileError: If the message is missing or cannot be decoded.
         """
         if self._latest is None or self._latest[:2] != (topic, time_ns):
-            found = next(self._messages(topic, time_ns), None)
+            found = next(self._messages(topic, IMAGE, time_ns), None)
             if found is None:
                 raise DamagedFileError(
-                    self.path, f"lacks a message of topic {topic}; copy the file again"
+                    self.path, f"lacks an image of topic {topic}; copy the file again"
                 )
             self._latest = (topic, time_ns, found)  # Its header and its pixels are asked in turn.
         return self._latest[2]
 
-    def _messages(self, topic: str, time_ns: int | None) -> Iterator[Any]:
+    def _messages(self, topic: str, kind: str, time_ns: int | None) -> Iterator[Any]:
         with _reading_errors(self.path):
             chosen = [one for one in self._reader.connections if one.topic == topic]
             stop = None if time_ns is None else time_ns + 1
             if chosen:
                 for connection, _, raw in self._reader.messages(chosen, time_ns, stop):
-                    yield self._types.deserialize_ros1(raw, connection.msgtype)
+                    if connection.msgtype == kind:  # The index of a damaged bag names any message.
+                        yield self._types.deserialize_ros1(raw, kind)
 
 
 @contextmanager
@@ -248,6 +251,8 @@ class BagImage(NamedByFrame):
             )
         pixels = rows.reshape(rows.shape[0], -1, channels)
         if not order:
+            if pixels.shape[1] % 2:
+                raise DamagedFileError(self, "is a YUYV image, whose width must be even")
             return _yuyv_to_rgb(pixels)
         return np.ascontiguousarray(pixels[..., list(order)])
 
@@ -265,7 +270,7 @@ class BagImage(NamedByFrame):
 
     def _message(self) -> Any:
         bag = open_bag(self.path)
-        return bag.message(self.topic, _times(self.path, self.topic, bag)[self.index])
+        return bag.image(self.topic, _times(self.path, self.topic, bag)[self.index])
 
     def _encoding(self, message: Any) -> tuple[str, int, tuple[int, ...]]:
         name = str(message.encoding).lower()
@@ -293,8 +298,6 @@ class BagImage(NamedByFrame):
 
 def _yuyv_to_rgb(pixels: np.ndarray) -> np.ndarray:
     """Convert YUYV pixels, with brightness per pixel and hue per pair of pixels, to RGB."""
-    if pixels.shape[1] % 2:
-        raise ValueError("a YUYV image must have an even width")
     bright = pixels[..., 0].astype(np.float32)
     blue = np.repeat(pixels[:, 0::2, 1], 2, axis=1).astype(np.float32) - 128
     red = np.repeat(pixels[:, 1::2, 1], 2, axis=1).astype(np.float32) - 128
@@ -341,8 +344,8 @@ class RealSenseSource:
             raise CaptureError(
                 path, f"contains no colour and depth images within {WITHIN_S} s of each other"
             )
-        colour_camera = _camera(path, bag.first(pair.colour_info))
-        depth_camera = _camera(path, bag.first(pair.depth_info))
+        colour_camera = _camera(path, bag.first(pair.colour_info, CAMERA_INFO))
+        depth_camera = _camera(path, bag.first(pair.depth_info, CAMERA_INFO))
         depth_to_colour = _depth_to_colour(path, bag, pair)
         unit_m, notes = _unit(path, bag)
         frames = tuple(
@@ -434,12 +437,12 @@ def _depth_to_colour(path: AnyPath, bag: Any, pair: _StreamPair) -> np.ndarray:
     prefixes = [stream.topic.removesuffix("/image/data") for stream in (pair.colour, pair.depth)]
     known = set(bag.topics())
     groups = [n for n in range(MAX_GROUPS) if all(f"{p}/tf/{n}" in known for p in prefixes)]
-    if not groups:
+    messages = [bag.first(f"{prefix}/tf/{n}", TRANSFORM) for n in groups[:1] for prefix in prefixes]
+    if not messages or None in messages:
         raise CaptureError(
             path, "does not contain the transform between its cameras; record the topic tf/0"
         )
-    for prefix in prefixes:
-        message = bag.first(f"{prefix}/tf/{groups[0]}")
+    for message in messages:
         t, q = message.translation, message.rotation
         to_stream.append(
             pose_from_quaternion(np.array([t.x, t.y, t.z]), np.array([q.x, q.y, q.z, q.w]))
@@ -452,8 +455,9 @@ def _depth_to_colour(path: AnyPath, bag: Any, pair: _StreamPair) -> np.ndarray:
 def _unit(path: AnyPath, bag: Any) -> tuple[float, tuple[str, ...]]:
     """Return metres per depth unit, and notes."""
     for topic in bag.topics():
-        if _UNITS.fullmatch(topic):
-            unit_m = float(np.float32(bag.first(topic).data))
+        stated = bag.first(topic, FLOAT) if _UNITS.fullmatch(topic) else None
+        if stated is not None:
+            unit_m = float(np.float32(stated.data))
             if not 1e-6 < unit_m < 0.1:
                 raise CaptureError(path, f"has a depth unit of {unit_m} m; expected 1e-06 to 0.1 m")
             return float(f"{unit_m:.6g}"), ()

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from world2minecraft.capture.readers.apps.app_values import to_float
 from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
 from world2minecraft.capture.readers.datasets.text_tables import read_rows, to_floats
 from world2minecraft.capture.source_types import Capture, FrameFiles
@@ -86,12 +87,8 @@ def _camera(folder: AnyPath) -> tuple[Camera, float, tuple[str, ...]]:
         stated = read_json(path, 1 << 20)
         stated = stated.get("camera", stated) if isinstance(stated, dict) else {}
         values = [stated.get(key) if isinstance(stated, dict) else None for key in keys]
-        numbers = [
-            float(value)
-            for value in values
-            if isinstance(value, int | float) and math.isfinite(value) and value > 0
-        ]
-        if len(numbers) != len(keys):
+        numbers = [to_float(value) for value in values]
+        if not all(math.isfinite(number) and number > 0 for number in numbers):
             raise CaptureError(path, f"must contain {', '.join(keys)}, each above 0")
         return _stated(path, numbers), numbers[-1], ()
     note = f"no {PARAMETERS} found; using the intrinsics published for Replica (1200x680, 600 px)"

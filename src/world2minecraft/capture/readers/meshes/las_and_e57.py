@@ -16,6 +16,7 @@ from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError, reason_of
 
 CHUNK = 1_000_000
+RECORD_BYTES = 54  # The head of a variable length record of LAS.
 MAX_SCAN_POINTS = 80_000_000  # An E57 scan lies in memory whole, 27 bytes a point.
 
 
@@ -30,7 +31,8 @@ def load_las(place: AnyPath) -> LoadedGeometry:
     laspy = import_optional("laspy", "reading LAS clouds")
     thinner = VoxelDownsampler(unit_m=1.0)
     try:
-        with laspy.open(place.open("rb")) as reader:
+        _check_records(place)
+        with laspy.open(place.open("rb"), read_evlrs=False) as reader:
             _check_count(place, reader.header.point_count)
             if reader.header.are_points_compressed:
                 _check_chunks(place, reader.header)
@@ -52,6 +54,22 @@ def load_las(place: AnyPath) -> LoadedGeometry:
             place, f"cannot be read as LAS ({reason_of(error)}); export the file again"
         ) from error
     return _to_geometry(thinner, "LAS")
+
+
+def _check_records(place: AnyPath) -> None:
+    """Check the number of records in the header of a LAS file, which laspy reads one by one."""
+    with place.open("rb") as stream:
+        head = stream.read(104)
+    points_at, records = (
+        int.from_bytes(head[96:100], "little"),
+        int.from_bytes(head[100:], "little"),
+    )
+    if RECORD_BYTES * records > points_at or points_at > place.stat().st_size:
+        raise DamagedFileError(
+            place,
+            f"is damaged: its header declares {records:,} records, more than the file contains; "
+            "copy the file again",
+        )
 
 
 def _check_chunks(place: AnyPath, header: Any) -> None:
@@ -109,6 +127,10 @@ def load_e57(place: AnyPath) -> LoadedGeometry:
                     place,
                     f"contains a scan of {max(counts):,} points, the limit is "
                     f"{MAX_SCAN_POINTS:,}; export fewer points",
+                )
+            if sum(counts) > 8 * path.stat().st_size:  # A point takes a bit at least.
+                raise DamagedFileError(
+                    place, f"is too short for {sum(counts):,} points; copy the file again"
                 )
             for scan in range(file.scan_count):
                 _add_scan(thinner, file, scan)

@@ -10,6 +10,12 @@ from world2minecraft.core.types import checks
 MAX_FACES = 20_000_000
 MAX_VERTICES = 20_000_000
 MAX_POINTS = 200_000_000  # A building scanned from forty places; points are thinned as they come.
+MAX_POSITION = 1e15  # Squares of larger numbers are not finite as float32; none is a place.
+
+
+def are_places(positions: np.ndarray) -> np.ndarray:
+    """Return for each position [N, 3] whether its numbers can be those of a place, bool [N]."""
+    return (np.abs(positions) <= MAX_POSITION).all(axis=1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,12 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.capture.images import MAX_PIXELS
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_FACES, MAX_VERTICES, Mesh
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import (
+    MAX_FACES,
+    MAX_VERTICES,
+    Mesh,
+    are_places,
+)
 from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError
@@ -77,7 +82,7 @@ def join_parts(path: AnyPath, parts: Sequence[MeshPart]) -> tuple[Mesh, np.ndarr
     faces = np.concatenate(
         [np.zeros((0, 3), np.int64), *(p.faces + s for p, s in zip(parts, starts, strict=False))]
     )
-    good: np.ndarray = np.all(np.isfinite(vertices), axis=1)
+    good = are_places(vertices)
     if len(good) and good.mean() < 0.5:
         raise DamagedFileError(
             path, "contains vertex positions that are NaN or infinite; export the file again"

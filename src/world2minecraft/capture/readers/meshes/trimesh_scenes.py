@@ -17,7 +17,13 @@ from world2minecraft.capture.readers.meshes.mesh_and_cloud import (
 from world2minecraft.capture.readers.meshes.mesh_assembly import MeshPart, check_sizes, join_parts
 from world2minecraft.capture.readers.meshes.optional_libraries import import_optional
 from world2minecraft.core.archives import AnyPath
-from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, reason_of
+from world2minecraft.core.errors import (
+    MALFORMED,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    reason_of,
+)
 from world2minecraft.core.files import read_bytes
 from world2minecraft.geometry.colour import linear_to_srgb
 
@@ -164,7 +170,7 @@ def _checked_gltf(path: AnyPath, data: bytes) -> dict[str, Any]:
         extensions = tree.get("extensionsRequired", []) + tree.get("extensionsUsed", [])
         counts = [int(row["count"]) for row in tree.get("accessors", [])]
         nodes = len(tree.get("nodes", []))
-    except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
+    except (*MALFORMED, RecursionError) as error:
         raise DamagedFileError(
             path, "is not a valid glTF file: its JSON part cannot be read; export the file again"
         ) from error

@@ -1,4 +1,4 @@
-"""Reader of USD and USDZ files by Pixar's library, which the extra ``usd`` installs."""
+"""Parser of USD and USDZ files by Pixar's library, which the extra ``usd`` installs."""
 
 import io
 from pathlib import Path
@@ -8,7 +8,6 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from world2minecraft.capture.readers.meshes.colours_and_classes import class_of_name
-from world2minecraft.capture.readers.meshes.las_and_e57 import file_on_disk
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import LoadedGeometry
 from world2minecraft.capture.readers.meshes.mesh_assembly import MeshPart, check_sizes, join_parts
 from world2minecraft.capture.readers.meshes.optional_libraries import import_optional
@@ -17,51 +16,44 @@ from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.geometry.colour import linear_to_srgb
 
-MAX_BYTES = 2 << 30
 MAX_PRIMS = 200_000
 MAX_PICTURE_BYTES = 256 << 20
 
 
-def load_usd(place: AnyPath) -> LoadedGeometry:
-    """Load all meshes of a USD stage.
+def read_stage(path: Path) -> LoadedGeometry:
+    """Read all meshes of a USD stage on disk.
+
+    Pixar's library may crash the process on a damaged file; ``usd_process`` protects from that.
 
     Raises:
         DamagedFileError: If the file cannot be read or refers to files outside its folder.
         LimitError: If the file is too large.
         MissingExtraError: If the USD library is not installed.
     """
-    import_optional("pxr", "reading USD files", "usd")
     tf, usd, geom = _import_pxr("Tf"), _import_pxr("Usd"), _import_pxr("UsdGeom")
-    if place.stat().st_size > MAX_BYTES:
-        raise LimitError(
-            place,
-            f"has {place.stat().st_size:,} bytes, the limit is {MAX_BYTES:,}; export "
-            "a smaller file",
-        )
-    with file_on_disk(place) as path:
-        try:
-            stage = usd.Stage.Open(str(path))
-        except tf.ErrorException as error:
-            raise DamagedFileError(place, "cannot be read as USD; export the file again") from error
-        if stage is None:
-            raise DamagedFileError(place, "cannot be read as USD; export the file again")
-        folder = str(path.resolve().parent)
-        for layer in stage.GetUsedLayers():
-            if layer.realPath and not Path(layer.realPath).is_relative_to(folder):
-                raise DamagedFileError(
-                    place,
-                    f"refers to a file outside its folder: {layer.identifier[:80]}; export "
-                    "the scene as USDZ",
-                )
-        try:
-            parts = _parts(place, stage, folder)
-            mesh, offset = join_parts(place, parts)
-            unit_m = float(geom.GetStageMetersPerUnit(stage))
-            stated = bool(geom.StageHasAuthoredMetersPerUnit(stage))
-            up = str(geom.GetStageUpAxis(stage)).lower()
-            up_stated = bool(stage.HasAuthoredMetadata("upAxis"))
-        except (tf.ErrorException, RuntimeError) as error:
-            raise DamagedFileError(place, "cannot be read as USD; export the file again") from error
+    try:
+        stage = usd.Stage.Open(str(path))
+    except tf.ErrorException as error:
+        raise DamagedFileError(path, "cannot be read as USD; export the file again") from error
+    if stage is None:
+        raise DamagedFileError(path, "cannot be read as USD; export the file again")
+    folder = str(path.resolve().parent)
+    for layer in stage.GetUsedLayers():
+        if layer.realPath and not Path(layer.realPath).is_relative_to(folder):
+            raise DamagedFileError(
+                path,
+                f"refers to a file outside its folder: {layer.identifier[:80]}; export "
+                "the scene as USDZ",
+            )
+    try:
+        parts = _parts(path, stage, folder)
+        mesh, offset = join_parts(path, parts)
+        unit_m = float(geom.GetStageMetersPerUnit(stage))
+        stated = bool(geom.StageHasAuthoredMetersPerUnit(stage))
+        up = str(geom.GetStageUpAxis(stage)).lower()
+        up_stated = bool(stage.HasAuthoredMetadata("upAxis"))
+    except (tf.ErrorException, RuntimeError) as error:
+        raise DamagedFileError(path, "cannot be read as USD; export the file again") from error
     # Without a stated unit USD means centimetres, yet files are often in metres: it is inferred.
     return LoadedGeometry(mesh, "USD", offset, unit_m if stated else None, up, up_stated)
 

@@ -5,7 +5,7 @@ Memory use stays close to ``MAX_POINTS`` points for files of any length.
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import PointCloud
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import PointCloud, are_places
 
 CELL_M = 0.015  # Under a fifth of a cell of the room; a scanner's noise is half of it.
 MAX_POINTS = 4_000_000
@@ -44,12 +44,12 @@ class VoxelDownsampler:
         """Add points with optional colours and class labels.
 
         Args:
-            points: Point positions in file units, float64 [N, 3]; points that are not finite are
-                ignored.
+            points: Point positions in file units, float64 [N, 3]; points that are not
+                finite, or far beyond any place, are ignored.
             colour: sRGB colours, uint8 [N, 3], or None.
             labels: Class ids, uint8 [N], or None.
         """
-        good = np.isfinite(points).all(axis=1)
+        good = are_places(points)
         if not good.any():
             return
         points = points[good]
