@@ -10,9 +10,10 @@ from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.progress import Progress, no_progress
 
 if TYPE_CHECKING:
+    from world2minecraft.core.checksums import RepairReport
     from world2minecraft.core.types import Camera
     from world2minecraft.formats.object_names import NamedObject
-    from world2minecraft.minecraftocc.building import BuildReport, RepairReport
+    from world2minecraft.minecraftocc.building import BuildReport
     from world2minecraft.minecraftocc.exporters import ExportReport
     from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
     from world2minecraft.minecraftocc.labels.camera_region import RegionRule

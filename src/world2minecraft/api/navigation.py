@@ -16,13 +16,13 @@ from world2minecraft.core.progress import Progress, no_progress
 if TYPE_CHECKING:
     import gymnasium
 
+    from world2minecraft.core.checksums import RepairReport
     from world2minecraft.external_models.chat_client import ChatModel
     from world2minecraft.external_models.model_options import ModelOptions
     from world2minecraft.navigation.data.blind_baselines import BaselineRow
     from world2minecraft.navigation.data.rewording import NavigationSet
     from world2minecraft.navigation.data.set_building import BuiltSet
     from world2minecraft.navigation.data.set_files import SetReport
-    from world2minecraft.navigation.data.set_repair import SetRepair
     from world2minecraft.navigation.data.splits import Leaks
     from world2minecraft.navigation.data.statistics import SetStatistics
     from world2minecraft.navigation.exporters import ExportResult
@@ -266,7 +266,7 @@ def verify_navigation_set(folder: str | Path, *, progress: Progress = no_progres
 
 def repair_navigation_set(
     folder: str | Path, *, workers: int | None = None, progress: Progress = no_progress
-) -> "SetRepair":
+) -> "RepairReport":
     """Make the damaged and missing files of a navigation set again from its options and seed.
 
     Only files with the same contents as before are replaced. Unexpected files are left alone.

@@ -33,6 +33,19 @@ FileSums = Mapping[str, FileSum]
 
 
 @dataclass(frozen=True)
+class RepairReport:
+    """The result of the repair of a folder.
+
+    Attributes:
+        repaired: Names of the files that were made again, with the same contents as before.
+        left: Descriptions of the files that remain damaged or unexpected, with what to do.
+    """
+
+    repaired: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Differences:
     """The names of the files in which a folder differs from its list, each group sorted.
 

@@ -2,6 +2,6 @@
 
 from world2minecraft.minecraftocc.building.build import BuildReport, build_dataset
 from world2minecraft.minecraftocc.building.cpu_clock import STAGES, TITLES
-from world2minecraft.minecraftocc.building.repair import RepairReport, repair_dataset
+from world2minecraft.minecraftocc.building.repair import repair_dataset
 
-__all__ = ["STAGES", "TITLES", "BuildReport", "RepairReport", "build_dataset", "repair_dataset"]
+__all__ = ["STAGES", "TITLES", "BuildReport", "build_dataset", "repair_dataset"]

@@ -8,7 +8,6 @@ import json
 import os
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ from pydantic import TypeAdapter, ValidationError
 from world2minecraft.core.checksums import (
     CHECKSUMS,
     FileSum,
+    RepairReport,
     files_in,
     read_checksums,
     sums_of_files,
@@ -53,19 +53,6 @@ from world2minecraft.minecraftocc.store.writer import (
 from world2minecraft.minecraftocc.synthetic_photos import PhotoRooms, photo_samples
 
 PLAN = TypeAdapter(DatasetPlan)
-
-
-@dataclass(frozen=True)
-class RepairReport:
-    """The result of a repair.
-
-    Attributes:
-        repaired: Names of the files that were made again, with the same contents as before.
-        left: Descriptions of the files that remain damaged or unexpected, with what to do.
-    """
-
-    repaired: tuple[str, ...] = ()
-    left: tuple[str, ...] = ()
 
 
 def repair_dataset(

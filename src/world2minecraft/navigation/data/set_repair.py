@@ -17,6 +17,7 @@ from world2minecraft import __version__
 from world2minecraft.core.checksums import (
     CHECKSUMS,
     FileSum,
+    RepairReport,
     read_checksums,
     sums_of_files,
     write_checksums,
@@ -52,20 +53,9 @@ MEASURED = "run.json"  # Of a generated scene: its times, which no second run re
 BUILD_RULE = TypeAdapter(BuildRule)
 
 
-@dataclass(frozen=True)
-class SetRepair:
-    """The result of a repair.
-
-    Attributes:
-        repaired: The names of the files that were made again.
-        left: Descriptions of the files that remain damaged or unexpected, with what to do.
-    """
-
-    repaired: tuple[str, ...] = ()
-    left: tuple[str, ...] = ()
-
-
-def repair_set(folder: str | Path, workers: int = 1, progress: Progress = no_progress) -> SetRepair:
+def repair_set(
+    folder: str | Path, workers: int = 1, progress: Progress = no_progress
+) -> RepairReport:
     """Make the damaged and missing files of a set again from its options and seed.
 
     Args:
@@ -81,7 +71,7 @@ def repair_set(folder: str | Path, workers: int = 1, progress: Progress = no_pro
     root = Path(folder)
     found = verify_set(root, progress)
     if not found.faults and found.has_valid_list:
-        return SetRepair()
+        return RepairReport()
     check_writable(root)
     with folder_lock(root, "repaired"):
         draft = root / DRAFT
@@ -106,7 +96,7 @@ class _Repair:
     workers: int
     progress: Progress
 
-    def run(self) -> SetRepair:
+    def run(self) -> RepairReport:
         """Make the damaged files again, put them back, and name the others."""
         sums = _wanted_sums(self.root, self.found)
         damaged, repaired = {*self.found.missing, *self.found.changed}, set[str]()
@@ -127,7 +117,7 @@ class _Repair:
         elif any(name.endswith(f"/{MEASURED}") for name in repaired):
             write_checksums(self.root, sums)
         extra = [f"{name}: unexpected file; move it away or delete it" for name in self.found.extra]
-        return SetRepair(tuple(sorted(repaired)), (*left, *extra))
+        return RepairReport(tuple(sorted(repaired)), (*left, *extra))
 
     def _make_scenes(self, about: dict[str, Any], damaged: Collection[str]) -> None:
         """Generate the scenes again that have damaged files."""
