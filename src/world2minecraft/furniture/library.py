@@ -26,7 +26,7 @@ HEADINGS = {
     "furn": "Cupboards, kitchen and bath",
     "objs": "Lamps, plants, curtains and small things",
 }
-COLUMNS = ("name", "title", "family", "depth", "width", "height", "turns", "mount", "parameters")
+COLUMNS = ("name", "family", "depth", "width", "height", "place")
 # Of templates that match equally well the first is taken: the plainer one.
 MATCH_ORDER = (
     "chair",
@@ -79,11 +79,9 @@ def templates_to_markdown(templates: Iterable[Template]) -> str:
 
 
 def markdown_row(one: Template) -> str:
-    """Return the row of a template: its size ranges in metres and other properties."""
-    sizes = [_span(span) for span in one.size_m]
-    known = ", ".join(f"{name} {_span(span)}" for name, span in one.parameters.items()) or "none"
-    name = f"{one.name} \\*" if one.matched else one.name
-    return _row([name, one.title, one.family, *sizes, str(one.turns), one.mount, known])
+    """Return the row of a template: its family, size ranges in metres, mount and quarter turns."""
+    name = f"{one.name}\\*" if one.matched else one.name
+    return _row([name, one.family, *map(_span, one.size_m), f"{one.mount}/{one.turns}"])
 
 
 def _row(cells: Iterable[str]) -> str:
@@ -93,7 +91,7 @@ def _row(cells: Iterable[str]) -> str:
 def _span(span: Span) -> str:
     if span.minimum == span.maximum:
         return f"{span.typical:g}"
-    return f"{span.minimum:g} · **{span.typical:g}** · {span.maximum:g}"
+    return f"{span.minimum:g}-**{span.typical:g}**-{span.maximum:g}"
 
 
 class Library(Registry):

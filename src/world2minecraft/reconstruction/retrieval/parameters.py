@@ -69,7 +69,7 @@ class RetrievalParameters:
         origin="a box is off by one cell if noise adds or removes a layer",
         bounds=UP_TO_8,
     )
-    finalists: int = parameter(6, origin="docs/reference/furniture.md", bounds=ABOVE_0)
+    finalists: int = parameter(6, origin="docs/explanation/furniture.md", bounds=ABOVE_0)
     alternatives: int = parameter(5, origin="number that the editor shows", bounds=UP_TO_8)
     cut_below: float = parameter(
         0.75,
@@ -90,10 +90,10 @@ class RetrievalParameters:
     )
     max_runs: int = parameter(8, origin="kitchens have four to six runs", bounds=ABOVE_0)
     min_run_share: float = parameter(
-        0.08, unit="share", origin="docs/reference/furniture.md", bounds=SHARE
+        0.08, unit="share", origin="docs/explanation/furniture.md", bounds=SHARE
     )
     min_run_cells: int = parameter(
-        6, unit="cells", origin="docs/reference/furniture.md", bounds=ABOVE_0
+        6, unit="cells", origin="docs/explanation/furniture.md", bounds=ABOVE_0
     )
     size_weight: float = parameter(
         0.01, unit="IoU", origin="only decides between equal matches", bounds=SHARE
@@ -122,15 +122,15 @@ class RetrievalParameters:
         bounds=SHARE,
     )
     seat_below: float = parameter(
-        0.6, unit="IoU", origin="docs/reference/furniture.md", bounds=SHARE
+        0.6, unit="IoU", origin="docs/explanation/furniture.md", bounds=SHARE
     )
     seat_met: float = parameter(
-        0.5, unit="share", origin="docs/reference/furniture.md", bounds=SHARE
+        0.5, unit="share", origin="docs/explanation/furniture.md", bounds=SHARE
     )
     seat_opposed: float = parameter(
         0.2, unit="share", origin="limit of the construction stage", bounds=SHARE
     )
-    seat_look_m: float = parameter(1.0, unit="m", origin="docs/reference/furniture.md")
+    seat_look_m: float = parameter(1.0, unit="m", origin="docs/explanation/furniture.md")
     variants: bool = parameter(True)
     paper_compat: bool = parameter(False)
 
