@@ -19,7 +19,7 @@ AT_LEAST_1, NOT_BELOW_0, SHARE = "1 or more", "0 or more", "above 0, up to 1"
 class BuildParameters:
     """Parameters of the build stage.
 
-    palette: Name of a palette, or path of a palette file; see docs/explanation/building.md.
+    palette: Name of a palette, or path of a palette file; see docs/how-to/palettes.md.
     style: How furniture is built. ``blocks`` uses designs of vanilla blocks, ``display`` uses
         detailed block_display entities over invisible colliders, and ``voxels`` fits block states
         to the cells of each object.

@@ -1,7 +1,7 @@
 """A plaque near the spawn: a sign with the name of the scene.
 
 If the room is larger than life, clicking the sign scales the player up to the room, and clicking
-again restores the normal size. The commands are described in docs/explanation/building.md.
+again restores the normal size. The commands are described in docs/reference/formats.md.
 """
 
 from dataclasses import replace
