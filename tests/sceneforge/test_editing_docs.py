@@ -1,4 +1,4 @@
-"""The page on editing names every command and query on cells, with its fields."""
+"""The page on editing commands names every command and query on cells, with its fields."""
 
 import re
 from pathlib import Path
@@ -7,7 +7,7 @@ from world2minecraft.editing.scene import COMMANDS
 from world2minecraft.editing.scene.voxel_commands import CellCommand
 from world2minecraft.sceneforge.queries import CELL_QUERIES, Doubtful
 
-PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "forge-editing.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "forge-commands.md").read_text()
 ROWS = dict(re.findall(r"^\| `(\w+)` \| (.*)$", PAGE, re.M))
 
 
