@@ -2,8 +2,7 @@
 
     python tools/make_gallery.py            some minutes, 300 MB in a folder that is thrown away
 
-Under the pictures stand the commands that make them, so that anyone can make them again; they are
-run here as they stand there.
+The page shows the commands that make the pictures, so that anyone can repeat them.
 """
 
 import contextlib
@@ -58,54 +57,54 @@ class Scene(NamedTuple):
 
 SCENES = (
     Scene(
-        "Scanned and rebuilt",
-        "Generated rooms, scanned by a virtual depth camera, and rebuilt from the scan alone.",
+        "Reconstructed rooms",
+        "Generated rooms, scanned by a virtual depth camera and reconstructed from the scan.",
         (
             "w2m demo --kind kitchen --seed 3 --out kitchen",
             "w2m demo --kind bed --seed 4 --out bed",
         ),
         (
             render("kitchen", "A kitchen, from outside", "kitchen --orbit --frames 4", 2),
-            render("kitchen-inside", "and inside", "kitchen --tour --frames 8", 4),
+            render("kitchen-inside", "The kitchen, inside", "kitchen --tour --frames 8", 4),
             render("bed", "A bedroom, from outside", "bed --orbit --frames 4"),
-            render("bed-inside", "and inside", "bed --tour --frames 8", 6),
+            render("bed-inside", "The bedroom, inside", "bed --tour --frames 8", 6),
         ),
     ),
     Scene(
         "Generated houses",
-        "Furnished houses in styles that each draws for itself: block worlds with exact truth.",
+        "Furnished houses in various styles: block worlds with exact ground truth.",
         ("w2m rooms generate --houses 4 --seed 21 --worlds houses",),
         (
-            render("house-1", "Two storeys, opened", "houses/house_0001 --orbit --frames 4"),
-            render("house-2", "One, opened", "houses/house_0002 --orbit --frames 4"),
+            render("house-1", "A house of two storeys", "houses/house_0001 --orbit --frames 4"),
+            render("house-2", "A house of one storey", "houses/house_0002 --orbit --frames 4"),
             render("room-1", "A bedroom", "houses/house_0001 --tour --frames 8", 5),
-            render("room-2", "Another, in stone", "houses/house_0002 --tour --frames 8", 5),
+            render("room-2", "A bedroom of stone", "houses/house_0002 --tour --frames 8", 5),
             render("room-3", "A living room", "houses/house_0003 --tour --frames 8", 1),
-            render("room-4", "and one in green", "houses/house_0004 --tour --frames 8", 6),
+            render("room-4", "A green living room", "houses/house_0004 --tour --frames 8", 6),
         ),
     ),
     Scene(
-        "One room, three styles",
-        "The same run, built of vanilla blocks, of block displays, and cell by cell.",
+        "Styles",
+        "The same run, built of blocks, of display entities, and of one block per voxel.",
         (
             "w2m build kitchen --out fine --style display --blocks-per-metre 2",
             "w2m build kitchen --out coarse --style blocks --blocks-per-metre 2",
             "w2m build kitchen --out exact --blocks-per-metre 12.5",
         ),
         (
-            render("style-blocks", "Blocks, 2 a metre", "coarse --orbit --frames 4", 2),
-            render("style-display", "Displays, 2 a metre", "fine --orbit --frames 4", 2),
-            render("style-exact", "A block a voxel", "exact --orbit --frames 4"),
+            render("style-blocks", "Blocks, 2 per metre", "coarse --orbit --frames 4", 2),
+            render("style-display", "Display entities, 2 per metre", "fine --orbit --frames 4", 2),
+            render("style-exact", "One block per voxel", "exact --orbit --frames 4"),
         ),
     ),
     Scene(
-        "As the paper shows it",
-        "Photo, world, predicted cells and construction; below, what an agent saw on its way.",
+        "The paper's figure",
+        "Photo, world, predicted cells and construction; below, the views of an agent.",
         ('w2m vln run kitchen "Go to the black cabinet" --out walk --no-video',),
         (
             Shot(
                 "figure",
-                "The kitchen, and the oracle's way to its black cabinet",
+                "The kitchen, and the way of the oracle agent to its black cabinet",
                 "w2m paper figure kitchen --walk walk --out figure.png",
                 "figure.png",
             ),
@@ -173,10 +172,11 @@ def _jpeg(picture: Image.Image) -> bytes:
 def page() -> str:
     """Return the page's text."""
     head = (
-        "# Gallery\n\nScenes of our own, drawn by the program's renderer with its own textures.\n"
+        "# Gallery\n\nThis page shows generated scenes, drawn with the program's own textures.\n\n"
+        f"Each picture has its command; those of `w2m render` also have `{SIZE}`.\n"
     )
     parts = [_section(scene) for scene in SCENES]
-    foot = "`python tools/make_gallery.py` makes this page and its pictures.\n"
+    foot = "`python tools/make_gallery.py` writes this page and its pictures.\n"
     return "\n".join([head, *parts, foot])
 
 
@@ -186,11 +186,12 @@ def _section(scene: Scene) -> str:
         f"<figcaption>{shot.title}</figcaption>\n</figure>\n"
         for shot in scene.shots
     )
-    commands = "\n".join([*scene.make, *(shot.command for shot in scene.shots)])
+    shown = (shot.command.replace(f" {SIZE}", "") for shot in scene.shots)
+    commands = "\n".join([*scene.make, *shown])
     return (
         f"## {scene.title}\n\n{scene.about}\n\n"
         f'<div class="gallery" markdown>\n\n{pictures}\n</div>\n\n'
-        f"<details markdown><summary>The commands</summary>\n\n```\n{commands}\n```\n\n</details>\n"
+        f"<details markdown><summary>Commands</summary>\n\n```\n{commands}\n```\n\n</details>\n"
     )
 
 
