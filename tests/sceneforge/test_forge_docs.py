@@ -47,5 +47,5 @@ def test_every_path_of_the_table_is_there():
     found = re.findall(r"`(?:GET |POST |PUT |WS )?/(api/[\w/]+)", TEXT)
     named = {re.sub(r"/[A-Z]+\b", "/*", path) for path in found}
     every = [*routes(), *start.routes(), *export_routes.routes(), *agent_routes.routes()]
-    assert len(named) > 20
+    assert len(named) > 15
     assert named <= {re.sub(r"{.*?}", "*", route.path[1:]) for route in every}

@@ -6,7 +6,7 @@ against templates with ``matched``; other templates of the family are chosen aft
 docs/reference/furniture-library.md contains the table, by class.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -26,7 +26,7 @@ HEADINGS = {
     "furn": "Cupboards, kitchen and bath",
     "objs": "Lamps, plants, curtains and small things",
 }
-COLUMNS = ("name", "family", "depth", "width", "height", "place")
+COLUMNS = ("family", "designs", "depth", "width", "height", "place")
 # Of templates that match equally well the first is taken: the plainer one.
 MATCH_ORDER = (
     "chair",
@@ -67,31 +67,35 @@ def group_by_class(templates: Iterable[Template]) -> dict[str, list[Template]]:
 
 
 def templates_to_markdown(templates: Iterable[Template]) -> str:
-    """Return a Markdown table for each class, with a row per template.
+    """Return a Markdown table for each class, with a row per family, mount and quarter turns.
 
     Templates that objects are matched against are marked with a star.
     """
     tables = []
     for heading, members in group_by_class(templates).items():
-        rows = [_row(COLUMNS), _row(["---"] * len(COLUMNS)), *map(markdown_row, members)]
+        alike: dict[tuple[str, str, int], list[Template]] = {}
+        for one in members:
+            alike.setdefault((one.family, one.mount, one.turns), []).append(one)
+        rows = [_row(COLUMNS), _row(["---"] * len(COLUMNS)), *map(family_row, alike.values())]
         tables.append("\n".join([f"### {heading}", "", *rows]))
     return "\n\n".join(tables) + "\n"
 
 
-def markdown_row(one: Template) -> str:
-    """Return the row of a template: its family, size ranges in metres, mount and quarter turns."""
-    name = f"{one.name}\\*" if one.matched else one.name
-    return _row([name, one.family, *map(_span, one.size_m), f"{one.mount}/{one.turns}"])
+def family_row(members: Sequence[Template]) -> str:
+    """Return the row of designs that share family, mount and turns: names, and sizes in metres."""
+    first = members[0]
+    names = ", ".join(f"{one.name}\\*" if one.matched else one.name for one in members)
+    sizes = [_range([one.size_m[axis] for one in members]) for axis in range(3)]
+    return _row([first.family, names, *sizes, f"{first.mount}/{first.turns}"])
 
 
 def _row(cells: Iterable[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def _span(span: Span) -> str:
-    if span.minimum == span.maximum:
-        return f"{span.typical:g}"
-    return f"{span.minimum:g}-**{span.typical:g}**-{span.maximum:g}"
+def _range(spans: Sequence[Span]) -> str:
+    low, high = min(one.minimum for one in spans), max(one.maximum for one in spans)
+    return f"{low:g}-{high:g}" if low < high else f"{low:g}"
 
 
 class Library(Registry):

@@ -1,9 +1,11 @@
 """The table of all texture generators in Markdown, for the documentation."""
 
+from collections.abc import Iterator
+
 from world2minecraft.rendering.textures.catalogue import GENERATORS
 from world2minecraft.rendering.textures.generator import Accent, Generator
 
-HEAD = ("generator", "shows", "accents", "options", "holes", "see-through", "joins")
+HEAD = ("generator", "shows", "accents", "options", "notes")
 
 
 def generator_table() -> str:
@@ -19,9 +21,7 @@ def _row(name: str, generator: Generator) -> tuple[str, ...]:
         generator.about.rstrip("."),
         ", ".join(_accent(accent) for accent in generator.accents),
         "; ".join(f"`{key}`: {option}" for key, option in generator.options.items()),
-        _when(generator.holes),
-        _when(generator.translucent),
-        "yes" if generator.tiles else "no",
+        "; ".join(_notes(generator)),
     )
 
 
@@ -32,5 +32,10 @@ def _accent(accent: Accent) -> str:
     return f"{accent.name} `{accent.default}`{share}"
 
 
-def _when(values: tuple[str, ...]) -> str:
-    return "always" if values == ("*",) else ", ".join(f"`{value}`" for value in values)
+def _notes(generator: Generator) -> Iterator[str]:
+    for word, values in (("holes", generator.holes), ("clear", generator.translucent)):
+        if values:
+            when = "" if values == ("*",) else f" ({', '.join(f'`{value}`' for value in values)})"
+            yield word + when
+    if not generator.tiles:
+        yield "single"
