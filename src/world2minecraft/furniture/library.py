@@ -26,7 +26,7 @@ HEADINGS = {
     "furn": "Cupboards, kitchen and bath",
     "objs": "Lamps, plants, curtains and small things",
 }
-COLUMNS = ("family", "designs", "depth", "width", "height", "place")
+COLUMNS = ("family", "designs", "depth/width/height", "place")
 # Of templates that match equally well the first is taken: the plainer one.
 MATCH_ORDER = (
     "chair",
@@ -85,8 +85,8 @@ def family_row(members: Sequence[Template]) -> str:
     """Return the row of designs that share family, mount and turns: names, and sizes in metres."""
     first = members[0]
     names = ", ".join(f"{one.name}\\*" if one.matched else one.name for one in members)
-    sizes = [_range([one.size_m[axis] for one in members]) for axis in range(3)]
-    return _row([first.family, names, *sizes, f"{first.mount}/{first.turns}"])
+    sizes = "/".join(_range([one.size_m[axis] for one in members]) for axis in range(3))
+    return _row([first.family, names, sizes, f"{first.mount}/{first.turns}"])
 
 
 def _row(cells: Iterable[str]) -> str:
