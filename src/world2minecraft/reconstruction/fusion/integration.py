@@ -178,15 +178,16 @@ def sum_cells(points, normals, weight, trust, camera, owner, cells, voxel_m):
         for axis in range(1, 3):
             if abs(normals[n, axis]) > abs(normals[n, side]):
                 side = axis
-        face = faces[s, 2 * side + (1 if normals[n, side] > 0 else 0)]
-        face[0] += 1
+        f = 2 * side + (1 if normals[n, side] > 0 else 0)
+        faces[s, f, 0] += 1
         square = 0.0
         for axis in range(3):
             target[s, axis] += points[n, axis]
-            face[1 + axis] += (points[n, axis] - cells[s, axis] - 0.5) * voxel_m
-            face[4 + axis] += normals[n, axis]
-            square += (points[n, axis] - camera[axis]) ** 2
-        face[7] += np.sqrt(square) * voxel_m
+            faces[s, f, 1 + axis] += (points[n, axis] - cells[s, axis] - 0.5) * voxel_m
+            faces[s, f, 4 + axis] += normals[n, axis]
+            away = points[n, axis] - camera[axis]
+            square += away * away
+        faces[s, f, 7] += np.sqrt(square) * voxel_m
     for s in range(len(cells)):
         sure[s] /= max(count[s], 1)
     return CellSums(count, area, target, faces, sure)
