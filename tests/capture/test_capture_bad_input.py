@@ -68,7 +68,7 @@ def test_missing_empty_and_unknown_captures_are_refused(tmp_path):
     (tmp_path / "music").mkdir()
     (tmp_path / "music" / "song.txt").write_text("la")
     _refused(
-        tmp_path / "music", "an unknown format, which contains 1 .txt;", "7-Scenes", "captures.md"
+        tmp_path / "music", "an unknown format, which contains 1 .txt;", "7-Scenes", "formats.md"
     )
 
 
@@ -372,7 +372,7 @@ def test_a_layout_none_of_whose_frames_is_there(tmp_path):
     (tmp_path / "results").mkdir()
     Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(tmp_path / "results" / "frame_one.jpg")
     np.savetxt(tmp_path / "traj.txt", np.eye(4).reshape(1, 16))
-    _refused(tmp_path, "has the layout of a replica capture", "see docs/how-to/captures.md")
+    _refused(tmp_path, "has the layout of a replica capture", "docs/reference/capture-formats.md")
 
 
 def test_a_7_scenes_folder_without_a_readable_image(tmp_path):

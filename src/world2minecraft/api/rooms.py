@@ -111,7 +111,7 @@ def reconstruct(
 
     Args:
         capture: Photos, a video, the export of a scanning app, RGB-D frames, a mesh, a point cloud
-            or a RoomPlan file. ``docs/how-to/captures.md`` lists all formats.
+            or a RoomPlan file. ``docs/reference/capture-formats.md`` lists all formats.
         out: Output folder.
         labels: Folder with one 2D label image per frame.
         method: ``best``, or ``paper`` to use only the steps in the paper.

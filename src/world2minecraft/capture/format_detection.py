@@ -96,7 +96,7 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
     known = ", ".join(_layout_name(source.layout) for source in sources)
     raise CaptureError(
         place,
-        f"{kind}; supported formats: {known}; see docs/how-to/captures.md for their files",
+        f"{kind}; supported formats: {known}; their files: docs/reference/capture-formats.md",
     )
 
 

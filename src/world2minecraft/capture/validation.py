@@ -72,7 +72,7 @@ def check_frames(
         raise CaptureError(
             capture.folder,
             f"has the layout of a {capture.source} capture, but contains none of its frames; "
-            "see docs/how-to/captures.md for the file names",
+            "see docs/reference/capture-formats.md for the file names",
         )
     sizes: dict[str, tuple[ImagePlace, ImageHeader]] = {}
     used: list[FrameFiles] = []

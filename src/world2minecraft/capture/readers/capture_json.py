@@ -1,6 +1,6 @@
 """Reader and writer of the project's own layout: ``capture.json`` with image files.
 
-docs/how-to/captures.md describes the layout. ``write_plain`` writes views in this layout. Reading
+docs/reference/plain-layout.md describes the layout. ``write_plain`` writes views in it. Reading
 them returns equal views, except that depth is rounded to whole units, unless it is stored as float
 metres.
 """

@@ -52,20 +52,20 @@ class StereoParameters:
     angle_deg: float = parameter(
         4.0, unit="degrees", origin="9 degrees increase the error by a third", limits=(0.1, 60)
     )
-    window_px: int = parameter(9, unit="px", origin="docs/explanation/stereo.md", limits=(3, 15))
+    window_px: int = parameter(9, unit="px", origin="docs/results/photos.md", limits=(3, 15))
     noise: float = parameter(
-        4.0, unit="grey levels", origin="docs/explanation/stereo.md", limits=(0, 100)
+        4.0, unit="grey levels", origin="docs/results/photos.md", limits=(0, 100)
     )
     small_step: float = parameter(20.0, unit="cost", origin="not recorded", limits=(0, 10_000))
     large_step: float = parameter(
-        240.0, unit="cost", origin="docs/explanation/stereo.md", limits=(0, 10_000)
+        240.0, unit="cost", origin="docs/results/photos.md", limits=(0, 10_000)
     )
     guide_cost: float = parameter(
-        120.0, unit="cost", origin="docs/explanation/stereo.md", limits=(0, 254)
+        120.0, unit="cost", origin="docs/results/photos.md", limits=(0, 254)
     )
-    agreeing: int = parameter(1, unit="photos", origin="docs/explanation/stereo.md", limits=(1, 32))
+    agreeing: int = parameter(1, unit="photos", origin="docs/results/photos.md", limits=(1, 32))
     agreement: float = parameter(
-        0.03, unit="share", origin="docs/explanation/stereo.md", limits=(1e-4, 0.5)
+        0.03, unit="share", origin="docs/results/photos.md", limits=(1e-4, 0.5)
     )
     island_share: float = parameter(
         0.003,

@@ -1,4 +1,4 @@
 """The completion network: virtual scans for training, the network, its training and its export.
 
-Samples are created without PyTorch. ``docs/explanation/completion.md`` describes the commands.
+Samples are created without PyTorch. ``docs/how-to/train-completion.md`` describes the commands.
 """

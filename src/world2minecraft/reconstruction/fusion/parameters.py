@@ -88,9 +88,7 @@ class FusionParameters:
     pose_growth: float = parameter(
         0.0015, unit="m per m", origin="a rotation error of 0.09 degrees", bounds=NOT_BELOW_0
     )
-    merge_m: float = parameter(
-        0.016, unit="m", origin="docs/explanation/fusion.md", bounds=NOT_BELOW_0
-    )
+    merge_m: float = parameter(0.016, unit="m", origin="docs/results/fusion.md", bounds=NOT_BELOW_0)
     merge_sigmas: float = parameter(
         3.0, unit="sigmas", origin="covers nearly all noise of a surface", bounds=NOT_BELOW_0
     )

@@ -17,7 +17,7 @@ from world2minecraft.reconstruction.fusion.voxel_blocks import FACES
 
 PER_SIDE = 4  # Sub-cells along a cell's edge, as in SSCNet's rule.
 # More than the noise alone explains is let go as spill, because views err together; and never more
-# than a fifth: then there is a second surface. docs/explanation/fusion.md has the figures.
+# than a fifth: then there is a second surface. docs/results/fusion.md has the figures.
 SPILL_MORE, SPILL_MOST = 0.05, 0.2
 SOLID, SPILL_BEFORE, SPILL_BEHIND = 1, 2, 3
 

@@ -10,7 +10,7 @@ ABOVE_0 = "above 0"
 
 @dataclass(frozen=True)
 class InstanceParameters:
-    """Parameters of the object detection, in cells; docs/explanation/sweeps.md shows their effects.
+    """Parameters of the object detection, in cells; effects: docs/results/recognition.md.
 
     The paper states no values. Results are stable over wide ranges, since the passes after
     clustering split and merge objects.

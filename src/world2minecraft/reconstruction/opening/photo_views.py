@@ -87,7 +87,7 @@ def _resized(depth_path: ImagePlace, camera: Camera) -> Camera:
         raise CaptureError(
             depth_path,
             f"its aspect ratio differs from that of the colour image: {error}; add the depth "
-            "intrinsics to a capture.json (docs/how-to/captures.md)",
+            "intrinsics to a capture.json (docs/reference/plain-layout.md)",
         ) from error
 
 

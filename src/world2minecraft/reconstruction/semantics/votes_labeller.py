@@ -19,7 +19,7 @@ from world2minecraft.reconstruction.semantics.smoothing import smooth_labels
 # With label images, the mIoU of eight tuning scans is 0.879 without it, and 0.885, 0.889, 0.891
 # and 0.887 at 0.2, 0.4, 0.6 and 1.0.
 STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15
-# With the votes of the segmentation network: see docs/explanation/semantics.md for the fit on
+# With the votes of the segmentation network: see docs/results/recognition.md for the fit on
 # real frames.
 NETWORK_STRUCTURE_PRIOR, NETWORK_OBJECT_PRIOR = 0.2, 0.05
 # Subtracted from the share of objects in cells of walls, so that papers and switches on a wall do

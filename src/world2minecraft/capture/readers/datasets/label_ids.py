@@ -181,6 +181,6 @@ def _stated_names(path: AnyPath, classes: dict[str, Any]) -> tuple[tuple[int, st
         raise CaptureError(
             path,
             'states no known name; use names such as "wall" and "toilet", which '
-            'docs/explanation/semantics.md describes, or state the "classes" nyu12 or nyu40',
+            'docs/how-to/label-images.md describes, or state the "classes" nyu12 or nyu40',
         )
     return tuple(sorted(names.items()))

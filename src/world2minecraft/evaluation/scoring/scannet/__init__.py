@@ -2,7 +2,7 @@
 
 ``write_scannet_truth`` writes ``truth.npz`` and ``truth.json``. Because a mesh contains only
 surfaces, this ground truth is partial: cells that no camera saw through have the label 255 and are
-not scored (docs/results/scan-benchmark.md).
+not scored (docs/how-to/evaluate-scannet.md).
 """
 
 from world2minecraft.evaluation.scoring.scannet.scannet_truth import (
