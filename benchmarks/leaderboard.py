@@ -173,11 +173,11 @@ BEGIN = "<!-- Written by python -m benchmarks.leaderboard from leaderboard.yaml 
 END = "<!-- The end of the leaderboard -->"
 TABLES = (
     (
-        "Where things are: precision and recall within one voxel, exact IoU",
+        "Geometry: precision and recall within one voxel, exact IoU",
         ("precision", "recall", "iou"),
     ),
-    ("What they are: mIoU, object F1, fronts right", ("miou", "f1", "fronts")),
-    ("How well confidence is meant: calibration error", ("calibration",)),
+    ("Classes and objects: mIoU, object F1, fronts right", ("miou", "f1", "fronts")),
+    ("Confidence: calibration error", ("calibration",)),
 )
 
 
@@ -230,7 +230,7 @@ def _methods(entries: Sequence[Entry]) -> str:
         for e in entries
     ]
     heads = ("method", "input", "date", "code", "command", "note")
-    return f"**Who, when, how**\n\n{_table(heads, rows)}"
+    return f"**Methods**\n\n{_table(heads, rows)}"
 
 
 def _link(link: str) -> str:

@@ -41,6 +41,13 @@ def test_what_the_navigation_names_is_there_and_named_once():
     assert set(named) >= GENERATED
 
 
+def test_the_front_page_links_each_task():
+    front = (ROOT / "docs" / "index.md").read_text()
+    linked = set(re.findall(r"\]\((how-to/[\w-]+\.md)\)", front))
+    tasks = {f"how-to/{path.name}" for path in ROOT.glob("docs/how-to/*.md")}
+    assert tasks and not tasks ^ linked
+
+
 def test_each_picture_of_the_docs_is_shown_somewhere():
     texts = [path.read_text() for path in [*ROOT.glob("docs/**/*.md"), ROOT / "README.md"]]
     texts += [(ROOT / "mkdocs.yml").read_text()]
