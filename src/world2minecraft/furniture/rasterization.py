@@ -100,6 +100,34 @@ def surface_cells(solid: np.ndarray) -> np.ndarray:
 
 
 @njit
+def best_shift(template, code, corners, own, beyond_weight):  # pragma: no cover - compiled
+    """Return the number of the best corner, its score and its IoU; the first wins a tie.
+
+    The score is ``IoU - beyond_weight * share of the template beyond the object``, compared to 12
+    decimals.
+
+    Args:
+        template: Cells of the rotated template, bool [A, B, C], C order.
+        code: Codes of the cells, as for ``count_overlaps``.
+        corners: First cells of the template, int64 [S, 3].
+        own: Number of the object's cells.
+        beyond_weight: Penalty for a template that is all beyond the object.
+    """
+    counts = count_overlaps(template, code, corners)
+    solid = 0
+    for cell in template.ravel():
+        solid += cell
+    best, best_score, best_iou, most = 0, 0.0, 0.0, -np.inf
+    for s in range(len(corners)):
+        iou = counts[s, 0] / (own + counts[s, 1])
+        score = iou - beyond_weight * counts[s, 2] / solid
+        rounded = np.rint(score * 1e12) / 1e12
+        if rounded > most:
+            best, best_score, best_iou, most = s, score, iou, rounded
+    return best, best_score, best_iou
+
+
+@njit
 def count_overlaps(template, code, corners):  # pragma: no cover - compiled
     """Count the covered object cells, opposing cells and cells beyond for each corner.
 

@@ -11,7 +11,7 @@ from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout
 from world2minecraft.furniture import TEMPLATES, surface_cells, template, template_cells
-from world2minecraft.furniture.rasterization import count_overlaps
+from world2minecraft.furniture.rasterization import best_shift, count_overlaps
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import (
     RetrievalParameters,
@@ -216,3 +216,18 @@ def test_parameters_out_of_bounds_are_refused(changed, message):
     with pytest.raises(UsageError) as refused:
         RetrievalParameters(**changed)
     assert str(refused.value) == message
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_the_best_shift_is_that_of_all_scores(seed):
+    rng = np.random.default_rng(seed)
+    solid = rng.random((3, 4, 2)) < 0.6
+    solid[0, 0, 0] = True
+    code = rng.integers(0, 4, (6, 5, 5)).astype(np.uint8)
+    corners = rng.integers(-2, 5, (8, 3)).astype(np.int64)
+    own, weight = max(int((code == 2).sum()), 1), 0.25
+    counts = count_overlaps(solid, code, corners)
+    ious = counts[:, 0] / (own + counts[:, 1])
+    scores = ious - weight * counts[:, 2] / np.count_nonzero(solid)
+    best = int(np.argmax(np.round(scores, 12)))
+    assert best_shift(solid, code, corners, own, weight) == (best, scores[best], ious[best])

@@ -14,7 +14,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furniture import Template, rasterize
-from world2minecraft.furniture.rasterization import count_overlaps
+from world2minecraft.furniture.rasterization import best_shift
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence
 from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 
@@ -87,14 +87,13 @@ def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bia
     the IoU, so templates extend into it only as far as necessary.
     """
     solid = _turned(trial.template, trial.counts, trial.values, bias.voxel_m, trial.quarter_turns)
-    counts = count_overlaps(solid, evidence.code, shifts + np.array(trial.corner))
-    ious = counts[:, 0] / (evidence.own + counts[:, 1])
-    scores = ious - bias.beyond_weight * counts[:, 2] / np.count_nonzero(solid)
-    best = int(np.argmax(np.round(scores, 12)))
-    x, y, z = (int(a) + int(b) for a, b in zip(trial.corner, shifts[best], strict=True))
-    moved = trial._replace(corner=(x, y, z))
-    score = round(float(scores[best]) + tie_break(trial, bias), 12)
-    return Scored(score, float(ious[best]), moved)
+    corners = shifts + np.array(trial.corner)
+    best, found, iou = best_shift(
+        solid, evidence.code, corners, evidence.own, float(bias.beyond_weight)
+    )
+    x, y, z = corners[best].tolist()
+    score = round(found + tie_break(trial, bias), 12)
+    return Scored(score, iou, trial._replace(corner=(x, y, z)))
 
 
 def tie_break(trial: Trial, bias: Bias) -> float:
