@@ -259,7 +259,10 @@ def _votes(
     found = [votes for votes in every if votes is not None]
     if len(found) < 2:
         return found[0] if found else None
-    return PointVotes(np.sum([votes.dense for votes in found], axis=0, dtype=np.float32))
+    total = found[0].dense.copy()
+    for votes in found[1:]:
+        total += votes.dense
+    return PointVotes(total)
 
 
 def _trust(view: View, pixels: np.ndarray) -> np.ndarray | None:
