@@ -5,7 +5,7 @@ TESTS ?=
 ONLY ?=
 
 VENV := .venv
-BIN := $(VENV)/bin
+BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 # Marks an environment with all development packages, or with those for `make demo` only.
 STAMP := $(VENV)/.installed
 TRIAL := $(VENV)/.trial-installed
