@@ -24,6 +24,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -97,7 +98,7 @@ def results_in(folder: Path) -> dict[str, Result]:
 def collect(folder: Path, areas: Sequence[Area], path: Path = KEPT) -> dict[str, Result]:
     """Put the results of a folder among the kept ones, in place of older ones; return all.
 
-    Results of runs that the table has no more are left out, and verdicts are told anew.
+    Results of runs that the tables no longer contain are omitted, and verdicts are recomputed.
     """
     found = read_results(path) | results_in(folder)
     known = {name for area in areas for name in area.runs}
@@ -116,35 +117,32 @@ def keep(folder: Path, result: Result) -> Path:
 
 
 LONG_MIN = 5.0  # From here on the page says how long a run takes.
-HEAD = """# How good it is, line by line
+HEAD = """# How good it is
 
-Each part of the program was asked to be so good before it was written. This page holds every line
-of that, what was measured of it, and with which command. The numbers come from kept results
-(`benchmarks/report_results.json`), each with its date and the last commit that had changed the
-program then; the page is written by
+Each part of the program has targets that were set before it was written. This page compares every
+target with its latest measurement. The figures come from `benchmarks/report_results.json`, which
+also records commit, machine load and commands.
 
 ```
-python -m benchmarks.report --list                 every line, how long it takes, what it needs
-python -m benchmarks.report --out RESULTS          measure what is not in RESULTS yet
-python -m benchmarks.report --out RESULTS --markdown
+python -m benchmarks.report --list               all targets, with the commands that measure them
+python -m benchmarks.report --out RESULTS        measure what RESULTS does not contain yet
+python -m benchmarks.report --out RESULTS --markdown      update this page
 ```
-
-What was not run here says why, and where earlier figures stand.
 """
 STANDS = {
     "met": "met",
     "missed": "missed",
-    "broke": "whose command broke",
-    "measured": "measured, with no limit asked",
-    "seen": "to be looked at by a person",
+    "broke": "with a failed command",
+    "measured": "measured without a limit",
+    "seen": "to be judged by a person",
     "not run": "not run here",
 }
-SHOWN = {"met": "met", "missed": "**missed**", "broke": "**broke**", "seen": "to be looked at"}
+SHOWN = {"met": "met", "missed": "**missed**", "broke": "**failed**", "seen": "by a person"}
 EMPTY = "Nothing that was run falls short."
 
 
 def page_of(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
-    """Return the page as Markdown: what falls short first, then a table an area."""
+    """Return the page as Markdown: what falls short first, then a table for each area."""
     runs = every_run(areas)
     parts = [HEAD, _counts(areas, results), "## What falls short\n", _short(areas, results)]
     parts += [_section(area, runs, results) for area in areas]
@@ -172,16 +170,12 @@ def reason_of(line: Line, run: Run | None) -> str:
         return line.why
     reasons = [f"needs {NEEDS[need]}" for need in run.needs if need != "shared"]
     if run.minutes >= LONG_MIN:
-        reasons.append(f"takes {run.minutes:g} minutes of a free core")
-    return " and ".join(reasons) or "no time yet"
-
-
-def command_of(run: Run | None) -> str:
-    """Return the commands of a run, as one types them."""
-    return "<br>".join(f"`{_typed(step)}`" for step in (run.steps if run else ()))
+        reasons.append(f"takes {run.minutes:g} minutes")
+    return ", ".join(reasons) or "not yet"
 
 
 def _typed(step: str) -> str:
+    """Return a step as a person types it."""
     return step.replace("{work}/", "").replace("{shared}", "SHARED").replace("{root}", ".")
 
 
@@ -198,37 +192,24 @@ def _counts(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
     told = ", ".join(
         f"{words.count(name)} {said}" for name, said in STANDS.items() if words.count(name)
     )
-    return f"Of {len(words)} lines: {told}.\n"
+    return f"Of {len(words)} targets: {told}.\n"
 
 
 def _short(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
-    rows = []
-    for area in areas:
-        for line in area.lines:
-            result = results.get(line.run)
-            if verdict(line, result) in ("missed", "broke"):
-                why = f" {line.short}" if line.short else ""
-                measured = measured_of(line, result) or "the command broke"
-                rows.append(
-                    f"- **{line.name}** ({area.title}): asked is {line.asked}; measured:"
-                    f" {measured}.{why}"
-                )
-    return "\n".join([*(rows or [EMPTY]), *_known(areas, results)]) + "\n"
+    """List the targets that are missed, with the reasons, and those missed when last measured."""
 
+    def rows(words: set[str]) -> list[str]:
+        return [
+            f"- **{line.name}** ({area.title}){f': {line.short}' if line.short else ''}"
+            for area in areas
+            for line in area.lines
+            if verdict(line, results.get(line.run)) in words
+            and (line.short or "not run" not in words)
+        ]
 
-def _known(areas: Sequence[Area], results: Mapping[str, Result]) -> list[str]:
-    """Name lines that fell short when they were measured before, and were not run here."""
-    rows = [
-        f"- **{line.name}** ({area.title}): {line.short}{_earlier(line)}"
-        for area in areas
-        for line in area.lines
-        if line.short and verdict(line, results.get(line.run)) == "not run"
-    ]
-    return ["", "Fell short when last measured, and was not run here:", "", *rows] if rows else []
-
-
-def _earlier(line: Line) -> str:
-    return f" Earlier figures: {_link(line.page)}." if line.page else ""
+    known = rows({"not run"})
+    known = ["", "Missed when last measured, and not run here:", "", *known] if known else []
+    return "\n".join([*(rows({"missed", "broke"}) or [EMPTY]), *known]) + "\n"
 
 
 def _link(page: str) -> str:
@@ -236,30 +217,39 @@ def _link(page: str) -> str:
 
 
 def _section(area: Area, runs: Mapping[str, Run], results: Mapping[str, Result]) -> str:
-    rows = [
-        f"## {area.title}\n",
-        "| asked | measured | | command | commit, date |",
-        "|---|---|---|---|---|",
+    """Return an area's table. Cells have no spaces around them: the page is counted in words."""
+    dates = Counter(results[line.run]["date"] for line in area.lines if line.run in results)
+    usual = dates.most_common(1)[0][0] if dates else ""
+    when = [f"Measured on {usual}{' unless stated' if len(dates) > 1 else ''}.\n"] if usual else []
+    rows = [f"## {area.title}\n", *when, "|target|measured|verdict|", "|---|---|---|"]
+    tested = [line for line in area.lines if _is_tested(line, results.get(line.run))]
+    rows += [
+        _row(line, runs.get(line.run), results.get(line.run), usual)
+        for line in area.lines
+        if line not in tested
     ]
-    rows += [_row(line, runs.get(line.run), results.get(line.run)) for line in area.lines]
+    if tested:
+        rows += ["", f"Met, as tests show: {'; '.join(line.name for line in tested)}."]
     return "\n".join(rows) + "\n"
 
 
-def _row(line: Line, run: Run | None, result: Result | None) -> str:
-    word = verdict(line, result)
-    measured, when = measured_of(line, result), ""
+def _is_tested(line: Line, result: Result | None) -> bool:
+    """Return whether a target is met and nothing but tests measures it."""
+    is_counted = all(figure.read.source == "tests" for figure in line.figures)
+    return bool(line.figures) and is_counted and verdict(line, result) == "met"
+
+
+def _row(line: Line, run: Run | None, result: Result | None, usual_date: str) -> str:
+    measured, word = measured_of(line, result), SHOWN.get(verdict(line, result), "")
     if line.look:
-        measured = f"a person looks: {line.look}" + (f"; {measured}" if measured else "")
+        measured = "; ".join(part for part in (f"look at {line.look}", measured) if part)
     if result is None:
-        why = f"not run here: {reason_of(line, run)}"
-        told = f"; earlier figures: {_link(line.page)}" if line.page else ""
-        measured, word = (f"{measured}; {why}" if measured else why) + told, ""
-    else:
-        changed = " with changes" if result["is_changed"] else ""
-        when = f"{result['commit']}{changed}, {result['date']}"
-    asked = f"**{line.name}**: {line.asked}"
-    cells = (asked, measured, SHOWN.get(word, ""), command_of(run), when)
-    return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+        told = f"; see {_link(line.page)}" if line.page else ""
+        measured = f"not run: {reason_of(line, run)}{told}"
+    elif result["date"] != usual_date:
+        word = f"{word}, {result['date']}".removeprefix(", ")
+    cells = (f"**{line.name}**: {line.asked}", measured, word)
+    return f"|{'|'.join(cell.replace('|', chr(92) + '|') for cell in cells)}|"
 
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -290,7 +280,7 @@ def main(words: Sequence[str]) -> int:
         missed = run_all(chosen, areas, options)
     if options.markdown:
         PAGE.write_text(page_of(areas, collect(options.out, areas)), "utf-8")
-        print(f"{PAGE.relative_to(ROOT)} says what is kept")
+        print(f"written: {PAGE.relative_to(ROOT)}")
     return int(missed)
 
 
@@ -447,7 +437,8 @@ def listed(areas: Sequence[Area], chosen: Sequence[Run], kept: dict[str, Result]
             needs = f", needs {', '.join(run.needs)}" if run.needs else ""
             when = f", kept of {kept[run.name]['date']}" if run.name in kept else ""
             told.append(f"  {run.name}: {run.minutes:g} min{needs}{when}")
-            told += [f"      {line.name}" for line in lines_of(run.name, areas)]
+            told += [f"      {line.name}: {line.asked}" for line in lines_of(run.name, areas)]
+            told += [f"      $ {_typed(step)}" for step in run.steps]
     whole = sum(run.minutes for run in chosen)
     left = sum(run.minutes for run in chosen if run.name not in kept)
     return [*told, f"all: {whole / 60:.1f} hours of one core, {left / 60:.1f} of them not kept"]
@@ -460,7 +451,7 @@ def _options(words: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--out", type=Path, default=Path("OUT-report"), help="keeps the results")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="areas, lines, runs")
     parser.add_argument("--max-minutes", type=float, default=float("inf"), metavar="N")
-    parser.add_argument("--list", action="store_true", help="tell what would run, and how long")
+    parser.add_argument("--list", action="store_true", help="list targets, runs and commands")
     parser.add_argument("--again", action="store_true", help="run what has a result, too")
     parser.add_argument("--anyway", action="store_true", help="run what lacks something, too")
     parser.add_argument("--markdown", action="store_true", help="write the page; nothing is run")

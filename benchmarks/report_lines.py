@@ -35,12 +35,12 @@ TAKES = ("only", "first", "last", "least", "most", "mean", "sum")
 COUNTS = ("passed", "failed", "skipped")  # Of tests.
 # What a run may need, and how a page says it.
 NEEDS = {
-    "shared": "the shared real inputs (`W2M_SHARED_DATA`)",
-    "idle": "an idle machine, since it measures time",
+    "shared": "real inputs (`W2M_SHARED_DATA`)",
+    "idle": "an idle machine",
     "node": "Node and npm",
     "chromium": "a chromium",
     "network": "the network",
-    "rivals": "the packages that its file names",
+    "rivals": "other packages",
 }
 
 

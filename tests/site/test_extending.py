@@ -1,4 +1,4 @@
-"""The package that ``docs/how-to/extending.md`` is made of works as it stands."""
+"""The package that the pages ``docs/how-to/add-*.md`` form works as printed."""
 
 import json
 import re
@@ -21,7 +21,8 @@ from world2minecraft.navigation.agents.registry import AGENTS
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.semantics import LABELLERS
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "extending.md").read_text()
+PAGES = sorted((Path(__file__).resolve().parents[2] / "docs" / "how-to").glob("add-*.md"))
+PAGE = "\n".join(page.read_text() for page in PAGES)
 FILES = {
     found[1]: one["body"]
     for one in FENCE.finditer(PAGE)

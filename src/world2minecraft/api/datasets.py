@@ -263,7 +263,7 @@ def build_photo_dataset(
     """Build a data set of photo-like images of generated rooms, as a substitute for real photos.
 
     The ground truth comes from the generated rooms and uses 8 cm cells, following the conventions
-    of NYUv2. See docs/how-to/training.md.
+    of NYUv2. See docs/how-to/train-a-network.md.
 
     Args:
         out: Output folder, which must be new or empty.

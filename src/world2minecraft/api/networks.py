@@ -188,7 +188,7 @@ def export_network(
     """Export a trained occupancy network as a single ONNX file, which runs without torch.
 
     The ONNX model is compared with the network on one image. If their outputs differ, the function
-    raises an error and writes no file. docs/how-to/networks-onnx.md describes the file.
+    raises an error and writes no file. docs/reference/onnx-networks.md describes the file.
 
     Args:
         run: Run folder or weights file.

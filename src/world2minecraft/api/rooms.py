@@ -132,7 +132,7 @@ def reconstruct(
             such as ``hf:ORG/NAME``.
         predictor: ``depth``, or ``mono:FILE.onnx`` for a monocular occupancy network.
         predictions: Grids that another network predicted: a folder with one file per view, or one
-            file for the whole scene. ``docs/how-to/predictions.md`` describes the files.
+            file for the whole scene. ``docs/reference/prediction-files.md`` describes the files.
         convention: Axes of the predictions: ``w2m``, ``monoscene``, ``iso``, ``embodiedocc`` or
             ``sscnet``. Detected where the files leave no doubt.
         classes: Class ids of the predictions: ``nyu12``, ``embodied``, ``occscannet`` or a YAML

@@ -31,7 +31,7 @@ def run(
         str, typer.Option("--weights", help="Storage type of the weights: float, half or int8.")
     ] = "float",
 ) -> None:
-    """Export a trained occupancy network to ONNX. docs/how-to/networks-onnx.md describes the file.
+    """Export a trained network to ONNX. docs/reference/onnx-networks.md describes the file.
 
     The outputs of the file and the network are compared on one image, and the file is kept only if
     they agree. Weights stored as half or int8 are expanded when the file is loaded, so the file is

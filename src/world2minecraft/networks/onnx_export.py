@@ -1,4 +1,4 @@
-"""Export of trained networks as ONNX files in the format described in docs/how-to/networks-onnx.md.
+"""Export of trained networks as ONNX files in the format of docs/reference/onnx-networks.md.
 
 A file is written only if its output matches the network: for the same input image, no logit may
 differ by more than ``MAX_DIFFERENCE``. The weights can then be compressed. The resulting change of

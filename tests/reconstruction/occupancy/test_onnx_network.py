@@ -77,7 +77,7 @@ def test_what_breaks_the_contract_is_refused_in_one_line(tmp_path, changes, reas
     with pytest.raises(DamagedFileError, match=reason) as caught:
         OccupancyNetwork(path)
     assert "\n" not in str(caught.value)
-    assert str(caught.value).endswith("is described in docs/how-to/networks-onnx.md")
+    assert str(caught.value).endswith("docs/reference/onnx-networks.md describes the format")
 
 
 def test_what_is_no_onnx_file_is_refused(tmp_path):

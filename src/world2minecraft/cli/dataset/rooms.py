@@ -35,7 +35,7 @@ def run(
 
     The ground truth comes from the generated rooms, in 8 cm cells that are labelled as in NYUv2.
     The images take the place of real photos, of which there are few, next to the block worlds of
-    w2m dataset build. See docs/how-to/training.md.
+    w2m dataset build. See docs/how-to/train-a-network.md.
     """
     from world2minecraft.api.datasets import build_photo_dataset
     from world2minecraft.api.progress import show_progress

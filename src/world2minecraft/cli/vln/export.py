@@ -89,7 +89,7 @@ def run(
     """Export a set for LLaMA-Factory, EasyR1, TRL or VLN-CE, or as JSON in the R2R format.
 
     Each output folder contains the rows, the images, the paper's recipe and the command to run it.
-    The number of training steps is printed. See docs/how-to/vln-finetuning.md.
+    The number of training steps is printed. See docs/how-to/export-for-fine-tuning.md.
     """
     from world2minecraft.api import export_navigation_set
     from world2minecraft.api.progress import show_progress

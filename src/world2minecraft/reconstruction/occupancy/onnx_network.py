@@ -2,7 +2,7 @@
 
 The network gets an image with its camera and the pose of the grid relative to that camera, and
 returns the probabilities of the 12 classes. The format is described in
-docs/how-to/networks-onnx.md.
+docs/reference/onnx-networks.md.
 ``METADATA`` lists the entries that a file must contain, so that shapes, frames and class order are
 explicit.
 """
@@ -98,7 +98,7 @@ class OccupancyNetwork:
             self.facts = _facts(self._session)
         except ValueError as error:
             raise DamagedFileError(
-                path, f"{error}; the required format is described in docs/how-to/networks-onnx.md"
+                path, f"{error}; docs/reference/onnx-networks.md describes the format"
             ) from None
         self._path = path
         self._wanted = {entry.name for entry in self._session.get_inputs()}
