@@ -176,3 +176,19 @@ def test_the_report_stands_alone(out):
     assert "default-src &amp;#x27;none&amp;#x27;" in room
     assert len(page) + len(room) < 5_000_000
     assert "Photos and built world" in page and "Comparison with ground truth" in page
+
+
+def test_a_run_of_version_0_1_is_built_and_reported_again(out, capture, tmp_path):
+    folder = tmp_path / "former"
+    shutil.copytree(out, folder)
+    new = {"name", "name_confidence", "supported_by"}  # What 0.1 did not write.
+    for name in ("objects.json", "placements.json"):
+        rows = json.loads((folder / name).read_text())
+        kept = [{key: value for key, value in row.items() if key not in new} for row in rows]
+        (folder / name).write_text(json.dumps(kept))
+    for name in ("names.npz", "repairs.json"):
+        (folder / name).unlink(missing_ok=True)
+    assert w2m(["reconstruct", str(capture), "--out", str(folder), "--from", "build"]) == 0
+    rows = json.loads((folder / "report.json").read_text())["objects"]
+    assert rows and not any("name" in row for row in rows)
+    assert (folder / "report.html").is_file()
