@@ -143,6 +143,15 @@ def test_folders_that_were_empty_are_not_marked(tmp_path):
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["a.txt"]
 
 
+def test_a_failed_command_that_keeps_nothing_leaves_no_mark(tmp_path):
+    out, kind = tmp_path / "out", FolderKind({}, ("a.txt",))
+    command = output_folder(out, kind, "written", keep=False)
+    with pytest.raises(KeyboardInterrupt), command, changing(out, "written"):
+        (out / "a.txt").write_text("1")
+        raise KeyboardInterrupt
+    assert not out.exists()
+
+
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """A run of a bare room."""

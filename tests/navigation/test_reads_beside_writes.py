@@ -1,25 +1,32 @@
 """Readers beside a command that writes: 50 reads of each kind of folder, and never a mixture."""
 
 import hashlib
+import shutil
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
 
 import world2minecraft as w2m
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.core.errors import InputError
+from world2minecraft.evaluation.scoring import read_truth
 from world2minecraft.minecraft.worlds.world_reader import read_world
 from world2minecraft.minecraftocc.store import open_store
 from world2minecraft.navigation.data.rewording import read_set
+from world2minecraft.procgen import scan_room
 
 READS = 50
 BEGIN = """
 import shutil, sys, threading
 from pathlib import Path
 import world2minecraft as w2m
+from world2minecraft.api.generation import save_room
 from world2minecraft.api.navigation import reword_navigation_set
 from world2minecraft.core import precompile
+from world2minecraft.procgen import scan_room
 precompile.needs_compiling = lambda work: False
 ended = threading.Event()
 threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
@@ -36,6 +43,15 @@ WRITERS = {
     "world edit": (
         "w2m.undo_build(out) if number % 2 else w2m.build_into_world(one, out, at=(0, 70, 0), "
         "new_chunks=True)"
+    ),
+    "generated room": "save_room(w2m.load((one, other)[number % 2]), out); ended.wait(0.3)",
+    "new capture": (
+        "room = w2m.load(one); number and shutil.move(out, out.with_name(str(number))); "
+        "scan_room(room, out, sensor='photos', frames=4, width=320, height=240); ended.wait(0.3)"
+    ),
+    "capture": (
+        "scan_room(w2m.load((one, other)[number % 2]), out, frames=1, width=32, height=24); "
+        "ended.wait(0.3)"
     ),
     "data set": ("w2m.import_dataset(one, out / str(number)) if number < 30 else ended.wait(0.1)"),
     "navigation set": "reword_navigation_set(out, **({'plain': True} if number % 2 else "
@@ -96,6 +112,64 @@ def runs(tmp_path_factory):
     labels[8:14, 8:14, 9] = 8
     np.save(place / "table.npy", labels)
     return [w2m.build(place / f"{name}.npy", place / name).folder for name in ("bare", "table")]
+
+
+def generated_state(folder):
+    room = w2m.load(folder)
+    return room.kind, room.seed, digest(room.labels, room.instance, room.colour)
+
+
+def capture_state(folder):
+    return tuple(one.name for one in find_capture(folder).frames)
+
+
+def truth_state(folder):
+    truth = read_truth(folder)
+    return digest(truth.labels), tuple(map(repr, truth.objects))
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Readers end with an error soon, because these writers write most of the time."""
+    monkeypatch.setattr("world2minecraft.core.whole_reads.PATIENCE_S", 0.3)
+
+
+@pytest.fixture(scope="module")
+def generated(tmp_path_factory):
+    """Two generated rooms."""
+    place = tmp_path_factory.mktemp("generated")
+    for kind in ("study", "bathroom"):
+        w2m.generate_room(kind, out=place / kind)
+    return place / "study", place / "bathroom"
+
+
+def test_a_generated_room_is_read_whole_beside_saves(generated, tmp_path, impatient):
+    out = tmp_path / "room"
+    shutil.copytree(generated[0], out)
+    found = states_beside(start("generated room", *generated, out), lambda: generated_state(out))
+    assert found and found <= {generated_state(room) for room in generated}
+
+
+def test_a_new_capture_is_read_whole_beside_its_scan(generated, tmp_path, impatient):
+    out = tmp_path / "capture"
+
+    def read():
+        while not out.exists():
+            time.sleep(0.01)
+        return capture_state(out)
+
+    found = states_beside(start("new capture", *generated, out), read)
+    assert found == {tuple(f"frame-{number:06d}" for number in range(4))}
+
+
+def test_true_rooms_are_read_whole_beside_scans(generated, tmp_path, impatient):
+    known = set()
+    for room in generated:
+        scan_room(w2m.load(room), tmp_path / room.name, frames=1, width=32, height=24)
+        known.add(truth_state(tmp_path / room.name))
+    out = tmp_path / "study"
+    found = states_beside(start("capture", *generated, out), lambda: truth_state(out))
+    assert found and found <= known
 
 
 @pytest.mark.parametrize("state", [run_state, blocks_state])

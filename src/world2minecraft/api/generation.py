@@ -17,7 +17,7 @@ CAPTURE = FolderKind(
     {},
     ("capture.*", "colour", "depth", "labels", "truth.json", "truth.npz", "*.jpg"),
 )
-ROOM = FolderKind({"truth.npz": ""}, ("layout.json", "preview.png", "truth.npz"))
+ROOM = FolderKind({"truth.npz": ""}, ("layout.json", "preview.png", "truth.npz"), in_place=True)
 HOUSES = FolderKind({"house_0001/scene.json": ""}, ("house_*",))
 MIN_FRAMES = 3  # The quality of the poses cannot be estimated from fewer frames.
 

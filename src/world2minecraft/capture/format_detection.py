@@ -6,6 +6,7 @@ packages register formats through the entry point group ``world2minecraft.source
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from world2minecraft.capture.source_types import Capture, ConfigurableSource, So
 from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.registry import Registry
+from world2minecraft.core.whole_reads import read_whole, unchanged
 
 SOURCES = Registry(
     "source",
@@ -64,6 +66,7 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
 
     Raises:
         CaptureError: If the capture is missing, empty, inconsistent or of an unknown format.
+        ConflictError: If another process is changing the folder.
     """
     place = Path(path)
     try:
@@ -77,13 +80,19 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
     if place.is_file() and place.suffix.lower() in UNREAD_ARCHIVE_SUFFIXES:
         reason = f"is a {place.suffix} archive; only zip archives can be read directly: unpack it"
         raise CaptureError(place, f"{reason} and use the unpacked folder")
+    return read_whole(place, lambda: _detect(place, empty, options))
+
+
+def _detect(place: Path, empty: bool, options: ScanOptions | None) -> Capture:
     names = sorted(SOURCES.names(), key=lambda name: name in FALLBACK_SOURCES)
     sources: list[Source] = [SOURCES.load(name)() for name in names]
     choosy = sources[: -len(FALLBACK_SOURCES)]
     for inner in _candidate_places(place):
         for source in sources:
             if source.recognise(inner):
-                found = replace(_read_source(source, inner, options), folder=place)
+                is_inside = inner != place
+                with unchanged(inner) if is_inside and isinstance(inner, Path) else nullcontext():
+                    found = replace(_read_source(source, inner, options), folder=place)
                 return move_near_origin(found)
     kind = (
         "is empty"

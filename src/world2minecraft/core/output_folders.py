@@ -14,7 +14,7 @@ from pathlib import Path
 
 from world2minecraft.core.errors import InputError, OutputError, UsageError
 from world2minecraft.core.locks import LOCK_FILE, folder_lock
-from world2minecraft.core.whole_reads import CHANGING, changing
+from world2minecraft.core.whole_reads import CHANGING, changing, remove_mark
 
 FREE_BYTES = 64 << 20  # A reconstruction of one room writes 1 to 20 MB.
 DRAFT, REPLACED = ".part", ".replaced"  # In the output folder, while a command writes it.
@@ -80,8 +80,9 @@ def output_folder(
                     yield
             except BaseException:
                 rest = others_in(folder, source) if was_empty else []
-                if not keep:
+                if not keep and was_empty:
                     _remove_all(rest)
+                    remove_mark(folder)
                 elif lock and rest and not _has_marker(folder, kind.markers):
                     lock.leave()  # As the marker of what the same command will continue.
                 raise

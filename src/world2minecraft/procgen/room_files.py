@@ -16,6 +16,7 @@ from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, class_id
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.core.types import Layout, LayoutObject, Opening, checks
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.formats.objects_and_placements import round_metres
 from world2minecraft.procgen.rooms.room import Room
 
@@ -54,8 +55,13 @@ def read_generated(folder: str | Path) -> Room:
         InputError: If a file is missing.
         DamagedFileError: If a file is invalid.
         LimitError: If the room has more than ``MAX_CELLS`` cells.
+        ConflictError: If another process is changing the folder.
     """
-    path, truth = Path(folder) / LAYOUT, Path(folder) / TRUTH
+    return read_whole(Path(folder), lambda: _read(Path(folder)))
+
+
+def _read(folder: Path) -> Room:
+    path, truth = folder / LAYOUT, folder / TRUTH
     if not path.is_file():
         raise InputError(path, "not found; create the folder with `w2m rooms generate --out DIR`")
     stated = read_json(path, MAX_LAYOUT_BYTES)

@@ -13,8 +13,10 @@ import numpy as np
 from world2minecraft.capture.readers.capture_json import write_plain
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import write_json, write_npz
+from world2minecraft.core.output_folders import check_writable
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, LayoutObject, Opening, View
+from world2minecraft.core.whole_reads import changing
 from world2minecraft.formats.objects_and_placements import round_metres
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.phone import phone_shots, write_photos, write_video
@@ -85,13 +87,15 @@ def scan_room(
     )
     truths: list[FrameTruth] = []
     views = _views(_shots(room, how), truths, how.taken, progress)
-    if how.sensor == "photos":
-        write_photos(folder, views)
-    elif how.sensor == "video":
-        write_video(Path(folder) / "capture.mp4", views)
-    else:
-        write_plain(folder, views, jpeg=how.phone)
-    write_truth(room, folder, room_to_scan(seed), truths)
+    check_writable(Path(folder))
+    with changing(Path(folder), "written"):
+        if how.sensor == "photos":
+            write_photos(folder, views)
+        elif how.sensor == "video":
+            write_video(Path(folder) / "capture.mp4", views)
+        else:
+            write_plain(folder, views, jpeg=how.phone)
+        write_truth(room, folder, room_to_scan(seed), truths)
 
 
 def room_views(

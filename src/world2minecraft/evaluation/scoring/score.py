@@ -116,9 +116,9 @@ def evaluate_reconstruction(out: Path, truth: Path) -> dict[str, Any]:
 
     Raises:
         InputError: If a file of the run or of the ground truth is missing or damaged.
-        ConflictError: If another process is changing the run.
+        ConflictError: If another process is changing the run or the capture.
     """
-    with unchanged(out):
+    with unchanged(out), unchanged(truth):
         known = truth_of_run(out, truth)
         grid, scan_to_room = read_room(out / "room.npz")
         seen = see_truth(known, used_frames(out, known), scan_to_room, grid.voxel_m)

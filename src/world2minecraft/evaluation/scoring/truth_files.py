@@ -14,6 +14,7 @@ from world2minecraft.core.classes import UNKNOWN, SemanticClass, class_id
 from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import npz_array_names, read_json, read_npz
 from world2minecraft.core.types import Layout, LayoutObject, checks
+from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.formats.layout import layout_from_json
 
 ARRAYS = ("labels", "voxel_m", "origin_m", "truth_room_to_scan")
@@ -96,7 +97,12 @@ def read_truth(folder: Path) -> Truth:
     Raises:
         InputError: If a file is missing.
         DamagedFileError: If a file is not a valid ground truth.
+        ConflictError: If another process is changing the folder.
     """
+    return read_whole(folder, lambda: _read(folder))
+
+
+def _read(folder: Path) -> Truth:
     path = folder / "truth.npz"
     if not path.is_file():
         raise InputError(
