@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
-from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import checks
@@ -100,6 +100,28 @@ def move_near_origin(capture: Capture) -> Capture:
         notes=(*capture.notes, f"{note} and is stored in source_to_scan of scan.json"),
         source_to_scan=move @ capture.source_to_scan,
     )
+
+
+def move_like_capture(
+    to_files: np.ndarray, source_to_scan: np.ndarray, corner_m: np.ndarray | None = None
+) -> np.ndarray:
+    """Return a transform to the coordinates of a capture's files, moved as its poses were.
+
+    A transform that the shift of the capture would move away from the origin is returned
+    unchanged: it leads to the moved poses already.
+
+    Args:
+        to_files: Rigid transform, float64 [4, 4].
+        source_to_scan: That of the capture, float64 [4, 4].
+        corner_m: Position that comes near the origin, before the transform. Its origin by default.
+    """
+    shift_m = source_to_scan[:3, 3]
+    at_m = apply(to_files, np.zeros(3) if corner_m is None else corner_m)
+    if np.abs(shift_m).max() < MAX_NEAR_M or np.abs(at_m + shift_m).max() >= np.abs(at_m).max():
+        return to_files
+    moved = to_files.copy()
+    moved[:3, 3] += shift_m
+    return moved
 
 
 def check_camera_spread(

@@ -71,6 +71,21 @@ def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | N
     )
 
 
+def read_source_to_scan(path: str | Path) -> np.ndarray:
+    """Return the transform from the files of a capture to its scan frame, float64 [4, 4].
+
+    It is the identity without the file and in those of former versions.
+
+    Raises:
+        DamagedFileError: If the file is not a valid ``scan.json``.
+    """
+    found = read_json(path) if Path(path).is_file() else {}
+    try:
+        return checks.floats("source_to_scan", found.get("source_to_scan", np.eye(4)), (4, 4))
+    except MALFORMED as error:
+        raise DamagedFileError(path, f"is not a valid scan.json ({error})") from error
+
+
 def camera_rays(scan: Scan) -> list[list[float]]:
     """Return positions and viewing directions of at most ``MAX_CAMERAS`` frames, for displays.
 

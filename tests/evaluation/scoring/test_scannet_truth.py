@@ -10,6 +10,7 @@ import scannet_scenes as scenes
 from scipy import ndimage
 from true_rooms import FINE_M, fine_room, write_capture
 
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.classes import CLASS_COUNT, STRUCTURE_CLASSES
 from world2minecraft.core.files import write_json
@@ -191,7 +192,9 @@ def test_what_the_mesh_lacks_and_the_sensor_saw_is_not_free(tmp_path):
     # Nearer to what the rays end at, the two may differ by as much as the sensor errs.
     far = table & (ndimage.distance_transform_edt(~surface) * FINE_M > 0.2)
     assert not free[far].any()
-    blind = reached_cells(partial, all_frames(partial), np.eye(4), FINE_M)
+    blind = reached_cells(
+        partial, all_frames(partial, find_capture(partial.capture)), np.eye(4), FINE_M
+    )
     start = np.round(truth.origin_m / FINE_M).astype(int) - blind.low
     box = tuple(slice(a, a + side) for a, side in zip(start, labels.shape, strict=True))
     assert blind.flags[box][far].any(), "rays of the mesh alone pass where the table stands"

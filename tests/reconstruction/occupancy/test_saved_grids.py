@@ -25,7 +25,12 @@ from world2minecraft.reconstruction.occupancy.saved_grid_evidence import (
     in_nyu_image,
     point_votes,
 )
-from world2minecraft.reconstruction.occupancy.saved_grids import find_grids, place_frame, read_grid
+from world2minecraft.reconstruction.occupancy.saved_grids import (
+    find_grids,
+    place_frame,
+    place_scene,
+    read_grid,
+)
 
 CONVENTIONS = ("monoscene", "iso", "embodiedocc", "sscnet")
 ROOM_TO_SCAN = rotation_about_z(20.0)
@@ -128,11 +133,29 @@ def test_a_grid_without_a_place_is_the_box_of_the_data_set(with_depth, tmp_path)
         labels = write_prediction(tmp_path / convention, "a", camera_to_room, "monoscene")
         np.save(tmp_path / "a.npy", labels.transpose(0, 2, 1))
         grid = read_grid(tmp_path / "a.npy", GridRules(convention), is_frame=True)
-        placed = place_frame(grid, view.camera_to_scan, with_depth.scan_to_room)
+        placed = place_frame(grid, view.camera_to_scan, with_depth.scan_to_room, np.eye(4))
         stored = read_grid(tmp_path / convention / "a.pkl", GridRules(), is_frame=True)
-        stated = place_frame(stored, view.camera_to_scan, with_depth.scan_to_room)
+        stated = place_frame(stored, view.camera_to_scan, with_depth.scan_to_room, np.eye(4))
         np.testing.assert_allclose(placed, stated, atol=1e-9)
         assert frame_evidence(grid, view, placed).seen.sum() > 500
+
+
+def test_grids_of_a_survey_move_with_its_capture(tmp_path):
+    """Corners in the world of the survey, in that of the moved poses, and in a stated one."""
+    shift_m, near_m = np.array([450_000.0, 5_400_000, 100]), np.array([1.0, 2.0, -0.16])
+    to_scan = np.eye(4)
+    to_scan[:3, 3] = -shift_m
+    stated = {"scan_to_room": np.linalg.inv(ROOM_TO_SCAN)}
+    labels = np.zeros((60, 60, 36), np.uint8)
+    corners = {"far": (near_m + shift_m, {}), "near": (near_m, {}), "stated": (near_m, stated)}
+    for name, (origin_m, more) in corners.items():
+        np.savez(tmp_path / f"{name}.npz", labels=labels, origin_m=origin_m, voxel_m=0.08, **more)
+        grid = read_grid(tmp_path / f"{name}.npz", GridRules("w2m"), is_frame=True)
+        place = place_scene(grid, to_scan)
+        expected = apply(ROOM_TO_SCAN, near_m) if more else near_m
+        np.testing.assert_allclose(place[:3, 3], expected, atol=1e-6)
+        framed = place_frame(grid, np.eye(4), np.eye(4), to_scan)
+        np.testing.assert_array_equal(framed, place)
 
 
 def test_files_belong_to_views_by_their_names(tmp_path):

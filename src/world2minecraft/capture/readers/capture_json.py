@@ -81,6 +81,7 @@ class PlainSource:
             skipped=_skipped(path, stated),
             world_up=_world_up(path, stated),
             room=_room(path, stated),
+            source_to_scan=_source_to_scan(path, stated),
         )
 
 
@@ -179,6 +180,13 @@ def _room(path: AnyPath, stated: dict[str, Any]) -> tuple[np.ndarray, np.ndarray
     if size_m.shape != (3,) or not ((size_m > 0) & (size_m < 1000)).all():
         raise CaptureError(path, f'"size_m" must contain lengths in metres above 0, got {size}')
     return matrix, size_m
+
+
+def _source_to_scan(path: AnyPath, stated: dict[str, Any]) -> np.ndarray:
+    matrix = _matrix(path, stated, "source_to_scan")
+    if matrix is not None and not np.isfinite(matrix).all():
+        raise CaptureError(path, '"source_to_scan" must be a 4x4 matrix of finite numbers')
+    return np.eye(4) if matrix is None else matrix
 
 
 def _world_up(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:

@@ -7,7 +7,9 @@ import numpy as np
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.files import npz_array_names, read_npz
 from world2minecraft.evaluation.scoring.truth_files import read_instances, read_truth
+from world2minecraft.evaluation.scoring.used_frames import move_truth
 from world2minecraft.formats.run_arrays import read_room
+from world2minecraft.formats.scan_record import read_source_to_scan
 from world2minecraft.procgen import room_view
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.rendering.preview import PreviewView
@@ -28,7 +30,7 @@ def truth_picture(folder: Path, truth: Path, view: PreviewView) -> np.ndarray | 
     Raises:
         InputError: If a file is missing or damaged.
     """
-    known = read_truth(truth)
+    known = move_truth(read_truth(truth), read_source_to_scan(folder / "scan.json"))
     levels = {layout.floor_z_m for layout in known.layouts}
     path = known.folder / "truth.npz"
     if known.is_partial or len(levels) != 1 or view.storeys != 1:

@@ -18,6 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.capture.format_detection import find_capture
+from world2minecraft.capture.pose_validation import MAX_NEAR_M, move_like_capture
 from world2minecraft.core.classes import UNKNOWN, class_id
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError, UnknownNameError
@@ -28,7 +30,7 @@ from world2minecraft.evaluation.scoring.object_scores import object_counts, obje
 from world2minecraft.evaluation.scoring.pose_errors import frame_error
 from world2minecraft.evaluation.scoring.score import HOW, cell_facts, headline, see_truth
 from world2minecraft.evaluation.scoring.truth_files import read_truth
-from world2minecraft.evaluation.scoring.used_frames import all_frames
+from world2minecraft.evaluation.scoring.used_frames import all_frames, move_truth
 from world2minecraft.formats.occupancy_files import DEFAULT_VOXEL_M, labels_grid
 
 LABELS = ("labels.npz", "labels.npy")
@@ -75,9 +77,11 @@ def read_foreign(path: Path) -> ForeignResult:
         voxel_m = positive("voxel_m", float(arrays.get("voxel_m", DEFAULT_VOXEL_M)))
         origin_m = floats("origin_m", arrays.get("origin_m", np.zeros(3)), (3,))
         grid_to_scan = transform("grid_to_scan", arrays.get("grid_to_scan", np.eye(4)))
-        # Ours begin at whole cells: the frame moves by the rest, and all that is in it.
+        # Ours begin at whole cells near the origin: the frame moves, and all that is in it.
         moved = np.eye(4)
         whole_m = np.round(origin_m / voxel_m) * voxel_m
+        if np.abs(origin_m).max() > MAX_NEAR_M:
+            whole_m = np.zeros(3)
         moved[:3, 3] = whole_m - origin_m
         grid = labels_grid(arrays["labels"], path, voxel_m, whole_m)
         if "confidence" in arrays:
@@ -113,7 +117,13 @@ def evaluate_foreign(path: Path, truth: Path) -> dict[str, Any]:
             f"voxel size of {made.grid.voxel_m:g} m is smaller than the ground truth's "
             f"{known.voxel_m:g} m; resample the result to a coarser grid",
         )
-    room = see_truth(known, all_frames(known), made.scan_to_room, made.grid.voxel_m)
+    capture = find_capture(known.capture)
+    known = move_truth(known, capture.source_to_scan)
+    grid_to_scan = move_like_capture(
+        invert_rigid(made.scan_to_room), capture.source_to_scan, made.grid.origin_m
+    )
+    frames, scan_to_room = all_frames(known, capture), invert_rigid(grid_to_scan)
+    room = see_truth(known, frames, scan_to_room, made.grid.voxel_m)
     facts = cell_facts(made.grid, room)
     if not made.tells_confidence:
         del facts["calibration"]

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.capture.format_detection import find_capture
+from world2minecraft.capture.pose_validation import move_like_capture
+from world2minecraft.capture.source_types import Capture
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_json
@@ -14,6 +16,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.evaluation.scoring.same_room import check_same_room
 from world2minecraft.evaluation.scoring.truth_files import Truth, read_truth
 from world2minecraft.formats.run_arrays import read_room
+from world2minecraft.formats.scan_record import read_source_to_scan
 
 COMPUTED = "capture"  # Where ``prepare`` keeps what it made.
 MIN_POSED = 3
@@ -64,16 +67,12 @@ def used_frames(out: Path, truth: Truth) -> tuple[UsedFrame, ...]:
     return tuple(_used(frames[name], truth) for name in names)
 
 
-def all_frames(truth: Truth) -> tuple[UsedFrame, ...]:
-    """Return all frames with a camera and a pose in the capture of a ground truth.
-
-    Raises:
-        CaptureError: If the capture is not found.
-    """
+def all_frames(truth: Truth, capture: Capture) -> tuple[UsedFrame, ...]:
+    """Return all frames with a camera and a pose in the capture of a ground truth."""
     true = truth.camera_to_truth or {}
     return tuple(
         _used(frame, truth)
-        for frame in find_capture(truth.capture).frames
+        for frame in capture.frames
         if (frame.depth_camera or frame.colour_camera) is not None
         and frame.camera_to_world is not None
         and (frame.name in true or np.isfinite(frame.camera_to_world).all())
@@ -97,6 +96,7 @@ def truth_of_run(out: Path, folder: Path) -> Truth:
     """
     known, place = read_truth(folder), computed(out)
     if place is None:
+        known = move_truth(known, read_source_to_scan(out / "scan.json"))
         check_same_room(out, known, *read_room(out / "room.npz"))
         return known
     true = known.camera_to_truth or {}
@@ -108,6 +108,12 @@ def truth_of_run(out: Path, folder: Path) -> Truth:
     stated = [np.asarray(frame.camera_to_world, np.float64) for frame in posed]
     common = common_move([true[frame.name] for frame in posed], stated)
     return replace(known, truth_to_scan=common)
+
+
+def move_truth(known: Truth, source_to_scan: np.ndarray) -> Truth:
+    """Return a ground truth in the coordinates of a capture's files, moved as its poses were."""
+    moved = move_like_capture(known.truth_to_scan, source_to_scan, known.origin_m)
+    return replace(known, truth_to_scan=moved)
 
 
 def common_move(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> np.ndarray:

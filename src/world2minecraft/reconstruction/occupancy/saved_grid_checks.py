@@ -278,8 +278,9 @@ def _mean(values: list[float]) -> float | None:
 
 def _place(sample: Sample, grid: PredictedGrid, scan: Scan) -> np.ndarray:
     if sample.view is None:
-        return place_scene(grid)
-    return place_frame(grid, view_camera(sample.view)[1], scan.scan_to_room)
+        return place_scene(grid, scan.source_to_scan)
+    pose = view_camera(sample.view)[1]
+    return place_frame(grid, pose, scan.scan_to_room, scan.source_to_scan)
 
 
 def floor_measures(

@@ -81,7 +81,8 @@ class SavedGridPredictor:
         for view in scan.views:
             if view.name in files.of_view and is_shown(view):
                 grid = self._read(files.of_view[view.name])
-                place = place_frame(grid, view_camera(view)[1], scan.scan_to_room)
+                pose = view_camera(view)[1]
+                place = place_frame(grid, pose, scan.scan_to_room, scan.source_to_scan)
                 yield frame_evidence(grid, view, place)
 
     def _read(self, path: Path, *, is_frame: bool = True) -> PredictedGrid:
@@ -91,7 +92,7 @@ class SavedGridPredictor:
         if files.scene is None:
             return None
         grid = self._read(files.scene, is_frame=False)
-        return scene_evidence(grid, place_scene(grid), scan)
+        return scene_evidence(grid, place_scene(grid, scan.source_to_scan), scan)
 
     def _with_votes(
         self,
@@ -106,7 +107,8 @@ class SavedGridPredictor:
             grid, place, voxel_m = scene.probabilities, scene.grid_to_scan, scene.voxel_m
         elif item.view in files.of_view and item.view in poses:
             read = self._read(files.of_view[item.view])
-            place = place_frame(read, poses[item.view], scan.scan_to_room)
+            pose = poses[item.view]
+            place = place_frame(read, pose, scan.scan_to_room, scan.source_to_scan)
             grid, voxel_m = read.probabilities(), read.voxel_m
         else:
             return item
@@ -127,7 +129,7 @@ class SavedGridPredictor:
             notes.append(
                 f"{len(files.unused)} files of predictions belong to no view and are unused"
             )
-        if stated_place(grid, np.eye(4)) is None:
+        if stated_place(grid, np.eye(4), scan.source_to_scan) is None:
             notes.append(
                 "the predictions state no cam_pose and voxel_origin; each is placed in front of "
                 "its camera as in the data sets"

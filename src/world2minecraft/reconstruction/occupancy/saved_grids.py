@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.capture.pose_validation import move_like_capture
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera, View
@@ -118,32 +119,38 @@ def view_camera(view: View) -> tuple[Camera, np.ndarray]:
     return view.depth_camera, view.depth_camera_to_scan
 
 
-def place_scene(grid: PredictedGrid) -> np.ndarray:
+def place_scene(grid: PredictedGrid, source_to_scan: np.ndarray) -> np.ndarray:
     """Return the transform from the grid of a scene to the scan, float64 [4, 4].
 
-    The world of the grid's corner is that of the scan, unless the file states their relation.
+    The world of the grid's corner is that of the scan, before or after georeferenced poses were
+    moved by ``source_to_scan``, unless the file states their relation.
     """
     world_to_scan = np.eye(4) if grid.scan_to_world is None else invert_rigid(grid.scan_to_world)
-    return world_to_scan @ grid_to_world(grid)
+    return move_like_capture(world_to_scan @ grid_to_world(grid), source_to_scan)
 
 
-def stated_place(grid: PredictedGrid, camera_to_scan: np.ndarray) -> np.ndarray | None:
+def stated_place(
+    grid: PredictedGrid, camera_to_scan: np.ndarray, source_to_scan: np.ndarray
+) -> np.ndarray | None:
     """Return the transform from a frame's grid to the scan as its file states it, or None."""
     to_camera = grid_to_camera(grid)
     if to_camera is not None:
         return camera_to_scan @ to_camera
-    return None if grid.origin_m is None else place_scene(grid)
+    return None if grid.origin_m is None else place_scene(grid, source_to_scan)
 
 
 def place_frame(
-    grid: PredictedGrid, camera_to_scan: np.ndarray, scan_to_room: np.ndarray
+    grid: PredictedGrid,
+    camera_to_scan: np.ndarray,
+    scan_to_room: np.ndarray,
+    source_to_scan: np.ndarray,
 ) -> np.ndarray:
     """Return the transform from a frame's grid to the scan, float64 [4, 4].
 
     A grid whose file states no place is put where data sets cut it: NYUv2 turns the box with the
     camera, OccScanNet and the paper choose one of eight directions.
     """
-    stated = stated_place(grid, camera_to_scan)
+    stated = stated_place(grid, camera_to_scan, source_to_scan)
     if stated is not None:
         return stated
     rule = RegionRule("free" if grid.axes == "xzy" else "paper")

@@ -177,6 +177,7 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
         "depth_kind": kind,
         "world_up": up.tolist() if up is not None and judged.posed else None,
         "scale": scale,
+        "source_to_scan": found.source_to_scan.tolist(),
         "notes": [*judged.notes, *scene.notes],
         "skipped": [[*row] for row in (*judged.skipped, *photos.damaged.items(), *scene.left_out)],
     } | told

@@ -87,7 +87,7 @@ def prepare_predicted(
         )
     poses = _poses(judged, photos, files, chosen) if single else None
     level = _level_frame(judged, chosen)
-    cells = _cells(photos, poses, files, rules, level)
+    cells = _cells(photos, poses, files, rules, level, judged.capture.source_to_scan)
     scan_to_room, size_m = find_room(cells)
     stated: dict[str, Any] = {
         "made_from": judged.capture.source,
@@ -97,6 +97,7 @@ def prepare_predicted(
         "skipped": [[*row] for row in judged.skipped],
         "notes": [*judged.notes, "the room's frame and size follow from the predictions"],
         "room": {"scan_to_room": scan_to_room.tolist(), "size_m": size_m.tolist()},
+        "source_to_scan": judged.capture.source_to_scan.tolist(),
     }
     write_plain(folder, _views(photos, poses), depth_unit=unit, stated=stated, jpeg=True)
 
@@ -160,18 +161,19 @@ def _cells(
     files: GridFiles,
     rules: GridRules,
     level: np.ndarray,
+    source_to_scan: np.ndarray,
 ) -> PlacedCells:
     """Return the occupied cells that the images show, or all of the scene's grid."""
     found: list[tuple[PredictedGrid, np.ndarray, np.ndarray]] = []
     if files.scene is not None:
         grid = read_grid(files.scene, rules, is_frame=False)
-        found.append((grid, place_scene(grid), _occupied(grid)))
+        found.append((grid, place_scene(grid, source_to_scan), _occupied(grid)))
     else:
         for view in _views(photos, poses):
             if view.name not in files.of_view or view.colour_camera is None:
                 continue
             grid = read_grid(files.of_view[view.name], rules, is_frame=True)
-            place = place_frame(grid, view.camera_to_scan, level)
+            place = place_frame(grid, view.camera_to_scan, level, source_to_scan)
             to_grid = invert_rigid(place) @ view.camera_to_scan
             seen = before_walls(grid.labels, grid_region(grid), to_grid, view.colour_camera)
             found.append((grid, place, seen & _occupied(grid)))
