@@ -6,11 +6,13 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from hypothesis import strategies as st
 
 from world2minecraft.core.files import npz_array_names, read_npz, write_npz
+from world2minecraft.formats.safe_pickle import dump_pickle, read_pickle
 
 NUMBER = re.compile(r"(?<![\w.+-])-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?(?![\w.])")
 EXTREMES = (
@@ -43,18 +45,29 @@ def replace_numbers(text: str, picks: Picks) -> str:
 
 def replace_values(path: Path, picks: Picks) -> None:
     """Replace a value of some arrays of an npz, or all of them, by the nearest of their type."""
-    names = npz_array_names(path)
-    arrays = read_npz(path, names)
+    arrays = read_npz(path, npz_array_names(path))
+    change_values(arrays, picks)
+    write_npz(path, arrays)
+
+
+def replace_pickled(path: Path, picks: Picks) -> None:
+    """Replace values of the arrays of a pickled dict like those of an npz."""
+    stored = read_pickle(path)
+    change_values(stored, picks)
+    path.write_bytes(dump_pickle(stored))
+
+
+def change_values(stored: dict[str, Any], picks: Picks) -> None:
+    names = sorted(stored)
     for share, new, whole in picks:
         name = names[int(share * len(names))]
-        values = arrays[name]
+        values = np.asarray(stored[name])
         if values.dtype.kind not in "iuf" or not values.size:
             continue
         changed = values.copy().reshape(-1)
         where = slice(None) if whole else int(share * 997) % len(changed)
         changed[where] = nearest(new, values.dtype)
-        arrays[name] = changed.reshape(values.shape)
-    write_npz(path, arrays)
+        stored[name] = changed.reshape(values.shape)
 
 
 def replace_bytes(path: Path, picks: Picks) -> None:
@@ -114,7 +127,8 @@ def nearest(text: str, dtype: np.dtype) -> float | int:
 
 def replace_in(path: Path, picks: Picks) -> None:
     """Replace numbers of a file: values of an npz, numbers of a text, bytes of any other."""
-    special = {".npz": replace_values, ".e57": replace_e57}.get(path.suffix)
+    others = {".npz": replace_values, ".e57": replace_e57, ".pkl": replace_pickled}
+    special = others.get(path.suffix)
     if special is not None:
         special(path, picks)
         return

@@ -16,12 +16,14 @@ from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.jit import njit
+from world2minecraft.core.types import checks
 
 NYU_SIZE_PX, NYU_FOCAL_PX = (640, 480), 518.8579  # The camera that loaders of NYUv2 assume.
 FINE_SHAPE = (240, 144, 240)  # x, z up, y
 FINE_PER_CELL = 4
 HEADER_BYTES = 4 * (3 + 16)
 MAX_BYTES = 80 << 20  # Every voxel a run of its own takes 66 MB.
+MAX_SKEW = 1e-3  # Poses of float32, and of a few printed digits, are rigid within this.
 EMPTY_SHARE = 0.95  # A cell is empty where more of its voxels than this are empty or unknown.
 
 # SSCNet's 36 classes and its empty, as the 12; the list stands in every loader of the format.
@@ -69,11 +71,13 @@ def read_bin(path: str | Path) -> SscnetFrame:
     pairs = np.frombuffer(data, "<u4", offset=HEADER_BYTES).reshape(-1, 2)
     try:
         codes = _expand_runs(pairs)
+        origin_m = checks.coordinates("voxel origin", head[:3], (3,)).astype(np.float32)
+        pose = checks.transform("camera pose", head[3:].reshape(4, 4), MAX_SKEW)
     except ValueError as error:
         raise DamagedFileError(path, f"not a valid SSCNet .bin: {error}") from error
     table = np.zeros(256, np.uint8)
     table[: len(CLASS_OF_CODE)], table[UNKNOWN] = CLASS_OF_CODE, UNKNOWN
-    return SscnetFrame(table[codes].reshape(FINE_SHAPE), head[:3].copy(), head[3:].reshape(4, 4))
+    return SscnetFrame(table[codes].reshape(FINE_SHAPE), origin_m, pose.astype(np.float32))
 
 
 def _expand_runs(pairs: np.ndarray) -> np.ndarray:

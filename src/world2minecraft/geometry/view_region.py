@@ -46,7 +46,8 @@ class LabelRegion:
         put(self, "shape", tuple(int(side) for side in self.shape))
         if len(self.shape) != 3 or min(self.shape) < 1:
             raise ValueError(f"shape must be three positive cell counts, got {self.shape}")
-        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
+        put(self, "voxel_m", checks.voxel_size(self.voxel_m))
+        checks.extent(self.shape, self.voxel_m)
         put(self, "region_to_room", checks.transform("region_to_room", self.region_to_room))
         if abs(self.region_to_room[2, 2] - 1) > 1e-9:
             raise ValueError("region_to_room must keep the z axis pointing up")

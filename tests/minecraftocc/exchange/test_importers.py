@@ -155,7 +155,7 @@ def test_a_hostile_pickle_in_a_data_set_is_refused(folders, tmp_path):
             {"target_1_4": np.full((60, 60, 36), 12, np.uint8)},
             "class ids from 0 to 11, or 255",
         ),
-        ({"cam_pose": np.zeros((4, 4))}, "the camera pose is not a rigid transform"),
+        ({"cam_pose": np.zeros((4, 4))}, "the camera pose is not a rotation and a translation"),
         (
             {"cam_pose": np.full((4, 4), np.nan)},
             "pose must be a (4, 4) array of finite numbers",

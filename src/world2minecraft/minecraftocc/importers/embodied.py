@@ -17,6 +17,7 @@ from world2minecraft.minecraftocc.importers.imported_samples import (
     ImportedSet,
     checked_labels,
     checked_numbers,
+    checked_place,
     make_sample,
 )
 from world2minecraft.minecraftocc.importers.occscannet import read_frame
@@ -98,7 +99,7 @@ def read_scene(path: Path) -> ScenePackage:
         raise DamagedFileError(
             path, "global_pts or global_mask does not have the shape of global_labels"
         )
-    first = centres.reshape(-1, 3).min(axis=0).astype(np.float64)
+    first = checked_place(centres.reshape(-1, 3).min(axis=0), "global_pts", path)
     origin_m = first - DEFAULT_VOXEL_M / 2  # Theirs are centres.
     images = stored["valid_img_paths"]
     names = tuple(str(name) for name in images) if isinstance(images, list) else ()

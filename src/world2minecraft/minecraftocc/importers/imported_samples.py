@@ -20,7 +20,7 @@ from world2minecraft.capture.images import read_colour, read_header, read_raw
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import MALFORMED, DamagedFileError, UnknownNameError
-from world2minecraft.core.types import Camera
+from world2minecraft.core.types import Camera, checks
 from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.minecraftocc.formats.image_conventions import DepthCode, decode_depth
 from world2minecraft.minecraftocc.formats.label_grids import cells_in_image
@@ -149,7 +149,7 @@ def make_sample(
         DamagedFileError: If the labels or the camera pose are not valid.
     """
     region_to_room = np.eye(4)
-    region_to_room[:3, 3] = _checked_origin(found)
+    region_to_room[:3, 3] = checked_place(found.origin_m, "voxel origin", found.name)
     camera_to_room = _orthonormal_pose(found)
     region = LabelRegion(DEFAULT_SHAPE, DEFAULT_VOXEL_M, region_to_room)
     facts: dict[str, Any] = {"format": format}
@@ -204,6 +204,19 @@ def checked_numbers(values: Any, shape: tuple[int, ...], what: str, name: Path) 
     return numbers
 
 
+def checked_place(values: Any, what: str, name: Path) -> np.ndarray:
+    """Check a position in metres and convert it to float64 [3].
+
+    Raises:
+        DamagedFileError: If it does not consist of three finite numbers, or is too far away.
+    """
+    numbers = checked_numbers(values, (3,), what, name)
+    try:
+        return checks.coordinates(what, numbers, (3,))
+    except ValueError as error:
+        raise DamagedFileError(name, f"the {error}") from error
+
+
 def resize_depth(depth_m: np.ndarray, camera: Camera) -> np.ndarray:
     """Resize a depth map to the size of a camera by nearest neighbour."""
     rows, columns = depth_m.shape
@@ -214,21 +227,16 @@ def resize_depth(depth_m: np.ndarray, camera: Camera) -> np.ndarray:
     return np.ascontiguousarray(depth_m[down.astype(int)[:, None], across.astype(int)])
 
 
-def _checked_origin(found: ImportedFrame) -> np.ndarray:
-    return checked_numbers(found.origin_m, (3,), "voxel origin", found.name)
-
-
 def _orthonormal_pose(found: ImportedFrame) -> np.ndarray:
     """Return the camera pose with an exactly orthonormal rotation."""
     pose = checked_numbers(found.camera_to_world, (4, 4), "camera pose", found.name)
-    left, _, right = np.linalg.svd(pose[:3, :3])
-    turn = left @ right
-    if np.abs(turn - pose[:3, :3]).max() > MAX_SKEW or np.linalg.det(turn) < 0:
+    if fault := checks.rigid_fault(pose, MAX_SKEW):
         raise DamagedFileError(
-            found.name, "the camera pose is not a rigid transform (rotation and translation)"
+            found.name, f"the camera pose is not a rotation and a translation: it {fault}"
         )
+    left, _, right = np.linalg.svd(pose[:3, :3])
     result = np.eye(4)
-    result[:3, :3], result[:3, 3] = turn, pose[:3, 3]
+    result[:3, :3], result[:3, 3] = left @ right, pose[:3, 3]
     return result
 
 
