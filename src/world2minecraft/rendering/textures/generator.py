@@ -57,12 +57,6 @@ class Generator:
     tiles: bool = True
 
     @property
-    def about(self) -> str:
-        """A description of the texture, without a verb."""
-        text = (self.paint.__doc__ or "").strip().partition("texture: ")[2]
-        return text[:1].upper() + text[1:]
-
-    @property
     def all_options(self) -> dict[str, Option]:
         """The generator's own options and the options that all generators share."""
         return {**self.options, **SHARED}

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from world2minecraft.rendering.textures.catalogue import GENERATORS
 from world2minecraft.rendering.textures.generator import Accent, Generator
 
-HEAD = ("generator", "shows", "accents", "options", "notes")
+HEAD = ("generator", "accents", "options", "notes")
 
 
 def generator_table() -> str:
@@ -18,7 +18,6 @@ def generator_table() -> str:
 def _row(name: str, generator: Generator) -> tuple[str, ...]:
     return (
         f"`{name}`",
-        generator.about.rstrip("."),
         ", ".join(_accent(accent) for accent in generator.accents),
         "; ".join(f"`{key}`: {option}" for key, option in generator.options.items()),
         "; ".join(_notes(generator)),

@@ -8,14 +8,30 @@ export function keysPage(): string {
   return [TEXT.keysPage.title, TEXT.keysPage.note, ...parts.filter(Boolean)].join("\n\n") + "\n";
 }
 
+// The modes that most keys of a group share stand above its table, others in their row.
 function section(group: (typeof GROUPS)[number], lines: readonly Binding[]): string {
-  const rows = lines.filter((one) => one.keys.length).map(row);
-  if (!rows.length) return "";
-  return [`## ${TEXT.groups[group]}`, "", `| ${TEXT.keysPage.head.join(" | ")} |`, "|---|---|---|", ...rows].join("\n");
+  const shown = lines.filter((one) => one.keys.length);
+  if (!shown.length) return "";
+  const common = commonest(shown.map(modesOf));
+  const rows = shown.map((one) => row(one, common));
+  return [`## ${TEXT.groups[group]}`, TEXT.keysPage.modes(common), table(rows)].join("\n\n");
 }
 
-function row({ keys, title, modes }: Binding): string {
-  const shown = keys.map((key) => `\`${key}\``).join(", ");
-  const where = modes ? modes.map((mode) => TEXT.action[`mode.${mode}`]).join(", ") : TEXT.keysPage.everywhere;
-  return `| ${shown} | ${title} | ${where} |`;
+function table(rows: readonly string[]): string {
+  return [`| ${TEXT.keysPage.head.join(" | ")} |`, "|---|---|", ...rows].join("\n");
+}
+
+function row(binding: Binding, common: string): string {
+  const keys = binding.keys.map((key) => `\`${key}\``).join(", ");
+  const modes = modesOf(binding);
+  return `| ${keys} | ${binding.title}${modes === common ? "" : ` (${modes})`} |`;
+}
+
+function modesOf({ modes }: Binding): string {
+  return modes ? modes.map((mode) => TEXT.action[`mode.${mode}`]).join(", ") : TEXT.keysPage.everywhere;
+}
+
+function commonest(values: readonly string[]): string {
+  const count = (value: string) => values.filter((one) => one === value).length;
+  return values.reduce((best, one) => (count(one) > count(best) ? one : best));
 }

@@ -434,9 +434,10 @@ export const TEXT = {
   },
   keysPage: {
     title: "# Keys and gestures of SceneForge",
-    note: "Generated from the editor's key table (`web/src/keys.ts`); press `?` in the editor to show it. On macOS, use Cmd instead of Ctrl. Letters follow the keyboard layout, digits and brackets their position on the keyboard. When a field has the focus, its own keys take precedence.",
-    head: ["Keys", "Action", "Mode"],
-    everywhere: "All",
+    note: "The keys of the editor, as its help (`?`) shows them; a key in another mode than its table names that mode. On macOS, use Cmd instead of Ctrl. Letters follow the keyboard layout, digits and brackets their position on the keyboard. When a field has the focus, its own keys take precedence.",
+    head: ["Keys", "Action"],
+    everywhere: "all",
+    modes: (modes: string) => `Modes: ${modes}.`,
   },
   palette: {
     title: "All commands",
