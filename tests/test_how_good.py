@@ -209,7 +209,7 @@ TWO_AREAS = """
 """
 PAGE = """## What falls short
 
-- **exact** (Rooms): Thin things are lost.
+- **exact**: Thin things are lost.
 
 ## Rooms
 
@@ -245,10 +245,10 @@ def test_the_page_says_what_is_kept_and_nothing_else():
     assert told in page
     kept["tests"]["figures"]["laws"] |= {"tests pass": 11, "fail": 1}
     page = page_of(areas, kept)
-    assert "- **laws** (Rooms)\n" in page and "|11 tests pass, 1 fails|**missed**, 2030" in page
+    assert "- **laws**\n" in page and "|11 tests pass, 1 fails|**missed**, 2030" in page
     none = page_of(areas, {})
     assert "Nothing that was run falls short." in none
-    known = "and not run here:\n\n- **exact** (Rooms): Thin things are lost."
+    known = "and not run here:\n\n- **exact**: Thin things are lost."
     assert known in none and known not in page
 
 
