@@ -49,6 +49,7 @@ FIELDS = {
 }  # fmt: skip
 Result = dict[str, Any]
 
+
 def verdict(line: Line, result: Mapping[str, Any] | None) -> str:
     """Return how a line stands.
 
@@ -68,9 +69,11 @@ def verdict(line: Line, result: Mapping[str, Any] | None) -> str:
         return "missed"
     return "met" if True in said else "measured"
 
+
 def verdicts(result: Mapping[str, Any], areas: Sequence[Area]) -> dict[str, str]:
     """Return the verdict of each line that a result is of."""
     return {line.name: verdict(line, result) for line in lines_of(result["run"], areas)}
+
 
 def read_results(path: Path = KEPT) -> dict[str, Result]:
     """Return kept results by run; none where the file is not there."""
@@ -83,12 +86,14 @@ def read_results(path: Path = KEPT) -> dict[str, Result]:
             raise ValueError(f"{path.name}: the result of {name} lacks or has too much: {wrong}")
     return found
 
+
 def results_in(folder: Path) -> dict[str, Result]:
     """Return the results that lie in a folder, one a file, by run."""
     found: dict[str, Result] = {}
     for path in sorted(folder.glob("*.json")):
         found |= {result["run"]: result for result in read_results(path).values()}
     return found
+
 
 def collect(folder: Path, areas: Sequence[Area], path: Path = KEPT) -> dict[str, Result]:
     """Put the results of a folder among the kept ones, in place of older ones; return all.
@@ -103,11 +108,13 @@ def collect(folder: Path, areas: Sequence[Area], path: Path = KEPT) -> dict[str,
     write_json(path, list(kept.values()))
     return kept
 
+
 def keep(folder: Path, result: Result) -> Path:
     """Write the result of one run into a folder; return the file."""
     path = folder / f"{result['run']}.json"
     write_json(path, [result])
     return path
+
 
 LONG_MIN = 5.0  # From here on the page says how long a run takes.
 HEAD = """# How good it is
@@ -132,12 +139,14 @@ STANDS = {
 SHOWN = {"met": "met", "missed": "**missed**", "broke": "**failed**", "seen": "by a person"}
 EMPTY = "Nothing that was run falls short."
 
+
 def page_of(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
     """Return the page as Markdown: what falls short first, then a table for each area."""
     runs = every_run(areas)
     parts = [HEAD, _counts(areas, results), "## What falls short\n", _short(areas, results)]
     parts += [_section(area, runs, results) for area in areas]
     return "\n".join(parts).rstrip() + "\n"
+
 
 def measured_of(line: Line, result: Result | None) -> str:
     """Return the cell that says what was measured."""
@@ -153,6 +162,7 @@ def measured_of(line: Line, result: Result | None) -> str:
             cells.append(f"{figure.what} {value}{f' {figure.unit}' if figure.unit else ''}")
     return _counted(", ".join(cells))
 
+
 def reason_of(line: Line, run: Run | None) -> str:
     """Return why a line was not run here."""
     if run is None:
@@ -162,9 +172,11 @@ def reason_of(line: Line, run: Run | None) -> str:
         reasons.append(f"takes {run.minutes:g} minutes")
     return ", ".join(reasons) or "not yet"
 
+
 def _typed(step: str) -> str:
     """Return a step as a person types it."""
     return step.replace("{work}/", "").replace("{shared}", "SHARED").replace("{root}", ".")
+
 
 def _counted(text: str) -> str:
     """Say counts of tests the other way round: 12 tests pass, 1 is skipped."""
@@ -173,12 +185,14 @@ def _counted(text: str) -> str:
         text = re.sub(rf"(?<![\d,])1 {many}\b", f"1 {one}", text)
     return text
 
+
 def _counts(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
     words = [verdict(line, results.get(line.run)) for area in areas for line in area.lines]
     told = ", ".join(
         f"{words.count(name)} {said}" for name, said in STANDS.items() if words.count(name)
     )
     return f"Of {len(words)} targets: {told}.\n"
+
 
 def _short(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
     """List the targets that are missed, with the reasons, and those missed when last measured."""
@@ -196,8 +210,10 @@ def _short(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
     known = ["", "Missed when last measured, and not run here:", "", *known] if known else []
     return "\n".join([*(rows({"missed", "broke"}) or [EMPTY]), *known]) + "\n"
 
+
 def _link(page: str) -> str:
     return f"[{page.rpartition('/')[2]}](../{page}.md)"
+
 
 def _section(area: Area, runs: Mapping[str, Run], results: Mapping[str, Result]) -> str:
     """Return an area's table. Cells have no spaces around them: the page is counted in words."""
@@ -215,10 +231,12 @@ def _section(area: Area, runs: Mapping[str, Run], results: Mapping[str, Result])
         rows += ["", f"Met, as tests show: {'; '.join(line.name for line in tested)}."]
     return "\n".join(rows) + "\n"
 
+
 def _is_tested(line: Line, result: Result | None) -> bool:
     """Return whether a target is met and nothing but tests measures it."""
     is_counted = all(figure.read.source == "tests" for figure in line.figures)
     return bool(line.figures) and is_counted and verdict(line, result) == "met"
+
 
 def _row(line: Line, run: Run | None, result: Result | None, usual_date: str) -> str:
     measured, word = measured_of(line, result), SHOWN.get(verdict(line, result), "")
@@ -232,6 +250,7 @@ def _row(line: Line, run: Run | None, result: Result | None, usual_date: str) ->
     cells = (f"**{line.name}**: {line.asked}", measured, word)
     return f"|{'|'.join(cell.replace('|', chr(92) + '|') for cell in cells)}|"
 
+
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "results" / "how-good.md"
 IDLE_LOAD = 0.5  # A core, as ``make bench`` asks.
@@ -242,6 +261,7 @@ PROGRAMS = {
     "git": ["git"],
     "make": ["make"],
 }
+
 
 def main(words: Sequence[str]) -> int:
     """Do what ``words`` ask for and return the exit code."""
@@ -262,6 +282,7 @@ def main(words: Sequence[str]) -> int:
         print(f"written: {PAGE.relative_to(ROOT)}")
     return int(missed)
 
+
 def chosen_runs(areas: Sequence[Area], only: Sequence[str], most_minutes: float) -> list[Run]:
     """Return the runs that are asked for: by name, or by a part of a line's, run's or area's."""
     exact = {name for area in areas for name in area.runs} & set(only)
@@ -274,6 +295,7 @@ def chosen_runs(areas: Sequence[Area], only: Sequence[str], most_minutes: float)
 
     runs = [run for area in areas for run in area.runs.values() if is_meant(area, run)]
     return [run for run in runs if run.minutes <= most_minutes]
+
 
 def run_all(runs: Iterable[Run], areas: Sequence[Area], options: argparse.Namespace) -> bool:
     """Run what has no result yet, keep each; return whether a line is missed."""
@@ -298,6 +320,7 @@ def run_all(runs: Iterable[Run], areas: Sequence[Area], options: argparse.Namesp
         print(*(f"  {sentence}" for sentence in result["unread"]), sep="\n", end="")
     return missed
 
+
 def lacks(run: Run) -> list[str]:
     """Return what a run needs and this machine has not."""
     there = {
@@ -308,9 +331,11 @@ def lacks(run: Run) -> list[str]:
     }
     return [need for need in run.needs if not there.get(need, True)]
 
+
 def shared_data() -> Path:
     """Return the folder of the shared real inputs, whether it is there or not."""
     return Path(os.environ.get("W2M_SHARED_DATA", ROOT.parent / "shared" / "data"))
+
 
 def measured(run: Run, areas: Sequence[Area], out: Path) -> Result:
     """Run the steps of a run in its folder and return its result."""
@@ -346,12 +371,14 @@ def measured(run: Run, areas: Sequence[Area], out: Path) -> Result:
     }
     return result | {"verdicts": verdicts(result, areas)}
 
+
 def _placeless(text: str, work: Path) -> str:
     """Return a text without the places of this machine, since results are published."""
     places = {str(work): "{work}", str(shared_data()): "{shared}", str(ROOT): "{root}"}
     for place, mark in places.items():
         text = text.replace(place, mark)
     return text
+
 
 def words_of(step: str, work: Path, number: int) -> list[str]:
     """Return the words of a step as they are run; ValueError for a program of another kind."""
@@ -365,6 +392,7 @@ def words_of(step: str, work: Path, number: int) -> list[str]:
         words.append(f"--junitxml={work / f'tests-{number}.xml'}")
     return [*PROGRAMS[program], *words]
 
+
 def _step(words: Sequence[str], log: Path) -> tuple[int, str]:
     """Run one command; what it prints goes to a file, which can be watched, and is returned."""
     environment = os.environ | {"W2M_SHARED_DATA": str(shared_data())}
@@ -373,6 +401,7 @@ def _step(words: Sequence[str], log: Path) -> tuple[int, str]:
             words, check=False, cwd=ROOT, env=environment, stdout=stream, stderr=subprocess.STDOUT
         )
     return done.returncode, log.read_text("utf-8", errors="replace")
+
 
 def _commit() -> tuple[str, bool]:
     """Return the last commit that changed the program, and whether the tree differs from HEAD.
@@ -387,9 +416,11 @@ def _commit() -> tuple[str, bool]:
     commit = git("log", "-1", "--format=%h", "--abbrev=10", "--", "src")
     return commit, bool(git("diff", "HEAD", "--name-only", "--", "src", "tests", "benchmarks"))
 
+
 def _cpu_s() -> float:
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
+
 
 def listed(areas: Sequence[Area], chosen: Sequence[Run], kept: dict[str, Result]) -> list[str]:
     """Return the lines of ``--list``: minutes by area, then each run with its lines."""
@@ -411,6 +442,7 @@ def listed(areas: Sequence[Area], chosen: Sequence[Run], kept: dict[str, Result]
     left = sum(run.minutes for run in chosen if run.name not in kept)
     return [*told, f"all: {whole / 60:.1f} hours of one core, {left / 60:.1f} of them not kept"]
 
+
 def _options(words: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.report", description=(__doc__ or "").partition("\n")[0]
@@ -423,6 +455,7 @@ def _options(words: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--anyway", action="store_true", help="run what lacks something, too")
     parser.add_argument("--markdown", action="store_true", help="write the page; nothing is run")
     return parser.parse_args(words)
+
 
 if __name__ == "__main__":
     sys.exit(main(sys.argv[1:]))

@@ -43,7 +43,7 @@ def test_what_the_navigation_names_is_there_and_named_once():
 
 def test_the_front_page_links_each_task():
     front = (ROOT / "docs" / "index.md").read_text()
-    linked = set(re.findall(r"\]\((how-to/[\w-]+\.md)\)", front))
+    linked = set(re.findall(r"\]\((how-to/[\w.-]+\.md)\)", front))
     tasks = {f"how-to/{path.name}" for path in ROOT.glob("docs/how-to/*.md")}
     assert tasks and not tasks ^ linked
 
