@@ -13,7 +13,7 @@ from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.precompile import compile_first
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.report import write_brief_report, write_report
-from world2minecraft.evaluation.scoring.truth_files import read_instances, read_truth
+from world2minecraft.evaluation.scoring.truth_files import read_colour, read_instances, read_truth
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_plan
 from world2minecraft.reconstruction.opening import prepare_and_open
 from world2minecraft.reconstruction.parameters import Parameters
@@ -51,7 +51,9 @@ def _run(
     truth = capture if (capture / "truth.npz").is_file() else None
     if truth is not None:
         # What is damaged is said before the work, not after it.
-        read_instances(read_truth(truth))
+        known = read_truth(truth)
+        read_instances(known)
+        read_colour(known)
     if start == "report":
         as_before = resume_parameters(out, start, STAGES, chosen).parameters
         scan = read_registered(prepare_and_open(capture, out, as_before, labels, progress), out)

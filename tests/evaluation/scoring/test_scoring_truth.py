@@ -1,5 +1,7 @@
 """The truth that is read, and the frame's error told apart from occupancy."""
 
+from zipfile import ZipFile
+
 import numpy as np
 import pytest
 from true_rooms import write_capture
@@ -43,6 +45,24 @@ def test_a_run_says_that_the_truth_is_damaged_before_any_work(name, tmp_path):
     room = write_capture(tmp_path / "capture")
     (room / name).write_bytes((room / name).read_bytes()[:-40])
     with pytest.raises(DamagedFileError, match=name):
+        run_capture(room, tmp_path / "OUT", Parameters())
+    assert not (tmp_path / "OUT").exists()
+
+
+@pytest.mark.parametrize("array", ["labels", "instance", "colour"])
+def test_each_array_of_the_truth_is_read_before_any_work(array, tmp_path):
+    room = write_capture(tmp_path / "capture")
+    path = room / "truth.npz"
+    with np.load(path) as archive:
+        arrays = dict(archive)
+    arrays["colour"] = np.full((*arrays["labels"].shape, 3), 200, np.uint8)
+    np.savez(path, **arrays)
+    with ZipFile(path) as archive:
+        info = archive.getinfo(f"{array}.npy")
+    content = bytearray(path.read_bytes())
+    content[info.header_offset + info.compress_size // 2 + 200] ^= 0xFF  # Beyond the header.
+    path.write_bytes(content)
+    with pytest.raises(DamagedFileError, match=r"truth\.npz"):
         run_capture(room, tmp_path / "OUT", Parameters())
     assert not (tmp_path / "OUT").exists()
 

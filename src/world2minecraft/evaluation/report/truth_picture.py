@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.coordinates import invert_rigid
-from world2minecraft.core.files import npz_array_names, read_npz
-from world2minecraft.evaluation.scoring.truth_files import read_instances, read_truth
+from world2minecraft.evaluation.scoring.truth_files import read_colour, read_instances, read_truth
 from world2minecraft.evaluation.scoring.used_frames import move_truth
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.formats.scan_record import read_source_to_scan
@@ -32,13 +31,9 @@ def truth_picture(folder: Path, truth: Path, view: PreviewView) -> np.ndarray | 
     """
     known = move_truth(read_truth(truth), read_source_to_scan(folder / "scan.json"))
     levels = {layout.floor_z_m for layout in known.layouts}
-    path = known.folder / "truth.npz"
     if known.is_partial or len(levels) != 1 or view.storeys != 1:
         return None
-    if "colour" not in npz_array_names(path):
-        return None
-    colour = read_npz(path, ("colour",))["colour"]
-    if colour.shape != (*known.labels.shape, 3) or colour.dtype != np.uint8:
+    if (colour := read_colour(known)) is None:
         return None
     _, scan_to_room = read_room(folder / "room.npz")
     room_to_truth = invert_rigid(scan_to_room @ known.truth_to_scan)

@@ -153,6 +153,20 @@ def read_instances(truth: Truth) -> np.ndarray:
     return instance
 
 
+def read_colour(truth: Truth) -> np.ndarray | None:
+    """Read the true colours as uint8 [A, B, C, 3], or return None for a truth without colours.
+
+    Raises:
+        DamagedFileError: If the array cannot be read.
+    """
+    path = truth.folder / "truth.npz"
+    if "colour" not in npz_array_names(path):
+        return None
+    colour = read_npz(path, ("colour",))["colour"]
+    is_valid = colour.shape == (*truth.labels.shape, 3) and colour.dtype == np.uint8
+    return colour if is_valid else None
+
+
 def _object(row: dict[str, Any]) -> LayoutObject:
     return LayoutObject(
         class_id(row["class"]), row["center_m"], row["size_m"], row["yaw_deg"], row["name"]
