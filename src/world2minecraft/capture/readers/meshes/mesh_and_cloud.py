@@ -15,7 +15,7 @@ MAX_POSITION = 1e15  # Squares of larger numbers are not finite as float32; none
 
 def are_places(positions: np.ndarray) -> np.ndarray:
     """Return for each position [N, 3] whether its numbers can be those of a place, bool [N]."""
-    return (np.abs(positions) <= MAX_POSITION).all(axis=1)
+    return np.all(np.abs(positions) <= MAX_POSITION, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
