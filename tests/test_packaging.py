@@ -9,6 +9,8 @@ from zipfile import ZipFile
 
 import pytest
 import yaml
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 import world2minecraft
 from world2minecraft import cli
@@ -54,6 +56,44 @@ def test_each_requirement_has_a_pin_above_its_bound(requirement):
 def test_pins_are_exact_sorted_and_name_no_host():
     assert all(re.fullmatch(r"[A-Za-z0-9._-]+==[0-9][0-9a-z.]*", line) for line in PINS)
     assert sorted(PINNED) == list(PINNED)
+
+
+def applies(requirement, extras):
+    """Whether a requirement applies to some supported Python and system."""
+    return requirement.marker is None or any(
+        requirement.marker.evaluate(
+            {
+                "python_version": f"3.{minor}",
+                "python_full_version": f"3.{minor}.1",
+                "sys_platform": system,
+                "platform_system": name,
+                "os_name": "nt" if system == "win32" else "posix",
+                "extra": extra,
+            }
+        )
+        for minor in (11, 12, 13, 14)
+        for system, name in (("linux", "Linux"), ("darwin", "Darwin"), ("win32", "Windows"))
+        for extra in extras or ("",)
+    )
+
+
+def test_all_packages_that_are_needed_indirectly_are_pinned():
+    """A package without a pin could not be installed from files with hashes."""
+    pinned = {canonicalize_name(name) for name in PINNED}
+    missing, done, left = set(), set(), [("world2minecraft", tuple(EXTRAS))]
+    while left:
+        package, extras = item = left.pop()
+        try:
+            texts = () if item in done else metadata.requires(package) or ()
+        except metadata.PackageNotFoundError:
+            continue  # Of another system.
+        done.add(item)
+        for requirement in map(Requirement, texts):
+            name = canonicalize_name(requirement.name)
+            if applies(requirement, extras) and name != "world2minecraft":
+                missing |= {name} - pinned
+                left.append((name, tuple(sorted(requirement.extras))))
+    assert not missing
 
 
 @pytest.mark.parametrize("name", ["Makefile", "constraints.txt", ".ci/run", "pyproject.toml"])

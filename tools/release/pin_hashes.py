@@ -12,7 +12,7 @@ import json
 import re
 import sys
 import urllib.request
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import PackageNotFoundError, requires
 from pathlib import Path
@@ -25,7 +25,7 @@ PINS, FOLDER = ROOT / "constraints.txt", ROOT / "tools/release"
 INDEX = "https://pypi.org/simple"
 JSON = "application/vnd.pypi.simple.v1+json"
 MAX_BYTES = 64 << 20
-NEWEST = 14  # The minor version of the last Python, for the stable ABI of older ones.
+MINORS = range(11, 15)  # Python 3.11 to 3.14.
 HEAD = """\
 # By python tools/release/pin_hashes.py: {what}, with the files on the package index.
 """
@@ -39,34 +39,53 @@ def pins(text: str) -> Iterator[tuple[str, str]]:
             yield name, version
 
 
-def is_wanted(filename: str) -> bool:
-    """Return whether a file is a wheel that Python 3.11 to 3.14 installs.
+def pythons_of(filename: str) -> set[int]:
+    """Return the minor versions of Python, 11 to 14, that can install a file.
 
     Example:
-        >>> names = ("a-1-py3-none-any.whl", "a-1-cp310-cp310-win32.whl", "a-1.tar.gz")
-        >>> [is_wanted(name) for name in (*names, "a-1-cp39-abi3-win32.whl")]
-        [True, False, False, True]
+        >>> names = ("a-1-cp310-cp310-win32.whl", "a-1-cp312-cp312-win32.whl", "a-1.tar.gz")
+        >>> [pythons_of(name) for name in (*names, "a-1-cp313-abi3-win32.whl")]
+        [set(), {12}, set(), {13, 14}]
     """
     if not filename.endswith(".whl"):
-        return False
+        return set()
+    found = set[int]()
     for tag in parse_wheel_filename(filename)[3]:
         minor = int(tag.interpreter[3:]) if re.fullmatch(r"cp3\d+", tag.interpreter) else 0
-        stable = tag.abi == "abi3" and minor <= NEWEST
-        if tag.interpreter == "py3" or (minor >= 11 and minor <= NEWEST) or stable:
-            return True
-    return False
+        for python in MINORS:
+            stable = tag.abi == "abi3" and 0 < minor <= python
+            if tag.interpreter == "py3" or minor == python or stable:
+                found.add(python)
+    return found
 
 
-def hashes_of(name: str, version: str) -> list[str]:
-    """Return the hashes of the files of one version, or those of its source archives."""
+def marker_of(filenames: Iterable[str]) -> str:
+    """Return the environment marker of a version that some Python has no wheel of, or "".
+
+    Example:
+        >>> marker_of(f"a-1-cp3{minor}-cp3{minor}-win32.whl" for minor in (11, 12, 13))
+        'python_version != "3.14"'
+        >>> marker_of(["a-1.tar.gz"])
+        ''
+    """
+    found = set[int]().union(*map(pythons_of, filenames))
+    missing = [python for python in MINORS if found and python not in found]
+    return " and ".join(f'python_version != "3.{python}"' for python in missing)
+
+
+def files_of(name: str, version: str) -> dict[str, str]:
+    """Return the wheels of one version, or its source archives, with their hashes."""
     request = urllib.request.Request(f"{INDEX}/{name}/", headers={"Accept": JSON})
     with urllib.request.urlopen(request, timeout=60) as answer:
         files = json.loads(answer.read(MAX_BYTES))["files"]
     plain = "[-_.]+".join(map(re.escape, re.split(r"[-_.]+", name)))
     of_version = re.compile(rf"{plain}-{re.escape(version)}(?:-.*\.whl|\.tar\.gz|\.zip)$", re.I)
-    fitting = [file for file in files if of_version.match(file["filename"])]
-    wheels = [file for file in fitting if is_wanted(file["filename"])]
-    return sorted(file["hashes"]["sha256"] for file in wheels or fitting)
+    found = {
+        file["filename"]: file["hashes"]["sha256"]
+        for file in files
+        if of_version.match(file["filename"])
+    }
+    return {file: digest for file, digest in found.items() if pythons_of(file)} or found
 
 
 def needed_names(package: str, known: Iterable[str]) -> set[str]:
@@ -97,11 +116,20 @@ def _is_installed(name: str) -> bool:
     return True
 
 
+def _line(name: str, version: str, files: Iterable[str]) -> str:
+    marker = marker_of(files)
+    return f"{name}=={version}" + (f" ; {marker}" if marker else "")
+
+
+def _hash_options(files: Mapping[str, str]) -> list[str]:
+    return [f"    --hash=sha256:{digest}" for digest in sorted(files.values())]
+
+
 def main() -> int:
     """Write the files; return the exit code."""
     wanted = list(pins(PINS.read_text()))
     with ThreadPoolExecutor(8) as pool:
-        found = list(pool.map(lambda pin: hashes_of(*pin), wanted))
+        found = list(pool.map(lambda pin: files_of(*pin), wanted))
     listed = dict(zip(wanted, found, strict=True))
     if missing := [f"{name}=={version}" for (name, version), held in listed.items() if not held]:
         print(f"the index has no files of {', '.join(missing)}", file=sys.stderr)
@@ -112,8 +140,8 @@ def main() -> int:
         ("requirements-all.txt", "all of constraints.txt", {name for name, _ in wanted}),
     ):
         rows = [
-            " \\\n".join([f"{name}=={version}", *(f"    --hash=sha256:{one}" for one in held)])
-            for (name, version), held in listed.items()
+            " \\\n".join([_line(name, version, files), *_hash_options(files)])
+            for (name, version), files in listed.items()
             if name in names
         ]
         (FOLDER / file).write_text(HEAD.format(what=what) + "\n".join(rows) + "\n")
