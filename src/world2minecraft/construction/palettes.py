@@ -106,6 +106,10 @@ def parse_piece(raw: Any) -> FurniturePiece:
         if key in raw and raw[key] not in choices:
             raise ValueError(f"{key} must be one of {', '.join(choices)}, got {raw[key]!r}")
     listed = raw.get("cells", [{"id": raw.get("id"), "properties": raw.get("properties", {})}])
+    if not isinstance(listed, list) or not listed:
+        raise ValueError(
+            f"cells must be a list of blocks, such as [{{id: mod:oak_chair}}], got {_short(listed)}"
+        )
     cells = tuple(_cell(one) for one in listed)
     if len(cells) > 1 and raw.get("fill", "one") != "one":
         raise ValueError("a furniture piece of several cells must have fill: one")
@@ -256,7 +260,7 @@ def parse_palette(raw: Any) -> Palette:
 def _extend(keys: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a palette merged with those of the palette it extends."""
     base = keys.get("extends", "vanilla")
-    if base not in PALETTE_FILES:
+    if not isinstance(base, str) or base not in PALETTE_FILES:
         raise ValueError(f"extends must be one of {', '.join(PALETTE_FILES)}, got {base!r}")
     below = json.loads(shipped_palette_text(base))
     if "extends" in below:
