@@ -72,13 +72,14 @@ def test_a_seat_rests_on_its_posts_at_every_turn():
     for turns in range(4):
         placement = Placement(1, 5, "chair", [1.0, 1.0, 0.44], [0.48, 0.48, 0.88], turns, 0.5)
         parts = chair.parts(placement.size_m, placement.parameters)
-        lattice = lattice_over(chairs((BROWN, SHADE))[0], np.array([0.0, 2.0]), 4.0, 2.0)
+        lattice = lattice_over(chairs((BROWN, SHADE))[0], np.array([0.0, 2.0]), 4.0)
         design = half_block_design(placement, parts, lattice)
         seat = next(n for n, part in enumerate(parts, 1) if part.role == "seat")
         seats = np.argwhere(design.part == seat)
         assert len(seats) and (design.halves[tuple(seats.T)] == LOWER).all()
         below = seats - [0, 0, 1]
-        assert design.posts[tuple(below.T)].all()
+        legs = [n for n, part in enumerate(parts, 1) if part.role == "leg"]
+        assert np.isin(design.part[tuple(below.T)], legs).all()
         back = next(n for n, part in enumerate(parts, 1) if part.role == "back")
         column = np.unique(np.argwhere(design.part == back)[:, :2], axis=0)
         for x, y in column:

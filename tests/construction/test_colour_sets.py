@@ -51,7 +51,7 @@ def united(boxes, class_id, names, paints):
     colours = np.zeros((*grid.shape, 3), np.float32)
     for one, paint in zip(things, paints, strict=True):
         colours[tuple(one.cells.T)] = paint
-    found = unify_sets(grid, things, colours, grid.occupied)
+    found = unify_sets(things, colours, grid.occupied)
     return [found[tuple(one.cells.T)] for one in things]
 
 
@@ -84,7 +84,7 @@ def test_a_worktop_keeps_its_colour_in_a_row():
     colours = np.where(grid.labels[..., None] > 0, BIRCH, 0).astype(np.float32)
     colours[8:16, :3] = OAK
     colours[:, :, 3] = RED
-    found = unify_sets(grid, things, colours, grid.occupied)
+    found = unify_sets(things, colours, grid.occupied)
     assert (found[:16, :3, 3] == RED).all()
     assert (found[:16, :3, :3] == found[0, 0, 0]).all()
 

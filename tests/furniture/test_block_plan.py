@@ -98,7 +98,7 @@ def test_a_back_of_cloth_is_whole():
 
 def test_a_trestle_has_a_leg_at_either_end_and_a_top_between():
     plan = _plan(1, 4, 1)
-    lay_trestle(plan, "top")
+    lay_trestle(plan)
     names = [block.state.partition("[")[0] for block in plan.blocks]
     stairs, slab = "minecraft:oak_stairs", "minecraft:oak_slab"
     assert names == [stairs, slab, slab, stairs]

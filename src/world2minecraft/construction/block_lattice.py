@@ -90,16 +90,14 @@ def snap_corner_m(grid: OccupancyGrid, corner_m: np.ndarray) -> np.ndarray:
     return np.round(np.asarray(corner_m, np.float64) / grid.voxel_m) * grid.voxel_m
 
 
-def lattice_over(
-    grid: OccupancyGrid, corner_m: np.ndarray, blocks_per_metre: float, top_m: float = 0.0
-) -> Lattice:
+def lattice_over(grid: OccupancyGrid, corner_m: np.ndarray, blocks_per_metre: float) -> Lattice:
     """Return the lattice that covers a whole grid, the floor layer and a margin.
 
     Raises:
         UsageError: If the lattice would have more than ``MAX_BLOCKS`` blocks.
     """
     ends_m = np.stack([grid.origin_m, grid.origin_m + np.array(grid.shape) * grid.voxel_m])
-    ends_m[1, 2] = max(ends_m[1, 2], top_m)
+    ends_m[1, 2] = max(ends_m[1, 2], 0.0)
     ends = apply(room_to_block(corner_m, blocks_per_metre), ends_m)
     low = np.floor(ends.min(0) + 1e-6).astype(int) - MARGIN
     high = np.ceil(ends.max(0) - 1e-6).astype(int) + MARGIN

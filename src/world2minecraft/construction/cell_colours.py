@@ -10,7 +10,7 @@ from world2minecraft.minecraft.block_colours import colour_of
 
 # Exposure: photos of rooms come out darker than their surfaces are, by one factor. The linear light
 # that surfaces usually reflect, and how far that varies, in natural logarithms: paint of ceilings
-# and walls is pale, floors and things are anything.
+# and walls is pale, floors and objects vary.
 REFLECTANCES = {
     int(SemanticClass.CEILING): (0.75, 0.4),
     int(SemanticClass.WALL): (0.6, 0.5),
@@ -26,7 +26,7 @@ FAINT_CHROMA, CLEAR_CHROMA = 0.02, 0.06
 # Wood lies within these degrees of hue; red begins where they fade out.
 WOOD_HUE, WOOD_REACH, WOOD_FADE = 65.0, 20.0, 10.0
 # A paint: so many cells (1 m2 at 8 cm) of a strong chroma within a few degrees of one hue. The
-# reach is that of the kitchen's reds in haze; lightness tells a pink thing from a red one.
+# reach is that of the kitchen's reds in haze; lightness distinguishes pink from red.
 STRONG_CHROMA, PAINT_CELLS, MAX_PAINTS = 0.09, 150, 3
 HUE_BIN, PAINT_REACH, PAINT_LIGHT = 15.0, 25.0, 0.2
 NEAR_BLOCKS = 2.0  # Unseen blocks take the colour of the nearest seen one within this.
@@ -79,7 +79,7 @@ def boost_saturation(oklab: np.ndarray, saturation: float) -> np.ndarray:
     chroma = np.hypot(oklab[:, 1], oklab[:, 2])
     clear = np.clip((chroma - FAINT_CHROMA) / (CLEAR_CHROMA - FAINT_CHROMA), 0, 1)
     hue = np.degrees(np.arctan2(oklab[:, 2], oklab[:, 1]))
-    off_wood = np.abs((hue - WOOD_HUE + 180) % 360 - 180)
+    off_wood = np.abs(_turn(hue - WOOD_HUE))
     clear *= np.clip((off_wood - WOOD_REACH) / WOOD_FADE, 0, 1)
     result = oklab.astype(np.float32)
     result[:, 1:] *= (1 + (saturation - 1) * clear)[:, None]

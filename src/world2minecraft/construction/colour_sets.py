@@ -29,7 +29,6 @@ LIT_SCREEN, DARK_SCREEN = 0.8, 0.2
 
 
 def unify_sets(
-    grid: OccupancyGrid,
     instances: Sequence[ObjectInstance],
     colours: np.ndarray,
     usable: np.ndarray,
@@ -37,8 +36,7 @@ def unify_sets(
     """Return Oklab colours, float32 [X, Y, Z, 3], in which the objects of a set share their paint.
 
     Args:
-        grid: Grid of the room.
-        instances: Its objects.
+        instances: Objects of the room.
         colours: Oklab colours, float32 [X, Y, Z, 3].
         usable: Bool [X, Y, Z] mask of the cells with a valid colour.
     """
@@ -66,7 +64,7 @@ def darken_screens(
 ) -> np.ndarray:
     """Return Oklab colours, float32 [X, Y, Z, 3], in which screens that are not lit are black.
 
-    The arguments are those of ``unify_sets``.
+    The arguments are those of ``unify_sets`` and the grid of the room.
     """
     result = colours.copy()
     cells = usable & (grid.labels == SemanticClass.TVS)

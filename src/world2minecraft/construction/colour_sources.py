@@ -36,16 +36,10 @@ class ColourSource:
     def __init__(
         self, grid: OccupancyGrid, colours: np.ndarray, coloured: np.ndarray, close_tops: bool
     ):
-        self.grid, self.colours, self.coloured, self.close_tops = (
-            grid,
-            colours,
-            coloured,
-            close_tops,
-        )
-        free = (grid.labels == 0) & (grid.source != UNSEEN)
-        self.exposed = dilate_faces(
-            free
-        )  # What lies inside an object says nothing of how it looks.
+        self.grid, self.colours, self.coloured = grid, colours, coloured
+        self.close_tops = close_tops
+        # Only cells beside free space show how an object looks.
+        self.exposed = dilate_faces((grid.labels == 0) & (grid.source != UNSEEN))
 
     def with_tops(self, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return an object's cells with its top closed, and the cell that colours each of them.
@@ -61,7 +55,7 @@ class ColourSource:
 
     def stretched(
         self, cells: np.ndarray, placement: Placement, low: np.ndarray, shape: Sequence[int]
-    ) -> "ColourSamples":
+    ) -> ColourSamples:
         """Return the colour samples of a placement stretched to the box of its block design.
 
         A design snapped to blocks can be up to half a block away from the object. Stretching
@@ -75,7 +69,7 @@ class ColourSource:
         blocks = np.floor(share[near] * np.array(shape)).astype(int)
         return ColourSamples(samples[near], np.clip(blocks, 0, np.array(shape) - 1) + low)
 
-    def colours_of(self, samples: "ColourSamples") -> tuple[np.ndarray, np.ndarray]:
+    def colours_of(self, samples: ColourSamples) -> tuple[np.ndarray, np.ndarray]:
         """Return the colours of samples, float32 [N, 3], and the bool [N] mask of valid colours."""
         at = tuple(samples.cells.T)
         usable = self.coloured[at] & self.exposed[at]

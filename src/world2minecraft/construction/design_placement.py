@@ -56,12 +56,10 @@ OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A 
 OWN_LOOK, OWN_LIGHT = 0.1, 0.63
 CLEAR_CHROMA, CLEAR_SHARE = 0.06, 0.3
 SOLID_SHAPES = ("full", "slab", "stairs")
-PLAIN_PAINTS = 3  # Blocks of one plain role: a front, its trim and one thing in it.
+PLAIN_PAINTS = 3  # Blocks of one plain role: a front, its trim and one object in it.
 _KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
-LIFTED_UNDER, HIGH_M = (
-    1.5,
-    1.2,
-)  # Blocks per metre; what hangs so high over the floor has air below.
+# Blocks per metre below which an object this high above the floor keeps air below.
+LIFTED_UNDER, HIGH_M = 1.5, 1.2
 TIE = 1e-6
 OWN_COLOUR = 0.1  # Oklab distance up to which a design's full block keeps its own look. A guess.
 
@@ -334,11 +332,11 @@ def filled_blocks(design: BlockDesign) -> np.ndarray:
     """Return the bool [X, Y, Z] mask, in room axes, of the blocks that a design fills."""
     along, up, across = design.size
     filled = np.zeros((along, across, up), bool)
-    filled[tuple(_cells_of(design).T)] = True
+    filled[tuple(design_cells(design).T)] = True
     return filled
 
 
-def _cells_of(design: BlockDesign) -> np.ndarray:
+def design_cells(design: BlockDesign) -> np.ndarray:
     """Return the positions of a design's blocks in its box, int [N, 3] in room axes."""
     offsets = np.array([block.offset for block in design.blocks]).reshape(-1, 3)
     # Offsets are in block axes already: their inverse map is the map itself.
@@ -353,7 +351,7 @@ def place_design(
     own_colours: ObjectColours,
     palette: Palette,
     within: np.ndarray,
-    parameters: BuildParameters | None = None,
+    parameters: BuildParameters,
 ) -> None:
     """Set the blocks of a design in the colours of its object, without overwriting other blocks.
 
@@ -368,8 +366,8 @@ def place_design(
         parameters: Weights of the colour comparison.
     """
     shape = canvas.states.shape
-    local = _cells_of(design)
-    states = _states(design, local, thing, own_colours, palette, parameters or BuildParameters())
+    local = design_cells(design)
+    states = _states(design, local, thing, own_colours, palette, parameters)
     for cell, state in zip(local.tolist(), states, strict=True):
         at = tuple((low + cell).tolist())
         if any(i >= side for i, side in zip(at, shape, strict=True)) or canvas.states[at]:
@@ -422,10 +420,21 @@ def recolour_state(state: str, colour: np.ndarray) -> str:
         kind = _kind_of(name, kinds)
         if kind is None or kind in _KEPT_DYES:
             continue
-        offered = srgb_to_oklab(colours_of([each + sample for each in kinds]))
-        best = kinds[int(nearest_oklab(colour[None], offered)[0])]
+        best = nearest_kind(kinds, sample, colour)
         return f"{namespace}:{best}{name.removeprefix(kind)}{bracket}{properties}"
     return state
+
+
+def nearest_kind(kinds: Sequence[str], sample: str, colour: np.ndarray) -> str:
+    """Return the wood or dye closest to an Oklab colour, float32 [3].
+
+    Args:
+        kinds: Names of woods or dyes.
+        sample: Ending of the block that shows the colour of a kind, such as ``_planks``.
+        colour: The colour.
+    """
+    offered = srgb_to_oklab(colours_of([kind + sample for kind in kinds]))
+    return kinds[int(nearest_oklab(colour[None], offered)[0])]
 
 
 def _kind_of(name: str, kinds: tuple[str, ...]) -> str | None:

@@ -122,7 +122,9 @@ def _columns(
     return [(n, m) if gap.axis == 0 else (m, n) for n, m in found]
 
 
-def _head_blocks(gap: Gap, free, grid, lattice, ground: int) -> int:
+def _head_blocks(
+    gap: Gap, free: np.ndarray, grid: OccupancyGrid, lattice: Lattice, ground: int
+) -> int:
     """Return the height of a gap in blocks, at least two."""
     spans = (gap.along, gap.across) if gap.axis == 0 else (gap.across, gap.along)
     window = free[slice(*spans[0]), slice(*spans[1])]

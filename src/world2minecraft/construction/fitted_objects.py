@@ -124,11 +124,28 @@ def _plan(
     """
     if placement.class_id != SemanticClass.FURN:
         return None, None
+    count, start = size_at_wall(placement, sizes, middle)
+    along, across = count.tolist()
+    return (along, across), start
+
+
+def size_at_wall(
+    placement: Placement, sizes: np.ndarray, middle: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the size of a placement with its sides rounded to blocks, and its first block.
+
+    Args:
+        placement: The placement.
+        sizes: Its size along its own axes in blocks, float64 [3].
+        middle: Its centre on the lattice, float64 [3].
+
+    Returns:
+        The whole blocks along its own axes and its first block along x and y, int [2] each.
+    """
     odd = placement.quarter_turns % 2
     turned = sizes[:2][::-1] if odd else sizes[:2]
     # Halves go outward on both sides, so that a turn or a mirror image changes nothing.
     start = np.ceil(middle[:2] - turned / 2 - 0.5 - TIE).astype(int)
     end = np.floor(middle[:2] + turned / 2 + 0.5 + TIE).astype(int)
     count = np.maximum(end - start, 1)
-    along, across = (count[::-1] if odd else count).tolist()
-    return (along, across), start
+    return (count[::-1] if odd else count), start

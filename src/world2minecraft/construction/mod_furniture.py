@@ -10,16 +10,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.design_placement import design_box
+from world2minecraft.construction.design_placement import design_box, design_cells, nearest_kind
 from world2minecraft.construction.palettes import FACINGS, FurniturePiece
-from world2minecraft.core.coordinates import cells_to_block_axes
-from world2minecraft.core.types import OccupancyGrid, Placement
+from world2minecraft.core.types import OWN_CELLS, OccupancyGrid, Placement
 from world2minecraft.furniture import BlockDesign, template
 from world2minecraft.furniture.block_designs import block_size, lay_template
 from world2minecraft.furniture.solid_parts import own_cells
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Span, Template
-from world2minecraft.geometry.colour import srgb_to_oklab
-from world2minecraft.minecraft.block_colours import DYES, WOODS, colours_of, nearest_oklab
+from world2minecraft.minecraft.block_colours import DYES, WOODS
 from world2minecraft.minecraft.block_states import BlockState, parse_state
 
 SLACK = 0.7  # Blocks by which an object may be larger than a piece of a fixed size.
@@ -40,7 +38,7 @@ def mod_furniture(
         blocks_per_metre: Scale of the build.
         colour: Oklab colour of the object, float32 [3], or None if unknown.
     """
-    if not pieces or placement.template == "cells":
+    if not pieces or placement.template == OWN_CELLS:
         return None
     found = template(placement.template)
     size = block_size(placement.size_m, blocks_per_metre)
@@ -92,8 +90,7 @@ def place_mod_furniture(
 def _put(canvas: Canvas, found: BlockDesign, placement: Placement, within: np.ndarray) -> bool:
     """Set a piece if all of its blocks are free, and return whether it was set."""
     low, _ = design_box(found, placement, canvas.lattice)
-    offsets = np.array([block.offset for block in found.blocks])
-    at = cells_to_block_axes(offsets[:, [0, 2, 1]], found.size[2])[:, [0, 2, 1]] + low
+    at = design_cells(found) + low
     inside = ((at >= 0) & (at < canvas.states.shape)).all(axis=1)
     if not inside.all() or canvas.states[tuple(at.T)].any() or not within[tuple(at.T)].all():
         return False  # Half a piece of a mod is worse than the whole of another design.
@@ -143,10 +140,7 @@ def _choose_material(name: str, colour: np.ndarray | None) -> str:
     for word, kinds, sample in (("{wood}", WOODS, "_planks"), ("{dye}", DYES, "_wool")):
         if word not in name:
             continue
-        best = kinds[0]
-        if colour is not None:
-            offered = srgb_to_oklab(colours_of([kind + sample for kind in kinds]))
-            best = kinds[int(nearest_oklab(colour[None], offered)[0])]
+        best = kinds[0] if colour is None else nearest_kind(kinds, sample, colour)
         name = name.replace(word, best)
     return name
 

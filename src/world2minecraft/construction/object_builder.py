@@ -1,7 +1,6 @@
 """Build objects as blocks, from template parts or designs, or from their own cells."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -55,7 +54,9 @@ from world2minecraft.construction.surface_painting import (
 from world2minecraft.construction.template_blocks import (
     LATE_RANKS,
     ShapePainter,
+    cells_near,
     half_block_design,
+    max_free_share,
     placement_order,
     within_storeys,
 )
@@ -63,11 +64,9 @@ from world2minecraft.construction.template_substitution import substitute_templa
 from world2minecraft.construction.wall_screens import let_into_wall
 from world2minecraft.construction.worktops import PlateBuilder
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
-from world2minecraft.core.types import UNSEEN, ObjectInstance, Placement
+from world2minecraft.core.types import OWN_CELLS, UNSEEN, ObjectInstance, Placement
 from world2minecraft.furniture import BlockDesign, block_design, template
-from world2minecraft.furniture.solid_parts import own_cells
 
-CELLS = "cells"
 UPHOLSTERED = (SemanticClass.SOFA, SemanticClass.BED)
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
 PLAIN = {"full", "slab"}  # Of so few blocks a bed or cupboard with stairs and panels is rubble.
@@ -123,7 +122,7 @@ class ObjectBuilder:
             placements = substitute_templates(placements, self._cells_of, self.colour_source)
         self.paints |= self._upholstery(placements)
         held = {id(one): self._cells_of(one) for one in placements}
-        own = [one for one in placements if one.template == CELLS or voxels]
+        own = [one for one in placements if one.template == OWN_CELLS or voxels]
         simple = set() if voxels else {id(one) for one in own if one.object_id in self.uncertain}
         own = [one for one in own if id(one) not in simple]
         solids = make_solids(own, held, self.colour_source)
@@ -133,7 +132,7 @@ class ObjectBuilder:
             well = good_fits(placements, held, solids, self.colour_source, self.lattice, kinds)
         for placement in sorted(placements, key=placement_order):
             cells = held[id(placement)]
-            known = placement.template != CELLS
+            known = placement.template != OWN_CELLS
             if id(placement) in simple:
                 self.put_simple(placement.class_id, placement.object_id)
             elif id(placement) in well:
@@ -160,7 +159,7 @@ class ObjectBuilder:
         covered = [
             one.object_id
             for one in placements
-            if one.template != CELLS and one.class_id in UPHOLSTERED
+            if one.template != OWN_CELLS and one.class_id in UPHOLSTERED
         ]
         result = {}
         for number in sorted({one for one in covered if covered.count(one) > 1}):
@@ -199,7 +198,7 @@ class ObjectBuilder:
         """
         if self.lattice.blocks_per_metre >= FINE_SCALE or self.parameters.style == "voxels":
             return np.zeros(self.grid.shape, bool)
-        own = {one.object_id for one in placements if one.template == CELLS}
+        own = {one.object_id for one in placements if one.template == OWN_CELLS}
         designed = {one.object_id for one in placements} - own
         return np.isin(self.grid.instance, sorted(designed & set(np.unique(self.canvas.instance))))
 
@@ -218,9 +217,7 @@ class ObjectBuilder:
         return result
 
     def _cells_of(self, placement: Placement) -> np.ndarray:
-        """Return the cells of a placement's object in or next to its box, int [N, 3]."""
-        reach = 2 * self.grid.voxel_m
-        return own_cells(replace(placement, size_m=placement.size_m + reach), self.grid)
+        return cells_near(placement, self.grid)
 
     def _kinds_of_placement(self, cells: np.ndarray, placement: Placement) -> frozenset[str]:
         return self._kinds(cells, ObjectLabel(placement.class_id, placement.object_id))
@@ -344,7 +341,9 @@ class ObjectBuilder:
             design = design_of_halves(coarse.low, coarse.halves, coarse.part)
         window = self._window(design)
         guessed = not forced and placement.iou < SURE_IOU
-        if guessed and self._free_share(design, window) > self._limit(placement):
+        if guessed and self._free_share(design, window) > max_free_share(
+            placement, self.parameters
+        ):
             return False
         design = design.moved(self._step(design.filled, design.low))
         self.plates.plate_over(design.filled, design.low, thing.instance)
@@ -370,7 +369,7 @@ class ObjectBuilder:
         else:
             filled = filled_blocks(found)
             guessed = not forced and placement.iou < SURE_IOU
-            if guessed and self._open_in(filled, low) > self._limit(placement):
+            if guessed and self._open_in(filled, low) > max_free_share(placement, self.parameters):
                 return False
             low = low + self._step(filled, low, held=placement.iou >= SURE_IOU)
         self.plates.plate_over(filled_blocks(found), low, thing.instance)
@@ -385,12 +384,6 @@ class ObjectBuilder:
         )
         self.fitted[tuple(cells.T)] = True
         return True
-
-    def _limit(self, placement: Placement) -> float:
-        """Return the maximum share of a design in space seen as free."""
-        if placement.class_id == SemanticClass.CHAIR:
-            return self.parameters.chair_contradicted
-        return self.parameters.most_contradicted
 
     def _open_in(self, filled: np.ndarray, low: np.ndarray) -> float:
         """Return the share of blocks, bool [X, Y, Z] at ``low``, that were seen as free."""
@@ -443,7 +436,7 @@ class ObjectBuilder:
         blocks[:, 2] = np.maximum(blocks[:, 2], self.lattice.ground)
         return blocks
 
-    def _put_shapes(self, design: Design, samples: ColourSamples, thing: "ObjectLabel") -> None:
+    def _put_shapes(self, design: Design, samples: ColourSamples, thing: ObjectLabel) -> None:
         """Paint a design and place it.
 
         Blocks without a colour take the colour of their part.

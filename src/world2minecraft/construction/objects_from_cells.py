@@ -33,8 +33,7 @@ from world2minecraft.construction.fitting import (
 from world2minecraft.construction.fitting.shapes import SUB
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
-from world2minecraft.furniture.solid_parts import OWN_CELLS
+from world2minecraft.core.types import OWN_CELLS, UNSEEN, OccupancyGrid, Placement
 
 PHASES = 4  # Shifts of a quarter block along x and y; finer ones changed nothing in reference/fit.
 # What is closed: nobody sees into it, so what lies unseen under its skin belongs to it.

@@ -27,8 +27,6 @@ FAINT, FADED = 0.015, 2.2  # Chroma that is noise, and what fading weighs above 
 OWN = 0.1  # How far a shape of a block's own material may look off it.
 SAME = 0.04  # A shape of a block's own material, or of one that looks the same.
 HANDICAPS = {"iron_trapdoor": 0.02}  # Taken only where it is clearly nearer.
-
-
 # Screens are not made of wood, and no panel is black enough. On cushions, trapdoors look like
 # grilles and planks like crates.
 EXCLUDED_KINDS = {

@@ -9,10 +9,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import PLAYER_EYE_BLOCKS, ROOM_CORNER_BLOCK
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.geometry.connected_components import label_face_components
-from world2minecraft.geometry.morphology import (
-    erode_faces,
-    nearest_set_cells,
-)
+from world2minecraft.geometry.morphology import erode_faces, nearest_set_cells
 
 PLAYER_BLOCKS = 2  # 1.8 high.
 CLEARANCE = 3.0  # Blocks to the nearest thing beyond which more room is worth no more. A guess.
@@ -48,8 +45,8 @@ def find_spawn(volume: BlockVolume) -> Spawn:
     best = int(np.argmax(np.round(score, 6)))
     x, z = cells[best]
     yaw = float(np.degrees(np.arctan2(-offsets[best, 0], offsets[best, 1])))
-    position = (volume.corner[0] + x + 0.5, float(ROOM_CORNER_BLOCK[1]), volume.corner[2] + z + 0.5)
-    return Spawn((float(position[0]), position[1], float(position[2])), round(yaw, 3))
+    east, south = float(volume.corner[0] + x + 0.5), float(volume.corner[2] + z + 0.5)
+    return Spawn((east, float(ROOM_CORNER_BLOCK[1]), south), round(yaw, 3))
 
 
 def standing_cells(volume: BlockVolume) -> np.ndarray:

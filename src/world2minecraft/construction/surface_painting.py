@@ -39,10 +39,8 @@ SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise
 MAX_DISTANCES = 1 << 20  # Blocks times candidates compared at once: some 150 MB.
 SAME_SET = 0.08  # Oklab, lightness as light as in the choice of blocks: brown and grey are 0.1.
 LIGHTER_SHARE = 0.5
-MIN_HUE_CHROMA, MIN_HUE_SHARE = (
-    0.03,
-    0.3,
-)  # Over sensor noise; grey cushions leave so much of a frame.
+# Above sensor noise, and the share of a chair that its frame has beside grey cushions.
+MIN_HUE_CHROMA, MIN_HUE_SHARE = 0.03, 0.3
 NEW_PAINT = 0.05  # What a block must be nearer by to come in beside those that the room has.
 DISTINGUISHABLE = 0.06  # Oklab distance of two blocks that one tells apart at a glance; a guess.
 
@@ -360,9 +358,7 @@ def _distinct_choices(choices: tuple[str, ...], beside: frozenset[str]) -> tuple
     return tuple(np.array(choices)[is_distinct].tolist()) or choices
 
 
-def place_painted(
-    canvas: Canvas, mask: np.ndarray, states: np.ndarray, class_id: int, instance: int = 0
-) -> None:
+def place_painted(canvas: Canvas, mask: np.ndarray, states: np.ndarray, class_id: int) -> None:
     """Set the blocks of a mask to the states returned by ``paint_surface``."""
     names, index = np.unique(states.astype(str), return_inverse=True)
-    canvas.put(mask, canvas.ids_of(names.tolist())[index], class_id, instance)
+    canvas.put(mask, canvas.ids_of(names.tolist())[index], class_id)

@@ -6,13 +6,18 @@ equal chairs stay equal.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.construction.block_lattice import Lattice
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.fitted_objects import Design, halves_from_layers
+from world2minecraft.construction.fitted_objects import (
+    Design,
+    halves_from_layers,
+    size_at_wall,
+)
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.shape_materials import (
@@ -24,9 +29,9 @@ from world2minecraft.construction.shape_materials import (
 from world2minecraft.construction.surface_painting import BlockChoice, paint_surface
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.core.types import Placement
+from world2minecraft.core.types import OWN_CELLS, OccupancyGrid, Placement
 from world2minecraft.furniture import Part
-from world2minecraft.furniture.solid_parts import OWN_CELLS
+from world2minecraft.furniture.solid_parts import own_cells
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.morphology import dilate
 from world2minecraft.minecraft.block_colours import colours_of
@@ -36,7 +41,6 @@ PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glar
 MAX_COLOUR_LOSS = 0.06  # Oklab distance that a colour may lose for the sake of a shape.
 MAX_COLOURS = 400  # Maximum number of an object's colours to search for shapes.
 THIN = 0.75  # Blocks: a part thinner than this along an axis is one layer.
-TIE = 1e-6
 POST = 0.5  # Blocks: an upright part thinner than this both ways is a post.
 
 
@@ -48,6 +52,18 @@ def within_storeys(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarr
         columns = dilate(footprint, (1, 1)) | walls[:, :, ground:top].any(axis=2)
         within[:, :, ground:top] = columns[:, :, None]
     return within
+
+
+def cells_near(placement: Placement, grid: OccupancyGrid) -> np.ndarray:
+    """Return the cells of a placement's object in or next to its box, int64 [N, 3]."""
+    return own_cells(replace(placement, size_m=placement.size_m + 2 * grid.voxel_m), grid)
+
+
+def max_free_share(placement: Placement, parameters: BuildParameters) -> float:
+    """Return the maximum share of a template's blocks in space seen as free."""
+    if placement.class_id == SemanticClass.CHAIR:
+        return parameters.chair_contradicted
+    return parameters.most_contradicted
 
 
 def placement_order(placement: Placement) -> tuple:
@@ -128,7 +144,6 @@ class HalfBlockDesign(NamedTuple):
     low: np.ndarray  # int [3], the lattice index of the first block
     halves: np.ndarray  # uint8 [X, Y, Z]
     part: np.ndarray  # int16 [X, Y, Z], index into the parts + 1
-    posts: np.ndarray  # bool [X, Y, Z]
 
 
 def half_block_design(
@@ -163,7 +178,10 @@ def half_block_design(
     for index in order:
         if parts[index].role == "seat":
             _rest_on_posts(index + 1, owner, posts)
-    return _rotate(owner, posts, np.array([*start, base]), placement.quarter_turns)
+    owner = turn_grid(owner, placement.quarter_turns)
+    upper, lower = owner[:, :, 1::2], owner[:, :, 0::2]
+    part = np.where(upper > 0, upper, lower)
+    return HalfBlockDesign(np.array([*start, base]), halves_from_layers(owner > 0), part)
 
 
 def _plan(
@@ -174,16 +192,10 @@ def _plan(
     Sizes are rounded, so equal objects stay equal. For objects along walls, the sides are rounded
     to block boundaries instead, so that the front keeps its position.
     """
-    odd = placement.quarter_turns % 2
     if placement.class_id == SemanticClass.FURN:
-        turned = sizes[:2][::-1] if odd else sizes[:2]
-        # Halves go outward on both sides, so that a turn or a mirror image changes nothing.
-        start = np.ceil(middle[:2] - turned / 2 - 0.5 - TIE).astype(int)
-        end = np.floor(middle[:2] + turned / 2 + 0.5 + TIE).astype(int)
-        count = np.maximum(end - start, 1)
-        return (count[::-1] if odd else count), start
+        return size_at_wall(placement, sizes, middle)
     count = np.maximum(np.floor(sizes[:2] + 0.5), 1).astype(int)
-    size = count[::-1] if odd else count
+    size = count[::-1] if placement.quarter_turns % 2 else count
     return count, np.floor(middle[:2] - size / 2 + 0.5).astype(int)
 
 
@@ -210,14 +222,6 @@ def _rest_on_posts(seat: int, owner: np.ndarray, posts: np.ndarray) -> None:
     owner[:, :, level - 1][mask] = seat
     posts[:, :, level - 1][mask] = False
     owner[:, :, level][mask] = above[mask]
-
-
-def _rotate(owner, posts, low, quarter_turns) -> HalfBlockDesign:
-    owner, posts = (turn_grid(values, quarter_turns) for values in (owner, posts))
-    halves = halves_from_layers(owner > 0)
-    upper, lower = owner[:, :, 1::2], owner[:, :, 0::2]
-    part = np.where(upper > 0, upper, lower)
-    return HalfBlockDesign(low, halves, part, posts[:, :, 0::2] & posts[:, :, 1::2])
 
 
 def _half(value: float) -> float:

@@ -12,9 +12,8 @@ import numpy as np
 
 from world2minecraft.construction.colour_sources import ColourSamples, ColourSource
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.types import Placement
+from world2minecraft.core.types import OWN_CELLS, Placement
 from world2minecraft.furniture import Span, Template, template, templates_of_class
-from world2minecraft.furniture.solid_parts import OWN_CELLS
 
 # What people know by its shape; a cupboard is known by its place and colour.
 KNOWN_BY_SHAPE = tuple(SemanticClass[name] for name in ("CHAIR", "BED", "SOFA", "TABLE"))

@@ -26,7 +26,7 @@ from world2minecraft.construction.shell import put_edge, put_shell
 from world2minecraft.construction.shell_geometry import build_shell
 from world2minecraft.construction.storeys import add_storeys
 from world2minecraft.construction.voxel_blocks import place_voxels
-from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import (
     BlockVolume,
@@ -115,7 +115,7 @@ def _put_room(
     things = coloured & np.isin(grid.labels, OBJECT_CLASSES)
     painted = colours.copy()
     painted[things] = unify_paints(colours[things])
-    painted = unify_sets(grid, instances, painted, things)
+    painted = unify_sets(instances, painted, things)
     painted = darken_screens(grid, instances, painted, things)
     object_source = source._replace(grid=grid, colours=painted)
     if parameters.style == "display":
@@ -143,7 +143,7 @@ def grid_corner_m(grid: OccupancyGrid) -> np.ndarray:
         return np.array([grid.origin_m[0], grid.origin_m[1] + grid.shape[1] * grid.voxel_m])
     cells = np.argwhere(occupied)
     first, last = int(cells[:, 0].min()), int(cells[:, 1].max())
-    walls = np.asarray(np.isin(grid.labels, (3, 4)).any(2))
+    walls = np.asarray(np.isin(grid.labels, (SemanticClass.WALL, SemanticClass.WINDOW)).any(2))
     first += bool(walls[first].any())
     last -= bool(walls[:, last].any())
     return grid.origin_m[:2] + np.array([first, last + 1]) * grid.voxel_m

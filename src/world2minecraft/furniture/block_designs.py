@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.core.types import Placement
+from world2minecraft.core.types import OWN_CELLS, Placement
 from world2minecraft.furniture.library import template
 from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Parameters, Template
@@ -45,7 +45,7 @@ def block_design(placement: Placement, blocks_per_metre: float) -> BlockDesign |
     Raises:
         UnknownNameError: If the template is unknown.
     """
-    if blocks_per_metre >= PARTS_FROM or placement.template == "cells":
+    if blocks_per_metre >= PARTS_FROM or placement.template == OWN_CELLS:
         return None
     found = template(placement.template)
     size = block_size(placement.size_m, blocks_per_metre)

@@ -58,6 +58,13 @@ class Plan:
         ends = ((0, self.size.depth - 1), (0, self.size.width - 1))
         return sorted(set(product(*ends)))
 
+    @property
+    def middle(self) -> list[tuple[int, int]]:
+        """The cells (i, j) around the middle of the footprint: one, two or four."""
+        along = {(self.size.depth - 1) // 2, self.size.depth // 2}
+        across = {(self.size.width - 1) // 2, self.size.width // 2}
+        return sorted(product(along, across))
+
     def layers(self, metres: float) -> int:
         """Return a length in metres as the nearest whole number of blocks."""
         return int(metres * self.size.per_metre + 0.5)

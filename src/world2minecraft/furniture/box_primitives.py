@@ -95,12 +95,12 @@ def lay_legs(plan: Plan, role: str, feet: Iterable[tuple[int, int]], top: int) -
         plan.put(role, i, j, range(top), shape, **properties)
 
 
-def lay_back(plan: Plan, role: str, j: Numbers, k: Numbers, i: Numbers = 0) -> None:
+def lay_back(plan: Plan, role: str, j: Numbers, k: Numbers) -> None:
     """Place a back of panels, or of whole blocks if the material has no panels."""
     if plan.look.has(role, "trapdoor"):
-        plan.panel(role, i, j, k, "back")
+        plan.panel(role, 0, j, k, "back")
     else:
-        plan.put(role, i, j, k)
+        plan.put(role, 0, j, k)
 
 
 def lay_sheet(plan: Plan, role: str, j: Numbers, k: Numbers) -> None:
@@ -116,16 +116,16 @@ def lay_sheet(plan: Plan, role: str, j: Numbers, k: Numbers) -> None:
         plan.put(role, 0, j, k, joined)
 
 
-def lay_trestle(plan: Plan, role: str, k: int = 0) -> None:
+def lay_trestle(plan: Plan) -> None:
     """Place a table one block high: a top in the upper half, and a leg at either end.
 
-    The top and the legs are upside-down stairs if the role's material has stairs.
+    The top and the legs are upside-down stairs if the material of the top has stairs.
     """
     last = plan.size.width - 1
-    if last == 0 or not plan.look.has(role, "stairs", "slab"):
-        plan.put(role, plan.depth, plan.width, k)
+    if last == 0 or not plan.look.has("top", "stairs", "slab"):
+        plan.put("top", plan.depth, plan.width, 0)
         return
-    plan.slab(role, plan.depth, range(1, last), k, "top")
+    plan.slab("top", plan.depth, range(1, last), 0, "top")
     ends: tuple[tuple[int, Side], ...] = ((0, "right"), (last, "left"))
     for j, side in ends:
-        plan.stairs(role, plan.depth, j, k, side, "top")
+        plan.stairs("top", plan.depth, j, 0, side, "top")

@@ -12,6 +12,7 @@ from typing import Any
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.errors import InputError, UnknownNameError
+from world2minecraft.core.files import read_json
 from world2minecraft.furniture.family import FAMILIES, Family
 from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.template import Span, Template
@@ -31,12 +32,7 @@ def read_design(path: Path) -> Template:
     Raises:
         InputError: If the file cannot be read or is not a valid design.
     """
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise InputError(path, f"a design file may have at most {MAX_BYTES} bytes")
-        raw = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(path, f"not a valid design file: {error}") from error
+    raw = read_json(path, MAX_BYTES)
     try:
         found = design_from_json(raw)
     except (ValueError, UnknownNameError) as error:

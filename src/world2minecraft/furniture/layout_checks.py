@@ -133,9 +133,7 @@ def out_of_bounds(
     return outside
 
 
-def out_of_rooms(
-    objects: Sequence[Any], rooms: Sequence[Layout], tolerance_m: float = OUTSIDE_M
-) -> list[int]:
+def out_of_rooms(objects: Sequence[Any], rooms: Sequence[Layout]) -> list[int]:
     """Return the indices of objects that are not completely inside any of several rooms.
 
     Without rooms, no object is outside.
@@ -144,7 +142,7 @@ def out_of_rooms(
     for room in rooms:
         outside &= set(
             out_of_bounds(
-                objects, room.floor_polygon_m, room.wall_height_m, tolerance_m, room.floor_z_m
+                objects, room.floor_polygon_m, room.wall_height_m, floor_z_m=room.floor_z_m
             )
         )
     return sorted(outside)

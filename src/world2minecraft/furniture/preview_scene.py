@@ -9,7 +9,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.block_designs import BlockDesign, block_size, lay_template
-from world2minecraft.furniture.template import Parameters, Template
+from world2minecraft.furniture.template import Template
 from world2minecraft.minecraft.painting_placement import hang_paintings
 from world2minecraft.minecraft.rules.connections import update_connections
 
@@ -20,7 +20,6 @@ def preview_volume(
     template: Template,
     blocks_per_metre: float,
     size_m: tuple[float, float, float] | None = None,
-    parameters: Parameters | None = None,
     *,
     quarter_turns: int = 0,
     room: bool = True,
@@ -31,15 +30,11 @@ def preview_volume(
         template: The template. It faces east (room +x) if it is not rotated.
         blocks_per_metre: Scale in blocks per metre.
         size_m: Depth, width and height in metres. None uses the typical size.
-        parameters: Values for some of the template's parameters. The others have typical values.
         quarter_turns: Rotation in quarter turns, counter-clockwise from above.
         room: Whether to add the floor, wall or ceiling that supports the piece, one block thick.
-
-    Raises:
-        ParameterError: If the template rejects a parameter.
     """
     size = block_size(np.array(size_m or template.typical_m), blocks_per_metre)
-    found = lay_template(template, size, parameters, quarter_turns)
+    found = lay_template(template, size, None, quarter_turns)
     if found is None:
         return None
     return preview_design(found, template, blocks_per_metre, quarter_turns, room)

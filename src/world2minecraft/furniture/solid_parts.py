@@ -6,10 +6,8 @@ therefore tested between parts.
 
 import numpy as np
 
-from world2minecraft.core.types import OccupancyGrid, Placement
+from world2minecraft.core.types import OWN_CELLS, OccupancyGrid, Placement
 from world2minecraft.furniture import template
-
-OWN_CELLS = "cells"
 
 
 def box_m(placement: Placement) -> np.ndarray:

@@ -15,7 +15,7 @@ DESIGN_SCALES = (1.0, 2.0, 4.0)
 
 
 def check_template(template: Template) -> tuple[str, ...]:
-    """Return the problems of a template as sentences, or an empty list for a valid template.
+    """Return the problems of a template as sentences, or an empty tuple for a valid template.
 
     The template is checked at its minimum, typical and maximum size, and with each parameter at
     either end of its range. Parts must have a volume and be inside the bounding box, reach its

@@ -19,6 +19,7 @@ from world2minecraft.core.classes import (
 from world2minecraft.core.coordinates import block_axes_to_grid
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.furniture.design_files import MOUNTS
 from world2minecraft.furniture.user_library import (
     MAX_BLOCKS,
     MAX_KINDS,
@@ -110,8 +111,8 @@ def _check(wish: ImportRequest) -> None:
         raise UnknownNameError("furniture class", wish.kind, offered)
     if wish.front is not None and wish.front not in SIDES:
         raise UnknownNameError("side", wish.front, SIDES)
-    if wish.mount not in ("floor", "wall", "ceiling", "any"):
-        raise UnknownNameError("mount", wish.mount, ("floor", "wall", "ceiling", "any"))
+    if wish.mount not in MOUNTS:
+        raise UnknownNameError("mount", wish.mount, MOUNTS)
     if not 0.1 <= wish.blocks_per_metre <= 64:
         raise UsageError(
             f"the scale must be 0.1 to 64 blocks per metre, got {wish.blocks_per_metre:g}"

@@ -20,7 +20,7 @@ from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.file_names import is_reserved
 from world2minecraft.core.files import read_json
-from world2minecraft.furniture.design_files import design_from_json
+from world2minecraft.furniture.design_files import MOUNTS, design_from_json
 from world2minecraft.furniture.materials import FIXED, Material, block_uses, kinds
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
 from world2minecraft.furniture.template_parameters import Look
@@ -132,7 +132,7 @@ def template_from_json(raw: Mapping[str, Any]) -> Template:
         design=design,
         materials={block.role: material_of(block.role, recoloured) for block in blocks},
         turns=_one_of(raw, "turns", (1, 2, 4)),
-        mount=_one_of(raw, "mount", ("floor", "wall", "ceiling", "any")),
+        mount=_one_of(raw, "mount", MOUNTS),
         matched=_one_of(raw, "match", (True, False)),
     )
 

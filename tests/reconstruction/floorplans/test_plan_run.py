@@ -14,9 +14,10 @@ from world2minecraft.cli.reconstruct import print_run
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.progress import no_progress
-from world2minecraft.core.types import FusedEvidence
+from world2minecraft.core.types import OWN_CELLS, FusedEvidence
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.objects_and_placements import read_objects, read_placements
+from world2minecraft.formats.roomplan import PlanObject
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.floorplans import (
@@ -96,6 +97,12 @@ def test_things_stand_in_their_boxes_with_their_fronts(plan, held):
         labels = held.grid.labels[tuple(instance.cells.T)]
         assert (labels == instance.class_id).all()
         assert (held.grid.instance[tuple(instance.cells.T)] == instance.id).all()
+
+
+@pytest.mark.parametrize(("category", "bottom_m"), [("sink", 0.7), ("stairs", 0.0)])
+def test_an_object_without_a_template_is_built_from_its_cells(category, bottom_m):
+    item = PlanObject(category, np.array([1.0, 1, bottom_m + 0.2]), np.array([0.4, 0.5, 0.4]), 0.0)
+    assert template_of(item, 0.0) == OWN_CELLS
 
 
 def test_a_finished_run_is_left_without_photos(place, tmp_path):

@@ -19,7 +19,7 @@ LIES_M = 0.2  # Maximum gap between an object and its support, in metres.
 AT_WALL_M = 0.17  # A side this near to a wall's cells stood at the wall: two cells of 8 cm.
 AT_WALL_SHARE = 0.3  # Minimum share of a side that has a wall behind it.
 MAX_BLOCKS = 1.25  # A wall's blocks stand off its plane by less; more would be another wall.
-SUNK_COST = 8.0  # Blocks of way that a thing goes rather than lie wholly in a wall.
+SUNK_COST = 8.0  # Blocks by which an object is moved rather than left completely in a wall.
 WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
 _EDGE = 1e-6
 
@@ -161,7 +161,7 @@ class BlockAligner:
 
     def _sunk(self, low: np.ndarray, high: np.ndarray, shift: np.ndarray) -> float:
         """Return the share of a shifted box that is inside blocks."""
-        sums, volume = None, 1.0
+        volume = 1.0
         spans, weights = [], []
         for axis in range(3):
             a, b = low[axis], high[axis]
@@ -179,7 +179,7 @@ class BlockAligner:
 
 
 def _ways(low: float, high: float) -> list[float]:
-    """Return ways along an axis that bring a side to an edge of blocks, and none."""
+    """Return the shifts along an axis that bring a side to a block boundary, and 0."""
     up, down = np.ceil(low - _EDGE) - low, np.floor(high + _EDGE) - high
     ways = [0.0, float(up), float(up) + 1, float(down), float(down) - 1]
     return sorted({round(way, 9) for way in ways if abs(way) <= MAX_BLOCKS})

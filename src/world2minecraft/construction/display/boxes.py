@@ -20,8 +20,8 @@ from world2minecraft.minecraft.entities import block_display
 MIN_IOU = 0.9  # Minimum overlap of coarser boxes with the shape.
 FINE_M = 0.02  # The grid on which a shape of too many boxes is made coarser.
 SAME_M = 1e-6  # Planes nearer than this are one.
-# Blocks by which boxes that overlap stand back from one another, so that their faces, which lie
-# in one plane, do not flicker: a screen tells so much apart across a room.
+# Blocks by which boxes that overlap stand back from one another, so that faces in one plane do not
+# flicker, even across a room.
 INSET_BLOCKS = 0.0005
 Planes = tuple[np.ndarray, np.ndarray, np.ndarray]
 

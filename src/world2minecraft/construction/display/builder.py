@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -29,7 +28,12 @@ from world2minecraft.construction.display.worktops import (
     plate_pieces,
 )
 from world2minecraft.construction.surface_painting import BlockChoice, chair_paints, paint_surface
-from world2minecraft.construction.template_blocks import LATE_RANKS, placement_order
+from world2minecraft.construction.template_blocks import (
+    LATE_RANKS,
+    cells_near,
+    max_free_share,
+    placement_order,
+)
 from world2minecraft.construction.worktops import (
     Worktop,
     find_worktop,
@@ -38,23 +42,28 @@ from world2minecraft.construction.worktops import (
 )
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert
-from world2minecraft.core.types import UNSEEN, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.core.types import (
+    OWN_CELLS,
+    UNSEEN,
+    ObjectInstance,
+    OccupancyGrid,
+    Placement,
+)
 from world2minecraft.furniture import Part, Template, template
-from world2minecraft.furniture.solid_parts import OWN_CELLS, own_cells
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.morphology import dilate_faces
 from world2minecraft.minecraft.entities import VIEW_BLOCKS
 from world2minecraft.minecraft.visual_shapes import is_luminous
 
 MAX_COLOURS = 3  # Each further one costs boxes; an object of four paints is rare.
-# Pieces over which an object is made coarser: the issue's bounds, and the richest of the library.
+# Numbers of pieces above which an object is simplified.
 MAX_PIECES = {int(SemanticClass.FURN): 15, int(SemanticClass.OBJS): 24}
 MAX_PIECES_ELSE, MAX_PIECES_ROUND = 8, 24
 ASKEW_DEG = 5.0  # A smaller turn off the walls is noise of 8 cm cells.
 LEFT_CELLS = 4  # Cells of an object that no template shows: fewer are noise.
 FREE_SHARE = 0.5  # Cells: how finely a template is checked for free space.
 FULL_LIGHT = 15
-APART_BLOCKS, APART_STEPS = 0.0006, 12  # What a screen tells apart across a room; 2 mm at most.
+APART_BLOCKS, APART_STEPS = 0.0006, 12  # A display shows it across a room; 2 mm at most.
 
 
 def frame_of_cells(cells: np.ndarray, grid: OccupancyGrid) -> Frame:
@@ -160,15 +169,15 @@ class DisplayBuilder:
         counts = Counter(one.object_id for one in placements)
         placements = [deepened(as_counter(one, self.tops), self.grid) for one in placements]
         for placement in sorted(placements, key=placement_order):
-            cells = own_cells(
-                replace(placement, size_m=placement.size_m + 2 * self.grid.voxel_m), self.grid
-            )
+            cells = cells_near(placement, self.grid)
             if placement.template == OWN_CELLS:
                 self.put_cells(cells, placement.class_id, placement.object_id)
                 continue
             found, frame = template(placement.template), self._frame_of(placement, counts)
             parts = found.parts(frame.size_m, placement.parameters)
-            if len(cells) and self._free_share(parts, frame, placement) > self._limit(placement):
+            if len(cells) and self._free_share(parts, frame, placement) > max_free_share(
+                placement, self.parameters
+            ):
                 self.put_cells(cells, placement.class_id, placement.object_id)
             else:
                 self.put_template(found, parts, frame, cells, placement)
@@ -286,10 +295,6 @@ class DisplayBuilder:
         size = np.array([span.clip(float(side)) for span, side in zip(spans, size, strict=True)])
         size[2] = placement.size_m[2]
         return Frame(np.array([*one.center_m[:2], base[2]]), size, yaw + off)
-
-    def _limit(self, placement: Placement) -> float:
-        chair = placement.class_id == SemanticClass.CHAIR
-        return self.parameters.chair_contradicted if chair else self.parameters.most_contradicted
 
     def _free_share(self, parts: Sequence[Part], frame: Frame, placement: Placement) -> float:
         """Return the share of a template's volume seen as free, well away from its own cells."""

@@ -122,12 +122,12 @@ def _span(low: float, high: float, count: int) -> tuple[int, np.ndarray]:
     return start, np.clip(np.minimum(high, at + 1) - np.maximum(low, at), 0, 1).astype(np.float32)
 
 
-def thin_cells(solid: np.ndarray, voxel_m: float, thin_m: float = THIN_M) -> np.ndarray:
-    """Return the bool [X, Y, Z] mask of the cells in parts thinner than ``thin_m`` along some axis.
+def thin_cells(solid: np.ndarray, voxel_m: float) -> np.ndarray:
+    """Return the bool [X, Y, Z] mask of the cells in parts thinner than ``THIN_M`` along some axis.
 
     These are the cells that no cube of this size inside the solid covers.
     """
-    side = max(2, int(np.ceil(thin_m / voxel_m - 1e-9)))
+    side = max(2, int(np.ceil(THIN_M / voxel_m - 1e-9)))
     core = np.asarray(solid, bool)
     for axis in range(3):
         core = _sliding_reduce(_pad_axis(core, side - 1, axis), side, axis, np.logical_and)

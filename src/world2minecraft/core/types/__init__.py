@@ -15,7 +15,7 @@ from world2minecraft.core.types.capture import (
 )
 from world2minecraft.core.types.edit import BlockEdit, Blocks, GridCells, Operation, SceneObject
 from world2minecraft.core.types.layout import Hinge, Layout, LayoutObject, Opening
-from world2minecraft.core.types.objects import Alternative, ObjectInstance, Placement
+from world2minecraft.core.types.objects import OWN_CELLS, Alternative, ObjectInstance, Placement
 from world2minecraft.core.types.occupancy_and_evidence import (
     COMPLETED,
     OBSERVED,
@@ -31,6 +31,7 @@ __all__ = [
     "AIR",
     "COMPLETED",
     "OBSERVED",
+    "OWN_CELLS",
     "UNSEEN",
     "Alternative",
     "BlockEdit",

@@ -67,6 +67,9 @@ class Alternative:
     iou: float
 
 
+OWN_CELLS = "cells"  # The template of an object that is built from its own cells.
+
+
 @dataclass(frozen=True, eq=False)
 class Placement:
     """A placed furniture template in metres, from which it can be built at any block scale.

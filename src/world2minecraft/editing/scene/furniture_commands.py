@@ -7,12 +7,11 @@ from pydantic import Field
 
 from world2minecraft.core.classes import display_name
 from world2minecraft.core.errors import UsageError
-from world2minecraft.core.types import Operation, Placement, SceneObject
+from world2minecraft.core.types import OWN_CELLS, Operation, Placement, SceneObject
 from world2minecraft.core.vocabulary import read_vocabulary
 from world2minecraft.editing.scene.cell_patch import Patch
 from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.object_boxes import (
-    OWN_CELLS,
     free_object_id,
     object_by_id,
     objects_by_ids,

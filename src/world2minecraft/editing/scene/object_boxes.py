@@ -7,11 +7,10 @@ import numpy as np
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import UsageError
-from world2minecraft.core.types import Placement, SceneObject
+from world2minecraft.core.types import OWN_CELLS, Placement, SceneObject
 from world2minecraft.core.vocabulary import object_title
 from world2minecraft.editing.scene.scene_draft import SceneDraft
 
-OWN_CELLS = "cells"  # The template of what is built from its object's own cells.
 MAX_OBJECTS = 65535
 DECIMALS = 9  # Metres and degrees are rounded, so that four quarter turns are none.
 SHOWN = 12  # Maximum number of IDs in an error.

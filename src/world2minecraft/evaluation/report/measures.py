@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert
-from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, BlockVolume, Layout
+from world2minecraft.core.types import COMPLETED, OBSERVED, OWN_CELLS, UNSEEN, BlockVolume, Layout
 from world2minecraft.evaluation.report.finished_run import FinishedScene
 from world2minecraft.furniture.layout_checks import (
     category_integrity,
@@ -222,6 +222,6 @@ def object_rows(scene: FinishedScene) -> list[dict[str, Any]]:
 
 def built_shares(scene: FinishedScene) -> dict[str, float]:
     """Return the shares of placements built from a template and from their own cells."""
-    own = sum(placement.template == "cells" for placement in scene.placements)
+    own = sum(placement.template == OWN_CELLS for placement in scene.placements)
     total = max(len(scene.placements), 1)
     return {"own_cells": round(own / total, 4), "template": round((total - own) / total, 4)}

@@ -18,6 +18,7 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.core.types import (
     OBSERVED,
+    OWN_CELLS,
     UNSEEN,
     Camera,
     FusedEvidence,
@@ -41,8 +42,6 @@ from world2minecraft.rendering.scene_tables import FACE_NORMALS
 from world2minecraft.rendering.voxel_camera import VoxelScene, cast_voxels, prepare_voxels
 
 SURE_LOG_ODDS = 6.0  # The fusion's own limit.
-
-OWN_CELLS = "cells"
 
 
 @dataclass(eq=False)

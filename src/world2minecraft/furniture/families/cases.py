@@ -6,7 +6,7 @@ Otherwise the front blocks have the role ``face``, such as barrels.
 
 from collections.abc import Sequence
 
-from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.block_plan import Numbers, Plan
 from world2minecraft.furniture.box_primitives import legs, part, slab
 from world2minecraft.furniture.families.fronts import (
     Body,
@@ -118,12 +118,12 @@ def _lockers(plan: Plan, body: Body, rows: range) -> None:
     _closed(plan, body, rows, plan.width, _middle(rows))
 
 
-def _closed(plan: Plan, body: Body, rows: range, columns: Sequence[int], layer: int) -> None:
+def _closed(plan: Plan, body: Body, rows: range, columns: Sequence[int], layers: Numbers) -> None:
     if body.front is None:
         faces(plan, "face", body.face, plan.width, rows)
         return
     plan.put("door", body.face, plan.width, rows)
-    handles(plan, body, "handle", columns, layer)
+    handles(plan, body, "handle", columns, layers)
 
 
 def _middle(rows: range) -> int:
@@ -131,13 +131,9 @@ def _middle(rows: range) -> int:
 
 
 def _drawers(plan: Plan, body: Body, rows: range) -> None:
-    if body.front is None:
-        faces(plan, "face", body.face, plan.width, rows)
-        return
-    plan.put("door", body.face, plan.width, rows)
     width = plan.size.width
     columns = [width // 4, width - 1 - width // 4] if width > 3 else [width // 2]
-    handles(plan, body, "handle", columns if plan.size.per_metre >= 3 else plan.width, rows)
+    _closed(plan, body, rows, columns if plan.size.per_metre >= 3 else plan.width, rows)
 
 
 def _panels(plan: Plan, body: Body, rows: range) -> None:

@@ -107,7 +107,7 @@ def _office_chair_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
         return plan.blocks
     layer = _seat(plan)
     # Bars side by side join to a ring: one pedestal in the middle of four blocks.
-    lay_legs(plan, "post", _middle(size), layer)
+    lay_legs(plan, "post", plan.middle, layer)
     lay_back(plan, "back", plan.width, range(layer + 1, max(size.height, layer + 2)))
     if size.depth > 1 and look.has("arm", "trapdoor"):
         plan.panel("arm", size.depth - 1, 0, layer + 1, "right")
@@ -166,14 +166,8 @@ def _pedestal_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     thin = ("trapdoor", "carpet") if max(size[:2]) <= 2 else ("trapdoor",)  # A carpet needs a post.
     shapes = [shape for shape in (*thin, "slab") if look.has("seat", shape)] or ["full"]
     layer = lay_plate(plan, "seat", plan.depth, plan.width, max(size.exact[2], 1.06), shapes)
-    lay_legs(plan, "post", _middle(size), layer)
+    lay_legs(plan, "post", plan.middle, layer)
     return plan.blocks
-
-
-def _middle(size: BlockSize) -> list[tuple[int, int]]:
-    along = {(size.depth - 1) // 2, size.depth // 2}
-    across = {(size.width - 1) // 2, size.width // 2}
-    return sorted((i, j) for i in along for j in across)
 
 
 PEDESTAL_STOOL = Family(

@@ -286,7 +286,7 @@ def _stack(depth: float, width: float, height: float, look: Look) -> list[Part]:
 
 
 def _stack_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
-    """Lay crates, every second one turned, as they are stacked."""
+    """Lay crates, the topmost with a lid."""
     plan = Plan(size, look)
     plan.put("body", plan.depth, plan.width, plan.height)
     if size.height > 1:
@@ -307,7 +307,7 @@ def _candles(depth: float, width: float, height: float, look: Look) -> list[Part
 
 def _candles_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
-    plan.put("candle", 0, range(size.width), 0, "candle", candles="1", lit="true")
+    plan.put("candle", 0, plan.width, 0, "candle", candles="1", lit="true")
     return plan.blocks
 
 

@@ -171,7 +171,7 @@ def _potted(depth: float, width: float, height: float, look: Look) -> list[Part]
 
 def _potted_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
-    plan.put("potted", 0, range(0, size.width, 1), 0)
+    plan.put("potted", 0, plan.width, 0)
     return plan.blocks
 
 
@@ -215,18 +215,16 @@ def _hanging(depth: float, width: float, height: float, look: Look) -> list[Part
 
 def _hanging_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
-    low = 0
     if size.per_metre >= FINE and size.height > 3:
-        low = 1
-        plan.put("leaves", 1, 1, low, **KEPT)
-        plan.put("leaves", [0, 2], 1, low, **KEPT)
-        plan.put("leaves", 1, [0, 2], low, **KEPT)
+        plan.put("leaves", 1, 1, 1, **KEPT)
+        plan.put("leaves", [0, 2], 1, 1, **KEPT)
+        plan.put("leaves", 1, [0, 2], 1, **KEPT)
         plan.put("leaves", 0, 1, 0, **KEPT)
         plan.put("leaves", 1, 2, 0, **KEPT)
-        plan.put("chain", 1, 1, range(low + 1, size.height), "chain", axis="y")
+        plan.put("chain", 1, 1, range(2, size.height), "chain", axis="y")
         return plan.blocks
-    plan.put("potted", 0, 0, low)
-    plan.put("chain", 0, 0, range(low + 1, size.height), "chain", axis="y")
+    plan.put("potted", 0, 0, 0)
+    plan.put("chain", 0, 0, range(1, size.height), "chain", axis="y")
     return plan.blocks
 
 

@@ -82,7 +82,7 @@ def _blind(depth: float, width: float, height: float, look: Look) -> list[Part]:
             *found,
             slab("slat", 0.3 * depth, width, low + bar, height - rail),
             slab("rail", depth, width, low, low + bar),
-            *_foot(depth, width, low),
+            *_foot(width, low),
         ]
     count = max(2, round((height - rail - low) / 0.08))
     step = (height - rail - low) / count
@@ -96,7 +96,7 @@ def _blind(depth: float, width: float, height: float, look: Look) -> list[Part]:
     return [*found, *slats, *cords]
 
 
-def _foot(depth: float, width: float, low: float) -> list[Part]:
+def _foot(width: float, low: float) -> list[Part]:
     """Return the cord of a blind that is not all the way down."""
     if low <= 0.01:
         return []

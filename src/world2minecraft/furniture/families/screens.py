@@ -56,8 +56,7 @@ def _standing_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     raised = 1 if size.height > 2 else 0
     _lay_screen(plan, raised)
     if raised:
-        middle = sorted({(size.width - 1) // 2, size.width // 2})
-        lay_legs(plan, "post", [(0, j) for j in middle], 1)
+        lay_legs(plan, "post", plan.middle, 1)
     return plan.blocks
 
 

@@ -79,7 +79,7 @@ def _is_low(plan: Plan) -> bool:
     if height > LOW:
         return False
     if plan.size.width > 1 and look.has("top", "stairs", "slab") and height > 0.6:
-        lay_trestle(plan, "top")
+        lay_trestle(plan)
     elif height <= 0.6 and look.has("top", "slab"):
         plan.slab("top", plan.depth, plan.width, 0)
     else:
@@ -131,11 +131,11 @@ def _round_table(depth: float, width: float, height: float, look: Look) -> list[
 def _round_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
     if size.exact[2] <= LOW:
-        lay_legs(plan, "post", _middle(size), 1)
+        lay_legs(plan, "post", plan.middle, 1)
         _disc(plan, 1.1)
         return plan.blocks
     layer = _disc(plan, size.exact[2])
-    lay_legs(plan, "post", _middle(size), layer)
+    lay_legs(plan, "post", plan.middle, layer)
     return plan.blocks
 
 
@@ -149,13 +149,6 @@ def _disc(plan: Plan, height: float) -> int:
         if row:
             layer = lay_plate(plan, "top", i, row, height, _tops(plan.look))
     return layer
-
-
-def _middle(size: BlockSize) -> list[tuple[int, int]]:
-    """Return the cells around the middle of a footprint: one, two or four."""
-    along = {(size.depth - 1) // 2, size.depth // 2}
-    across = {(size.width - 1) // 2, size.width // 2}
-    return sorted((i, j) for i in along for j in across)
 
 
 ROUND_TABLE = Family(
@@ -176,7 +169,7 @@ def _desk(depth: float, width: float, height: float, look: Look) -> list[Part]:
 def _desk_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
     if size.exact[2] <= LOW and look.has("top", "stairs", "slab"):
-        lay_trestle(plan, "top")
+        lay_trestle(plan)
         if size.width == 1:
             plan.stairs("top", plan.depth, 0, 0, "back", "top")
         return plan.blocks
@@ -292,7 +285,7 @@ def _picnic_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
     last = size.depth - 1
     if last < 2:
-        lay_trestle(plan, "top")
+        lay_trestle(plan)
         return plan.blocks
     bench = max(1, plan.layers(0.28))
     seats = (*range(bench), *range(size.depth - bench, size.depth))

@@ -11,11 +11,10 @@ from typing import NamedTuple
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.files import read_json
-from world2minecraft.core.types import LayoutObject
+from world2minecraft.core.types import OWN_CELLS, LayoutObject
 from world2minecraft.formats.roomplan import PlanObject
 from world2minecraft.reconstruction.floorplans.furniture_categories import (
     HUNG_FROM_M,
-    OWN_CELLS,
     template_of,
 )
 

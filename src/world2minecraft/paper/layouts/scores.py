@@ -25,7 +25,7 @@ import numpy as np
 
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.errors import UsageError
-from world2minecraft.core.types import Layout, LayoutObject
+from world2minecraft.core.types import OWN_CELLS, Layout, LayoutObject
 from world2minecraft.furniture import template
 from world2minecraft.furniture.footprints import outside_share, shared_height_m, shared_volume_m3
 from world2minecraft.furniture.layout_checks import (
@@ -38,7 +38,6 @@ from world2minecraft.furniture.layout_checks import (
 from world2minecraft.navigation.scores import rate
 from world2minecraft.paper.layouts.compared_scene import ComparedScene
 from world2minecraft.paper.layouts.furniture_lookup import design_of
-from world2minecraft.reconstruction.floorplans.furniture_categories import OWN_CELLS
 
 ANY_M3 = 1e-9  # Less is rounding: boxes that touch.
 

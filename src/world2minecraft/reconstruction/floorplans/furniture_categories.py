@@ -3,6 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OWN_CELLS
 from world2minecraft.formats.roomplan import PlanObject
 
 CHAIR, BED, SOFA = SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA
@@ -30,7 +31,6 @@ CLASSES = {
     "television": TVS,
     "stairs": OBJS,
 }
-OWN_CELLS = "cells"  # Built from its own cells, as a solid box.
 HUNG_FROM_M = 0.6  # Objects whose bottom is higher hang on a wall.
 TALL_M, DEEP_M = 1.4, 0.42  # Wardrobes are deeper than bookcases.
 

@@ -14,6 +14,7 @@ from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import (
     OBSERVED,
+    OWN_CELLS,
     UNSEEN,
     ObjectInstance,
     OccupancyGrid,
@@ -23,7 +24,6 @@ from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanSurfa
 from world2minecraft.furniture import size_in_cells, template, template_cells
 from world2minecraft.geometry.morphology import dilate
 from world2minecraft.reconstruction.floorplans.furniture_categories import (
-    OWN_CELLS,
     class_of,
     front_of,
     template_of,

@@ -10,8 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
-from world2minecraft.furniture.solid_parts import OWN_CELLS, box_m, depth_m, solids_m
+from world2minecraft.core.types import (
+    OWN_CELLS,
+    BlockVolume,
+    ObjectInstance,
+    OccupancyGrid,
+    Placement,
+)
+from world2minecraft.furniture.solid_parts import box_m, depth_m, solids_m
 from world2minecraft.reconstruction.repair.parameters import RepairParameters
 from world2minecraft.reconstruction.retrieval.furniture_placement import named_templates
 from world2minecraft.reconstruction.retrieval.other_furniture import Fit, Furniture, OtherFurniture

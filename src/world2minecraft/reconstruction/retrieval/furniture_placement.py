@@ -10,7 +10,14 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.types import Alternative, Layout, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.core.types import (
+    OWN_CELLS,
+    Alternative,
+    Layout,
+    ObjectInstance,
+    OccupancyGrid,
+    Placement,
+)
 from world2minecraft.core.vocabulary import read_vocabulary
 from world2minecraft.furniture import Template, template, templates_of_class
 from world2minecraft.furniture.chair_fitting import direction_to_table, fit_seat, without_open_top
@@ -47,7 +54,6 @@ from world2minecraft.reconstruction.retrieval.variants import (
 FEWEST = 4  # Minimum number of cells of a remaining part; smaller parts are noise.
 Box = tuple[np.ndarray, np.ndarray]
 
-OWN_CELLS = "cells"
 HALF = 0.5
 LEVEL_M = 0.25  # Tops of runs of one worktop; a kettle or a rim at the wall is on some of them.
 SURELY_MET = 0.9  # A chair of typical size that covers this share of the cells is preferred.

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.core.types import OWN_CELLS, Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Template, template, template_cells, templates_of_class
 from world2minecraft.furniture.rasterization import size_in_cells
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence, evidence_of
@@ -19,8 +19,6 @@ from world2minecraft.reconstruction.retrieval.template_matching import (
     limits,
     reach_of,
 )
-
-OWN_CELLS = "cells"
 
 
 def fit_template(

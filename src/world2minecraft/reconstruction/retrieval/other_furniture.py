@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
-from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.core.types import OWN_CELLS, Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import (
     estimate_facing,
     read_surroundings,
@@ -19,7 +19,6 @@ from world2minecraft.furniture import (
 )
 from world2minecraft.furniture.solid_parts import box_m, own_cells
 from world2minecraft.reconstruction.retrieval.furniture_placement import (
-    OWN_CELLS,
     Matched,
     match_object,
     placement_of,

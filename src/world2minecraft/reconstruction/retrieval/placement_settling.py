@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.types import Layout, OccupancyGrid, Placement
+from world2minecraft.core.types import OWN_CELLS, Layout, OccupancyGrid, Placement
 from world2minecraft.furniture import template
 from world2minecraft.furniture.layout_checks import inside_polygon
-from world2minecraft.furniture.solid_parts import OWN_CELLS, box_m, depth_m, own_cells, solids_m
+from world2minecraft.furniture.solid_parts import box_m, depth_m, own_cells, solids_m
 from world2minecraft.reconstruction.retrieval.rectangle_decomposition import largest_rectangle
 
 # Within rooms.

@@ -10,12 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, STRUCTURE_CLASSES, SemanticClass
-from world2minecraft.core.types import ObjectInstance, Placement
+from world2minecraft.core.types import OWN_CELLS, ObjectInstance, Placement
 from world2minecraft.core.vocabulary import ThingName, alike_nyu40, nyu40_classes, read_vocabulary
 from world2minecraft.furniture import template
 from world2minecraft.reconstruction.naming.name_model import MIN_CONFIDENCE
 
-OWN_CELLS = "cells"
 VAGUE = (CLASS_DISPLAY_NAMES[SemanticClass.FURN], CLASS_DISPLAY_NAMES[SemanticClass.OBJS])
 
 
