@@ -22,8 +22,8 @@ def test_a_case_counted_by_hand():
 
 
 def test_calibration_table_is_rounded():
-    counts = count_calibration(np.array([0.4, 0.5, 0.61]), np.array([True, False, False]), bins=3)
-    row = {"from": 0.333, "to": 0.667, "cells": 3, "confidence": 0.5033, "right": 0.3333}
+    counts = count_calibration(np.array([0.41, 0.45, 0.493]), np.array([True, False, False]))
+    row = {"from": 0.4, "to": 0.5, "cells": 3, "confidence": 0.451, "right": 0.3333}
     assert counts.rows() == [row]
 
 

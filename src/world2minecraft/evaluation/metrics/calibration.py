@@ -51,16 +51,13 @@ class CalibrationCounts:
         ]
 
 
-def count_calibration(
-    confidence: np.ndarray, right: np.ndarray, bins: int = BINS
-) -> CalibrationCounts:
+def count_calibration(confidence: np.ndarray, right: np.ndarray) -> CalibrationCounts:
     """Count the cells of one scene.
 
     Args:
         confidence: The confidences as a float array of any shape, 0 to 1. A bin includes its lower
             edge, and the last bin also its upper edge.
         right: Whether each label is correct, as a bool array of the same shape.
-        bins: The number of bins of equal width.
 
     Raises:
         ValueError: If the shapes differ, or a confidence is outside 0 to 1.
@@ -80,9 +77,9 @@ def count_calibration(
     if values.size and not (values.min() >= 0 and values.max() <= 1):
         raise ValueError("confidence must be between 0 and 1")
     # A stored float16 of 0.8 is 0.7998; rounding keeps it in the bin that it was meant for.
-    at = np.minimum(np.floor(np.round(values, 3) * bins + 1e-9).astype(np.int64), bins - 1)
+    at = np.minimum(np.floor(np.round(values, 3) * BINS + 1e-9).astype(np.int64), BINS - 1)
     return CalibrationCounts(
-        np.bincount(at, minlength=bins),
-        np.bincount(at[hits], minlength=bins),
-        np.bincount(at, weights=values, minlength=bins),
+        np.bincount(at, minlength=BINS),
+        np.bincount(at[hits], minlength=BINS),
+        np.bincount(at, weights=values, minlength=BINS),
     )

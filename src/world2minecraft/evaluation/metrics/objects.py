@@ -15,7 +15,7 @@ from scipy.optimize import linear_sum_assignment
 from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.evaluation.metrics.occupancy import ratio
 
-MATCH_DISTANCE_M = 0.3  # The issue's rule; less than half a chair.
+MATCH_DISTANCE_M = 0.3  # Less than half a chair.
 TURN_TOLERANCE_DEG = 45.0  # The nearest quarter turn is the right one.
 TURNED_CLASSES = (SemanticClass.CHAIR, SemanticClass.SOFA, SemanticClass.BED)
 
@@ -91,20 +91,17 @@ class ObjectCounts:
 def count_objects(
     found: Sequence[LocatedObject],
     true: Sequence[LocatedObject],
-    *,
-    distance_m: float = MATCH_DISTANCE_M,
 ) -> ObjectCounts:
     """Match the objects of one scene, and count them.
 
-    Each detected object matches at most one true object of its class within ``distance_m``. The
-    matching maximises the number of matches, then minimises the sum of distances.
+    Each detected object matches at most one true object of its class within ``MATCH_DISTANCE_M``.
+    The matching maximises the number of matches, then minimises the sum of distances.
 
     Args:
         found: The objects of the reconstruction, with ``yaw_deg`` or ``quarter_turns``.
         true: The true objects in the same frame.
-        distance_m: The maximum distance of two centres in metres.
     """
-    matches = match_objects(found, true, distance_m=distance_m)
+    matches = match_objects(found, true)
     counts = np.zeros((3, CLASS_COUNT), np.int64)
     for row, classes in enumerate(
         (

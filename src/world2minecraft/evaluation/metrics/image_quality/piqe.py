@@ -15,8 +15,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from world2minecraft.evaluation.metrics.image_quality.scene_statistics import normalise, to_grey
 
 BLOCK_PX = 16
-LIVELY = 0.1  # Least variance of a block that is looked at.
-EVEN = 0.1  # A stretch of a rim that deviates less is an artefact.
+LIVELY = 0.1  # Minimum variance of an assessed block.
+EVEN = 0.1  # A segment of an edge with a smaller deviation is an artefact.
 STRETCH_PX = 6
 
 
@@ -26,14 +26,14 @@ class BlockFaults(NamedTuple):
     Attributes:
         variance: The variance as float64.
         lively: Whether the block has sufficient variance to be assessed, as bool.
-        blocky: Whether the block is blocky, as bool.
-        noisy: Whether the block is noisy, as bool.
+        blocky: Whether an assessed block is blocky, as bool.
+        noisy: Whether an assessed block is noisy, as bool.
     """
 
-    variance: np.ndarray  # float64
-    lively: np.ndarray  # bool: the block is looked at
-    blocky: np.ndarray  # bool, among the lively
-    noisy: np.ndarray  # bool, among the lively
+    variance: np.ndarray
+    lively: np.ndarray
+    blocky: np.ndarray
+    noisy: np.ndarray
 
 
 def piqe(picture: np.ndarray) -> float:

@@ -21,14 +21,14 @@ WEIGHTS = (9798, 19235, 3735)  # Red, green, blue of ITU-R BT.601, of 2**15: Ope
 
 RADIUS_PX = 3
 SIGMA_PX = 7 / 6
-STEADY = 1.0  # Added to the deviation, so that flat parts divide by no zero.
-# Below this a coefficient is what rounding left of a flat part; its sign would be chance.
+STEADY = 1.0  # Added to the deviation, so that flat parts do not divide by zero.
+# Below this a coefficient is the rounding error of a flat part, with an arbitrary sign.
 NOTHING = 1e-6
 _PLACES = np.arange(-RADIUS_PX, RADIUS_PX + 1)
 _WINDOW = np.exp(-(_PLACES**2) / (2 * SIGMA_PX**2))
 _WINDOW = _WINDOW / _WINDOW.sum()
 
-_SHAPES = np.arange(0.2, 10, 0.001)  # Where the shape is looked for, as in the authors' code.
+_SHAPES = np.arange(0.2, 10, 0.001)  # The shapes searched, as in the authors' code.
 _RATIOS = gamma(2 / _SHAPES) ** 2 / (gamma(1 / _SHAPES) * gamma(3 / _SHAPES))  # Ascending.
 
 
@@ -95,9 +95,9 @@ class Fitted(NamedTuple):
         right: The scale of the positive values.
     """
 
-    shape: np.ndarray  # 2 for a normal distribution, 1 for a Laplacian
+    shape: np.ndarray
     mean: np.ndarray
-    left: np.ndarray  # Scale of the values under 0.
+    left: np.ndarray
     right: np.ndarray
 
 
