@@ -112,3 +112,8 @@ def test_names_of_others_become_plain_folders():
     assert len(set(told)) == len(told)
     assert all(name and name not in (".", "..") and "/" not in name for name in told)
     assert told[2:4] == ["room", "room_3"]
+
+
+def test_a_numbered_folder_does_not_take_the_name_of_another():
+    told = folder_names([scene(BED, name=name) for name in ("room", "room_2", "room")])
+    assert told == ["room", "room_2", "room_2_2"]

@@ -44,6 +44,8 @@ def folder_names(scenes: Sequence[ComparedScene]) -> list[str]:
         safe = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "_" for c in one.name)
         name = safe[-MAX_NAME:].strip("_") or f"scene_{number}"
         taken = {other.casefold() for other in names}
-        is_free = name.casefold() not in taken and not is_reserved(name)
-        names.append(name if is_free else f"{name}_{number}")
+        free = name if not is_reserved(name) else f"{name}_{number}"
+        while free.casefold() in taken:
+            free = f"{free}_{number}"
+        names.append(free)
     return names
