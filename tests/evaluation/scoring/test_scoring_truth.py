@@ -10,6 +10,7 @@ from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.evaluation.scoring import read_truth
 from world2minecraft.evaluation.scoring.pose_errors import frame_error
+from world2minecraft.evaluation.scoring.truth_files import read_instances
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.runs import run_capture
 
@@ -47,6 +48,16 @@ def test_a_run_says_that_the_truth_is_damaged_before_any_work(name, tmp_path):
     with pytest.raises(DamagedFileError, match=name):
         run_capture(room, tmp_path / "OUT", Parameters())
     assert not (tmp_path / "OUT").exists()
+
+
+@pytest.mark.parametrize("change", [np.float64, np.ravel])
+def test_true_instances_of_another_kind_are_refused(change, tmp_path):
+    room = write_capture(tmp_path / "capture")
+    with np.load(room / "truth.npz") as archive:
+        arrays = dict(archive)
+    np.savez(room / "truth.npz", **(arrays | {"instance": change(arrays["instance"])}))
+    with pytest.raises(DamagedFileError, match="instance must be uint16 of the shape"):
+        read_instances(read_truth(room))
 
 
 @pytest.mark.parametrize("array", ["labels", "instance", "colour"])

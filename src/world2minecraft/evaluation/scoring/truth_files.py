@@ -45,15 +45,15 @@ class Truth:
     """
 
     folder: Path
-    labels: np.ndarray  # uint8 [A, B, C]
+    labels: np.ndarray
     voxel_m: float
-    origin_m: np.ndarray  # float64 [3]
-    truth_to_scan: np.ndarray  # float64 [4, 4]
+    origin_m: np.ndarray
+    truth_to_scan: np.ndarray
     objects: tuple[LayoutObject, ...]
     layouts: tuple[Layout, ...] = ()
     camera_to_truth: dict[str, np.ndarray] | None = None
     depth_scale: dict[str, float] | None = None
-    surface: np.ndarray | None = None  # bool [A, B, C]
+    surface: np.ndarray | None = None
     capture: Path = Path()
 
     def __post_init__(self):
@@ -142,13 +142,15 @@ def read_instances(truth: Truth) -> np.ndarray:
     """Read the true instances as uint16 [A, B, C]: n for the n-th of ``truth.objects``, or 0.
 
     Raises:
-        DamagedFileError: If the array is missing, or its shape differs from that of the labels.
+        DamagedFileError: If the array is missing, or is not uint16 of the shape of the labels.
     """
     path = truth.folder / "truth.npz"
     instance = read_npz(path, ("instance",))["instance"]
-    if instance.shape != truth.labels.shape:
+    if instance.shape != truth.labels.shape or instance.dtype != np.uint16:
         raise DamagedFileError(
-            path, f"instance has shape {instance.shape}, which differs from the shape of the labels"
+            path,
+            f"instance must be uint16 of the shape of the labels, {truth.labels.shape}, got "
+            f"{instance.dtype} {instance.shape}",
         )
     return instance
 
