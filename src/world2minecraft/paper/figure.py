@@ -240,9 +240,7 @@ def _page(rows: Sequence[Sequence[Pixels]], strip: Sequence[Pixels]) -> Pixels:
             place = (GAP_PX + n * (CELL_PX[0] + GAP_PX), HEAD_PX + row * (CELL_PX[1] + GAP_PX))
             page.paste(Image.fromarray(pictures[n]), place)
     step = strip[0].shape[1] + GAP_PX if strip else 0
-    margin = (
-        width - len(strip) * step + GAP_PX
-    ) // 2  # A short walk's pictures stand in the middle.
+    margin = (width - len(strip) * step + GAP_PX) // 2  # The pictures of a short walk are centred.
     for n, picture in enumerate(strip):
         left = margin + n * step
         page.paste(Image.fromarray(picture), (left, tall + HEAD_PX))

@@ -19,7 +19,7 @@ from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.shading_parameters import NEUTRAL
 
 PAIRS = 6
-CHOICE_PX, MIN_SHARE = 64, 0.005  # Width of the pictures that choose views, and share of a thing.
+CHOICE_PX, MIN_SHARE = 64, 0.005  # Width of the pictures that choose views, and share of an object.
 WIDTH_PX = 480
 SAMPLES = 2  # Rays across a pixel; light is even, so that colours compare with the photo's.
 AGREES_M = 0.25  # One block at the default scale.
@@ -38,21 +38,21 @@ class Pair:
     """
 
     name: str
-    photo: np.ndarray | None  # uint8 [H, W, 3]
-    built: np.ndarray  # uint8 [H, W, 3]
-    depth_error_m: float | None  # median of |built - measured|
-    depth_agrees: float | None  # share of pixels within AGREES_M
+    photo: np.ndarray | None
+    built: np.ndarray
+    depth_error_m: float | None
+    depth_agrees: float | None
 
 
 def make_pairs(scan: Scan, scene: BlockScene) -> list[Pair]:
-    """Return up to six pairs: of each sixth of the frames used, one that shows many things."""
+    """Return up to six pairs: of each sixth of the frames used, one that shows many objects."""
     chosen = choose_views(scan, scene)
     views = list(views_named(scan.views, chosen))
     return map_parallel(lambda view: _pair(view, scan, scene), views)
 
 
 def choose_views(scan: Scan, scene: BlockScene) -> list[str]:
-    """Return the names of up to six views that show most things of the built world.
+    """Return the names of up to six views that show most objects of the built world.
 
     They are spread over the frames used. Without the frames of a capture, whose poses are known
     before they are decoded, every n-th frame is taken.
@@ -67,7 +67,7 @@ def choose_views(scan: Scan, scene: BlockScene) -> list[str]:
 
 
 def _things(frame: FrameFiles, scan: Scan, scene: BlockScene) -> int:
-    """Return the number of things that the built world shows from the pose of a frame."""
+    """Return the number of objects that the built world shows from the pose of a frame."""
     camera, pose = frame.colour_camera or frame.depth_camera, frame.camera_to_world
     if camera is None or pose is None or not np.isfinite(pose).all():
         return 0
@@ -122,14 +122,13 @@ def _depth_apart(view: View, scan: Scan, scene: BlockScene) -> tuple[float | Non
 
 def as_data_uri(image: np.ndarray, *, lossless: bool = False) -> str:
     """Encode an image, uint8 [H, W, 3], as a ``data:`` URI in JPEG or PNG format."""
-    buffer = io.BytesIO()
-    picture = Image.fromarray(image)
     if lossless:
-        picture.save(buffer, "PNG", optimize=False, compress_level=6)
+        kind, data = "png", as_png(image)
     else:
-        picture.save(buffer, "JPEG", quality=86, subsampling=0)
-    kind = "png" if lossless else "jpeg"
-    return f"data:image/{kind};base64,{base64.b64encode(buffer.getvalue()).decode()}"
+        buffer = io.BytesIO()
+        Image.fromarray(image).save(buffer, "JPEG", quality=86, subsampling=0)
+        kind, data = "jpeg", buffer.getvalue()
+    return f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
 
 
 def as_png(image: np.ndarray) -> bytes:

@@ -10,8 +10,9 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert
-from world2minecraft.core.types import COMPLETED, OBSERVED, OWN_CELLS, UNSEEN, BlockVolume, Layout
+from world2minecraft.core.types import COMPLETED, OBSERVED, OWN_CELLS, UNSEEN, BlockVolume
 from world2minecraft.evaluation.report.finished_run import FinishedScene
+from world2minecraft.furniture.footprints import area_m2
 from world2minecraft.furniture.layout_checks import (
     category_integrity,
     collisions,
@@ -80,7 +81,7 @@ def room_rows(scene: FinishedScene) -> list[dict[str, Any]]:
         rows.append(
             {
                 "name": room.name or f"room {number}",
-                "area_m2": round(_area_m2(room), 2),
+                "area_m2": round(area_m2(room.floor_polygon_m), 2),
                 "height_m": round(room.wall_height_m, 2),
                 "floor_z_m": round(room.floor_z_m, 2),
                 "objects": len(ids),
@@ -105,11 +106,6 @@ def confidence_facts(scene: FinishedScene) -> dict[str, Any]:
         "below_half": round(float((cells < 0.5).mean()), 4) if len(cells) else 0.0,
         "by_class": rows,
     }
-
-
-def _area_m2(room: Layout) -> float:
-    x, y = room.floor_polygon_m.T
-    return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2)
 
 
 def scene_facts(scene: FinishedScene) -> dict[str, Any]:

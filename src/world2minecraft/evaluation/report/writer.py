@@ -42,6 +42,7 @@ from world2minecraft.evaluation.scoring.truth_files import read_truth
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.objects_and_placements import read_placements
 from world2minecraft.formats.scan_record import read_registration
+from world2minecraft.furniture.footprints import area_m2
 from world2minecraft.furniture.layout_checks import category_integrity
 from world2minecraft.reconstruction.repair_run import read_repairs
 from world2minecraft.rendering.preview import plan_view, preview_view, render_preview
@@ -68,7 +69,6 @@ def write_brief_report(
     rooms = read_layouts(folder / "layout.json")
     placed = read_placements(folder / "placements.json")
     facts = _facts(scan, volume, rooms, placed)
-    across = max(volume.states.shape[0], volume.states.shape[2])
     view = preview_view(volume)
     outside = render_preview(view)
     things = [
@@ -77,24 +77,33 @@ def write_brief_report(
         )
         for one in placed
     ]
-    plan = plan_view(volume, px_per_block=max(PLAN_PX // across, 2))
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
-    source = (
-        files("world2minecraft.evaluation.report").joinpath("brief.html.jinja").read_text("utf-8")
-    )
-    page = environment.from_string(source).render(
+    page = _render(
+        "brief.html.jinja",
         facts=facts,
         names=NAMES,
         links=list(links),
         version=__version__,
         outside=as_data_uri(outside),
-        plan=as_data_uri(plan, lossless=True),
+        plan=as_data_uri(_plan(volume), lossless=True),
         room=room_view(volume, scan.room_size_m, things, view.camera_to_room),
     )
     write_bytes(folder / "preview.png", as_png(outside))
     write_json(folder / "report.json", facts)
     write_text(folder / "report.html", page)
     return facts
+
+
+def _plan(volume: BlockVolume) -> np.ndarray:
+    """Return the floor plan of a build, about ``PLAN_PX`` pixels wide, uint8 [H, W, 3]."""
+    across = max(volume.states.shape[0], volume.states.shape[2])
+    return plan_view(volume, px_per_block=max(PLAN_PX // across, 2))
+
+
+def _render(template: str, **values: Any) -> str:
+    """Return the page of a template of this package with the given values."""
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
+    source = files("world2minecraft.evaluation.report").joinpath(template).read_text("utf-8")
+    return environment.from_string(source).render(**values)
 
 
 def _placed_title(one: Placement) -> str:
@@ -114,7 +123,7 @@ def _facts(
         "rooms": [
             {
                 "name": room.name,
-                "floor_m2": round(_area_m2(room.floor_polygon_m), 2),
+                "floor_m2": round(area_m2(room.floor_polygon_m), 2),
                 "height_m": round(float(room.wall_height_m), 3),
                 "openings": len(room.openings),
             }
@@ -132,11 +141,6 @@ def _facts(
         "blocks": int((volume.semantic > 0).sum()),
         "blocks_per_metre": volume.blocks_per_metre,
     }
-
-
-def _area_m2(polygon: np.ndarray) -> float:
-    x, y = polygon[:, 0], polygon[:, 1]
-    return float(abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2)
 
 
 def write_report(
@@ -175,8 +179,7 @@ def write_report(
         {"view": p.name, "depth_error_m": p.depth_error_m, "depth_agrees": p.depth_agrees}
         for p in pairs
     ]
-    across = max(scene.volume.states.shape[0], scene.volume.states.shape[2])
-    plan = plan_view(scene.volume, px_per_block=max(PLAN_PX // across, 2))
+    plan = _plan(scene.volume)
     view = preview_view(scene.volume)
     outside = render_preview(view)
     true = None if truth is None else truth_picture(folder, truth, view)
@@ -217,11 +220,8 @@ def _page(
     plan: np.ndarray,
     room: str | None,
 ) -> str:
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
-    source = (
-        files("world2minecraft.evaluation.report").joinpath("page.html.jinja").read_text("utf-8")
-    )
-    return environment.from_string(source).render(
+    return _render(
+        "page.html.jinja",
         facts=facts,
         names=NAMES,
         version=__version__,

@@ -18,6 +18,7 @@ from world2minecraft.core.types import Layout, LayoutObject, ObjectInstance, Occ
 from world2minecraft.core.vocabulary import read_vocabulary
 from world2minecraft.evaluation.metrics.objects import ObjectCounts, count_objects, match_objects
 from world2minecraft.evaluation.scoring.observed_cells import Reached
+from world2minecraft.evaluation.scoring.pose_errors import floor_corners
 from world2minecraft.evaluation.scoring.truth_files import Truth, read_instances
 from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects_and_placements import read_objects, read_placements
@@ -38,8 +39,8 @@ class TrueObjects:
     """
 
     objects: tuple[LayoutObject, ...]
-    seen: np.ndarray  # bool [N]
-    have_fronts: bool = True  # Whether the truth knows which way chairs, sofas and beds look.
+    seen: np.ndarray
+    have_fronts: bool = True
 
 
 def true_objects(truth: Truth, truth_to_room: np.ndarray, reached: Reached) -> TrueObjects:
@@ -175,8 +176,7 @@ def in_room(layouts: Sequence[Layout], truth_to_room: np.ndarray) -> tuple[Layou
     """Transform the outlines of true rooms to the estimated frame, without openings."""
     moved = []
     for layout in layouts:
-        heights = np.full((len(layout.floor_polygon_m), 1), layout.floor_z_m)
-        corners = apply(truth_to_room, np.hstack([layout.floor_polygon_m, heights]))
+        corners = floor_corners(layout, truth_to_room)
         floor = float(corners[:, 2].mean())
         moved.append(
             replace(

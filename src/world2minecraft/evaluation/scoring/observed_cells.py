@@ -39,10 +39,10 @@ class Reached:
         voxels: The ascending flat indices of the fine voxels that rays met, as int64 [N].
     """
 
-    flags: np.ndarray  # uint8 [X, Y, Z]: CROSSED, MET, both or 0
-    low: np.ndarray  # int64 [3], the room cell at index (0, 0, 0)
+    flags: np.ndarray
+    low: np.ndarray
     voxel_m: float
-    voxels: np.ndarray  # int64 [N], the fine voxels that rays met, rising
+    voxels: np.ndarray
 
     @property
     def scored(self) -> np.ndarray:

@@ -13,8 +13,8 @@ from world2minecraft.evaluation.scoring.observed_cells import Reached
 
 KINDS = ("window", "door", "doorway")
 MATCH_DISTANCE_M = 0.3  # Maximum distance between centres, as for objects.
-ASKED_SHARE = 0.5  # An opening is asked for where rays came to half of its face.
-STEP_M = 0.04  # Points on an opening's face, two a default cell.
+ASKED_SHARE = 0.5  # Minimum share of an opening's face that rays reached.
+STEP_M = 0.04  # Distance of points on an opening's face: half a default cell.
 
 
 def opening_facts(

@@ -41,7 +41,7 @@ from world2minecraft.furniture import template
 from world2minecraft.rendering.scene_tables import FACE_NORMALS
 from world2minecraft.rendering.voxel_camera import VoxelScene, cast_voxels, prepare_voxels
 
-SURE_LOG_ODDS = 6.0  # The fusion's own limit.
+SURE_LOG_ODDS = 6.0  # The limit of the fusion.
 
 
 @dataclass(eq=False)
@@ -143,7 +143,7 @@ def _ends(room, camera, camera_to_truth, hits, rows, columns, occupied):
     fine = np.stack(np.unravel_index(hits.voxel_index[rows, columns], truth.labels.shape), axis=1)
     middle_m = truth.origin_m + (fine + 0.5) * truth.voxel_m
     chosen = np.full(len(z), -1, np.int64)
-    for point_m in (middle_m, met_m + inward * PUSH_M):  # The surface's own cell has the say.
+    for point_m in (middle_m, met_m + inward * PUSH_M):  # The cell of the surface decides.
         cells = np.floor(apply(room.truth_to_room, point_m) / reached.voxel_m).astype(np.int64)
         flat = np.ravel_multi_index(tuple((cells - reached.low).T), room.labels.shape)
         chosen = np.where(occupied.reshape(-1)[flat], flat, chosen)
@@ -258,7 +258,7 @@ def _majority(votes: np.ndarray, count: int) -> np.ndarray:
     return winner
 
 
-def put_true_placements(out: Path, room: TrueRoom) -> None:
+def put_true_placements(out: Path) -> None:
     """Move the furniture in ``placements.json`` to the true objects.
 
     If several pieces belong to one object, the largest one with a template is used. If a template

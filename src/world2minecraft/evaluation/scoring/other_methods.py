@@ -50,7 +50,7 @@ class ForeignResult:
     """
 
     grid: OccupancyGrid
-    scan_to_room: np.ndarray  # float64 [4, 4]
+    scan_to_room: np.ndarray
     objects: tuple[LayoutObject, ...]
     tells_confidence: bool
 
@@ -77,7 +77,7 @@ def read_foreign(path: Path) -> ForeignResult:
         voxel_m = positive("voxel_m", float(arrays.get("voxel_m", DEFAULT_VOXEL_M)))
         origin_m = floats("origin_m", arrays.get("origin_m", np.zeros(3)), (3,))
         grid_to_scan = transform("grid_to_scan", arrays.get("grid_to_scan", np.eye(4)))
-        # Ours begin at whole cells near the origin: the frame moves, and all that is in it.
+        # Grids of this program begin at whole cells near the origin, so the frame is moved.
         moved = np.eye(4)
         whole_m = np.round(origin_m / voxel_m) * voxel_m
         if np.abs(origin_m).max() > MAX_NEAR_M:

@@ -54,14 +54,19 @@ def wall_lines(
     """Return the positions of the true walls along the estimated x and y axes in metres."""
     lines: tuple[list[float], list[float]] = ([], [])
     for layout in layouts:
-        heights = np.full((len(layout.floor_polygon_m), 1), layout.floor_z_m)
-        corners = apply(truth_to_room, np.hstack([layout.floor_polygon_m, heights]))
+        corners = floor_corners(layout, truth_to_room)
         for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
             angle = abs(math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])))
             for axis, straight in ((0, 90.0), (1, 0.0)):
                 if min(abs(angle - straight), abs(angle - straight - 180)) < STRAIGHT_DEG:
                     lines[axis].append(float((start[axis] + end[axis]) / 2))
     return lines
+
+
+def floor_corners(layout: Layout, truth_to_room: np.ndarray) -> np.ndarray:
+    """Return the corners of a true room's floor in the estimated frame, float64 [N, 3] in m."""
+    heights = np.full((len(layout.floor_polygon_m), 1), layout.floor_z_m)
+    return apply(truth_to_room, np.hstack([layout.floor_polygon_m, heights]))
 
 
 def pose_facts(out: Path, truth: Truth, frames: Sequence[UsedFrame]) -> dict[str, Any]:

@@ -48,7 +48,7 @@ def share_near(truth: Truth, grid: OccupancyGrid, scan_to_room: np.ndarray) -> f
     cells = np.argwhere(grid.occupied & (grid.source == OBSERVED))
     if not len(cells):
         return 1.0
-    occupied = _coarsened((truth.solid != 0) & (truth.solid != UNKNOWN), COARSE)
+    occupied = _coarsened((truth.solid != 0) & (truth.solid != UNKNOWN))
     near = binary_dilation(np.pad(occupied, NEAR_CELLS), iterations=NEAR_CELLS)
     room_to_truth = invert_rigid(scan_to_room @ truth.truth_to_scan)
     points_m = apply(room_to_truth, cell_centers_m(cells, grid.origin_m, grid.voxel_m))
@@ -58,11 +58,11 @@ def share_near(truth: Truth, grid: OccupancyGrid, scan_to_room: np.ndarray) -> f
     return float(near[tuple(at[inside].T)].sum() / len(cells))
 
 
-def _coarsened(mask: np.ndarray, size: int) -> np.ndarray:
-    """Return which blocks of size x size x size cells of a mask bool [A, B, C] have any set."""
-    padded = np.pad(mask, [(0, -length % size) for length in mask.shape])
-    a, b, c = (length // size for length in padded.shape)
-    return np.asarray(padded.reshape(a, size, b, size, c, size).any(axis=(1, 3, 5)))
+def _coarsened(mask: np.ndarray) -> np.ndarray:
+    """Return which coarse cells of a mask bool [A, B, C] contain any set cell."""
+    padded = np.pad(mask, [(0, -length % COARSE) for length in mask.shape])
+    a, b, c = (length // COARSE for length in padded.shape)
+    return np.asarray(padded.reshape(a, COARSE, b, COARSE, c, COARSE).any(axis=(1, 3, 5)))
 
 
 def _is_from_capture(out: Path, capture: Path) -> bool:

@@ -101,9 +101,9 @@ class TrueRoom:
 
     truth: Truth
     frames: tuple[UsedFrame, ...]
-    truth_to_room: np.ndarray  # float64 [4, 4]
+    truth_to_room: np.ndarray
     reached: Reached
-    labels: np.ndarray  # uint8 of the shape of ``reached.flags``
+    labels: np.ndarray
     objects: TrueObjects
 
 
@@ -180,7 +180,7 @@ def cell_facts(grid: OccupancyGrid, room: TrueRoom) -> dict[str, Any]:
     confidence = placed(grid.confidence, grid, room.reached, 0)
     true, flags = room.labels, room.reached.flags
     scored = room.reached.scored & (true != UNKNOWN)
-    # Of a scanned surface nobody knows what lies behind it: that is no fault of what was found.
+    # What lies behind a scanned surface is unknown, so cells found there are not false.
     judged = true != UNKNOWN if room.truth.is_partial else np.ones(true.shape, bool)
     found_here, true_here = (labels > 0) & (labels != UNKNOWN), (true > 0) & (true != UNKNOWN)
     surface = count_surface(

@@ -209,11 +209,11 @@ def _after_instances(case: Case, work: Path) -> None:
 
 
 def _after_templates(case: Case, work: Path) -> None:
-    put_true_placements(work, case.room)
+    put_true_placements(work)
     _go_on(case, work, "build")
 
 
-# Each begins where the one before it ended, so that truth after a stage includes all before.
+# Each continues after the one before it, so truth after a stage includes that of earlier ones.
 _PUT_IN: dict[str, Callable[[Case, Path], None]] = {
     "alignment": _after_alignment,
     "fusion": _after_fusion,

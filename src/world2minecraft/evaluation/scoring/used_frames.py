@@ -36,9 +36,9 @@ class UsedFrame:
 
     name: str
     camera: Camera
-    camera_to_truth: np.ndarray  # float64 [4, 4], the true pose
-    colour_to_truth: np.ndarray  # float64 [4, 4], that of the colour camera
-    camera_to_scan: np.ndarray  # float64 [4, 4], as the capture states it
+    camera_to_truth: np.ndarray
+    colour_to_truth: np.ndarray
+    camera_to_scan: np.ndarray
 
 
 def used_frames(out: Path, truth: Truth) -> tuple[UsedFrame, ...]:

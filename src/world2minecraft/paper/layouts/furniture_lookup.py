@@ -19,7 +19,7 @@ from world2minecraft.reconstruction.floorplans.furniture_categories import (
 )
 
 TABLE = Path(__file__).parent / "data" / "designs.json"
-# What stands for a class that no word tells more of, by RoomPlan's categories.
+# RoomPlan's category of each class, for objects without a known word.
 CATEGORIES = {
     SemanticClass.CHAIR: "chair",
     SemanticClass.BED: "bed",
@@ -55,7 +55,7 @@ def design_of(item: LayoutObject, floor_z_m: float = 0.0) -> Design:
     category = CATEGORIES.get(SemanticClass(item.class_id), "")
     known = _named(item.name)
     if known is not None:
-        # Its class decides the category, so that what is built counts as what was said.
+        # The class decides the category, so that the built object counts as the stated class.
         return known if not category else Design(known.template, category)
     if not category:
         return Design(OWN_CELLS, _hint(item, floor_z_m))

@@ -31,10 +31,10 @@ from world2minecraft.rendering.output.images import colour_bytes
 LONGEST_PX = 1024
 
 METHODS = ("text", "layoutgpt", "idesign", "layoutvlm")
-AT_WALL_M = 0.25  # What is nearer to a wall stands at it.
+AT_WALL_M = 0.25  # A nearer object stands at the wall.
 SIDES = ("west", "east", "south", "north")
 DESCRIBE = "describe.md"
-# The first kind of which a word is in a room's things.
+# The first kind with a word in the names of a room's objects is used.
 KINDS = (
     ("kitchen", ("stove", "fridge", "refrigerator", "counter", "oven", "dishwasher", "kitchen")),
     ("bathroom", ("toilet", "bathtub", "shower")),

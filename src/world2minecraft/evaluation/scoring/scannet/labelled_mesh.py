@@ -33,7 +33,7 @@ LABELLED = "_vh_clean_2.labels.ply"
 NYU40_NUMBERS = 40
 MAX_OBJECTS = 65_535
 MIN_SIDE_M = 0.01  # A picture that is scanned as a plane still has a box.
-# Parts of walls, though they are called objs: a run tells them as openings, not as objects.
+# Parts of walls with the class objs: a run reports them as openings, not as objects.
 OPENINGS = ("door", "doorframe", "doorway", "window")
 
 
@@ -52,12 +52,12 @@ class LabelledMesh:
     """
 
     name: str
-    vertices_m: np.ndarray  # float64 [V, 3]
-    triangles: np.ndarray  # int64 [T, 3]
-    classes: np.ndarray  # uint8 [V], 255 where nobody annotated it
-    instance: np.ndarray  # uint16 [V]
+    vertices_m: np.ndarray
+    triangles: np.ndarray
+    classes: np.ndarray
+    instance: np.ndarray
     objects: tuple[LayoutObject, ...]
-    truth_to_scan: np.ndarray  # float64 [4, 4]
+    truth_to_scan: np.ndarray
 
 
 def labelled_meshes(scene: Path) -> list[Path]:

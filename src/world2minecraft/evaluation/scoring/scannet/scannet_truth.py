@@ -44,7 +44,7 @@ from world2minecraft.evaluation.scoring.used_frames import UsedFrame
 from world2minecraft.procgen.virtual_scan import object_to_json
 
 PIECE = 0.75  # Longest side of a piece, in voxels.
-MARGIN = 2  # Free voxels around it all.
+MARGIN = 2  # Free voxels around the surface.
 CHUNK_M2 = 4.0  # Of surface at a time, some 200,000 pieces.
 MAX_VALUES = 1 << 16
 
@@ -66,10 +66,10 @@ class SurfaceVoxels:
         origin_m: The minimum corner in metres, a multiple of the voxel size, as float64 [3].
     """
 
-    labels: np.ndarray  # uint8 [A, B, C], 255 where there is no surface or no class
-    surface: np.ndarray  # bool [A, B, C]
-    instance: np.ndarray  # uint16 [A, B, C]
-    origin_m: np.ndarray  # float64 [3], a whole multiple of the voxel
+    labels: np.ndarray
+    surface: np.ndarray
+    instance: np.ndarray
+    origin_m: np.ndarray
 
 
 def surface_voxels(mesh: LabelledMesh, voxel_m: float) -> SurfaceVoxels:

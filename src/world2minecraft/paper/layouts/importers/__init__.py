@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.registry import Registry
 from world2minecraft.paper.layouts.compared_scene import ComparedScene
-from world2minecraft.paper.layouts.importers.value_checks import READ_ERRORS, why
+from world2minecraft.paper.layouts.importers.value_checks import why
 
 MAX_BYTES = 256 << 20  # LayoutGPT's 423 bedrooms have 0.9 MB.
 PX_M = 3.5 / 256  # See layoutgpt.py.
@@ -77,7 +77,7 @@ def read_layouts_of(path: Path, how: How | None = None, name: str = "") -> list[
 def _read(found: Any, path: Path, data: Any, how: How) -> list[ComparedScene]:
     try:
         scenes = found.read(path, data, how)
-    except READ_ERRORS as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"not valid in its format ({why(error)})") from error
     if not scenes:
         raise DamagedFileError(path, "the file does not contain any scenes")

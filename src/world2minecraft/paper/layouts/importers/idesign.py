@@ -11,11 +11,11 @@ the solver found no position.
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from world2minecraft.core.errors import MALFORMED
 from world2minecraft.core.types import LayoutObject
 from world2minecraft.paper.layouts.compared_scene import ComparedScene
 from world2minecraft.paper.layouts.importers.value_checks import (
     MAX_OBJECTS,
-    READ_ERRORS,
     Box,
     checked_count,
     clean_name,
@@ -63,7 +63,7 @@ class Format:
                 continue
             try:
                 objects.append(_object(one, name))
-            except READ_ERRORS as error:
+            except MALFORMED as error:
                 skipped.append(f"{name}: {why(error)}")
         name = path.parent.name if path.stem == "scene_graph" else path.stem
         room = rectangle(*_sides(shell))

@@ -19,12 +19,12 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from world2minecraft.core.errors import MALFORMED
 from world2minecraft.core.types import LayoutObject
 from world2minecraft.paper.layouts.compared_scene import ComparedScene
 from world2minecraft.paper.layouts.importers.value_checks import (
     MAX_OBJECTS,
     MAX_SCENES,
-    READ_ERRORS,
     Box,
     checked_count,
     clean_name,
@@ -41,9 +41,9 @@ if TYPE_CHECKING:
 METHOD = "LayoutGPT"
 _SIDE = r"\s*([0-9]+(?:\.[0-9]+)?)\s*(px|m)?\b"
 _SIZE = re.compile(rf"max\s+length{_SIDE}\s*,\s*max\s+width{_SIDE}", re.I)
-SHORTER_PX = 256  # Of a room that is normalised, its shorter side;
-SLACK = 0.005  # in metres it is 1, told by two decimals.
-MAX_ROOM_M = 40.0  # Of a room; what has no more pixels was not normalised.
+SHORTER_PX = 256  # The shorter side of a normalised room;
+SLACK = 0.005  # in metres it is 1, given with two decimals.
+MAX_ROOM_M = 40.0  # A room with at most this many pixels was not normalised.
 
 
 class Format:
@@ -81,7 +81,7 @@ def _scene(record: dict[str, Any], count: int, px_m: float) -> ComparedScene:
     for item in checked_count(record["object_list"], MAX_OBJECTS, "objects"):
         try:
             objects.append(_object(item, unit_m, width_m))
-        except READ_ERRORS as error:
+        except MALFORMED as error:
             skipped.append(f"{_name(item)}: {why(error)}")
     room = rectangle(length_m, width_m, height_over(objects))
     name = clean_name(record.get("query_id", record.get("id", f"record {count}")))

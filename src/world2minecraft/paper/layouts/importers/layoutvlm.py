@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from world2minecraft.core.errors import InputError
+from world2minecraft.core.errors import MALFORMED, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Layout, LayoutObject
 from world2minecraft.paper.layouts.compared_scene import ComparedScene
@@ -25,7 +25,6 @@ from world2minecraft.paper.layouts.importers.value_checks import (
     FARTHEST_M,
     MAX_CORNERS,
     MAX_OBJECTS,
-    READ_ERRORS,
     USUAL_HEIGHT_M,
     Box,
     checked_count,
@@ -41,7 +40,7 @@ if TYPE_CHECKING:
 METHOD = "LayoutVLM"
 LAYOUT_FILE = "layout.json"
 MAX_TASK_BYTES, MAX_ASSET_BYTES = 64 << 20, 1 << 20
-MAX_ADJACENT_FILES = 200  # Files beside a layout that are looked at.
+MAX_ADJACENT_FILES = 200  # Files beside a layout that are searched.
 
 
 class Format:
@@ -78,7 +77,7 @@ class Format:
         for key, one in data.items():
             try:
                 objects.append(_object(key, one, assets))
-            except READ_ERRORS as error:
+            except MALFORMED as error:
                 skipped.append(f"{clean_name(key)}: {why(error)}")
         names = _names(task, how.assets)
         unplaced = [clean_name(name) for name, own in names if not {name, own} & set(data)]
@@ -158,7 +157,7 @@ def _names(task: dict[str, Any], folder: Path | None) -> list[tuple[str, str]]:
         seen[word] += 1
         suffix = f"_{chr(ord('A') + seen[word] - 1)}" if kinds[word] > 1 else ""
         for count, key in enumerate(keys):
-            word += suffix  # Once more for each instance: so does its program.
+            word += suffix  # Added again for each instance, as LayoutVLM does.
             names.append((f"{word}-{count}", key))
     return names
 

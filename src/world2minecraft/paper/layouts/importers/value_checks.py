@@ -12,13 +12,12 @@ from world2minecraft.capture.readers.meshes.colours_and_classes import class_of_
 from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.core.types import Layout, LayoutObject
 
-FARTHEST_M = 1000.0  # From a room's corner; farther is a slip of units.
+FARTHEST_M = 1000.0  # From a corner of the room; farther is an error of units.
 MAX_SCENES = 100_000
-MAX_OBJECTS = 1000  # Of a scene: pairs of them are looked at.
+MAX_OBJECTS = 1000  # Of a scene, whose pairs are compared.
 MAX_CORNERS = 1000
 MAX_NAME_CHARACTERS = 80
-USUAL_HEIGHT_M = 2.6  # Of a room that does not say.
-READ_ERRORS = (KeyError, TypeError, ValueError, AttributeError, IndexError)  # Of wrong contents.
+USUAL_HEIGHT_M = 2.6  # Of a room without a stated height.
 _UNIT = re.compile(r"\s*(px|m|met(?:er|re)s?|degrees?|deg|°)?\s*;?\s*$")
 
 
@@ -35,7 +34,7 @@ class Box:
 
     name: str
     center_m: tuple[float, float, float]
-    size_m: tuple[float, float, float]  # front to back, side, height
+    size_m: tuple[float, float, float]
     yaw_deg: float
 
 
@@ -63,7 +62,7 @@ def number(value: Any, what: str) -> float:
 
 
 def why(error: BaseException) -> str:
-    """Return the description of one of ``READ_ERRORS``.
+    """Return the description of one of ``core.errors.MALFORMED``.
 
     Example:
         >>> why(KeyError("length")), why(ValueError("has no size")), why(IndexError("out of range"))
