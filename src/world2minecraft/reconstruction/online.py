@@ -39,7 +39,7 @@ FIRST_PLACING = 4  # Fewer frames rarely show two walls and a floor.
 POLL_S = 1.0
 SHOW_S = 5.0
 IDLE_S = 60.0
-DONE_FILE = "done"  # Whoever writes the capture puts it there after the last frame.
+DONE_FILE = "done"  # Written to the capture after the last frame.
 PREVIEW_PX = (960, 720)
 
 
@@ -166,7 +166,7 @@ class LiveRoom:
         stated = read_json(self.frames_folder / "capture.json")
         (entry,) = stated.pop("frames")
         self._stated = self._stated or stated
-        # What this view states otherwise than the first goes into its own entry.
+        # Values that differ from those of the first view are stated in the entry of this view.
         entry |= {key: value for key, value in stated.items() if self._stated.get(key) != value}
         self._entries.append(entry)
 
@@ -174,17 +174,15 @@ class LiveRoom:
         write_json(self.frames_folder / "capture.json", self._stated | {"frames": self._entries})
 
 
-def open_registered(
-    capture: Path, chosen: Parameters, labels: Path | None = None, progress: Progress = no_progress
-) -> Scan:
+def open_registered(capture: Path, chosen: Parameters, labels: Path | None) -> Scan:
     """Open a capture as a registered and aligned scan, by the stages of the batch mode.
 
     Raises:
         CaptureError: If the capture cannot be used.
     """
     options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
-    scan = open_scan(capture, progress=progress, **options)
-    found = register(scan, chosen.register, progress)
+    scan = open_scan(capture, **options)
+    found = register(scan, chosen.register)
     return realign(apply_corrections(scan, found.corrections), found.surface)
 
 
@@ -301,7 +299,9 @@ def follow(
     frames = 0
     try:
         while True:
-            done = (capture / DONE_FILE).exists()  # Before the look: what came first is read.
+            done = (
+                capture / DONE_FILE
+            ).exists()  # Checked first, so that all earlier frames are read.
             new = follower.poll()
             frames += new
             if new:

@@ -16,10 +16,12 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.change_points import change_points
+from world2minecraft.reconstruction.instances.density_clustering import joined_parts
 from world2minecraft.reconstruction.instances.object_voxels import (
+    COLOUR_WEIGHTS,
     ObjectVoxels,
-    cells_by_owner,
     object_voxels,
+    split_owners,
 )
 from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
@@ -55,7 +57,6 @@ COLOUR_STEP = 0.05  # In Oklab: a front that differs by less looks the same; lig
 # Arms with more of their tops seen are units of their own. Of the kitchen's counter 0.43 and 0.51
 # are seen; of the two units at each corner of generated kitchens, one has 0.8 or more.
 MAX_TOP_SHARE = 0.7
-SIDE_WEIGHTS = np.sqrt([0.4, 1.0, 1.0])  # The arms of an L face different ways and lights.
 MIN_FRONT_LAYERS = 3  # A slice that shows fewer layers of its front says nothing.
 
 
@@ -238,9 +239,6 @@ def _merge_plans(plans: list[np.ndarray], top: np.ndarray, step: float) -> list[
 
 def _height_regions(top: np.ndarray, step: float) -> np.ndarray:
     """Label the regions of columns with similar top heights, int64 [X, Y]."""
-    from scipy.sparse import coo_matrix  # noqa: PLC0415
-    from scipy.sparse.csgraph import connected_components  # noqa: PLC0415
-
     index = np.arange(top.size).reshape(top.shape)
     pairs = []
     for near, far in (
@@ -249,9 +247,7 @@ def _height_regions(top: np.ndarray, step: float) -> np.ndarray:
     ):
         joined = (top[near] > 0) & (top[far] > 0) & (np.abs(top[near] - top[far]) < step)
         pairs.append(np.stack([index[near][joined], index[far][joined]]))
-    first, second = np.concatenate(pairs, axis=1)
-    graph = coo_matrix((np.ones(len(first)), (first, second)), shape=(top.size, top.size))
-    _, number = connected_components(graph, directed=False)
+    number = joined_parts(np.concatenate(pairs, axis=1), top.size)
     result = np.where(top.reshape(-1) > 0, number + 1, 0)
     _, compact = np.unique(result, return_inverse=True)
     compact = compact.reshape(top.shape)
@@ -335,7 +331,7 @@ def _side_colour(piece: np.ndarray, voxels: ObjectVoxels) -> np.ndarray:
     colours = colours[colours.any(axis=1)]
     if not len(colours):
         return np.full(3, np.nan)
-    return np.median(srgb_to_oklab(colours) * SIDE_WEIGHTS, axis=0)
+    return np.median(srgb_to_oklab(colours) * COLOUR_WEIGHTS, axis=0)
 
 
 def _front_colours(voxels: ObjectVoxels, axis: int) -> np.ndarray:
@@ -375,17 +371,14 @@ def split_cabinet_runs(
     owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], with a separate number for each cupboard of a row."""
-    result = owners.copy()
-    next_id = int(owners.max(initial=0))
-    for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.FURN):
+
+    def parts_of(cells: np.ndarray) -> np.ndarray | None:
         size_m = (np.ptp(cells, axis=0) + 1) * grid.voxel_m
         if size_m[:2].max() < MIN_RUN_M:
-            continue
-        parts = split_run(object_voxels(grid, cells))[tuple((cells - cells.min(axis=0)).T)]
-        moved = parts > 1
-        result[tuple(cells[moved].T)] = next_id + parts[moved] - 1
-        next_id += int(parts.max()) - 1
-    return result
+            return None
+        return split_run(object_voxels(grid, cells))[tuple((cells - cells.min(axis=0)).T)]
+
+    return split_owners(owners, grid.labels, SemanticClass.FURN, parts_of)
 
 
 def split_run(voxels: ObjectVoxels) -> np.ndarray:

@@ -9,8 +9,8 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.reconstruction.instances.object_voxels import colour_distance
 
 MAX_SPECK_CELLS = 6  # At 0.08 m less than a sheet of paper, and less than any object has.
 MIN_SURROUNDING_SHARE = 0.8  # Of the occupied cells around a speck, those of the class around it.
@@ -25,7 +25,6 @@ MAX_WALL_DISTANCE_M = 0.25
 NEAR_SHARE = 0.9  # Minimum share of a lump's cells; the rest is noise.
 UNCERTAIN = 0.3
 SAME_COLOUR = 0.03  # Oklab distance of medians, with reduced weight of lightness.
-COLOUR_WEIGHTS = np.sqrt([0.4, 1.0, 1.0])  # Walls and what is on them are lit unevenly.
 COLOUR_REACH_M = 0.25  # Wall cells so close to a lump are compared with it.
 MIN_WALL_M2 = 0.5  # A smaller part of a wall may itself be a lump.
 
@@ -122,9 +121,4 @@ def _looks_like_wall(
     """Return whether an object, bool [A, B, C] in a box, has the colour of the wall beside it."""
     margin = round((COLOUR_REACH_M + MAX_WALL_DISTANCE_M) / grid.voxel_m)
     wide = tuple(slice(max(side.start - margin, 0), side.stop + margin) for side in box)
-    colours, behind = grid.colour[box][own], grid.colour[wide][walls[wide]]
-    colours, behind = colours[colours.any(axis=1)], behind[behind.any(axis=1)]
-    if not len(colours) or not len(behind):
-        return False
-    apart = np.median(srgb_to_oklab(colours), axis=0) - np.median(srgb_to_oklab(behind), axis=0)
-    return bool(np.linalg.norm(apart * COLOUR_WEIGHTS) < SAME_COLOUR)
+    return colour_distance(grid.colour[box][own], grid.colour[wide][walls[wide]]) < SAME_COLOUR

@@ -90,8 +90,7 @@ def _dbscan(points: np.ndarray, radius: float, min_samples: int) -> np.ndarray:
     pairs = KDTree(points.astype(np.float64)).query_pairs(radius, output_type="ndarray")
     is_core = np.bincount(pairs.ravel(), minlength=count) + 1 >= min_samples
     joined = pairs[is_core[pairs].all(axis=1)]
-    graph = coo_array((np.ones(len(joined), bool), tuple(joined.T)), shape=(count, count))
-    part = connected_components(graph, directed=False)[1]
+    part = joined_parts(joined.T, count)
     firsts, found = np.unique(part[is_core], return_index=True)
     labels = np.full(count, count)
     labels[is_core] = np.argsort(np.argsort(found))[np.searchsorted(firsts, part[is_core])]
@@ -99,6 +98,18 @@ def _dbscan(points: np.ndarray, radius: float, min_samples: int) -> np.ndarray:
         reached = ~is_core[border] & is_core[core]
         np.minimum.at(labels, border[reached], labels[core[reached]])
     return np.where(labels < count, labels, NO_CLUSTER)
+
+
+def joined_parts(pairs: np.ndarray, count: int) -> np.ndarray:
+    """Return the connected part of each of ``count`` nodes, int32 [count] from 0.
+
+    Args:
+        pairs: Nodes that are joined, int [2, M].
+        count: Number of nodes.
+    """
+    first, second = pairs
+    graph = coo_array((np.ones(len(first), bool), (first, second)), shape=(count, count))
+    return connected_components(graph, directed=False)[1]
 
 
 def _order_by_centroid(clusters: np.ndarray, points: np.ndarray) -> np.ndarray:

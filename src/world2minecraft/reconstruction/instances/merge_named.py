@@ -1,4 +1,4 @@
-"""Merging of neighbouring pieces that were recognised as parts of the same thing.
+"""Merging of neighbouring pieces that were recognised as parts of the same object.
 
 A toilet and its cistern, a bed and its headboard and the halves of a sofa often come as objects of
 their own, even of different classes. Pieces whose boxes meet become one object if most votes for
@@ -13,7 +13,7 @@ from scipy import ndimage
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.core.vocabulary import nyu40_names
 
-# Longest side and height of one thing in metres. Several chairs, tables or cabinets may touch.
+# Longest side and height of one object in metres. Several chairs, tables or cabinets may touch.
 LARGEST_M = {
     "bed": (2.4, 1.8),
     "sofa": (3.2, 1.3),
@@ -28,7 +28,7 @@ MIN_SHARE = 0.5  # Of the votes for a piece.
 def merge_same_names(
     owners: np.ndarray, grid: OccupancyGrid, class_votes: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Merge neighbouring pieces of one thing.
+    """Merge neighbouring pieces of one object.
 
     Args:
         owners: Number of the object of each cell, int32 [X, Y, Z], 0 for none.

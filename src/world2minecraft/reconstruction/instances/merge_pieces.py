@@ -11,10 +11,14 @@ from scipy.spatial import KDTree
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components, touching_pairs
 from world2minecraft.reconstruction.instances.density_clustering import object_cells
-from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
+from world2minecraft.reconstruction.instances.object_voxels import (
+    STANDING,
+    cells_by_owner,
+    colour_distance,
+    floor_layer_below,
+)
 from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
 # Bits of a lamp: its foot on the floor, a piece of its cord, join the shade over or under them.
@@ -37,9 +41,7 @@ MIN_CONTACT = 0.4  # Share of the piece's cells next to the host.
 # the latter.
 MIN_COVERED = 0.4
 SAME_COLOUR = 0.03  # Oklab distance of medians, with reduced weight of lightness.
-COLOUR_WEIGHTS = np.sqrt([0.4, 1.0, 1.0])
 NEIGHBOURHOOD = np.ones((3, 3, 3), np.bool_)
-STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
 STANDING_FACTOR = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.
 
 
@@ -153,7 +155,7 @@ def merge_flush_pieces(
         is_thing = grid.labels[box][own].max() == SemanticClass.OBJS
         embedded = is_thing and _covered_share(own, result[box], number) >= MIN_COVERED
         if embedded or (
-            _colour_distance(grid.colour[box][own], grid.colour[beside][whole]) < SAME_COLOUR
+            colour_distance(grid.colour[box][own], grid.colour[beside][whole]) < SAME_COLOUR
         ):
             moved = result == number  # With what was merged into it before.
             result[moved] = host
@@ -177,15 +179,6 @@ def _covered_share(own: np.ndarray, owners: np.ndarray, number: int) -> float:
     """Return the share of the cells around a piece, across faces, that are other objects."""
     around = owners[ndimage.binary_dilation(own) & ~own]
     return float(((around > 0) & (around != number)).mean()) if len(around) else 0.0
-
-
-def _colour_distance(one: np.ndarray, other: np.ndarray) -> float:
-    """Return the weighted Oklab distance of the medians of sRGB colours, uint8 [N, 3] each."""
-    one, other = one[one.any(axis=1)], other[other.any(axis=1)]
-    if not len(one) or not len(other):
-        return np.inf
-    apart = np.median(srgb_to_oklab(one), axis=0) - np.median(srgb_to_oklab(other), axis=0)
-    return float(np.linalg.norm(apart * COLOUR_WEIGHTS))
 
 
 def merge_small_pieces(

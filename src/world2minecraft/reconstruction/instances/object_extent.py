@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.reconstruction.instances.object_voxels import floor_layer_below
+from world2minecraft.reconstruction.instances.object_voxels import STANDING, floor_layer_below
 
 # Chairs that stand askew: the smallest rectangle around their cells in plan, turned freely.
 ANGLES_DEG = np.array([sign * a for a in range(8, 38) for sign in (1, -1)], np.float64)
@@ -18,9 +18,8 @@ MAX_AREA_RATIO = 0.95  # Ratio to the upright rectangle; straight chairs exceed 
 MIN_MIRRORED_EXCESS = 0.02  # A rectangle turned the other way that is as small: the turn is open.
 RIM_CELLS = 0.6  # Cells from the outermost centres to the sides; cells are met by their corners.
 SIDES_M = (0.34, 0.66)  # Of a whole chair, and of no easy chair, pile, or back alone.
-STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
 MAX_STANDING_BASE_M = 1.0  # Objects that begin higher stand on another object.
-MIN_HANGING_BASE_M = 1.3  # A thing in the air above this hangs from the ceiling, below it stands.
+MIN_HANGING_BASE_M = 1.3  # An object in the air above this hangs from the ceiling, below it stands.
 WALL_CELLS = 2  # Maximum distance to the wall of a hanging object, in cells.
 MIN_FREE_CELLS = 2  # What has so much free air below it
 MIN_FREE_SHARE = 0.6  # under so many of its columns has nothing that holds it there.

@@ -1,13 +1,16 @@
 """The voxels of single objects, each in a small box to avoid passes over the whole grid."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
+from world2minecraft.geometry.colour import srgb_to_oklab
 
+STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
+COLOUR_WEIGHTS = np.sqrt([0.4, 1.0, 1.0])  # Objects and walls are lit unevenly.
 FLOOR_SEARCH_CELLS = 6  # The floor beside a cupboard is seen, the floor under it is not.
 MIN_FLOOR_CELLS = 4
 
@@ -29,6 +32,45 @@ def cells_by_owner(
     yield from zip(found.tolist(), np.split(cells[order], starts[1:]), strict=False)
 
 
+def split_owners(
+    owners: np.ndarray,
+    labels: np.ndarray,
+    class_id: int,
+    parts_of: Callable[[np.ndarray], np.ndarray | None],
+) -> np.ndarray:
+    """Return owners, int32 [X, Y, Z], with new numbers for the parts of the objects of a class.
+
+    Args:
+        owners: Owner of each cell, int32 [X, Y, Z]; 0 is none.
+        labels: Class of each cell, uint8 [X, Y, Z].
+        class_id: Class of the objects.
+        parts_of: Function from the cells of an object, int64 [N, 3], to the part of each, int [N]
+            from 1, of which the first keeps the number; None keeps the object.
+    """
+    result = owners.copy()
+    next_id = int(owners.max(initial=0))
+    for _, cells in cells_by_owner(owners, labels, class_id):
+        parts = parts_of(cells)
+        if parts is None:
+            continue
+        moved = parts > 1
+        result[tuple(cells[moved].T)] = next_id + parts[moved] - 1
+        next_id += max(int(parts.max()) - 1, 0)
+    return result
+
+
+def colour_distance(one: np.ndarray, other: np.ndarray) -> float:
+    """Return the weighted Oklab distance of the medians of sRGB colours, uint8 [N, 3] each.
+
+    Cells without a colour, which are black, do not count. Without any other, it is infinite.
+    """
+    one, other = one[one.any(axis=1)], other[other.any(axis=1)]
+    if not len(one) or not len(other):
+        return np.inf
+    apart = np.median(srgb_to_oklab(one), axis=0) - np.median(srgb_to_oklab(other), axis=0)
+    return float(np.linalg.norm(apart * COLOUR_WEIGHTS))
+
+
 class ObjectVoxels(NamedTuple):
     """The cells of an object in their bounding box.
 
@@ -36,7 +78,7 @@ class ObjectVoxels(NamedTuple):
         own: Mask of the object's cells, bool [X, Y, Z].
         free: Mask of the cells seen as empty, bool [X, Y, Z].
         colour: sRGB colours, uint8 [X, Y, Z, 3].
-        low: Index of the first cell of the box in the grid.
+        low: Index of the first cell of the box in the grid, int64 [3].
         floor: Layer of the box directly above the floor; may be outside the box.
         voxel_m: Cell size in metres.
     """
@@ -44,7 +86,7 @@ class ObjectVoxels(NamedTuple):
     own: np.ndarray
     free: np.ndarray
     colour: np.ndarray
-    low: np.ndarray  # int64 [3], the box's first cell in the grid
+    low: np.ndarray
     floor: int
     voxel_m: float
 

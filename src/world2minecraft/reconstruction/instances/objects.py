@@ -107,8 +107,8 @@ def find_objects(
     Args:
         grid: Grid with labels and colours.
         parameters: Parameters of the detection.
-        stated: Cells whose class label images state, bool [X, Y, Z]. Objects of which they are the
-            most stay as they are.
+        stated: Cells whose class label images state, bool [X, Y, Z]. Objects that consist
+            mostly of them are not changed.
         votes: Cells int [N, 3], and their votes for the NYU40 classes from 1, float [N, 40].
 
     Raises:

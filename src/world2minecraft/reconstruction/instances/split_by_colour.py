@@ -9,8 +9,11 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
-from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
-from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner
+from world2minecraft.reconstruction.instances.density_clustering import (
+    assign_voxels,
+    joined_parts,
+)
+from world2minecraft.reconstruction.instances.object_voxels import split_owners
 from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
 MAX_COLOUR_DIFFERENCE = 0.12  # Neighbouring cells of one paint differ by less, in Oklab.
@@ -24,16 +27,12 @@ def split_by_colour(
     owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], with separate numbers for small objects of other colours."""
-    result = owners.copy()
-    next_id = int(owners.max(initial=0))
-    for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.OBJS):
-        if (np.ptp(cells[:, :2], axis=0).max() + 1) * grid.voxel_m <= MIN_WIDTH_M:
-            continue
-        parts = _part_of_cells(cells, grid)
-        moved = parts > 1
-        result[tuple(cells[moved].T)] = next_id + parts[moved] - 1
-        next_id += max(int(parts.max()) - 1, 0)
-    return result
+
+    def parts_of(cells: np.ndarray) -> np.ndarray | None:
+        width_m = (np.ptp(cells[:, :2], axis=0).max() + 1) * grid.voxel_m
+        return None if width_m <= MIN_WIDTH_M else _part_of_cells(cells, grid)
+
+    return split_owners(owners, grid.labels, SemanticClass.OBJS, parts_of)
 
 
 def _part_of_cells(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
@@ -57,9 +56,6 @@ def _part_of_cells(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
 
 def _colour_patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
     """Label the large patches of neighbouring cells of similar colour, int32 [X, Y, Z] from 1."""
-    from scipy.sparse import coo_matrix  # noqa: PLC0415
-    from scipy.sparse.csgraph import connected_components  # noqa: PLC0415
-
     index = np.arange(own.size).reshape(own.shape)
     pairs = []
     for step in STEPS:
@@ -68,10 +64,7 @@ def _colour_patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
         alike = np.linalg.norm(colour[near] - colour[far], axis=-1) < MAX_COLOUR_DIFFERENCE
         alike &= own[near] & own[far]
         pairs.append(np.stack([index[near][alike], index[far][alike]]))
-    first, second = np.concatenate(pairs, axis=1)
-    graph = coo_matrix((np.ones(len(first)), (first, second)), shape=(own.size, own.size))
-    _, number = connected_components(graph, directed=False)
-    number = number.reshape(own.shape)
+    number = joined_parts(np.concatenate(pairs, axis=1), own.size).reshape(own.shape)
     counts = np.bincount(number[own], minlength=int(number.max()) + 1)
     retained = np.flatnonzero(counts >= MIN_CELLS)
     place = np.zeros(len(counts), np.int32)

@@ -14,23 +14,23 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
-from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
+from world2minecraft.reconstruction.instances.object_voxels import floor_layer_below, split_owners
 from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
-# What hangs on a wall: the columns of a curtain or a picture among those of small things.
+# What hangs on a wall: the columns of a curtain or a picture among those of small objects.
 WALL_CELLS = 2  # A curtain hangs this near its wall.
 MIN_SHEET_CELLS = 12  # At 0.08 m, a picture of 0.3 m side.
 MIN_HANGING_TOP_M = 1.8  # Objects this high beside a wall count as hanging.
 MIN_CLEARANCE_M = 0.24  # So do objects with this much free air below.
 AROUND_CELLS = 4  # What stands this near is compared:
-MIN_COLOUR_DIFFERENCE = 0.08  # in Oklab, one thing in light and shade differs by less;
+MIN_COLOUR_DIFFERENCE = 0.08  # in Oklab; one object in light and shade differs by less;
 MIN_RISE_M = 0.16  # and a sheet rises above it,
 MIN_CLEAR_RISE_M = 0.5  # or so far that it may have its colour.
 PLAN_BOX = np.ones((3, 3), np.bool_)
 MIN_COLUMNS = 3  # What stands with fewer cells leans over, or is noise: a vase has four.
 MIN_CELLS = 8  # Of a part, as of any object.
 MIN_SHADE_CELLS = 20  # Cells of a shade that floats.
-UNDER_CELLS = 2  # A thing stands on what lies this near below it.
+UNDER_CELLS = 2  # Maximum gap between an object and what it stands on.
 
 
 class LocalScene(NamedTuple):
@@ -112,16 +112,11 @@ def split_by_support(
     owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], with separate numbers for objects with different supports."""
-    result = owners.copy()
-    next_id = int(owners.max(initial=0))
-    for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.OBJS):
-        if len(cells) < 2 * MIN_CELLS:
-            continue
-        parts = _part_of_cells(cells, owners, grid)
-        moved = parts > 1
-        result[tuple(cells[moved].T)] = next_id + parts[moved] - 1
-        next_id += max(int(parts.max()) - 1, 0)
-    return result
+
+    def parts_of(cells: np.ndarray) -> np.ndarray | None:
+        return None if len(cells) < 2 * MIN_CELLS else _part_of_cells(cells, owners, grid)
+
+    return split_owners(owners, grid.labels, SemanticClass.OBJS, parts_of)
 
 
 def _part_of_cells(cells: np.ndarray, owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:

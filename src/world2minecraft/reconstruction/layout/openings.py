@@ -16,17 +16,16 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.morphology import binary_opening, dilate
 from world2minecraft.reconstruction.layout.parameters import StructureParameters, within
-from world2minecraft.reconstruction.layout.plane_residuals import PlaneResiduals
+from world2minecraft.reconstruction.layout.plane_residuals import PlaneResiduals, noise_of
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 
 Kind = Literal["window", "door", "doorway"]
 BEND_M = 0.32  # Bends are wider than this to both sides.
 MAX_BEND_M = 0.1
 STRAIGHT_M = 0.03  # A wall that bends by less is straight.
-SIGMAS, SIGMA_OF_MEDIAN = 2.5, 1.48
 MAX_NOISE_M = 0.12  # A cell and a half.
 BAR_M = 0.02  # The bars of a window lie before its glass.
-STEP_M = 0.012  # What hangs on a wall and what is let into it has an edge; a bend has none.
+STEP_M = 0.012  # Objects on a wall or recessed in it have an edge; a bend has none.
 CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
 
 
@@ -76,8 +75,7 @@ def _noise_m(off_m: np.ndarray, parameters: StructureParameters) -> float:
 
     A wall seen from afar is a thick band of cells, of which all are the wall.
     """
-    spread_m = SIGMAS * SIGMA_OF_MEDIAN * float(np.median(off_m)) if len(off_m) else 0.0
-    return float(np.clip(spread_m, parameters.noise_m, MAX_NOISE_M))
+    return float(np.clip(noise_of(off_m), parameters.noise_m, MAX_NOISE_M))
 
 
 def _bend(surface: Surface, relief: PlaneResiduals) -> np.ndarray:

@@ -19,13 +19,13 @@ from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.types import COMPLETED, UNSEEN, Layout, OccupancyGrid
 from world2minecraft.furniture.layout_checks import inside_polygon
 
-THICK_M = 0.16  # Behind its face a wall may be occupied so deep.
-FACE_M = 0.1  # Cells so near to the face are the wall's.
-BEFORE_M = 0.4  # Guesses of stereo hang so far before it; from there on nearly all is true.
-ALIKE = 12  # Levels of 255 between colours that are the same paint; guesses differ by 8.
-AROUND = 12  # Cells of the wall that tell its colour at a place.
+THICK_M = 0.16  # Depth behind its face to which a wall may be occupied.
+FACE_M = 0.1  # Cells this near to the face belong to the wall.
+BEFORE_M = 0.4  # Stereo errors lie up to this far in front of a wall; beyond, few do.
+ALIKE = 12  # Levels of 255 between colours of one paint; errors of stereo differ by 8.
+AROUND = 12  # Cells of the wall that give its colour at a position.
 SEEN_SHARE = 0.5  # Of a wall's columns: one less seen may be an opening, or a guess itself.
-HOLE_CELLS = 4  # Half the width of what was carved; a door is wider.
+HOLE_CELLS = 4  # Half the width of carved holes; a door is wider.
 CONFIDENCE = 0.3  # Confidence of completed cells.
 
 

@@ -12,10 +12,11 @@ from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.reconstruction.layout.surface_cells import Surface, turn_surface
 
 SOLID_M = 0.008  # SSCNet's 4 of 64: about this much matter makes a cell of 8 cm solid.
-FIT_GATES_M = (0.012, 0.012, 0.01, 0.01)  # Doors, pictures and boards do not tell where it lies.
+FIT_GATES_M = (0.012, 0.012, 0.01, 0.01)  # Doors, pictures and boards do not show where it lies.
 MAX_SLOPE = 0.01  # 0.6 degrees: twice what a frame may be off.
-MANY_POINTS = 300  # More points of one place do not make it surer: what is left is the lens.
-FIT_PLACES = 60  # Fewer places, half a square metre, tell no slope.
+MANY_POINTS = 300  # More points at a position do not improve it: the lens dominates.
+FIT_PLACES = 60  # Fewer positions, half a square metre, do not show a slope.
+SIGMAS, SIGMA_OF_MEDIAN = 2.5, 1.48
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +50,11 @@ class PlaneResiduals:
     def of(self, values: np.ndarray) -> np.ndarray:
         """Return the view [N, A, B] of an array [X, Y, Z] that this relief covers."""
         return turn_surface(values, self.axis, self.sign)[self.box]
+
+
+def noise_of(distances_m: np.ndarray) -> float:
+    """Return 2.5 standard deviations of distances, float [N], inferred from their median, or 0."""
+    return SIGMAS * SIGMA_OF_MEDIAN * float(np.median(distances_m)) if len(distances_m) else 0.0
 
 
 def measure_plane_residuals(

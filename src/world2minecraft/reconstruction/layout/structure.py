@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.reconstruction.layout.openings import WallFace, read_wall
 from world2minecraft.reconstruction.layout.parameters import StructureParameters
-from world2minecraft.reconstruction.layout.plane_residuals import PlaneResiduals
+from world2minecraft.reconstruction.layout.plane_residuals import PlaneResiduals, noise_of
 from world2minecraft.reconstruction.layout.slanted_walls import SlantedWall, find_slanted_walls
 from world2minecraft.reconstruction.layout.sloped_ceilings import find_slopes
 from world2minecraft.reconstruction.layout.surface_cells import Surface
@@ -24,7 +24,6 @@ FLOOR_GATES_M = (0.08, 0.06, 0.05)
 MAX_FLOOR_SLOPE = 0.035  # 2 degrees.
 MAX_FLOOR_NOISE_M = 0.08
 MIN_GAIN = 1.1  # A floor that is askew must explain this many times the cells of a level one.
-SIGMAS, SIGMA_OF_MEDIAN = 2.5, 1.48
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +79,7 @@ def _floor_relief(surface: Surface, parameters: StructureParameters) -> tuple[np
     off_m = np.abs(points[:, 2] - rows @ fit)
     if (off_m <= parameters.spill_m).sum() < MIN_GAIN * straight.sum():
         return rise_m, parameters.spill_m
-    noise_m = SIGMAS * SIGMA_OF_MEDIAN * float(np.median(off_m[off_m <= FLOOR_GATES_M[0]]))
+    noise_m = noise_of(off_m[off_m <= FLOOR_GATES_M[0]])
     shape = surface.occupied.shape
     plan_m = [surface.origin_m[a] + (np.arange(shape[a]) + 0.5) * surface.voxel_m for a in (0, 1)]
     slope_m = np.add.outer(fit[1] * (plan_m[0] - middle[0]), fit[2] * (plan_m[1] - middle[1]))

@@ -17,17 +17,17 @@ from world2minecraft.reconstruction.layout.parameters import StructureParameters
 from world2minecraft.reconstruction.layout.plane_residuals import (
     PlaneResiduals,
     measure_plane_residuals,
+    noise_of,
 )
 from world2minecraft.reconstruction.layout.surface_cells import Surface, turn_surface
 
 DIRECTIONS = ((0, 1), (0, -1), (1, 1), (1, -1))  # The axis a wall is square to, the way out.
-HIGH_M = 100.0  # Over everything.
+HIGH_M = 100.0  # Above any room.
 OPEN_SHARE = 0.5  # No wall is passed over by rays along half of its length.
 MAX_PLANES = 24  # For each direction: a bound on the search, well above any room's walls.
 MAX_ASKEW = 0.07  # 4 degrees: a wall off the frame, or a frame off its walls.
 FIT_ROUNDS = 4
 PASSED_FROM = 2
-SIGMAS, SIGMA_OF_MEDIAN = 2.5, 1.48
 MAX_BEND_M = 0.02  # Into the room; the back of a shelf and a picture are 4 cm thick.
 MIN_GAIN = 1.1  # A plane that is askew must explain this many times the cells of a straight one.
 
@@ -307,8 +307,7 @@ def _before_m(gap_m: np.ndarray, parameters: StructureParameters) -> float:
     noise is measured behind it, since pictures, doors and curtains are in front.
     """
     near = gap_m[(gap_m > 0) & (gap_m <= parameters.shadow_m)]
-    spread_m = SIGMAS * SIGMA_OF_MEDIAN * float(np.median(near)) if len(near) else 0.0
-    noise_m = parameters.before_m + max(spread_m - parameters.plane_gate_m, 0.0)
+    noise_m = parameters.before_m + max(noise_of(near) - parameters.plane_gate_m, 0.0)
     return min(noise_m, parameters.shadow_m)
 
 

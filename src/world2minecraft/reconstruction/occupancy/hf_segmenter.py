@@ -15,7 +15,7 @@ from world2minecraft.core.errors import DamagedFileError, InputError, first_line
 from world2minecraft.external_models import transformers_hub as hub
 from world2minecraft.external_models.transformers_hub import preprocess, single_thread
 
-TASK = "the task is semantic"  # OneFormer is told in words.
+TASK = "the task is semantic"  # OneFormer takes its task as text.
 TOKENIZER_FILES = ("tokenizer.json", "vocab.json")
 
 
@@ -72,7 +72,7 @@ class HuggingFaceSemantics:
     @cached_property
     def _ready(self) -> dict[str, Any]:
         ready = hub.load_preprocessor(self._model, self._transformers)
-        if str(self._config.model_type).startswith("eomt"):  # Its places are those of a square.
+        if str(self._config.model_type).startswith("eomt"):  # It expects square images.
             side = self._config.image_size
             ready = {**ready, "size": {"width": side, "height": side}}
         return ready
@@ -94,7 +94,7 @@ class HuggingFaceSemantics:
             words = self._transformers.AutoTokenizer.from_pretrained(self._model)
             length = getattr(self._config, "task_seq_len", None) or 77
             encoded = words([TASK], padding="max_length", max_length=length, truncation=True)
-        except Exception as error:  # Whatever another library raises on what it cannot read.
+        except Exception as error:  # The library raises many kinds.
             raise InputError(
                 self._model, f"cannot load the tokenizer: {first_line(error)}"
             ) from None

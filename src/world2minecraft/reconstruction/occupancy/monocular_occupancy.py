@@ -29,7 +29,7 @@ from world2minecraft.geometry.view_region import (
 from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
 SHIPPED = shipped("mono.onnx")
-NEAREST_M = 0.1  # Cells nearer to the camera's plane are not in the picture.
+NEAREST_M = 0.1  # Cells nearer to the plane of the camera are not in the image.
 WALLS = [CLASS_NAMES.index(name) for name in ("wall", "window")]
 WALL_CELLS = 3.0  # So far behind its first cell a wall ends; along one seen aslant cells lie apart.
 HIDDEN_CELLS = 1.5  # A cell farther behind the first surface of its pixels is hidden by it.
@@ -149,7 +149,7 @@ def before_walls(
 
     Cells beyond the room have no labels in training, so predictions for them are meaningless.
     """
-    pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
+    pixels, inside, depth_m = cell_depths(region, camera_to_grid, camera)
     walls = inside & np.isin(labels, WALLS)
     if not walls.any():
         return inside
@@ -170,7 +170,7 @@ def cell_colours(
 
     A hidden cell takes the colour of the nearest visible cell.
     """
-    pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
+    pixels, inside, depth_m = cell_depths(region, camera_to_grid, camera)
     requested = occupied & inside
     colour = np.zeros((*region.shape, 3), np.uint8)
     if not requested.any():
@@ -191,7 +191,7 @@ def visible_cells(
         The mask of the cells, bool [X, Y, Z], and the column and row of the pixel of each of the N
         cells in it, int64 [N, 2].
     """
-    pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
+    pixels, inside, depth_m = cell_depths(region, camera_to_grid, camera)
     requested = occupied & inside
     if not requested.any():
         return requested, np.zeros((0, 2), np.int64)
@@ -208,7 +208,14 @@ def cell_depths(
         The pixel of each cell (column, row), int64 [X, Y, Z, 2], the mask of the cells in the
         image, bool [X, Y, Z], and the depth of each centre in metres, float64 [X, Y, Z].
     """
-    return _pixels(region, camera_to_grid, camera)
+    places = np.moveaxis(np.indices(region.shape), 0, -1) + 0.5
+    at = apply(invert_rigid(camera_to_grid), places * region.voxel_m)
+    ahead = at[..., 2] > NEAREST_M
+    pixels = project(np.where(ahead[..., None], at, [0.0, 0.0, 1.0]), camera)
+    size = (camera.width_px, camera.height_px)
+    inside = ahead & ((pixels >= 0) & (pixels < size)).all(axis=-1)
+    pixels = np.clip(np.floor(pixels), 0, np.array(size) - 1).astype(np.int64)
+    return pixels, inside, at[..., 2]
 
 
 def _first_cells(
@@ -223,7 +230,7 @@ def _first_cells(
 
 
 def _first_depth(u, v, depth_m, voxel_m: float, camera: Camera) -> np.ndarray:
-    """Return float64 [H, W]: how near the first of the cells is that cover a pixel.
+    """Return the depth of the first cell that covers each pixel, float64 [H, W] in metres.
 
     The cells are drawn by their centres; each spreads as wide as a cell of the middle depth looks.
     """
@@ -231,17 +238,3 @@ def _first_depth(u, v, depth_m, voxel_m: float, camera: Camera) -> np.ndarray:
     np.minimum.at(first, (v, u), depth_m)
     side = 1 + 2 * int(camera.fx_px * voxel_m / (2 * float(np.median(depth_m))))
     return ndimage.minimum_filter(first, side, mode="nearest")
-
-
-def _pixels(
-    region: LabelRegion, camera_to_grid: np.ndarray, camera: Camera
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return of each cell's centre its pixel int64 [.., 2], whether it is one, and its z-depth."""
-    places = np.moveaxis(np.indices(region.shape), 0, -1) + 0.5
-    at = apply(invert_rigid(camera_to_grid), places * region.voxel_m)
-    ahead = at[..., 2] > NEAREST_M
-    pixels = project(np.where(ahead[..., None], at, [0.0, 0.0, 1.0]), camera)
-    size = (camera.width_px, camera.height_px)
-    inside = ahead & ((pixels >= 0) & (pixels < size)).all(axis=-1)
-    pixels = np.clip(np.floor(pixels), 0, np.array(size) - 1).astype(np.int64)
-    return pixels, inside, at[..., 2]
