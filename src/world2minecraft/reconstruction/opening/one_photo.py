@@ -22,6 +22,7 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, View
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.geometry.view_region import DEFAULT_SHAPE, DEFAULT_VOXEL_M
+from world2minecraft.reconstruction.opening.photo_views import DEPTH_UNIT, undistorted
 from world2minecraft.reconstruction.parameters import Parameters
 
 DEPTH_WIDE_PX = 640
@@ -35,7 +36,7 @@ def is_one_photo(source: str) -> bool:
     return source == SOURCE
 
 
-def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, unit: str) -> None:
+def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters) -> None:
     """Write a single photo as a capture that can be opened.
 
     Raises:
@@ -82,7 +83,7 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
     for name in ("depth", "trust"):  # Of the same photo with other networks.
         for path in (folder / name).glob("*"):
             path.unlink()
-    write_plain(folder, views, depth_unit=unit, stated=stated, jpeg=True)
+    write_plain(folder, views, depth_unit=DEPTH_UNIT, stated=stated, jpeg=True)
 
 
 def place_photo(eye_height_m: float, pitch_deg: float) -> tuple[np.ndarray, np.ndarray]:
@@ -109,11 +110,7 @@ def _straight(judged: ValidatedCapture) -> tuple[str, np.ndarray, Camera]:
     photo = next(iter(photos_of_capture(judged)), None)
     if photo is None or photo.camera is None:
         raise CaptureError(judged.capture.folder, "cannot decode the photo; export it as JPEG")
-    camera = photo.camera
-    if not any(camera.distortion):
-        return photo.name, photo.colour, camera
-    flat = pinhole_camera(camera, camera.width_px)
-    return photo.name, undistort_image(photo.colour, camera, flat), flat
+    return (photo.name, *undistorted(photo.colour, photo.camera))
 
 
 def _with_depth(judged: ValidatedCapture, model: DepthModel) -> Iterator[View]:

@@ -36,7 +36,7 @@ from world2minecraft.reconstruction.opening.metric_scale import (
     scale_capture,
 )
 from world2minecraft.reconstruction.opening.one_photo import is_one_photo, prepare_photo
-from world2minecraft.reconstruction.opening.photo_views import depth_views, stereo_views
+from world2minecraft.reconstruction.opening.photo_views import DEPTH_UNIT, depth_views, stereo_views
 from world2minecraft.reconstruction.opening.predicted_room import prepare_predicted
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import hash_capture
@@ -44,7 +44,6 @@ from world2minecraft.reconstruction.run_folder import hash_capture
 FOLDER = "capture"
 STAMP = "prepared.json"
 UNNAMED_CAPTURE = "photos"  # Name of the capture in steps that know no path.
-UNIT = "0.0002"  # Metres a step: a scene of median depth 2.5 is kept to 13.
 MIN_PHOTOS = 3
 Told = dict[str, Any]
 
@@ -150,9 +149,9 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
     )
     alone = not judged.has_depth and not chosen.depth_model
     if chosen.predictions.path and alone and (judged.posed or is_one_photo(found.source)):
-        return prepare_predicted(judged, folder, chosen, UNIT)
+        return prepare_predicted(judged, folder, chosen)
     if is_one_photo(found.source):
-        return prepare_photo(judged, folder, chosen, UNIT)
+        return prepare_photo(judged, folder, chosen)
     photos = photos_of_capture(judged)
     if len(photos) < MIN_PHOTOS:
         raise CaptureError(
@@ -182,7 +181,7 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
         "skipped": [[*row] for row in (*judged.skipped, *photos.damaged.items(), *scene.left_out)],
     } | told
     extra = {"posing": dict(scene.facts)}
-    write_plain(folder, views, depth_unit=UNIT, extra=extra, stated=stated, jpeg=True)
+    write_plain(folder, views, depth_unit=DEPTH_UNIT, extra=extra, stated=stated, jpeg=True)
     scale_capture(folder, chosen, lambda name: _size_of(judged, name))
 
 

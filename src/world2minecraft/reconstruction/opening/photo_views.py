@@ -14,6 +14,8 @@ from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import Camera, DepthMap, Photo, PhotoStream, SparseScene, View
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 
+DEPTH_UNIT = "0.0002"  # Metres a step: a scene of median depth 2.5 is kept to 13.
+
 
 def stereo_views(
     photos: PhotoStream, scene: SparseScene, maps: Iterable[DepthMap]
@@ -100,8 +102,13 @@ def _photos_of(photos: PhotoStream, scene: SparseScene) -> Iterator[tuple[Photo,
 
 
 def _coloured(photo: Photo, scene: SparseScene, index: int) -> View:
-    camera = scene.cameras[index]
-    flat = pinhole_camera(camera, camera.width_px)
-    colour = undistort_image(photo.colour, camera, flat) if any(camera.distortion) else photo.colour
     pose = np.round(scene.camera_to_scan[index], 12)
-    return View(photo.name, pose, np.ascontiguousarray(colour), flat)
+    return View(photo.name, pose, *undistorted(photo.colour, scene.cameras[index]))
+
+
+def undistorted(colour: np.ndarray, camera: Camera) -> tuple[np.ndarray, Camera]:
+    """Return an image of the same size without lens distortion, and its camera."""
+    flat = pinhole_camera(camera, camera.width_px)
+    if any(camera.distortion):
+        colour = undistort_image(colour, camera, flat)
+    return np.ascontiguousarray(colour), flat

@@ -22,9 +22,8 @@ from world2minecraft.core.coordinates import (
     rotation_about_z,
 )
 from world2minecraft.core.errors import CaptureError
-from world2minecraft.core.types import Photo, View
+from world2minecraft.core.types import View
 from world2minecraft.formats.predicted_grids import GridRules, PredictedGrid
-from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.reconstruction.occupancy.monocular_occupancy import before_walls
 from world2minecraft.reconstruction.occupancy.saved_grids import (
     GridFiles,
@@ -35,6 +34,7 @@ from world2minecraft.reconstruction.occupancy.saved_grids import (
     read_grid,
 )
 from world2minecraft.reconstruction.opening.one_photo import SIGMA_NONE, is_one_photo, place_photo
+from world2minecraft.reconstruction.opening.photo_views import DEPTH_UNIT, undistorted
 from world2minecraft.reconstruction.parameters import Parameters
 
 MIN_CELLS = 50  # Occupied, of all grids together: fewer are no room.
@@ -67,9 +67,7 @@ class PlacedCells:
     share_axes: bool
 
 
-def prepare_predicted(
-    judged: ValidatedCapture, folder: Path, chosen: Parameters, unit: str
-) -> None:
+def prepare_predicted(judged: ValidatedCapture, folder: Path, chosen: Parameters) -> None:
     """Write posed photos, or a single photo, as a capture whose room the predictions state.
 
     Raises:
@@ -85,7 +83,7 @@ def prepare_predicted(
             judged.capture.folder,
             "its poses have no metric scale, which predictions need; add depth, or poses in metres",
         )
-    poses = _poses(judged, photos, files, chosen) if single else None
+    poses = _pose(photos, files, chosen) if single else None
     level = _level_frame(judged, chosen)
     cells = _cells(photos, poses, files, rules, level, judged.capture.source_to_scan)
     scan_to_room, size_m = find_room(cells)
@@ -99,12 +97,10 @@ def prepare_predicted(
         "room": {"scan_to_room": scan_to_room.tolist(), "size_m": size_m.tolist()},
         "source_to_scan": judged.capture.source_to_scan.tolist(),
     }
-    write_plain(folder, _views(photos, poses), depth_unit=unit, stated=stated, jpeg=True)
+    write_plain(folder, _views(photos, poses), depth_unit=DEPTH_UNIT, stated=stated, jpeg=True)
 
 
-def _poses(
-    judged: ValidatedCapture, photos: CapturePhotos, files: GridFiles, chosen: Parameters
-) -> dict[str, np.ndarray]:
+def _pose(photos: CapturePhotos, files: GridFiles, chosen: Parameters) -> dict[str, np.ndarray]:
     """Return the pose of a single photo: that of its grid, or the assumed one."""
     options = parse_options(chosen.capture)
     name = photos.frames[0].name if photos.frames else ""
@@ -141,18 +137,7 @@ def _views(photos: CapturePhotos, poses: dict[str, np.ndarray] | None) -> Iterat
     for photo in photos:
         pose = photo.camera_to_scan if poses is None else poses.get(photo.name)
         if pose is not None and photo.camera is not None:
-            yield _flat_view(photo, pose)
-
-
-def _flat_view(photo: Photo, pose: np.ndarray) -> View:
-    """Return a photo as a view without lens distortion."""
-    camera = photo.camera
-    if camera is None:
-        raise ValueError(f"photo {photo.name} has no camera")
-    if not any(camera.distortion):
-        return View(photo.name, pose, photo.colour, camera)
-    flat = pinhole_camera(camera, camera.width_px)
-    return View(photo.name, pose, undistort_image(photo.colour, camera, flat), flat)
+            yield View(photo.name, pose, *undistorted(photo.colour, photo.camera))
 
 
 def _cells(
