@@ -141,6 +141,16 @@ def cells_to_block_axes(cells: np.ndarray, y_cells: int) -> np.ndarray:
 # Angles.
 
 
+def nearest_quarter_turns(yaw_deg: float) -> int:
+    """Return the quarter turns, 0 to 3, nearest to a yaw; of two, the larger yaw.
+
+    Example:
+        >>> nearest_quarter_turns(100), nearest_quarter_turns(-45)
+        (1, 0)
+    """
+    return int(np.floor(yaw_deg / 90 + 0.5)) % 4
+
+
 def facing_of_quarter_turns(quarter_turns: int) -> str:
     """Return the game's facing for quarter turns from room +x: 0 east, 1 north, 2 west, 3 south."""
     return FACING_OF_QUARTER_TURNS[quarter_turns % 4]

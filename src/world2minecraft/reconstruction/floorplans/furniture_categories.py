@@ -3,6 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import nearest_quarter_turns
 from world2minecraft.core.types import OWN_CELLS
 from world2minecraft.formats.roomplan import PlanObject
 
@@ -76,7 +77,7 @@ def front_of(item: PlanObject, walls: list[tuple[np.ndarray, np.ndarray]]) -> in
         item: Plan object, whose yaw gives the direction of its front in RoomPlan's convention.
         walls: Start and end, float64 [2] each, of the walls of its room.
     """
-    turns = int(np.floor(item.yaw_deg / 90 + 0.5)) % 4
+    turns = nearest_quarter_turns(item.yaw_deg)
     if item.design:
         return turns
     ahead = np.array([np.cos(np.radians(90 * turns)), np.sin(np.radians(90 * turns))])

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import nearest_quarter_turns
 from world2minecraft.core.types import (
     OWN_CELLS,
     Alternative,
@@ -18,7 +19,7 @@ from world2minecraft.core.types import (
     OccupancyGrid,
     Placement,
 )
-from world2minecraft.core.vocabulary import read_vocabulary
+from world2minecraft.core.vocabulary import MIN_NAME_CONFIDENCE, read_vocabulary
 from world2minecraft.furniture import Template, template, templates_of_class
 from world2minecraft.furniture.chair_fitting import direction_to_table, fit_seat, without_open_top
 from world2minecraft.furniture.front_estimation import (
@@ -26,7 +27,6 @@ from world2minecraft.furniture.front_estimation import (
     estimate_facing,
     read_surroundings,
 )
-from world2minecraft.reconstruction.naming.name_model import MIN_CONFIDENCE
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 from world2minecraft.reconstruction.retrieval.placement_settling import (
@@ -174,7 +174,7 @@ def _furnish_one(
     chosen: RetrievalParameters,
     floor_m: float,
 ) -> list[Choice]:
-    turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
+    turns = nearest_quarter_turns(instance.yaw_deg)
     whole = match_object(grid, instance, instance.cells, turns, chosen, floor_m)
     if _is_uncertain(instance, chosen):
         return [Choice(placement_of(grid, instance, whole, chosen), (), None)]
@@ -281,7 +281,9 @@ def _seated(grid: OccupancyGrid, found: Matched, chosen: RetrievalParameters) ->
         return None
     fit = without_open_top(fit, template("chair"), evidence.code, grid.voxel_m)
     trial = Trial(template("chair"), fit.quarter_turns, fit.counts, fit.values, fit.corner)
-    scored = score_shifts(evidence, trial, NO_SHIFT, _bias(found.quarter_turns, grid, chosen))
+    scored = score_shifts(
+        evidence, trial, NO_SHIFT, Bias.of(found.quarter_turns, grid.voxel_m, chosen)
+    )
     return found._replace(matches=(scored, *found.matches), whole=True)
 
 
@@ -300,7 +302,7 @@ def match_object(
     reach = reach_of((*usual, *named), grid.voxel_m)
     evidence = evidence_of(grid, cells, reach, chosen.paper_compat, floor_m)
     bonus = chosen.name_weight * instance.name_confidence
-    bias = _bias(quarter_turns, grid, chosen)._replace(named=names, name_bonus=bonus)
+    bias = Bias.of(quarter_turns, grid.voxel_m, chosen)._replace(named=names, name_bonus=bonus)
     matches = best_matches(usual, evidence, bias, chosen)
     if named:
         # A name counts only if the shape does not contradict it.
@@ -313,17 +315,9 @@ def match_object(
 def named_templates(instance: ObjectInstance) -> tuple[Template, ...]:
     """Return the templates that show what an object is named, if its name is sure enough."""
     entry = read_vocabulary().names.get(instance.name)
-    if entry is None or instance.name_confidence < MIN_CONFIDENCE:
+    if entry is None or instance.name_confidence < MIN_NAME_CONFIDENCE:
         return ()
     return tuple(map(template, entry.templates))
-
-
-def _bias(quarter_turns: int, grid: OccupancyGrid, chosen: RetrievalParameters) -> Bias:
-    if chosen.paper_compat:
-        return Bias(quarter_turns, grid.voxel_m, 0.0, 0.0, 0.0)
-    return Bias(
-        quarter_turns, grid.voxel_m, chosen.size_weight, chosen.front_weight, chosen.beyond_weight
-    )
 
 
 def _may_be_cut(whole: Matched, voxel_m: float, chosen: RetrievalParameters) -> bool:
@@ -354,7 +348,7 @@ def _choice(
     placement = placement_of(grid, instance, found, chosen)
     if placement.template == OWN_CELLS or not chosen.variants or chosen.paper_compat:
         return Choice(placement, (), None)
-    bias = _bias(found.quarter_turns, grid, chosen)
+    bias = Bias.of(found.quarter_turns, grid.voxel_m, chosen)
     offers = offers_of(found.evidence, found.matches[0], bias)
     entry = read_vocabulary().names.get(instance.name)
     if entry is not None and placement.template in entry.templates:

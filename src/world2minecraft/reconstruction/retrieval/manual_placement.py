@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import nearest_quarter_turns
 from world2minecraft.core.types import OWN_CELLS, Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Template, template, template_cells, templates_of_class
 from world2minecraft.furniture.rasterization import size_in_cells
@@ -43,7 +44,7 @@ def fit_template(
     Raises:
         UnknownNameError: If the template does not exist.
     """
-    seen = _turns_of(instance)
+    seen = nearest_quarter_turns(instance.yaw_deg)
     if name == OWN_CELLS:
         return _own_box(grid, instance, seen if quarter_turns is None else quarter_turns)
     chosen = template(name)
@@ -118,8 +119,7 @@ def _matches(
     floor_m = floor_under_m(instance.center_m, rooms, grid.voxel_m)
     reach = reach_of(templates, grid.voxel_m)
     evidence = evidence_of(grid, instance.cells, reach, False, floor_m)
-    weights = (chosen.size_weight, chosen.front_weight, chosen.beyond_weight)
-    bias = Bias(_turns_of(instance), grid.voxel_m, *weights)
+    bias = Bias.of(nearest_quarter_turns(instance.yaw_deg), grid.voxel_m, chosen)
     return evidence, best_matches(templates, evidence, bias, chosen)
 
 
@@ -150,7 +150,9 @@ def _in_box(
     grid: OccupancyGrid, instance: ObjectInstance, chosen: Template, turns: int
 ) -> Placement:
     """Return a template of about the object's size that stands where its box stands."""
-    sides = np.round(_along(instance.size_m, turns - _turns_of(instance)) / grid.voxel_m)
+    sides = np.round(
+        _along(instance.size_m, turns - nearest_quarter_turns(instance.yaw_deg)) / grid.voxel_m
+    )
     spans = [limits(chosen, grid.voxel_m, axis) for axis in range(3)]
     counts = np.clip(sides, *np.array(spans).T).astype(int)
     middle = (instance.center_m - grid.origin_m) / grid.voxel_m
@@ -160,7 +162,7 @@ def _in_box(
 
 def _own_box(grid: OccupancyGrid, instance: ObjectInstance, turns: int) -> Placement:
     if not len(instance.cells):
-        size = _along(instance.size_m, turns - _turns_of(instance))
+        size = _along(instance.size_m, turns - nearest_quarter_turns(instance.yaw_deg))
         middle = (instance.center_m - grid.origin_m) / grid.voxel_m
         return _placed(grid, instance, OWN_CELLS, middle, size / grid.voxel_m, turns, 0.0, {})
     low, high = instance.cells.min(axis=0), instance.cells.max(axis=0) + 1
@@ -189,10 +191,6 @@ def _placed(
         iou=round(iou, 4),
         parameters=values,
     )
-
-
-def _turns_of(instance: ObjectInstance) -> int:
-    return int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
 
 
 def _along(sides: np.ndarray, quarter_turns: int) -> np.ndarray:

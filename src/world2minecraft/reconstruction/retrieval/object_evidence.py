@@ -16,18 +16,18 @@ class Evidence:
     """A window of the grid around one object.
 
     Attributes:
-        code: Effect of covering each cell. OWN is a cell of the object; AGAINST was seen as free or
-            as structure; IGNORED was never seen or belongs to another object and does not count;
-            BEYOND is an ignored cell outside the object's box.
-        corner: Position of the window in the grid.
+        code: Effect of covering each cell, uint8 [X, Y, Z]. OWN is a cell of the object; AGAINST
+            was seen as free or as structure; IGNORED was never seen or belongs to another object
+            and does not count; BEYOND is an ignored cell outside the object's box.
+        corner: First cell of the window in the grid, int64 [3].
         low: First cell of the object in the window.
         high: Exclusive last cell of the object in the window.
         floor: First layer of the window above the floor of the storey.
         own: Number of cells of the object.
     """
 
-    code: np.ndarray  # uint8 [X, Y, Z]
-    corner: np.ndarray  # int64 [3], the window's first cell in the grid
+    code: np.ndarray
+    corner: np.ndarray
     low: tuple[int, int, int]
     high: tuple[int, int, int]
     floor: int

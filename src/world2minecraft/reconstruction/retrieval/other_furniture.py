@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import nearest_quarter_turns
 from world2minecraft.core.types import OWN_CELLS, Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import (
     estimate_facing,
@@ -74,7 +75,7 @@ class OtherFurniture:
         """
         if all(one.template == OWN_CELLS for one in placed):
             return
-        turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
+        turns = nearest_quarter_turns(instance.yaw_deg)
         floor_m = floor_under_m(instance.center_m, self.rooms, self.grid.voxel_m)
         whole = match_object(self.grid, instance, instance.cells, turns, self.parameters, floor_m)
         matched = self._templates(instance, whole)
@@ -98,7 +99,7 @@ class OtherFurniture:
         cells = cells[((cells >= 0) & (cells < self.grid.shape)).all(axis=1)]
         labels = self.grid.labels[tuple(cells.T)]
         own = self.grid.instance[tuple(cells.T)] == instance.id
-        against = ~own & (labels <= SemanticClass.WINDOW) & (labels != UNKNOWN)
+        against = ~own & (labels <= SemanticClass.WINDOW)
         every = max(len(instance.cells), 1)
         iou = float(own.sum() / (every + against.sum()))
         return Fit(iou, _share_near(instance.cells, cells))

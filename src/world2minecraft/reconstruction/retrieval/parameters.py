@@ -111,7 +111,7 @@ class RetrievalParameters:
     name_weight: float = parameter(
         0.6,
         unit="IoU",
-        origin="of 105 named things in eight generated rooms, 86 become furniture of their name, "
+        origin="of 105 named objects in eight generated rooms, 86 become furniture of their name, "
         "and 46 without a bonus",
         bounds=SHARE,
     )
@@ -135,14 +135,11 @@ class RetrievalParameters:
     paper_compat: bool = parameter(False)
 
     def __post_init__(self):
-        for name in names_where(self, bounds=SHARE):
-            if not 0 <= getattr(self, name) <= 1:
+        for bounds, most in ((SHARE, 1), (UP_TO_8, 8)):
+            for name in names_where(self, bounds=bounds):
                 given = getattr(self, name)
-                raise UsageError(f"furnish.{name} must be between 0 and 1, got {given}")
-        for name in names_where(self, bounds=UP_TO_8):
-            if not 0 <= getattr(self, name) <= 8:
-                given = getattr(self, name)
-                raise UsageError(f"furnish.{name} must be between 0 and 8, got {given}")
+                if not 0 <= given <= most:
+                    raise UsageError(f"furnish.{name} must be between 0 and {most}, got {given}")
         for name in names_where(self, bounds=ABOVE_0):
             if getattr(self, name) < 1:
                 raise UsageError(f"furnish.{name} must be above 0, got {getattr(self, name)}")

@@ -199,7 +199,7 @@ def clear_overlaps(placements: list[Placement], voxel_m: float) -> tuple[Placeme
     before furniture, and otherwise the longer object if its template allows, else the other. No
     object loses more than two cells of a side in total. ``iou`` remains that of the match.
     """
-    boxes = [_box(one) for one in placements]
+    boxes = [box_m(one) for one in placements]
     for m, n in combinations(range(len(placements)), 2):
         first, second = placements[m], placements[n]
         if first.object_id == second.object_id or {first.class_id, second.class_id} == TUCKED:
@@ -213,14 +213,11 @@ def clear_overlaps(placements: list[Placement], voxel_m: float) -> tuple[Placeme
             if _allowed(placements[yields], trimmed, axis, voxel_m):
                 boxes[yields] = trimmed
                 break
-    return tuple(_with_box(one, box) for one, box in zip(placements, boxes, strict=True))
-
-
-Box = tuple[np.ndarray, np.ndarray]
+    return tuple(with_box(one, box) for one, box in zip(placements, boxes, strict=True))
 
 
 def _turns(
-    m: int, n: int, boxes: list[Box], axis: int, placements: list[Placement]
+    m: int, n: int, boxes: list[np.ndarray], axis: int, placements: list[Placement]
 ) -> list[tuple[int, int]]:
     """Return the possible pairs of an object and the one it yields to, the better choice first."""
     if axis == 2:
@@ -237,42 +234,30 @@ def _is_lesser(placement: Placement) -> bool:
     return placement.template == OWN_CELLS or placement.class_id == SemanticClass.OBJS
 
 
-def _trimmed(box: Box, other: Box, axis: int) -> Box:
-    low, high = box[0].copy(), box[1].copy()
-    if low[axis] + high[axis] >= other[0][axis] + other[1][axis]:
-        low[axis] = other[1][axis]
+def _trimmed(box: np.ndarray, other: np.ndarray, axis: int) -> np.ndarray:
+    result = box.copy()
+    if box[:, axis].sum() >= other[:, axis].sum():
+        result[0, axis] = other[1, axis]
     else:
-        high[axis] = other[0][axis]
-    return low, high
+        result[1, axis] = other[0, axis]
+    return result
 
 
-def _allowed(placement: Placement, box: Box, axis: int, voxel_m: float) -> bool:
+def _allowed(placement: Placement, box: np.ndarray, axis: int, voxel_m: float) -> bool:
     """Return whether a placement may have this box: it keeps its floor and its template's size."""
-    side = float(box[1][axis] - box[0][axis])
+    side = float(np.ptp(box[:, axis]))
     if side < voxel_m - 1e-6:
         return False
     if placement.template == OWN_CELLS:
         return True
-    before = _box(placement)
-    lost = max(np.abs(box[0] - before[0])[axis], np.abs(box[1] - before[1])[axis])
-    if lost > DEEPEST_CELLS * voxel_m + 1e-6:
+    before = box_m(placement)
+    if np.abs(box - before)[:, axis].max() > DEEPEST_CELLS * voxel_m + 1e-6:
         return False
     one = template(placement.template)
-    if axis == 2 and one.mount == "floor" and box[0][2] > _box(placement)[0][2] + 1e-6:
+    if axis == 2 and one.mount == "floor" and box[0, 2] > before[0, 2] + 1e-6:
         return False
     own = 1 - axis if axis < 2 and placement.quarter_turns % 2 else axis
     return side >= int(one.size_m[own].minimum / voxel_m + 1e-6) * voxel_m - 1e-6
-
-
-def _box(placement: Placement) -> Box:
-    size = placement.size_m[[1, 0, 2]] if placement.quarter_turns % 2 else placement.size_m
-    return placement.center_m - size / 2, placement.center_m + size / 2
-
-
-def _with_box(placement: Placement, box: Box) -> Placement:
-    size = box[1] - box[0]
-    own = size[[1, 0, 2]] if placement.quarter_turns % 2 else size
-    return replace(placement, center_m=np.round((box[0] + box[1]) / 2, 4), size_m=np.round(own, 4))
 
 
 class Change(NamedTuple):
@@ -296,7 +281,7 @@ def settle_placements(
     held = [within_rooms(one, rooms, grid.voxel_m) for one in placements]
     cleared = clear_overlaps([one for one in held if one is not None], grid.voxel_m)
     table = _Table(list(cleared), grid, rooms)
-    for _ in range(4 * len(cleared)):  # Each round parts a pair; cells end it at the latest.
+    for _ in range(4 * len(cleared)):  # Each round separates one pair.
         pair = table.worst_pair()
         if pair is None:
             break

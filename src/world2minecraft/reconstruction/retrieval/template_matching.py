@@ -78,6 +78,14 @@ class Bias(NamedTuple):
     named: frozenset[str] = frozenset()
     name_bonus: float = 0.0
 
+    @classmethod
+    def of(cls, quarter_turns: int, voxel_m: float, chosen: RetrievalParameters) -> "Bias":
+        """Return the terms that parameters state, none for the paper's equation."""
+        if chosen.paper_compat:
+            return cls(quarter_turns, voxel_m, 0.0, 0.0, 0.0)
+        weights = (chosen.size_weight, chosen.front_weight, chosen.beyond_weight)
+        return cls(quarter_turns, voxel_m, *weights)
+
 
 def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bias) -> Scored:
     """Return the best of a trial's shifts, int64 [S, 3]; the first wins a tie.

@@ -15,7 +15,12 @@ from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import Span, Template, template, variants_of
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence
-from world2minecraft.reconstruction.retrieval.template_matching import Bias, Scored, score_shifts
+from world2minecraft.reconstruction.retrieval.template_matching import (
+    NO_SHIFT,
+    Bias,
+    Scored,
+    score_shifts,
+)
 
 LOST_IOU = 0.02  # Maximum loss of IoU by another design: about the noise of a scan.
 SLACK_M = 0.04  # Tolerance of half a cell, as sizes are whole cells.
@@ -25,7 +30,6 @@ CLEAR_CHROMA, FADED = 0.025, 0.1  # Minimum chroma of a hue, and the cost of los
 STAY = 0.02  # Minimum advantage of another design over the match.
 LIGHT = np.sqrt(0.4)  # Weight of lightness against hue, as in the choice of blocks.
 SAME_SET, SAME_SIZE_M = 0.08, 0.12
-NO_SHIFT = np.zeros((1, 3), np.int64)
 
 
 class Offer(NamedTuple):
