@@ -30,8 +30,8 @@ from world2minecraft.reconstruction.floorplans.furniture_categories import (
 )
 from world2minecraft.reconstruction.floorplans.room_outlines import PlacedRoom, place_plan_rooms
 
-# They tell furniture from floor and walls, which one colour of wood for all would not.
 Colour = tuple[int, int, int]
+# Different colours, so that furniture stands out from floor and walls.
 STRUCTURE: dict[int, Colour] = {
     int(SemanticClass.FLOOR): (188, 166, 134),
     int(SemanticClass.WALL): (236, 233, 226),
@@ -72,8 +72,8 @@ PAD = 3  # Cells around all rooms: a wall, and nothing known behind it.
 PUSH = 2  # Maximum number of cells by which a box inside a wall is moved out of it.
 
 REACH_M = 0.20  # Maximum distance of a wall's cells from the line of an opening in it.
-BEYOND_M = 0.35  # Past the wall that an opening is in: there the next room has begun.
-ASIDE_M = 0.25  # On both sides of a wall within a room, its floor goes on this far off.
+BEYOND_M = 0.35  # Distance beyond the wall of an opening at which the next room has begun.
+ASIDE_M = 0.25  # Distance on both sides of an inner wall at which its room must continue.
 WALL, OBJS, EMPTY = int(SemanticClass.WALL), int(SemanticClass.OBJS), int(SemanticClass.EMPTY)
 
 

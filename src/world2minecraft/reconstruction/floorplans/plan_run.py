@@ -14,14 +14,9 @@ from world2minecraft.core.files import write_json
 from world2minecraft.core.output_folders import check_writable
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, Scan
-from world2minecraft.formats.layout import write_layouts
-from world2minecraft.formats.objects_and_placements import write_objects, write_placements
-from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.roomplan import CapturedPlan, read_roomplan
-from world2minecraft.formats.run_arrays import write_room
-from world2minecraft.formats.scan_record import write_scan
 from world2minecraft.reconstruction.file_stages import run_stage
-from world2minecraft.reconstruction.floorplans.plan_grid import PlanCells, rasterize_plan
+from world2minecraft.reconstruction.floorplans.plan_grid import rasterize_plan
 from world2minecraft.reconstruction.floorplans.room_outlines import (
     layouts_of,
     place_plan_rooms,
@@ -29,6 +24,7 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
 )
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.retrieval.placement_settling import settle_placements
+from world2minecraft.reconstruction.room_files import write_room_files
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +96,7 @@ def build_captured(
         held = replace(held, placements=settle_placements(held.placements, held.grid, layouts))
     check_writable(out)
     scan = scan_of_plan(plan, name)
-    _write_run(out, held, layouts, scan)
+    write_room_files(out, scan, held.grid, layouts, held.instances, held.placements)
     manifest = {"program": __version__, "parameters": parameters.as_json(), **source}
     write_json(out / "manifest.json", manifest)
     progress("plan", 1, 1)
@@ -128,13 +124,3 @@ def scan_of_plan(plan: CapturedPlan, name: str = "") -> Scan:
         notes=tuple(notes),
         name=name,
     )
-
-
-def _write_run(out: Path, held: PlanCells, layouts: tuple[Layout, ...], scan: Scan) -> None:
-    write_scan(out / "scan.json", scan)
-    write_room(out / "room.npz", held.grid, scan.scan_to_room)
-    write_layouts(out / "layout.json", layouts)
-    write_objects(out / "objects.json", held.instances)
-    write_placements(out / "placements.json", held.placements)
-    write_occ_json(out / "occ.json", held.grid)
-    write_centers_json(out / "centers.json", held.instances)

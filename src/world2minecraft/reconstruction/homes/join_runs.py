@@ -13,16 +13,9 @@ from world2minecraft.core.output_folders import check_writable
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
 from world2minecraft.core.whole_reads import read_whole
-from world2minecraft.formats.layout import read_rooms, write_layouts
-from world2minecraft.formats.objects_and_placements import (
-    read_objects,
-    read_placements,
-    write_objects,
-    write_placements,
-)
-from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
-from world2minecraft.formats.run_arrays import read_room, write_room
-from world2minecraft.formats.scan_record import write_scan
+from world2minecraft.formats.layout import read_rooms
+from world2minecraft.formats.objects_and_placements import read_objects, read_placements
+from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.reconstruction.file_stages import run_stage
 from world2minecraft.reconstruction.homes.merged_run import Home, merge_runs
 from world2minecraft.reconstruction.homes.moved_run import Run
@@ -33,6 +26,7 @@ from world2minecraft.reconstruction.homes.room_placement import (
     stated,
 )
 from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.room_files import write_room_files
 from world2minecraft.reconstruction.run_folder import check_finished
 
 MAX_RUNS = 50
@@ -117,8 +111,9 @@ def join(
     home = merge_runs(placed, out.resolve().name)
     check_writable(out)
     scan = _scan_of(home, placed)
-    _write(out, home, scan)
-    write_json(out / "manifest.json", _manifest(folders, placed, voxel_m, chosen))
+    run = home.run
+    write_room_files(out, scan, run.grid, run.layouts, run.instances, run.placements)
+    write_json(out / "manifest.json", _manifest(placed, voxel_m, chosen))
     progress("join", 1, 1)
     run_stage("build", out, chosen, progress)
     return scan
@@ -136,18 +131,7 @@ def _scan_of(home: Home, placed: Placed) -> Scan:
     )
 
 
-def _write(out: Path, home: Home, scan: Scan) -> None:
-    run = home.run
-    write_scan(out / "scan.json", scan)
-    write_room(out / "room.npz", run.grid, np.eye(4))
-    write_layouts(out / "layout.json", run.layouts)
-    write_objects(out / "objects.json", run.instances)
-    write_placements(out / "placements.json", run.placements)
-    write_occ_json(out / "occ.json", run.grid)
-    write_centers_json(out / "centers.json", run.instances)
-
-
-def _manifest(folders: Sequence[Path], placed: Placed, voxel_m: float, chosen: Parameters) -> dict:
+def _manifest(placed: Placed, voxel_m: float, chosen: Parameters) -> dict:
     pairs = zip(placed.runs, placed.moves, strict=True)
     return {
         "program": __version__,

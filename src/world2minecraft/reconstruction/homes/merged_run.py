@@ -133,7 +133,7 @@ def _one_grid(runs: Sequence[Run]) -> tuple[_Cells, list[int]]:
         nobodys = owner[view[:3]] < 0
         known = grid.labels != UNKNOWN
         solid = known & (grid.labels > 0)
-        # In walls the first scan's word stands, but that surface counts more than air.
+        # In walls the first scan counts, but surface counts more than air.
         better = (held == UNKNOWN) | (solid & (held == 0))
         take = known & (own | (nobodys & better))
         for name, array in arrays.items():
@@ -210,7 +210,7 @@ def _open(cells: _Cells, mine: Doorway, theirs: Doorway) -> None:
     up = cells.slice_of(2, floor_m, head_m)
     labels = cells.arrays["labels"]
     if not (mine.sure and theirs.sure) and (labels[(*spans, up)] == 0).mean() < FREE_SHARE:
-        return  # Both were read off free cells; where there is none, there is no door.
+        return  # Both were inferred from free cells; without any, there is no door.
     way = np.zeros(labels.shape, bool)
     way[(*spans, up)] = True
     way &= np.isin(labels, (*ROOM_CLASSES, UNKNOWN))

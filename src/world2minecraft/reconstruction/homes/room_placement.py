@@ -22,6 +22,7 @@ from world2minecraft.reconstruction.homes.moved_run import Move, Run, move_layou
 SAME_WIDTH_M, SAME_HEAD_M = 0.3, 0.3
 WALL_CELLS = 2  # Thickness of the wall between two rooms: one face in each room.
 ALONG_CELLS, THINNER, THICKER = 4, 1, 3  # Maximum position errors of a door, in cells.
+STEP_M = 0.1  # Distance of the points that measure a shared floor.
 OVERLAP_M2 = 0.25  # Tolerated overlap of two floors: outlines have errors of a cell.
 MIN_COMMON = 150  # Solid cells of one that the other knows, before their agreement counts.
 # Right places of three generated houses, scanned room by room, agree by 0.99, wrong ones by 0.45 to
@@ -219,9 +220,7 @@ def agreement(one: Known, other: Known, wall: tuple[int, int] | None = None) -> 
     return common, agreed / max(common, 1)
 
 
-def overlap_m2(
-    layouts: tuple[Layout, ...], others: tuple[Layout, ...], step_m: float = 0.1
-) -> float:
+def overlap_m2(layouts: tuple[Layout, ...], others: tuple[Layout, ...]) -> float:
     """Return the floor area in square metres that two sets of rooms share, storey by storey."""
     shared = 0.0
     for one, other in product(layouts, others):
@@ -230,13 +229,13 @@ def overlap_m2(
             continue
         low = np.maximum(one.floor_polygon_m.min(axis=0), other.floor_polygon_m.min(axis=0))
         high = np.minimum(one.floor_polygon_m.max(axis=0), other.floor_polygon_m.max(axis=0))
-        if (high - low <= step_m).any():
+        if (high - low <= STEP_M).any():
             continue
-        axes = [np.arange(a + step_m / 2, b, step_m) for a, b in zip(low, high, strict=True)]
+        axes = [np.arange(a + STEP_M / 2, b, STEP_M) for a, b in zip(low, high, strict=True)]
         points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
         both = inside_polygon(points, one.floor_polygon_m, 0.0)
         both &= inside_polygon(points, other.floor_polygon_m, 0.0)
-        shared += float(both.sum()) * step_m**2
+        shared += float(both.sum()) * STEP_M**2
     return shared
 
 
