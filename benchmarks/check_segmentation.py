@@ -15,14 +15,14 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from world2minecraft.core.vocabulary import nyu40_names
+from world2minecraft.core.vocabulary import NYU40_COUNT, nyu40_names
 from world2minecraft.networks.segmentation.frames import IGNORED, LabelledFrame, read_nyu_folder
 from world2minecraft.networks.segmentation.scores import (
     SegmentationScores,
     calibration_error,
     confusion_matrix,
 )
-from world2minecraft.reconstruction.recognition.segmentation import NYU40_COUNT, SegmentationModel
+from world2minecraft.reconstruction.recognition.segmentation import SegmentationModel
 
 GATES = (0.5, 0.6, 0.7, 0.8, 0.9)
 

@@ -69,13 +69,13 @@ def best_names(run: Path) -> tuple[OccupancyGrid, list[Found]]:
     grid, _ = read_room(run / "room.npz")
     objects = read_objects(run / "objects.json", grid)
     votes = votes_of_objects(read_name_votes(run / NAME_VOTES), grid, len(objects))[1:]
-    before = name_model.CALIBRATION, name_model.MIN_CONFIDENCE
+    before = name_model.CALIBRATION, name_model.MIN_NAME_CONFIDENCE
     # The share itself, and always the best name.
-    name_model.CALIBRATION, name_model.MIN_CONFIDENCE = (0.0, 1.0, 0.0), 0.0
+    name_model.CALIBRATION, name_model.MIN_NAME_CONFIDENCE = (0.0, 1.0, 0.0), 0.0
     try:
         names = name_instances(objects, read_rooms(run, grid), votes)
     finally:
-        name_model.CALIBRATION, name_model.MIN_CONFIDENCE = before
+        name_model.CALIBRATION, name_model.MIN_NAME_CONFIDENCE = before
     found = [
         Found(item, name, share, float(row.sum()))
         for item, (name, share), row in zip(objects, names, votes, strict=True)
@@ -187,7 +187,7 @@ def report(name: str, rows: list[Named], constants: np.ndarray) -> str:
     chances = {"share": np.array([row.share for row in rows])}
     chances["fitted"] = 1 / (1 + np.exp(-inputs(rows) @ constants))
     for kind, chance in chances.items():
-        sure = chance >= name_model.MIN_CONFIDENCE
+        sure = chance >= name_model.MIN_NAME_CONFIDENCE
         error, share = calibration_error(chance, right), right[sure].mean() if sure.any() else 0
         text += f"; {kind}: error {error:.3f}, {sure.sum()} sure, {share:.2f} of them right"
     return text

@@ -29,6 +29,7 @@ VOCABULARY_FILE = Path(__file__).parent / "data" / "vocabulary.yaml"
 NYU40_FILE = Path(__file__).parent / "data" / "nyu40.json"
 NOTHING = "nothing"  # Instead of a name: outdoor things, which vote for none.
 MAX_BYTES = 1 << 20
+NYU40_COUNT = 40
 OTHER_NYU40 = 40  # Other prop.
 MIN_NAME_CONFIDENCE = 0.5  # Below it, an object has the display name of its class.
 # NYU40 classes that annotators use for the same things: cabinet, counter, dresser, night stand;
@@ -283,7 +284,7 @@ def nyu40_names() -> dict[str, int]:
 
 
 # Label ids: 1 to 40 are the NYU40 classes, the numbers after them the names of the vocabulary.
-FIRST_NAME_ID = OTHER_NYU40 + 1
+FIRST_NAME_ID = NYU40_COUNT + 1
 _CLASS_NYU40 = {"furn": "other furniture", "objs": "other prop", "tvs": "television"}
 
 

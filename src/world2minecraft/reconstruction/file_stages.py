@@ -23,6 +23,7 @@ from world2minecraft.core.types import (
     ObjectInstance,
     OccupancyGrid,
 )
+from world2minecraft.core.vocabulary import NYU40_COUNT
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.journal import write_edits
 from world2minecraft.formats.layout import read_rooms, write_layouts
@@ -54,7 +55,6 @@ from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.instances.supports import with_supports
 from world2minecraft.reconstruction.naming.name_votes import (
     NAME_VOTES,
-    NYU40_COUNT,
     NameVotes,
     class_votes,
     read_name_votes,

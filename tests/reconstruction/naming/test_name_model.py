@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import Layout, LayoutObject
 from world2minecraft.core.vocabulary import (
+    MIN_NAME_CONFIDENCE,
     label_id_names,
     label_id_of,
     nyu40_names,
@@ -17,7 +18,6 @@ from world2minecraft.core.vocabulary import (
 )
 from world2minecraft.reconstruction.naming.name_model import (
     FEATURES,
-    MIN_CONFIDENCE,
     NameModel,
     calibrated,
     features_of,
@@ -139,7 +139,7 @@ def test_names_are_sure_or_of_the_class(class_id, size, bottom, vote):
     votes[0, :vote] = VOTES
     ((name, chance),) = name_instances([box(class_id, 2, 1, size, bottom)], (), votes)
     assert 0 <= chance <= 1
-    if chance < MIN_CONFIDENCE or not vote:
+    if chance < MIN_NAME_CONFIDENCE or not vote:
         assert name == CLASS_DISPLAY_NAMES[class_id]
     else:
         assert name in read_vocabulary().names

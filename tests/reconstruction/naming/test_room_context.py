@@ -8,9 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, OBJECT_CLASSES, SemanticClass
-from world2minecraft.core.vocabulary import label_id_names, nyu40_names, read_vocabulary
+from world2minecraft.core.vocabulary import (
+    NYU40_COUNT,
+    label_id_names,
+    nyu40_names,
+    read_vocabulary,
+)
 from world2minecraft.reconstruction.naming.name_model import ObjectTraits
-from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT
 from world2minecraft.reconstruction.naming.room_context import CONFIDENCE, name_by_context
 
 

@@ -9,7 +9,10 @@ import pytest
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.reconstruction.fusion import extract_grid
+from world2minecraft.reconstruction.layout.parameters import StructureParameters
 from world2minecraft.reconstruction.layout.room_space import RoomSpace
+from world2minecraft.reconstruction.layout.storeys import find_storeys
+from world2minecraft.reconstruction.layout.surface_cells import surface_of
 from world2minecraft.reconstruction.semantics import labeller
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
 from world2minecraft.reconstruction.semantics.completion_labeller import (
@@ -134,16 +137,21 @@ def test_floor_and_wall_continue_behind_a_wardrobe(kind):
     assert not completed[~inside].any()
 
 
+def space_of(grid, evidence):
+    surface = surface_of(grid, evidence)
+    return CompletionLabeller()._space(surface, find_storeys(surface, StructureParameters()))
+
+
 def test_a_floor_that_was_hardly_seen_is_not_continued(scanned):
     grid, evidence, _ = scanned
-    shown = CompletionLabeller()._space(grid, evidence)
+    shown = space_of(grid, evidence)
     assert shown.floor.any()
     log_odds, hits = evidence.log_odds.copy(), evidence.hits.copy()
     low = round(-evidence.origin_m[2] / 0.08) + 1
     for values in (log_odds, hits):
         values[:, :, :low] = 0
     hidden = replace(evidence, log_odds=log_odds, hits=hits)
-    space = CompletionLabeller()._space(extract_grid(hidden), hidden)
+    space = space_of(extract_grid(hidden), hidden)
     assert not space.floor.any()
     assert space.cells.any()
 

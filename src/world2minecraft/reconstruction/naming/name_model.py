@@ -9,7 +9,6 @@ Votes of label images for names, not for classes, decide among names too.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
@@ -18,13 +17,13 @@ from world2minecraft.core.files import MAX_ARRAY_BYTES, read_npz_bytes
 from world2minecraft.core.shipped_weights import read_weights, shipped
 from world2minecraft.core.vocabulary import (
     MIN_NAME_CONFIDENCE,
+    NYU40_COUNT,
     label_id_nyu40,
     read_vocabulary,
 )
-from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT, class_votes
+from world2minecraft.reconstruction.naming.name_votes import class_votes
 
 WEIGHTS = shipped("object_names.npz")
-MIN_CONFIDENCE = MIN_NAME_CONFIDENCE
 MAX_WALL_M, MAX_GAP_M = 1.0, 1.0
 SMALLEST_M, SMALLEST_CHANCE = 0.04, 1e-9
 # Log-odds that a name is right: constant, and factors of the log-odds of its share in the votes and
@@ -113,15 +112,15 @@ ARRAYS = ("mean", "scale", "w1", "b1", "w2", "b2")
 
 
 @cache
-def read_name_model(path: Path = WEIGHTS) -> NameModel:
-    """Read the weights of a file.
+def read_name_model() -> NameModel:
+    """Read the weights of the program.
 
     Raises:
         InputError: If the file does not exist.
         DamagedFileError: If the file is damaged.
     """
-    data = read_weights(path)
-    arrays = read_npz_bytes(data, (*ARRAYS, "names"), path, MAX_ARRAY_BYTES)
+    data = read_weights(WEIGHTS)
+    arrays = read_npz_bytes(data, (*ARRAYS, "names"), WEIGHTS, MAX_ARRAY_BYTES)
     names = tuple(str(name) for name in arrays.pop("names"))
     return NameModel(names, arrays)
 
@@ -133,8 +132,8 @@ def name_objects(
 
     The votes decide among the 40 NYU classes, and the model among the names of each class: the
     segmentation network saw real rooms, and the model saw generated rooms only. Votes for names
-    count as such. Below ``MIN_CONFIDENCE``, and without votes, the name is that of the class; the
-    probability is still that of the best name.
+    count as such. Below ``MIN_NAME_CONFIDENCE``, and without votes, the name is that of the class;
+    the probability is still that of the best name.
     """
     chosen = model or read_name_model()
     names, nyu40 = tuple(read_vocabulary().names), label_id_nyu40()[NYU40_COUNT:] - 1
@@ -153,7 +152,7 @@ def name_objects(
             continue
         best = int(shares.argmax())
         confidence = calibrated(float(shares[best]), item.vote_count)
-        sure = confidence >= MIN_CONFIDENCE
+        sure = confidence >= MIN_NAME_CONFIDENCE
         result.append((names[best] if sure else CLASS_DISPLAY_NAMES[item.class_id], confidence))
     return result
 

@@ -14,11 +14,10 @@ import numpy as np
 from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import npz_array_names, read_npz, write_npz
 from world2minecraft.core.types import OccupancyGrid, checks
-from world2minecraft.core.vocabulary import label_id_names, label_id_nyu40
+from world2minecraft.core.vocabulary import NYU40_COUNT, label_id_names, label_id_nyu40
 
 NAME_VOTES = "names.npz"  # In the folder of a run.
 CUBE_M = 0.08  # Of votes, whatever the cells of the grid.
-NYU40_COUNT = 40
 MAX_STORED = 60_000.0  # Votes in a cube, as 16-bit floats; more are scaled down.
 
 

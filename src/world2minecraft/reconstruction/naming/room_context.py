@@ -8,9 +8,9 @@ name no washstand and no stove, and take any dark box for a shower.
 from collections.abc import Callable, Sequence
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES
-from world2minecraft.core.vocabulary import nyu40_names
+from world2minecraft.core.vocabulary import NYU40_COUNT, nyu40_names
 from world2minecraft.reconstruction.naming.name_model import ObjectTraits
-from world2minecraft.reconstruction.naming.name_votes import NYU40_COUNT, class_votes
+from world2minecraft.reconstruction.naming.name_votes import class_votes
 
 Named = Sequence[tuple[str, float]]
 

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import onnxruntime
 
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, first_line
+from world2minecraft.core.onnx_sessions import open_session, session_options
 from world2minecraft.core.shipped_weights import read_weights
 from world2minecraft.geometry.view_region import REGION_KINDS
 
@@ -82,18 +82,11 @@ class OccupancyNetwork:
     def __init__(self, path: str | Path):
         data = read_weights(path, MAX_BYTES)
         self.digest = hashlib.sha256(data).hexdigest()
-        options = onnxruntime.SessionOptions()
-        options.intra_op_num_threads = options.inter_op_num_threads = 1
-        options.log_severity_level = 3
+        options = session_options()
         # Weights stored as bytes become floats once, as the file is loaded; and what a file does in
         # bytes is done in floats, since byte kernels round otherwise on other processors.
         options.add_session_config_entry("session.disable_quant_qdq", "1")
-        try:
-            self._session = onnxruntime.InferenceSession(
-                data, options, providers=["CPUExecutionProvider"]
-            )
-        except Exception as error:  # The library has no class of its own for what it cannot read.
-            raise DamagedFileError(path, f"is not a valid ONNX file: {first_line(error)}") from None
+        self._session = open_session(path, data, options)
         try:
             self.facts = _facts(self._session)
         except ValueError as error:

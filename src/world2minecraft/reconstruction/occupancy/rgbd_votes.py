@@ -12,14 +12,10 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.types import View
-from world2minecraft.core.vocabulary import nyu40_classes
+from world2minecraft.core.vocabulary import NYU40_COUNT, nyu40_classes
 from world2minecraft.reconstruction.naming.name_votes import NameVoteMap
 from world2minecraft.reconstruction.occupancy.depth_evidence import PointVotes
-from world2minecraft.reconstruction.recognition.segmentation import (
-    NYU40_COUNT,
-    SegmentationModel,
-    splat_depth,
-)
+from world2minecraft.reconstruction.recognition.segmentation import SegmentationModel, splat_depth
 from world2minecraft.reconstruction.recognition.segmentation_channels import (
     geometry_size,
     network_size,

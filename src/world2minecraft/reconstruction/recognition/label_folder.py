@@ -26,13 +26,13 @@ from world2minecraft.core.errors import CaptureError, InputError, UsageError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera, View
+from world2minecraft.core.vocabulary import NYU40_COUNT
 from world2minecraft.reconstruction.recognition.label_images import (
     PixelClassifier,
     class_name,
     draw_overlay,
     segment_view,
 )
-from world2minecraft.reconstruction.recognition.segmentation import NYU40_COUNT
 
 MESH_SOURCE = "solid"  # First word of the source of meshes and point clouds.
 NO_PICTURES = (

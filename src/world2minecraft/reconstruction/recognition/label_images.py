@@ -11,10 +11,10 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.core.types import Camera, View
-from world2minecraft.core.vocabulary import nyu40_names
+from world2minecraft.core.vocabulary import NYU40_COUNT, nyu40_names
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.unprojection import project, unproject_depth
-from world2minecraft.reconstruction.recognition.segmentation import NYU40_COUNT, splat_depth
+from world2minecraft.reconstruction.recognition.segmentation import splat_depth
 from world2minecraft.reconstruction.recognition.segmentation_channels import (
     geometry_size,
     network_size,

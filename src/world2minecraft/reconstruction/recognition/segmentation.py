@@ -33,9 +33,11 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.core.errors import DamagedFileError, UsageError, first_line
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.onnx_sessions import open_session, session_options
 from world2minecraft.core.shipped_weights import read_weights, shipped
 from world2minecraft.core.types import Camera
+from world2minecraft.core.vocabulary import NYU40_COUNT
 from world2minecraft.reconstruction.recognition.segmentation_channels import (
     COLOUR_MEAN,
     COLOUR_SPREAD,
@@ -47,7 +49,6 @@ from world2minecraft.reconstruction.recognition.segmentation_channels import (
 
 WEIGHTS = shipped("segmentation.onnx")
 GENERATED_WEIGHTS = shipped("segmentation_generated.onnx")
-NYU40_COUNT = 40
 COLOUR, GEOMETRY, PROBABILITY = "colour", "geometry", "probability"
 MAX_BYTES = 256 << 20
 
@@ -96,21 +97,9 @@ class SegmentationModel:
 
     @cached_property
     def _session(self) -> Any:
-        import onnxruntime  # noqa: PLC0415  # Half a second that other labellers do not need.
-
-        data = read_weights(self.weights, MAX_BYTES)
-        options = onnxruntime.SessionOptions()
-        options.intra_op_num_threads = options.inter_op_num_threads = 1
-        options.log_severity_level = 3
+        options = session_options()
         options.enable_cpu_mem_arena = False
-        try:
-            session = onnxruntime.InferenceSession(
-                data, options, providers=["CPUExecutionProvider"]
-            )
-        except Exception as error:  # onnxruntime has no exception tree of its own.
-            raise DamagedFileError(
-                self.weights, f"is not a valid ONNX file: {first_line(error)}"
-            ) from error
+        session = open_session(self.weights, read_weights(self.weights, MAX_BYTES), options)
         taken = {one.name: one.shape for one in session.get_inputs()}
         given = {one.name: one.shape for one in session.get_outputs()}
         wanted = {COLOUR: 3, GEOMETRY: GEOMETRY_CHANNELS, PROBABILITY: NYU40_COUNT}

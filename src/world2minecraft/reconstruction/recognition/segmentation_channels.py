@@ -144,15 +144,15 @@ def level_axes(up: np.ndarray) -> np.ndarray:
     return np.stack([up, ahead, np.cross(ahead, up)]).astype(np.float32)
 
 
-def estimate_up(normals: np.ndarray, start: tuple[float, float, float] = IMAGE_UP) -> np.ndarray:
+def estimate_up(normals: np.ndarray) -> np.ndarray:
     """Estimate the direction of up, float32 [3], from surface normals [H, W, 3] (0 if unknown).
 
-    The estimate is turned towards normals parallel to it and away from normals perpendicular to it,
-    first with a tolerance of 45 degrees and then with one of 15.
+    Up in the image is turned towards normals parallel to it and away from normals perpendicular to
+    it, first with a tolerance of 45 degrees and then with one of 15.
     """
     picked = normals[::UP_EVERY_PX, ::UP_EVERY_PX].reshape(-1, 3).astype(np.float64)
     picked = picked[(picked != 0).any(axis=1)]
-    up = np.array(start, np.float64)
+    up = np.array(IMAGE_UP, np.float64)
     if len(picked) < MIN_UP_NORMALS:
         return up.astype(np.float32)
     for degrees in UP_ROUNDS_DEG:

@@ -9,6 +9,7 @@ labellers, and the labels of the geometric labeller are an input of the network.
 processed in tiles.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -19,16 +20,17 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
-from world2minecraft.core.errors import DamagedFileError, first_line
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.onnx_sessions import open_session, session_options
 from world2minecraft.core.parameters import parameter
 from world2minecraft.core.shipped_weights import read_weights, shipped
 from world2minecraft.core.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.layout.parameters import GeometricParameters
 from world2minecraft.reconstruction.layout.room_space import RoomSpace, room_space
-from world2minecraft.reconstruction.layout.storeys import find_storeys
+from world2minecraft.reconstruction.layout.storeys import Storey, find_storeys
 from world2minecraft.reconstruction.layout.structure import structure_of
-from world2minecraft.reconstruction.layout.surface_cells import surface_of
+from world2minecraft.reconstruction.layout.surface_cells import Surface, surface_of
 from world2minecraft.reconstruction.semantics.completion_channels import (
     CHANNELS,
     Sight,
@@ -43,9 +45,9 @@ from world2minecraft.reconstruction.semantics.votes_labeller import (
 )
 
 WEIGHTS = shipped("completion.onnx")
-LEARNT_VOXEL_M, VOXEL_TOLERANCE = 0.08, 0.25  # Other cells look like other things.
-MULTIPLE = 8  # Of the sides that the network takes.
-TILE, MARGIN = 96, 16  # Cells: a room is one tile; what lies at a tile's edge sees less around it.
+LEARNT_VOXEL_M, VOXEL_TOLERANCE = 0.08, 0.25  # The network knows only such cells.
+MULTIPLE = 8  # The sides of the network input are multiples of it.
+TILE, MARGIN = 96, 16  # Cells; most rooms are one tile. At its edge, a tile shows less context.
 MAX_BYTES = 64 << 20
 THREADS = 2
 HALF = 0.5
@@ -67,21 +69,9 @@ class CompletionModel:
 
     @cached_property
     def _session(self) -> Any:
-        import onnxruntime  # noqa: PLC0415  # Half a second that other labellers do not need.
-
-        data = read_weights(self.weights, MAX_BYTES)
-        options = onnxruntime.SessionOptions()
-        options.intra_op_num_threads = THREADS
-        options.log_severity_level = 3
+        options = session_options(THREADS)
         options.enable_cpu_mem_arena = False
-        try:
-            session = onnxruntime.InferenceSession(
-                data, options, providers=["CPUExecutionProvider"]
-            )
-        except Exception as error:  # onnxruntime has no exception tree of its own.
-            raise DamagedFileError(
-                self.weights, f"is not a valid ONNX file: {first_line(error)}"
-            ) from error
+        session = open_session(self.weights, read_weights(self.weights, MAX_BYTES), options)
         taken = session.get_inputs()[0].shape
         if len(taken) != 5 or taken[1] != CHANNELS:
             raise DamagedFileError(
@@ -233,17 +223,19 @@ class CompletionLabeller:
             ValueError: If grid and evidence do not have the same cells.
             DamagedFileError: If the weights file is not a valid network.
         """
-        base, origin = self.geometric.traced(grid, evidence)
+        surface = surface_of(grid, evidence)
+        storeys = find_storeys(surface, self.geometric.parameters.structure)
+        base, origin = self.geometric.traced(grid, evidence, storeys)
         hint = hint_of(base, origin)
-        chance = self._chances(grid, evidence, hint)
+        chance = self._chances(grid, evidence, hint, storeys)
         named = self._named(base, origin, hint, chance, evidence.votes)
-        return self._completed(named, chance, self._space(grid, evidence))
+        return self._completed(named, chance, self._space(surface, storeys))
 
-    def _space(self, grid: OccupancyGrid, evidence: FusedEvidence) -> RoomSpace:
+    def _space(self, surface: Surface, storeys: Sequence[Storey]) -> RoomSpace:
         """Return the space of the rooms of all storeys, without floors that were hardly seen."""
-        rules, surface = self.geometric.parameters.structure, surface_of(grid, evidence)
-        space = RoomSpace(*np.zeros((3, *grid.shape), bool))
-        for storey in find_storeys(surface, rules):
+        rules = self.geometric.parameters.structure
+        space = RoomSpace(*np.zeros((3, *surface.occupied.shape), bool))
+        for storey in storeys:
             structure = structure_of(storey.surface(surface), rules)
             found = room_space(structure)
             seen = int((structure.floor.cells & found.floor).sum())
@@ -254,10 +246,13 @@ class CompletionLabeller:
         return space
 
     def _chances(
-        self, grid: OccupancyGrid, evidence: FusedEvidence, hint: np.ndarray
+        self,
+        grid: OccupancyGrid,
+        evidence: FusedEvidence,
+        hint: np.ndarray,
+        storeys: Sequence[Storey],
     ) -> np.ndarray:
         """Return the probabilities, float32 [12, X, Y, Z], each storey relative to its floor."""
-        storeys = find_storeys(surface_of(grid, evidence), self.geometric.parameters.structure)
         chance = np.zeros((CLASS_COUNT, *grid.shape), np.float32)
         for storey in storeys:
             layers = slice(storey.low, storey.high)

@@ -11,9 +11,14 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_DISPLAY_NAMES, STRUCTURE_CLASSES, SemanticClass
 from world2minecraft.core.types import OWN_CELLS, ObjectInstance, Placement
-from world2minecraft.core.vocabulary import ThingName, alike_nyu40, nyu40_classes, read_vocabulary
+from world2minecraft.core.vocabulary import (
+    MIN_NAME_CONFIDENCE,
+    ThingName,
+    alike_nyu40,
+    nyu40_classes,
+    read_vocabulary,
+)
 from world2minecraft.furniture import template
-from world2minecraft.reconstruction.naming.name_model import MIN_CONFIDENCE
 
 VAGUE = (CLASS_DISPLAY_NAMES[SemanticClass.FURN], CLASS_DISPLAY_NAMES[SemanticClass.OBJS])
 
@@ -74,7 +79,7 @@ def _stands_for(instance: ObjectInstance, placement: Placement) -> bool:
         return True
     own = read_vocabulary().names.get(instance.name)
     shown = read_vocabulary().of_template(placement.template)
-    sure = instance.name not in VAGUE and instance.name_confidence >= MIN_CONFIDENCE
+    sure = instance.name not in VAGUE and instance.name_confidence >= MIN_NAME_CONFIDENCE
     if own is not None and shown is not None and sure:
         return shown.name == own.name or shown.nyu40 in alike_nyu40(own.nyu40)
     return template(placement.template).class_id == instance.class_id

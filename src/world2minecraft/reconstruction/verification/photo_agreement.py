@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import uniform_filter
 
+from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import ciede2000, linear_to_lab, srgb_to_linear
 from world2minecraft.reconstruction.verification.built_names import BuiltThing
@@ -86,7 +87,7 @@ def things_of_photo(sample: PhotoSample, grid: OccupancyGrid) -> np.ndarray:
 
 def thing_numbers(labels: np.ndarray, instance: np.ndarray) -> np.ndarray:
     """Return object ids, minus the class where there is no object, and 0 for nothing, as int32."""
-    known = np.where(labels == 255, 0, labels).astype(np.int32)
+    known = np.where(labels == UNKNOWN, 0, labels).astype(np.int32)
     return np.where((instance > 0) & (known > 0), instance.astype(np.int32), -known)
 
 

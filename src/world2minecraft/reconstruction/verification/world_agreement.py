@@ -15,7 +15,7 @@ import numpy as np
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.parallel import map_parallel
 from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
-from world2minecraft.core.vocabulary import nyu40_classes, read_vocabulary
+from world2minecraft.core.vocabulary import NYU40_COUNT, nyu40_classes, read_vocabulary
 from world2minecraft.reconstruction.verification.built_names import (
     BuiltThing,
     built_structure,
@@ -296,7 +296,7 @@ def _object_rows(
             [view.difference[mask & view.there] for view, mask in zip(views, masks, strict=True)]
         )
         seen = sum(
-            np.bincount(sample.seen[mask], minlength=41)
+            np.bincount(sample.seen[mask], minlength=NYU40_COUNT + 1)
             for sample, mask in zip(samples, masks, strict=True)
         )
         best = int(np.argmax(pixels))
