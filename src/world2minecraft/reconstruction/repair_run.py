@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.construction import build_volume
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume, ObjectInstance, Placement, Scan
@@ -121,7 +121,7 @@ def read_repairs(folder: Path) -> dict[str, Any] | None:
             **{f"headline_{name}": share for name, share in shares.items()},
             "changes": [_checked_row(row) for row in stated["changes"]],
         }
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
+    except MALFORMED as error:
         raise DamagedFileError(path, f"not a list of repairs ({error!r})") from error
 
 

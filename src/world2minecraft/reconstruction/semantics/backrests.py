@@ -15,7 +15,7 @@ from world2minecraft.reconstruction.layout.structure import Wall
 from world2minecraft.reconstruction.layout.surface_cells import Surface, turn_surface
 
 REACH_M = 0.4  # A shelf is 0.2 to 0.35 m deep.
-INSIDE_SHARE = 0.8  # Of a back, that its case stands around: noise widens both.
+INSIDE_SHARE = 0.8  # Minimum share of a back inside its case; noise widens both.
 ALIKE = 0.12  # Oklab difference of one wood in the light and in its own shadow.
 
 

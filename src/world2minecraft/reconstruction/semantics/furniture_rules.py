@@ -29,8 +29,8 @@ from world2minecraft.reconstruction.semantics.surface_pieces import Piece, find_
 # Seats: plates at knee height with a back on one side. A chair's is compact, a sofa's is long.
 AROUND_CELLS = 2  # The edge between seat and back is hidden; the back is looked for this far off.
 
-# How far around its plate a thing may reach and up to what height, in metres; 0 = the plate's own.
-# Arms, backs and headboards rise over a seat or a mattress; on a table lie other things.
+# Extent of an object around its plate, and its maximum height, in metres; 0 is the plate's height.
+# Arms, backs and headboards rise above a seat or a mattress; other objects lie on a table.
 REACH_M = {
     SemanticClass.TABLE: (0.08, 0.0),
     SemanticClass.FURN: (0.08, 0.0),
@@ -39,12 +39,13 @@ REACH_M = {
     SemanticClass.CHAIR: (0.24, 1.15),
 }
 HEAD_M = 0.55  # Extent of pillows from the head of a bed, in metres.
-APART_M = 0.5  # A chair belongs to a table no further off.
-WALL_CELLS = 4  # In a column; then things to both sides of it stand apart.
-FLUSH_M = 0.12  # A picture reaches no farther from its wall.
-MARGIN_M = 0.64  # Walls matter within 0.45 m of a thing.
-TOP_M = 0.06  # A plate's cells lie this near its height.
-# What has a say before what: the arms of an easy chair are plates too, and would pass for a box.
+APART_M = 0.5  # Maximum distance of a chair from its table.
+WALL_CELLS = 4  # Minimum cells of wall in a column that separates objects on its two sides.
+FLUSH_M = 0.12  # Maximum extent of a picture from its wall.
+MARGIN_M = 0.64  # Walls up to 0.45 m from an object affect its class.
+TOP_M = 0.06  # Maximum distance of a plate's cells from its height.
+# Classes in the order of their search: the arms of an easy chair are plates too, and would be taken
+# for a box.
 ROUNDS = (
     (SemanticClass.TABLE,),
     (SemanticClass.BED, SemanticClass.SOFA, SemanticClass.CHAIR),

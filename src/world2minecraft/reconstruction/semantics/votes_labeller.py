@@ -35,7 +35,7 @@ class VotesLabeller:
 
     def __init__(self, parameters: GeometricParameters | None = None, *, small_cells: int = 3):
         self.geometric = GeometricLabeller(parameters)
-        self.small_cells = small_cells  # A part with fewer cells is noise: a guess.
+        self.small_cells = small_cells  # Smaller parts are taken for noise.
 
     def label(self, grid: OccupancyGrid, evidence: FusedEvidence) -> OccupancyGrid:
         """Return the grid with a class for each occupied cell.

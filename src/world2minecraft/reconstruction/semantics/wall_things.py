@@ -1,17 +1,17 @@
 """Things in walls that the segmentation network names: cabinets, blinds, doors, mirrors.
 
 Labels of cells prefer walls, so that papers and switches on a wall do not become blocks in front of
-it. What is large and flat in a wall and named by enough votes is a thing all the same.
+it. Large flat parts of a wall that enough votes name get the class of that name.
 """
 
 from dataclasses import replace
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.core.vocabulary import nyu40_classes, nyu40_names
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.naming.name_votes import (
     CUBE_M,
     CubeIndex,
@@ -64,7 +64,6 @@ def _in_large_parts(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return which cells, int64 [N, 3], belong to a connected part of ``MIN_AREA_M2``."""
     mask = np.zeros(grid.shape, bool)
     mask[tuple(cells.T)] = True
-    parts = np.zeros(grid.shape, np.int32)
-    ndimage.label(mask, np.ones((3, 3, 3)), output=parts)
+    parts, _ = label_components(mask)
     sizes = np.bincount(parts.reshape(-1))
     return sizes[parts[tuple(cells.T)]] * grid.voxel_m**2 >= MIN_AREA_M2
