@@ -15,7 +15,7 @@ from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.morphology import dilate
 
 # A living room of NYUv2 has pieces 1.6, 3.9 and 4.9 m away with 0.7 to 5.5 % of its cells. In the
-# other real captures, parts within 1.5 m are things of the room whose floor was not seen.
+# other real captures, parts within 1.5 m are objects of the room whose floor was not seen.
 GAP_M = 1.5
 MAX_SHARE = 0.1  # Maximum share of the largest part's cells; larger parts are rooms.
 

@@ -6,7 +6,7 @@ object would lose a side, or disappear if it is small. A shift by one block keep
 
 import numpy as np
 
-STEP_COST = 0.25  # Share of its blocks that a thing gives up before it is moved.
+STEP_COST = 0.25  # Share of its blocks that an object loses before it is moved.
 LIFT_COST = 0.6  # The same before it is lifted: a book that sinks into a table still lies on it.
 OPEN_COST = 0.5  # A block in space that was seen free counts half as much as a taken one.
 SIDEWAYS = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))

@@ -29,7 +29,7 @@ from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 RIM_LAYERS = 1  # A top lies within a cell of the rim that it joins.
 REACH_M = 0.7  # Distance from the rim: the depth of a worktop, in metres.
-MIN_RIM_M = 0.3  # Lower things are no furniture with a top.
+MIN_RIM_M = 0.3  # Lower objects have no top.
 MIN_M2 = 0.3  # Of unseen top; less is a hole that the object's own blocks close.
 MIN_M, MAX_M = 0.6, 1.3  # Heights at which one works standing or sitting.
 FRONT_APART = 0.12  # Oklab distance to the front from which a cell at the rim is no part of it.
