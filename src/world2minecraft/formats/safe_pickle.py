@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, reason_of
+from world2minecraft.core.errors import MALFORMED, DamagedFileError, reason_of
 from world2minecraft.core.files import read_bytes
 
 MAX_DEPTH = 100_000
@@ -46,7 +46,7 @@ _RECONSTRUCT = b"cnumpy.core.multiarray\n_reconstruct\ncnumpy\nndarray\nK\x00\x8
 _DTYPE = b"cnumpy\ndtype\n"
 MAX_BYTES = 512 << 20  # A scene of 220 x 220 x 90 cells with float64 centres takes 105 MB.
 MAX_OPERATIONS = 200_000  # A frame takes about a hundred.
-_BROKEN = (ValueError, TypeError, KeyError, IndexError, OverflowError, MemoryError, AttributeError)
+_BROKEN = (*MALFORMED, MemoryError, RecursionError)
 
 
 class PickleRefused(Exception):
@@ -316,13 +316,18 @@ class PickleMachine:
     def _set(self, values: list[Any]) -> None:
         if not isinstance(self.stack[-1], dict) or len(values) % 2:
             raise PickleRefused("sets keys of a value that is not a dict")
+        for key in values[::2]:  # A hash of deeply nested tuples would overflow the stack.
+            if not isinstance(key, str):
+                raise PickleRefused(
+                    f"contains a key of type {type(key).__name__}, expected a string"
+                )
         self.stack[-1].update(zip(values[::2], values[1::2], strict=True))
 
     def _name(self, module: Any, name: Any) -> None:
+        if not isinstance(module, str) or not isinstance(name, str):
+            raise PickleRefused("refers to a name that is not a string")
         if (module, name) not in _NAMES:
-            raise PickleRefused(
-                f"refers to {str(module)[:60]}.{str(name)[:60]}, which is not allowed"
-            )
+            raise PickleRefused(f"refers to {module[:60]}.{name[:60]}, which is not allowed")
         self.push(GlobalName(_NAMES[module, name]))
 
 
@@ -441,7 +446,7 @@ def parse_pickle(data: bytes, name: object = "pickle") -> dict[str, Any]:
         found = _interpret(data)
         if not isinstance(found, dict):
             raise PickleRefused(f"contains a {type(found).__name__}, expected a dict")
-        return {_key(key): _plain(value) for key, value in found.items()}
+        return {key: _plain(value) for key, value in found.items()}
     except PickleRefused as error:
         raise DamagedFileError(name, f"{error}; the file was not read") from error
     except _BROKEN as error:
@@ -459,12 +464,6 @@ def _interpret(data: bytes) -> Any:
             raise PickleRefused(f"pickle with the unsupported operation {operation.name}")
         step(argument)
     return machine.result()
-
-
-def _key(key: Any) -> str:
-    if not isinstance(key, str):
-        raise PickleRefused(f"contains a key of type {type(key).__name__}, expected a string")
-    return key
 
 
 def _plain(value: Any, depth: int = 0) -> Any:

@@ -103,7 +103,11 @@ def _global(module, name, argument="touch here"):
     return f"c{module}\n{name}\n(S'{argument}'\ntR.".encode()
 
 
+NESTED = b")" + b"\x85" * 150_000  # Tuples in tuples: a hash of the outer one overflows the stack.
 HOSTILE = {
+    "a deep key": b"\x80\x02}" + NESTED + b"K\x01s.",
+    "a deep name": b"\x80\x04" + NESTED + b"\x8c\x01a\x93.",
+    "a deep dtype": b"\x80\x02cnumpy\ndtype\n" + NESTED + b"\x85R.",
     "a shell": pickle.dumps({"x": _Runs(os.system, "touch hostile")}),
     "eval": pickle.dumps({"x": _Runs(eval, "1")}),
     "a shell, protocol 0": pickle.dumps({"x": _Runs(os.system, "touch hostile")}, 0),
