@@ -2,9 +2,11 @@
 
 import json
 import re
+import shutil
 import struct
 import zlib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -333,6 +335,17 @@ def test_npy_depth_is_checked_against_its_length(tmp_path, views):
     for path in (tmp_path / "depth").glob("*.npy"):
         np.save(path, np.array([{"a": 1}], dtype=object), allow_pickle=True)
     _refused(tmp_path, "is not a complete .npy")
+    for path in (tmp_path / "depth").glob("*.npy"):
+        np.savez(tmp_path / "renamed.npz", np.ones((4, 4), np.float32))
+        (tmp_path / "renamed.npz").replace(path)
+    _refused(tmp_path, "is not a complete .npy")
+    for shape in ("(0, 99999999999999999999)", "(", "(10000000, 10000000)"):
+        header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}}}\n".encode()
+        for path in (tmp_path / "depth").glob("*.npy"):
+            path.write_bytes(b"\x93NUMPY\x01\x00" + bytes((len(header), 0)) + header)
+        _refused(tmp_path, "is not a complete .npy")
+        packed = shutil.make_archive(f"{tmp_path}", "zip", tmp_path)
+        _refused(Path(packed), "of 4 frames are damaged")
 
 
 @pytest.mark.parametrize("content", [b"", b"GIF89a" + b"\0" * 40, b"\x89PNG\r\n\x1a\n"])

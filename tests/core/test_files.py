@@ -34,6 +34,11 @@ def npy_that_says(shape, descr="|u1", data=b""):
     return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + data
 
 
+def npy_with_header(header):
+    """A .npy whose header, which numpy parses as Python code, is this text."""
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header
+
+
 def pack(path, members, compression=zipfile.ZIP_DEFLATED):
     with zipfile.ZipFile(path, "w", compression) as archive:
         for name, data in members.items():
@@ -164,6 +169,12 @@ HOSTILE = {
     "no magic": (b"PK nonsense", DamagedFileError),
     "an empty member": (b"", DamagedFileError),
     "a header that is code": (npy_that_says("__import__('os').getcwd()"), DamagedFileError),
+    "a header that ends in a bracket": (npy_with_header(b"{'descr': ("), DamagedFileError),
+    "a header nested deeply": (npy_with_header(b"-" * 9000), DamagedFileError),
+    "a type of no length": (
+        npy_with_header(b"{'descr': (), 'fortran_order': False, 'shape': (3,)}"),
+        DamagedFileError,
+    ),
 }
 
 
@@ -248,6 +259,9 @@ def test_json_rows_have_line_numbers_and_errors_name_them():
     assert files.parse_json_lines('{"a": 1}\n\n{"b": 2}\n', source) == [
         (1, {"a": 1}),
         (3, {"b": 2}),
+    ]
+    assert files.parse_json_lines('{"a": "one\u2028line"}\r\n', source) == [
+        (1, {"a": "one\u2028line"})
     ]
     for text, told in (
         ("{}\n{", "line 2 is not valid JSON"),

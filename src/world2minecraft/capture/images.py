@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tokenize import TokenError
 from typing import IO, Any, Protocol
 
 import numpy as np
@@ -17,12 +18,14 @@ from PIL import Image, UnidentifiedImageError
 
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.errors import (
+    MALFORMED,
     DamagedFileError,
     InputError,
     LimitError,
     MissingExtraError,
     reason_of,
 )
+from world2minecraft.core.files import read_npy
 
 MAX_PIXELS = 64_000_000  # A 48-megapixel phone photo passes; decoding it takes 144 MB.
 FORMATS = ("PNG", "JPEG", "TIFF", "PPM", "WEBP", "BMP")
@@ -320,12 +323,12 @@ def _open_npy(path: AnyPath) -> Any:
     """Map a ``.npy`` file of [H, W] numbers, and check its length against its header."""
     try:
         if isinstance(path, Path):
-            array = np.load(path, mmap_mode="r", allow_pickle=False)
+            array = np.lib.format.open_memmap(path, mode="r")
         else:
-            array = np.load(path.open("rb"), allow_pickle=False)
+            array = read_npy(path)
     except FileNotFoundError as error:
         raise InputError(path, "not found") from error
-    except (OSError, ValueError, EOFError) as error:
+    except (OSError, EOFError, TokenError, *MALFORMED) as error:
         reason = f"is not a complete .npy file ({reason_of(error, 120)}); copy the file again"
         raise DamagedFileError(path, reason) from error
     if array.ndim != 2 or array.dtype.kind not in "fu" or not array.size:

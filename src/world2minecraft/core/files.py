@@ -13,6 +13,7 @@ import zipfile
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
 
 import numpy as np
@@ -220,13 +221,13 @@ def npz_array_names(path: str | Path) -> tuple[str, ...]:
         raise DamagedFileError(path, f"is not a readable .npz ({error})") from error
 
 
-def read_npy(path: str | Path) -> np.ndarray:
-    """Read a ``.npy`` file, checking its size before allocating memory.
+def read_npy(path: "str | Path | ArchivePath") -> np.ndarray:
+    """Read a ``.npy`` file, or a member of an archive, checking its size before allocating memory.
 
     Raises:
         DamagedFileError: If the file is not a valid ``.npy`` file.
     """
-    source = Path(path)
+    source = Path(path) if isinstance(path, str) else path
     try:
         with source.open("rb") as stream:
             _check_header(stream, source.stat().st_size, source, "of the file")
@@ -267,7 +268,7 @@ def _read_member(
         return np.lib.format.read_array(stream, allow_pickle=False)
 
 
-def _check_header(stream: Any, held: int, source: Path, name: str) -> None:
+def _check_header(stream: Any, held: int, source: object, name: str) -> None:
     """Raise DamagedFileError for an array that is larger than its data or contains objects."""
     version = np.lib.format.read_magic(stream)
     reader = {
@@ -276,7 +277,10 @@ def _check_header(stream: Any, held: int, source: Path, name: str) -> None:
     }.get(version)
     if reader is None:
         raise DamagedFileError(source, f"array {name} has the unsupported npy version {version}")
-    shape, _, dtype = reader(stream)
+    try:  # numpy parses the header as Python code.
+        shape, _, dtype = reader(stream)
+    except (IndexError, MemoryError, RecursionError, TokenError) as error:
+        raise DamagedFileError(source, f"array {name} has an invalid header") from error
     needed = int(np.prod(shape, dtype=np.float64)) * dtype.itemsize
     if dtype.hasobject or needed > held:
         raise DamagedFileError(
@@ -291,7 +295,7 @@ def parse_json_lines(text: str, source: Path) -> list[tuple[int, dict[str, Any]]
         DamagedFileError: If a line is not a JSON object. The message names ``source``.
     """
     rows = []
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(text.split("\n"), 1):  # Strings may contain U+2028 and the like.
         if not line.strip():
             continue
         try:
