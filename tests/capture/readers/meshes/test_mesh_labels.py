@@ -58,9 +58,12 @@ def test_a_class_map_next_to_the_file_is_used(tmp_path, quads):
         CaptureError, match=r"unknown class name 'spaceship'; known names: ceiling, floor"
     ):
         load_geometry(path)
-    beside.write_text(json.dumps({"nine": "wall"}))
-    with pytest.raises(CaptureError, match="the label 'nine'; labels must be integers"):
-        load_geometry(path)
+    for label in ("nine", "1" * 5000):
+        beside.write_text(json.dumps({label: "wall"}))
+        with pytest.raises(
+            CaptureError, match=f"the label '{label[:20]}'; labels must be integers"
+        ):
+            load_geometry(path)
 
 
 def test_labels_of_faces_and_own_ids_are_read(tmp_path, quads):

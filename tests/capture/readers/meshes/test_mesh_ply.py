@@ -3,11 +3,12 @@
 import mesh_writers as writers
 import numpy as np
 import pytest
+from PIL import Image
 
 from world2minecraft.capture.readers.meshes.colours_and_classes import to_uint8_colours
 from world2minecraft.capture.readers.meshes.ply import load_ply, read_ply, triangulate_fans
 from world2minecraft.capture.readers.meshes.voxel_downsampling import MAX_POINTS, VoxelDownsampler
-from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.errors import DamagedFileError, LimitError
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 2]], float)
 FACES = [[0, 1, 2, 3], [0, 1, 4], [1, 2, 4]]
@@ -26,6 +27,17 @@ def test_polygons_of_any_length_are_cut_into_triangles(tmp_path, order):
     assert file.vertex["label"].tolist() == [1, 2, 3, 4, 500]
     assert file.comments == ("made by hand",)
     np.testing.assert_array_equal(file.vertex["z"], CORNERS[:, 2])
+
+
+def test_a_texture_that_pillow_refuses_is_named_as_too_large(tmp_path, monkeypatch):
+    Image.new("RGB", (64, 64)).save(tmp_path / "paint.png")
+    path = tmp_path / "a.ply"
+    vertex = [*writers.places(CORNERS), ("s", "f4", CORNERS[:, 0]), ("t", "f4", CORNERS[:, 1])]
+    path.write_bytes(writers.ply_bytes("<", vertex, FACES, comments=["TextureFile paint.png"]))
+    assert load_ply(path).geometry.coloured
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 1000)
+    with pytest.raises(LimitError, match="a texture image of more than 64 megapixels"):
+        load_ply(path)
 
 
 def test_fans_of_equal_and_of_mixed_polygons_agree():

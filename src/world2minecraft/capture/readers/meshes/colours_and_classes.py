@@ -92,7 +92,7 @@ def classes_of_label_ids(
     if not len(known):
         return None, ""
     largest, has_unknown = int(known.max()), bool((numbers == UNKNOWN).any())
-    if largest < len(CLASS_NAMES) and (column not in ("label",) or has_unknown):
+    if largest < len(CLASS_NAMES) and (column != "label" or has_unknown):
         return identity_classes()[
             np.minimum(numbers, 255)
         ], f"column {column} is read as World2Minecraft class ids"
@@ -113,7 +113,7 @@ def _classes_from_map(map_path: AnyPath) -> np.ndarray:
         )
     for number, name in table.items():
         found = class_of_name(str(name))
-        if not number.isascii() or not number.isdecimal() or int(number) > MAX_LABEL_ID:
+        if not re.fullmatch("[0-9]{1,9}", number) or int(number) > MAX_LABEL_ID:
             raise CaptureError(
                 map_path,
                 f"contains the label {number[:20]!r}; labels must be integers from 0 to "

@@ -1,5 +1,7 @@
 """Assembly of many mesh parts into one mesh, with colours, textures and labels."""
 
+import io
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,6 +21,7 @@ from world2minecraft.core.errors import DamagedFileError, LimitError
 
 # Of all pictures; larger ones are shrunk: 2 mm of a room in 144 MB.
 MAX_TEXTURE_PIXELS = 48_000_000
+TEXTURE_TOO_LARGE = "contains a texture image of more than 64 megapixels; reduce its size"
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +61,21 @@ def check_sizes(path: AnyPath, vertices: int, faces: int) -> None:
             raise LimitError(
                 path, f"contains {count:,} {name}, the limit is {maximum:,}; export a coarser mesh"
             )
+
+
+def open_texture(path: AnyPath, data: bytes) -> Image.Image | None:
+    """Open a texture image, whose pixels are decoded later, or return None if it is not an image.
+
+    Raises:
+        LimitError: If the image is so large that Pillow refuses it.
+    """
+    try:
+        with warnings.catch_warnings(category=Image.DecompressionBombWarning, action="ignore"):
+            return Image.open(io.BytesIO(data))
+    except Image.DecompressionBombError as error:
+        raise LimitError(path, TEXTURE_TOO_LARGE) from error
+    except (OSError, ValueError, SyntaxError):
+        return None
 
 
 def join_parts(path: AnyPath, parts: Sequence[MeshPart]) -> tuple[Mesh, np.ndarray]:
@@ -133,9 +151,7 @@ def _pictures(path: AnyPath, parts: Sequence[MeshPart]) -> tuple[np.ndarray, np.
             numbers.append(-1)
             continue
         if part.picture.width * part.picture.height > MAX_PIXELS:
-            raise LimitError(
-                path, "contains a texture image of more than 64 megapixels; reduce its size"
-            )
+            raise LimitError(path, TEXTURE_TOO_LARGE)
         key = (id(part.picture), part.tint)
         if key not in known:
             known[key] = len(chosen)

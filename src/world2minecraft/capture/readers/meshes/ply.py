@@ -4,14 +4,13 @@ A file with faces is read as a mesh, other files as point clouds. Sizes are chec
 header before memory is allocated. Vertex properties are looked up by name, including class labels.
 """
 
-import io
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NoReturn
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import Image
 
 from world2minecraft.capture.readers.meshes.colours_and_classes import (
     classes_of_label_ids,
@@ -23,7 +22,7 @@ from world2minecraft.capture.readers.meshes.mesh_and_cloud import (
     MAX_VERTICES,
     LoadedGeometry,
 )
-from world2minecraft.capture.readers.meshes.mesh_assembly import MeshPart, join_parts
+from world2minecraft.capture.readers.meshes.mesh_assembly import MeshPart, join_parts, open_texture
 from world2minecraft.capture.readers.meshes.text_clouds import parse_numbers
 from world2minecraft.capture.readers.meshes.voxel_downsampling import VoxelDownsampler
 from world2minecraft.core.archives import AnyPath
@@ -568,11 +567,11 @@ def _picture(path: AnyPath, file: PlyFile) -> tuple[Image.Image | None, np.ndarr
         return None, None
     found = path.parent / names[0].strip().replace("\\", "/").rpartition("/")[2]
     try:
-        picture = Image.open(io.BytesIO(read_bytes(found, 1 << 30)))
-    except (InputError, UnidentifiedImageError, OSError):
+        data = read_bytes(found, 1 << 30)
+    except InputError:
         return None, None
     u, v = (file.vertex[axis].astype(np.float64) for axis in axes)
-    return picture, np.stack([u, 1 - v], axis=1)
+    return open_texture(path, data), np.stack([u, 1 - v], axis=1)
 
 
 def _load_cloud(path: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeometry:

@@ -1,15 +1,19 @@
 """Parser of USD and USDZ files by Pixar's library, which the extra ``usd`` installs."""
 
-import io
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import Image
 
 from world2minecraft.capture.readers.meshes.colours_and_classes import class_of_name
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import LoadedGeometry
-from world2minecraft.capture.readers.meshes.mesh_assembly import MeshPart, check_sizes, join_parts
+from world2minecraft.capture.readers.meshes.mesh_assembly import (
+    MeshPart,
+    check_sizes,
+    join_parts,
+    open_texture,
+)
 from world2minecraft.capture.readers.meshes.optional_libraries import import_optional
 from world2minecraft.capture.readers.meshes.ply import triangulate_fans
 from world2minecraft.core.archives import AnyPath
@@ -195,7 +199,4 @@ def _open_picture(where: str, folder: str) -> Image.Image | None:
     asset = _import_pxr("Ar").GetResolver().OpenAsset(_import_pxr("Ar").ResolvedPath(where))
     if asset is None or asset.GetSize() > MAX_PICTURE_BYTES:
         return None
-    try:
-        return Image.open(io.BytesIO(bytes(asset.GetBuffer())))
-    except (UnidentifiedImageError, OSError):
-        return None
+    return open_texture(Path(where), bytes(asset.GetBuffer()))
