@@ -30,3 +30,25 @@ def test_each_system_has_its_place(monkeypatch, tmp_path, system, name, expected
     monkeypatch.setattr("sys.platform", system)
     monkeypatch.setenv(name, str(tmp_path))
     assert jit.user_cache_dir() == Path(tmp_path) / expected
+
+
+@pytest.mark.parametrize(
+    ("system", "name"), [("linux", "XDG_CACHE_HOME"), ("win32", "LOCALAPPDATA")]
+)
+def test_an_empty_variable_is_as_good_as_none(monkeypatch, tmp_path, system, name):
+    monkeypatch.setattr("sys.platform", system)
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    monkeypatch.setenv(name, "")
+    monkeypatch.setenv("W2M_CACHE_DIR", "")
+    assert jit.user_cache_dir().is_relative_to(tmp_path)
+
+
+def test_a_user_without_a_home_gets_a_passing_folder(monkeypatch, tmp_path):
+    def homeless():
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.delenv("W2M_CACHE_DIR", raising=False)
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setattr(Path, "home", homeless)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    assert jit.kernel_cache_dir().parent == tmp_path

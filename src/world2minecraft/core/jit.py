@@ -11,19 +11,20 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-PASSING = "world2minecraft-kernels-"  # Begins the name of a temporary folder.
+TEMPORARY_PREFIX = "world2minecraft-kernels-"
 
 
 def user_cache_dir() -> Path:
     """Return the folder for files that this program can recompute."""
-    if "W2M_CACHE_DIR" in os.environ:
-        return Path(os.environ["W2M_CACHE_DIR"])
-    home = Path.home()
+    if chosen := os.environ.get("W2M_CACHE_DIR"):
+        return Path(chosen)
     if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", home)) / "world2minecraft"
-    if sys.platform == "darwin":
-        return home / "Library" / "Caches" / "world2minecraft"
-    return Path(os.environ.get("XDG_CACHE_HOME", home / ".cache")) / "world2minecraft"
+        folder = os.environ.get("LOCALAPPDATA") or Path.home()
+    elif sys.platform == "darwin":
+        folder = Path.home() / "Library" / "Caches"
+    else:
+        folder = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(folder) / "world2minecraft"
 
 
 def kernel_cache_dir() -> Path:
@@ -32,18 +33,18 @@ def kernel_cache_dir() -> Path:
     The files in the folder are executed as code, so it is never a folder that others could have
     filled.
     """
-    folder = user_cache_dir() / "kernels"
     try:
+        folder = user_cache_dir() / "kernels"
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix=PASSING))
-    if os.access(folder, os.W_OK):
-        return folder
-    return Path(tempfile.mkdtemp(prefix=PASSING))
+        if os.access(folder, os.W_OK):
+            return folder
+    except (OSError, RuntimeError):  # RuntimeError: the user has no home folder.
+        pass
+    return Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX))
 
 
 KERNEL_CACHE = Path(os.environ.get("NUMBA_CACHE_DIR") or kernel_cache_dir())
-CACHE_IS_KEPT = not KERNEL_CACHE.name.startswith(PASSING)
+CACHE_IS_KEPT = not KERNEL_CACHE.name.startswith(TEMPORARY_PREFIX)
 
 import numba  # noqa: E402  # Slow to load; the folder is checked first.
 from numba.core.dispatcher import Dispatcher  # noqa: E402
