@@ -88,6 +88,7 @@ def test_a_user_adds_a_name_and_takes_labels(tmp_path):
         ("lens: {class: glass}", "no class is named 'glass'"),
         ("lens: {clas: objs}", "in the entry 'lens', no setting is named 'clas'; did you mean"),
         ("lens: {nyu40: lenses}", "in the entry 'lens', no NYU40 class is named 'lenses'"),
+        ("lens: {nyu40: [chair]}", "in the entry 'lens', no NYU40 class is named"),
         ("lens: {also: optics}", "in the entry 'lens', also must be a list"),
     ],
 )

@@ -190,6 +190,15 @@ def test_damage_is_named(tmp_path, name, content, error, text):
     assert str(path) in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    "wrong", [{"voxel_m": np.ones(2)}, {"voxel_m": "x"}, {"origin_m": ["a", "b", "c"]}]
+)
+def test_a_cell_size_that_is_no_number_is_damage(tmp_path, wrong):
+    np.savez(tmp_path / "a.npz", labels=np.zeros((2, 2, 2), np.uint8), **wrong)
+    with pytest.raises(DamagedFileError, match="contains an invalid voxel_m or origin_m"):
+        read_occupancy(tmp_path / "a.npz")
+
+
 def test_arrays_of_objects_and_lying_headers_are_refused(tmp_path):
     np.save(tmp_path / "o.npy", np.array([{"a": 1}], object), allow_pickle=True)
     with pytest.raises(DamagedFileError, match="contains less"):

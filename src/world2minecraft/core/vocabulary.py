@@ -226,9 +226,9 @@ def _entry(path: Path, key: str, value: Mapping[str, Any]) -> ThingName:
     if unknown := set(value) - _KEYS:
         error = UnknownNameError("setting", str(min(unknown, key=str)), sorted(_KEYS))
         raise DamagedFileError(path, f"in the entry {key!r}, {error}")
-    nyu40 = value.get("nyu40", "")
+    nyu40 = str(value.get("nyu40") or "")
     if nyu40 and nyu40 not in nyu40_names():
-        error = UnknownNameError("NYU40 class", str(nyu40), nyu40_names())
+        error = UnknownNameError("NYU40 class", nyu40, nyu40_names())
         raise DamagedFileError(path, f"in the entry {key!r}, {error}")
     for name in ("also", "templates"):
         if not isinstance(value.get(name, []), list):

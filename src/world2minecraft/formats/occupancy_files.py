@@ -103,12 +103,15 @@ def read_occupancy(path: str | Path, classes: str = "") -> OccupancyGrid:
         return read_room(source)[0]
     wanted = ("labels", *(name for name in ("voxel_m", "origin_m") if name in held))
     arrays = read_npz(source, wanted)
-    return labels_grid(
-        _classes_of(arrays["labels"], classes, source),
-        source,
-        float(arrays.get("voxel_m", DEFAULT_VOXEL_M)),
-        np.asarray(arrays.get("origin_m", np.zeros(3)), np.float64),
-    )
+    labels = _classes_of(arrays["labels"], classes, source)
+    try:
+        voxel_m = float(arrays.get("voxel_m", DEFAULT_VOXEL_M))
+        origin_m = np.asarray(arrays.get("origin_m", np.zeros(3)), np.float64)
+    except MALFORMED as error:
+        raise DamagedFileError(
+            source, f"contains an invalid voxel_m or origin_m ({error})"
+        ) from error
+    return labels_grid(labels, source, voxel_m, origin_m)
 
 
 def _classes_of(ids: np.ndarray, classes: str, source: Path) -> np.ndarray:

@@ -10,7 +10,7 @@ axes. A surface is in its x-y plane, and the front of an object faces its z axis
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, Literal
 
 import numpy as np
@@ -153,7 +153,11 @@ def read_roomplan(path: AnyPath) -> CapturedPlan:
 def _first_plan(folder: AnyPath) -> AnyPath | None:
     files = sorted(
         folder.rglob("*.json"),
-        key=lambda place: ("room" not in place.name.lower(), str(place).count("/"), str(place)),
+        key=lambda place: (
+            "room" not in place.name.lower(),
+            len(PurePath(str(place)).parts),
+            str(place),
+        ),
     )
     return next((place for place in files[:MAX_FILES] if is_roomplan(place)), None)
 
