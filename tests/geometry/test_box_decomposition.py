@@ -11,9 +11,17 @@ from world2minecraft.geometry.box_decomposition import (
     decompose_boxes,
     join_adjacent_boxes,
     partition_boxes,
-    rasterize_boxes,
     simplify_boxes,
 )
+
+
+def rasterize_boxes(boxes, shape):
+    """The int32 label grid that boxes, int [N, 7], fill; later boxes take precedence."""
+    labels = np.zeros(shape, np.int32)
+    for label, x0, y0, z0, x1, y1, z1 in boxes.tolist():
+        labels[x0:x1, y0:y1, z0:z1] = label
+    return labels
+
 
 SHAPES = stn.arrays(
     np.int32, st.tuples(*[st.integers(1, 7)] * 3), elements=st.sampled_from([0, 0, 1, 1, 1, 2])

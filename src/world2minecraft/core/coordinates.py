@@ -18,7 +18,6 @@ import numpy as np
 ROOM_CORNER_BLOCK = (0, 64, 0)
 PLAYER_EYE_BLOCKS = 1.62
 ROOM_AXES_TO_BLOCK = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], np.float64)
-FACING_OF_QUARTER_TURNS = ("east", "north", "west", "south")  # Counter-clockwise from room +x.
 COMPASS_OF_SIDE = {"x-": "west", "x+": "east", "y-": "south", "y+": "north"}  # Of the room.
 
 # OpenGL cameras (x right, y up, z backward: nerfstudio, Blender) to OpenCV ones.
@@ -149,21 +148,6 @@ def nearest_quarter_turns(yaw_deg: float) -> int:
         (1, 0)
     """
     return int(np.floor(yaw_deg / 90 + 0.5)) % 4
-
-
-def facing_of_quarter_turns(quarter_turns: int) -> str:
-    """Return the game's facing for quarter turns from room +x: 0 east, 1 north, 2 west, 3 south."""
-    return FACING_OF_QUARTER_TURNS[quarter_turns % 4]
-
-
-def game_yaw_of_room_yaw(yaw_deg: float) -> float:
-    """Convert a room yaw to a game yaw in degrees from -180 (inclusive) to 180 (exclusive)."""
-    return (-90.0 - yaw_deg + 180.0) % 360.0 - 180.0
-
-
-def room_yaw_of_game_yaw(game_yaw_deg: float) -> float:
-    """Convert a game yaw to a room yaw in degrees from -180 (inclusive) to 180 (exclusive)."""
-    return (-90.0 - game_yaw_deg + 180.0) % 360.0 - 180.0
 
 
 def camera_to_block_of_game_pose(

@@ -12,7 +12,7 @@ from typing import Any
 from world2minecraft.core.classes import CLASS_NAMES, class_id
 from world2minecraft.core.errors import MALFORMED, DamagedFileError, World2MinecraftError
 from world2minecraft.core.files import read_json
-from world2minecraft.core.types import ObjectInstance, checks
+from world2minecraft.core.types import checks
 from world2minecraft.core.vocabulary import object_title
 
 
@@ -37,15 +37,6 @@ class NamedObject:
     def title(self) -> str:
         """The text that people read."""
         return object_title(self.name, self.class_id)
-
-
-def named_objects(instances: Iterable[ObjectInstance]) -> tuple[NamedObject, ...]:
-    """Return the names of the objects that have one."""
-    return tuple(
-        NamedObject(one.id, one.class_id, one.name, one.name_confidence)
-        for one in instances
-        if one.name
-    )
 
 
 def rows_of_names(objects: Iterable[NamedObject]) -> list[dict[str, Any]]:

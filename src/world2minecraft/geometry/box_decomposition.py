@@ -147,14 +147,6 @@ def join_adjacent_boxes(boxes: np.ndarray) -> np.ndarray:
     return _sorted(np.array(held, np.int32).reshape(-1, 7))
 
 
-def rasterize_boxes(boxes: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the int32 label grid that boxes, int [N, 7], fill; later boxes take precedence."""
-    labels = np.zeros(shape, np.int32)
-    for label, x0, y0, z0, x1, y1, z1 in boxes.tolist():
-        labels[x0:x1, y0:y1, z0:z1] = label
-    return labels
-
-
 def _sorted(boxes: np.ndarray) -> np.ndarray:
     return boxes[np.lexsort(boxes.T[::-1])]
 

@@ -304,7 +304,7 @@ class VideoSource:
         if path.stat().st_size == 0:
             raise DamagedFileError(path, "is empty; copy the file again")
         analysis = analyse_video(path)
-        _check_video(path, analysis)
+        _check_complete(path, analysis)
         wanted = DEFAULT_FRAMES if options.frames is None else options.frames
         chosen = select_frames(analysis, wanted)
         if len(chosen) < MIN_FRAMES:
@@ -333,19 +333,8 @@ def _video_in(place: AnyPath) -> AnyPath | None:
     return videos[0] if len(videos) == 1 else None
 
 
-def _check_video(path: AnyPath, analysis: VideoAnalysis) -> None:
-    """Check that a video can be used.
-
-    Raises:
-        LimitError: If the frames are too large.
-        DamagedFileError: If the video is truncated.
-    """
-    width, height = analysis.size
-    if width * height > MAX_PIXELS:
-        raise LimitError(
-            path,
-            f"has frames of {width}x{height} px, the limit is 64 megapixels; reduce the resolution",
-        )
+def _check_complete(path: AnyPath, analysis: VideoAnalysis) -> None:
+    """Raise DamagedFileError if a video is truncated."""
     if not len(analysis.times):
         raise DamagedFileError(path, "contains no frame that can be decoded; copy the file again")
     # A stated length of seconds more than what is there: the copy broke off.

@@ -185,18 +185,15 @@ def candidate_lengths(known: KnownLength, measures: RoomMeasurements) -> list[tu
         if not measures.levels:
             raise UsageError(_unseen(known.name, "no level face was seen above the floor"))
         return [(level.height, level.area) for level in measures.levels]
-    value = {
-        "ceiling height": measures.ceiling,
-        "room height": measures.ceiling,
-        "room length": measures.length,
-        "room width": measures.width,
-        "camera height": measures.camera if measures.floor_seen else None,
+    value, missing = {
+        "ceiling height": (measures.ceiling, "no ceiling"),
+        "room height": (measures.ceiling, "no ceiling"),
+        "room length": (measures.length, "no pair of opposite walls"),
+        "room width": (measures.width, "no pair of opposite walls"),
+        "camera height": (measures.camera if measures.floor_seen else None, "no floor"),
     }[known.name]
     if value is None:
-        what = {"c": "no floor", "r": "no pair of opposite walls"}.get(known.name[0], "no ceiling")
-        if known.name in ("ceiling height", "room height"):
-            what = "no ceiling"
-        raise UsageError(_unseen(known.name, f"{what} was seen"))
+        raise UsageError(_unseen(known.name, f"{missing} was seen"))
     return [(value, 1.0)]
 
 

@@ -107,7 +107,6 @@ class RoomMeasurements:
     Attributes:
         rough: Scale at which the cameras would be at a typical height.
         camera: Median height of the cameras above the floor.
-        camera_spread: Relative variation of the camera height.
         floor_seen: Whether a floor was found.
         top: Height of the highest points, or None if there is another storey.
         ceiling: Height of the ceiling.
@@ -118,7 +117,6 @@ class RoomMeasurements:
 
     rough: float
     camera: float
-    camera_spread: float
     floor_seen: bool
     top: float | None
     ceiling: float | None
@@ -147,7 +145,6 @@ def measure_room(surface: OrientedPoints) -> RoomMeasurements:
     return RoomMeasurements(
         rough=rough,
         camera=camera / rough,
-        camera_spread=float(np.std(near) / camera) if len(near) else 0.0,
         floor_seen=seen,
         top=_top_height(level) / rough if len(near) > SINGLE_STOREY_SHARE * len(heights) else None,
         ceiling=None if ceiling is None else ceiling / rough,

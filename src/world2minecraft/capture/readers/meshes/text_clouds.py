@@ -111,11 +111,6 @@ def add_text(place: AnyPath, thinner: VoxelDownsampler, label: int | None = None
     return note
 
 
-def class_of_file(name: str) -> int:
-    """Return the class id for a file name such as ``chair_1``, or 255 if it names no class."""
-    return class_of_name(name)
-
-
 def _blocks(place: AnyPath) -> Iterator[bytes]:
     """Yield the file in blocks of complete lines."""
     if place.stat().st_size > MAX_BYTES:
@@ -215,7 +210,7 @@ def load_s3dis(place: AnyPath) -> LoadedGeometry:
     thinner = VoxelDownsampler(unit_m=1.0)
     files = sorted((place / S3DIS_FOLDER).glob("*.txt"), key=lambda path: path.name)[:MAX_FILES]
     for path in files:
-        add_text(path, thinner, class_of_file(path.stem))
+        add_text(path, thinner, class_of_name(path.stem))
     if thinner.offset is None:
         raise CaptureError(place, f"contains no points in {S3DIS_FOLDER}/*.txt")
     note = f"classes are taken from the names of {len(files)} files in {S3DIS_FOLDER}"
