@@ -4,8 +4,9 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.capture import write_plain
+from world2minecraft.capture.images import downscale
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.photo_stream import CapturePhotos, downscale, photos_of_capture
+from world2minecraft.capture.photo_stream import CapturePhotos, photos_of_capture
 from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.types import Camera

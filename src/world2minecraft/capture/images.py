@@ -7,7 +7,7 @@ a member of a zip archive, or an ``ImageSource``, such as a frame of a video or 
 
 import warnings
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tokenize import TokenError
@@ -143,7 +143,7 @@ def read_header(path: ImagePlace) -> ImageHeader:
     if path.suffix == ".npy":
         array = _open_npy(path)
         return ImageHeader(array.shape[1], array.shape[0], array.dtype.name)
-    with _open_checked(path) as image:
+    with open_image(path) as image:
         return ImageHeader(*image.size, image.mode)
 
 
@@ -158,7 +158,7 @@ def check_whole(path: ImagePlace) -> None:
     if path.suffix == ".npy":
         _open_npy(path)
         return
-    with _open_checked(path) as image:
+    with open_image(path) as image:
         kind = image.format
         if kind == "PNG":
             image.verify()
@@ -171,7 +171,7 @@ def check_whole(path: ImagePlace) -> None:
 def _check_by_decoding(path: AnyPath) -> None:
     """Decode a JPEG with data after its end marker, which phones append."""
     try:
-        with _open_checked(path) as image:
+        with open_image(path) as image:
             image.load()
     except DamagedFileError as error:
         reason = "is truncated (JPEG without an end marker); copy the file again"
@@ -186,7 +186,7 @@ def read_colour(path: ImagePlace) -> np.ndarray:
     """
     if not isinstance(path, _FILES):
         return path.colour()
-    with _open_checked(path) as image:
+    with open_image(path) as image:
         return np.array(image.convert("RGB"), np.uint8)
 
 
@@ -199,19 +199,28 @@ def read_small(path: ImagePlace, longest_px: int) -> np.ndarray:
         InputError: If the image is missing, damaged or too large.
     """
     if not isinstance(path, _FILES):
-        image = Image.fromarray(path.colour())
-        return _shrink_to(image, longest_px)
-    with _open_checked(path) as image:
+        return downscale(path.colour(), longest_px)
+    with open_image(path) as image:
         image.draft("RGB", (longest_px, longest_px))
-        return _shrink_to(image.convert("RGB"), longest_px)
+        return downscale(np.array(image.convert("RGB"), np.uint8), longest_px)
 
 
-def _shrink_to(image: Image.Image, longest_px: int) -> np.ndarray:
-    share = min(1.0, longest_px / max(image.size))
-    size = (max(1, round(image.width * share)), max(1, round(image.height * share)))
-    if size != image.size:
-        image = image.resize(size, Image.Resampling.BOX)
-    return np.array(image, np.uint8)
+def downscale(colour: np.ndarray, longest_px: int) -> np.ndarray:
+    """Downscale an image so that its longer side has at most ``longest_px`` pixels.
+
+    Args:
+        colour: Image, uint8 [H, W, 3].
+        longest_px: Maximum length of the longer side. Smaller images are returned unchanged.
+
+    Returns:
+        The image as uint8 [h, w, 3]. Each pixel is the mean of its area, to avoid aliasing.
+    """
+    height, width = colour.shape[:2]
+    share = longest_px / max(height, width)
+    if share >= 1:
+        return colour
+    size = (max(1, round(width * share)), max(1, round(height * share)))
+    return np.array(Image.fromarray(colour).resize(size, Image.Resampling.BOX), np.uint8)
 
 
 def read_raw(path: ImagePlace) -> np.ndarray:
@@ -220,7 +229,7 @@ def read_raw(path: ImagePlace) -> np.ndarray:
         return path.raw()
     if path.suffix == ".npy":
         return np.array(_open_npy(path))
-    with _open_checked(path) as image:
+    with open_image(path) as image:
         return np.array(image)
 
 
@@ -236,19 +245,15 @@ class Openable(Protocol):
         ...
 
 
-def open_image(source: AnyPath | Openable) -> AbstractContextManager[Image.Image]:
-    """Open an image after checking its size.
+@contextmanager
+def open_image(path: AnyPath | Openable) -> Iterator[Image.Image]:
+    """Open an image after checking its size, and convert all errors to project exceptions.
 
     Raises:
-        DamagedFileError: If the source is not an image.
+        InputError: If the image is missing.
+        DamagedFileError: If the image is damaged.
         LimitError: If the image has more than ``MAX_PIXELS`` pixels.
     """
-    return _open_checked(source)
-
-
-@contextmanager
-def _open_checked(path: AnyPath | Openable) -> Iterator[Image.Image]:
-    """Open an image after checking its size, and convert all errors to project exceptions."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Ours is the stricter limit, checked below.

@@ -6,10 +6,7 @@ Photos are decoded on each access, so that a capture is never completely in memo
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-import numpy as np
-from PIL import Image
-
-from world2minecraft.capture.images import ImagePlace, read_colour
+from world2minecraft.capture.images import ImagePlace, downscale, read_colour
 from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.validation import ValidatedCapture
 from world2minecraft.core.errors import DamagedFileError, InputError
@@ -85,21 +82,3 @@ def read_photo(frame: FrameFiles, lens: str = "stated", longest_px: int = MAX_SI
         )
     except ValueError as error:
         raise DamagedFileError(place, str(error)) from error
-
-
-def downscale(colour: np.ndarray, longest_px: int) -> np.ndarray:
-    """Downscale an image so that its longer side has at most ``longest_px`` pixels.
-
-    Args:
-        colour: Image, uint8 [H, W, 3].
-        longest_px: Maximum length of the longer side. Smaller images are returned unchanged.
-
-    Returns:
-        The image as uint8 [h, w, 3]. Each pixel is the mean of its area, to avoid aliasing.
-    """
-    height, width = colour.shape[:2]
-    share = longest_px / max(height, width)
-    if share >= 1:
-        return colour
-    size = (max(1, round(width * share)), max(1, round(height * share)))
-    return np.array(Image.fromarray(colour).resize(size, Image.Resampling.BOX), np.uint8)

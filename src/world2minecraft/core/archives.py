@@ -133,11 +133,7 @@ class ArchivePath:
     @property
     def archive(self) -> Archive:
         """The open archive, which is opened once, and again if the file changes."""
-        try:
-            found = self.path.stat()
-        except OSError as error:
-            raise InputError(self.path, f"cannot be read: {error.strerror or error}") from error
-        return _open_archive(self.path, (found.st_size, found.st_mtime_ns))
+        return _open_archive(self.path, file_stamp(self.path))
 
     def __str__(self) -> str:
         """Return the path of the zip and the name inside it, for messages."""
@@ -234,6 +230,19 @@ class ArchivePath:
 
 
 AnyPath = Path | ArchivePath
+
+
+def file_stamp(path: AnyPath) -> tuple[int, int]:
+    """Return the size and modification time of a file or of its archive, to detect changes.
+
+    Raises:
+        InputError: If the file is missing.
+    """
+    try:
+        found = (path.path if isinstance(path, ArchivePath) else path).stat()
+    except OSError as error:
+        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
+    return found.st_size, found.st_mtime_ns
 
 
 def is_zip(path: Path) -> bool:

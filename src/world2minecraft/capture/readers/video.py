@@ -20,7 +20,7 @@ from world2minecraft.capture.poster_detection import is_saved_poster
 from world2minecraft.capture.readers.apps.video_frames import VideoFrame, open_video
 from world2minecraft.capture.readers.photo_exif import DIAGONAL_MM
 from world2minecraft.capture.source_types import Capture, FrameFiles
-from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.archives import AnyPath, file_stamp
 from world2minecraft.core.errors import (
     CaptureError,
     DamagedFileError,
@@ -89,11 +89,7 @@ def analyse_video(path: AnyPath) -> VideoAnalysis:
         InputError: If the file is missing.
         MissingExtraError: If ``av`` is not installed.
     """
-    try:
-        found = (path.path if isinstance(path, ArchivePath) else path).stat()
-    except OSError as error:
-        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
-    return _analyse(path, (found.st_size, found.st_mtime_ns))
+    return _analyse(path, file_stamp(path))
 
 
 @lru_cache(maxsize=4)

@@ -13,10 +13,9 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.images import MAX_PIXELS, ImageHeader
-from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.archives import AnyPath, file_stamp
 from world2minecraft.core.errors import (
     DamagedFileError,
-    InputError,
     LimitError,
     MissingExtraError,
     reason_of,
@@ -136,11 +135,7 @@ def open_video(path: AnyPath) -> VideoDecoder:
         LimitError: If the frames are too large or too many.
         MissingExtraError: If ``av`` is not installed.
     """
-    try:
-        found = (path.path if isinstance(path, ArchivePath) else path).stat()
-    except OSError as error:
-        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
-    return _open_cached(path, (found.st_size, found.st_mtime_ns))
+    return _open_cached(path, file_stamp(path))
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import IO
 import numpy as np
 
 from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, NamedByFrame, open_image
-from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.archives import AnyPath, ArchivePath, file_stamp
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
 
@@ -69,8 +69,7 @@ def open_seekable(path: AnyPath) -> IO[bytes]:
     """
     if isinstance(path, ArchivePath):
         check_archive_member_size(path)
-        stamp = path.path.stat()
-        return io.BytesIO(_read_member(path, (stamp.st_size, stamp.st_mtime_ns)))
+        return io.BytesIO(_read_member(path, file_stamp(path)))
     try:
         return path.open("rb")
     except OSError as error:

@@ -25,7 +25,7 @@ from world2minecraft.capture.readers.datasets.embedded_images import check_archi
 from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
 from world2minecraft.capture.readers.datasets.time_sync import pair_times
 from world2minecraft.capture.source_types import Capture, FrameFiles
-from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.archives import AnyPath, file_stamp
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import (
     CaptureError,
@@ -196,12 +196,7 @@ def open_bag(path: AnyPath) -> Bag:
         LimitError: If a chunk is too large.
         MissingExtraError: If the rosbags library is not installed.
     """
-    try:
-        file = path.path if isinstance(path, ArchivePath) else path
-        found = file.stat()
-    except OSError as error:
-        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
-    return _open_cached(path, (found.st_size, found.st_mtime_ns), os.getpid())
+    return _open_cached(path, file_stamp(path), os.getpid())
 
 
 @lru_cache(maxsize=2)

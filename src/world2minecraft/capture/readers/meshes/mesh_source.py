@@ -8,7 +8,6 @@ import threading
 from collections import OrderedDict
 from dataclasses import dataclass, field
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
@@ -33,7 +32,7 @@ from world2minecraft.capture.readers.meshes.surfels import estimate_surfels
 from world2minecraft.capture.readers.meshes.text_clouds import load_s3dis
 from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views
 from world2minecraft.capture.source_types import Capture, FrameFiles
-from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.archives import AnyPath, file_stamp
 from world2minecraft.core.classes import CLASS_COLOURS
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
@@ -118,13 +117,6 @@ def load_geometry(path: AnyPath) -> LoadedGeometry:
     if path.is_dir():
         return load_s3dis(path)
     return MESH_READERS.load(path.suffix.lower())(path)
-
-
-def file_stamp(path: AnyPath) -> tuple[int, ...]:
-    """Return the size and modification time of a file, to detect changes."""
-    file = Path(path.path) if isinstance(path, ArchivePath) else path
-    found = file.stat()
-    return found.st_size, found.st_mtime_ns
 
 
 @dataclass(eq=False)
