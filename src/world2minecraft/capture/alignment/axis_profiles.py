@@ -65,11 +65,7 @@ def axis_profile(points_m: np.ndarray, axis: int, bin_m: float = 0.03) -> AxisPr
     start = float(np.floor(points_m[:, axis].min() / bin_m) - 1) * bin_m
     bins = ((points_m[:, axis] - start) / bin_m).astype(np.int64)
     count = int(bins.max()) + 2
-    others = [other for other in range(3) if other != axis]
-    patches = np.floor(points_m[:, others] / CELL_M).astype(np.int64)
-    patches -= patches.min(axis=0)
-    patch = patches[:, 0] * (patches[:, 1].max() + 1) + patches[:, 1]
-    occupied = np.unique(patch * count + bins)
+    occupied = np.unique(cell_codes(other_axes(points_m, axis)) * count + bins)
     near = np.unique(np.concatenate([occupied - 1, occupied, occupied + 1]))
     return AxisProfile(start, bin_m, _area_per_bin(near, count), _area_per_bin(occupied, count))
 
@@ -94,7 +90,7 @@ def face_position_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
     trust = 1 / (near.sigma_m**2 + MIN_SIGMA_M**2) / points_per_cell(near.points_m, axis)
     for limit_m in LIMITS_M:
         off = near.points_m[:, axis] - place_m
-        weight = trust * np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0.0)
+        weight = trust * tukey_weights(off, limit_m)
         if weight.sum() > 0:
             place_m += float(np.sum(weight * off) / weight.sum())
     return place_m
@@ -102,9 +98,28 @@ def face_position_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
 
 def points_per_cell(points_m: np.ndarray, axis: int) -> np.ndarray:
     """Return for each point the number of points in the same 10 cm cell of a face."""
-    others = [other for other in range(3) if other != axis]
-    cells = np.floor(points_m[:, others] / CELL_M).astype(np.int64)
-    cells -= cells.min(axis=0, initial=0)
-    code = cells[:, 0] * (cells[:, 1].max(initial=0) + 1) + cells[:, 1]
-    _, index, counts = np.unique(code, return_inverse=True, return_counts=True)
+    codes = cell_codes(other_axes(points_m, axis))
+    _, index, counts = np.unique(codes, return_inverse=True, return_counts=True)
     return counts[index]
+
+
+def other_axes(points: np.ndarray, axis: int) -> np.ndarray:
+    """Return the coordinates [N, 2] of points along the two axes other than ``axis``."""
+    return points[:, [other for other in range(3) if other != axis]]
+
+
+def cell_codes(points_m: np.ndarray, cell_m: float = CELL_M) -> np.ndarray:
+    """Return a number for each point [N, D] that only the points of its cell share, int64 [N]."""
+    cells = np.floor(points_m / cell_m).astype(np.int64)
+    if not len(cells):
+        return np.zeros(0, np.int64)
+    cells -= cells.min(axis=0)
+    codes = cells[:, 0]
+    for column in cells.T[1:]:
+        codes = codes * (column.max() + 1) + column
+    return codes
+
+
+def tukey_weights(off_m: np.ndarray, limit_m: float) -> np.ndarray:
+    """Return Tukey's weights of residuals, which are 0 from ``limit_m`` on."""
+    return np.where(np.abs(off_m) < limit_m, (1 - (off_m / limit_m) ** 2) ** 2, 0.0)

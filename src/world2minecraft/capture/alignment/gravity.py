@@ -14,6 +14,7 @@ from world2minecraft.geometry.oriented_points import OrientedPoints
 DIRECTIONS = 2000  # Fibonacci points on the sphere: about 4.5 degrees apart.
 MAX_VOTERS = 4000
 VOTE_CONE_DEG = 8.0
+REFINING_CONES_DEG = (10.0, 7.0, 5.0, 4.0, 4.0)
 ROLL_SIGMA = 0.20  # Sine of how far a hand-held camera rolls.
 MAX_FACING_DEG = 20.0
 MAX_HINT_OFFSET_DEG = 10.0  # ARKit's own world leans by under a degree, one that drifted by a few.
@@ -36,7 +37,7 @@ class Ground:
 
     up: np.ndarray
     height_m: float
-    floor_area_m2: float  # 0 where no floor was seen and the lowest points stand for it.
+    floor_area_m2: float
 
 
 def find_ground(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> Ground:
@@ -48,7 +49,7 @@ def find_ground(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> G
             unit vector float64 [3]. The result is within 10 degrees of it.
     """
     voted = _vote_up(surface) if up_hint is None else up_hint
-    refined = _refine_up(surface.normals, voted)
+    refined = refine_direction(surface.normals, voted, REFINING_CONES_DEG, 10)
     up = refined if _is_near(refined, up_hint) else voted
     height, area = _floor_height(surface, up)
     return Ground(up, height, area)
@@ -81,15 +82,20 @@ def _fibonacci_sphere(count: int) -> np.ndarray:
     return np.stack([flat * np.cos(angle), flat * np.sin(angle), z], axis=1)
 
 
-def _refine_up(normals: np.ndarray, up: np.ndarray) -> np.ndarray:
-    """Move a direction to the mean of the normals around it, in narrowing cones."""
-    for within_deg in (10.0, 7.0, 5.0, 4.0, 4.0):
-        near = normals[np.abs(normals @ up) > np.cos(np.radians(within_deg))]
-        if len(near) < 10:
-            return up
+def refine_direction(
+    normals: np.ndarray, direction: np.ndarray, cones_deg: tuple[float, ...], least: int
+) -> np.ndarray:
+    """Move a direction to the mean axis of the normals around it, in narrowing cones.
+
+    The direction is kept where a cone has fewer than ``least`` normals.
+    """
+    for within_deg in cones_deg:
+        near = normals[np.abs(normals @ direction) > np.cos(np.radians(within_deg))]
+        if len(near) < least:
+            break
         _, vectors = np.linalg.eigh(near.T @ near)
-        up = vectors[:, -1] * np.sign(vectors[:, -1] @ up)
-    return up
+        direction = vectors[:, -1] * (1.0 if vectors[:, -1] @ direction > 0 else -1.0)
+    return direction
 
 
 def _floor_height(surface: OrientedPoints, up: np.ndarray) -> tuple[float, float]:

@@ -21,7 +21,9 @@ import numpy as np
 from world2minecraft.capture.alignment.axis_profiles import (
     AxisProfile,
     axis_profile,
+    cell_codes,
     points_per_cell,
+    tukey_weights,
 )
 from world2minecraft.geometry.oriented_points import OrientedPoints
 from world2minecraft.geometry.rotations import rotation_from_vector
@@ -169,7 +171,7 @@ def fit_plane(surface: OrientedPoints, face: PlanarFace) -> PlaneFit | None:
     weight = base
     for limit_m in LIMITS_M:
         off = _off_plane(uv, along, plane, centre)
-        weight = base * _tukey(off, limit_m)
+        weight = base * tukey_weights(off, limit_m)
         if np.count_nonzero(weight) < MIN_FACE_PATCHES:
             return None
         plane, centre = _weighted_plane(uv, along, weight)
@@ -190,10 +192,6 @@ def _off_plane(
     return along - (uv - centre) @ plane[:2] - plane[2]
 
 
-def _tukey(off: np.ndarray, limit: float) -> np.ndarray:
-    return np.where(np.abs(off) < limit, (1 - (off / limit) ** 2) ** 2, 0.0)
-
-
 def _weighted_plane(
     uv: np.ndarray, along: np.ndarray, weight: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -209,10 +207,7 @@ def _bend_sums(
     uv: np.ndarray, off: np.ndarray, weight: np.ndarray, distance_m: np.ndarray
 ) -> np.ndarray:
     """Return what cells of 20 cm leave over after the plane; see ``PlaneFit.bend``."""
-    cells = np.floor(uv / BEND_CELL_M).astype(np.int64)
-    cells -= cells.min(axis=0)
-    code = cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1]
-    _, index = np.unique(code, return_inverse=True)
+    _, index = np.unique(cell_codes(uv, BEND_CELL_M), return_inverse=True)
     mass = np.bincount(index, weight)
     kept = mass > 0
     count = int(kept.sum())

@@ -4,7 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.alignment.axis_profiles import axis_profile, face_position_m
+from world2minecraft.capture.alignment.axis_profiles import (
+    axis_profile,
+    cell_codes,
+    face_position_m,
+    other_axes,
+    tukey_weights,
+)
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.geometry.oriented_points import OrientedPoints
 
@@ -94,7 +100,7 @@ def _refit_line(
     """
     slope, level, middle = line
     off = across - level - slope * (along - middle)
-    weight = np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0.0)
+    weight = tukey_weights(off, limit_m)
     if weight.sum() < 20:
         return line, 0.0
     middle = float(np.average(along, weights=weight))
@@ -131,7 +137,7 @@ def _find_side(surface: OrientedPoints, axis: int, sign: int) -> tuple[float, bo
     patches = _one_value_per_cell(surface.points_m, outward)
     end = float(np.quantile(patches, 1 - EDGE_QUANTILE))
     facing = sign * surface.normals[:, axis] > MIN_FACING_COSINE
-    found = axis_profile(np.column_stack([outward, _other_axes(surface.points_m, axis)])[facing], 0)
+    found = axis_profile(np.column_stack([outward, other_axes(surface.points_m, axis)])[facing], 0)
     places = found.peaks(max(MIN_WALL_M2, MIN_WALL_SHARE * float(found.area_m2.max())))
     for place in places[::-1]:
         if np.mean(patches > place + 0.10) <= MAX_BEYOND_SHARE:
@@ -139,16 +145,9 @@ def _find_side(surface: OrientedPoints, axis: int, sign: int) -> tuple[float, bo
     return -sign * end, False
 
 
-def _other_axes(points: np.ndarray, axis: int) -> np.ndarray:
-    return points[:, [other for other in range(3) if other != axis]]
-
-
 def _one_value_per_cell(points: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return one of the values for each occupied 10 cm cell."""
-    cells = np.floor(points / 0.1).astype(np.int64)
-    cells -= cells.min(axis=0)
-    code = (cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1]) * (cells[:, 2].max() + 1)
-    return values[np.unique(code + cells[:, 2], return_index=True)[1]]
+    return values[np.unique(cell_codes(points), return_index=True)[1]]
 
 
 def _find_ceiling(surface: OrientedPoints) -> tuple[float, bool]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.capture.alignment.gravity import refine_direction
 from world2minecraft.capture.options import MESH_UNITS_M
 from world2minecraft.capture.readers.meshes.surface_sampling import SurfaceSamples
 
@@ -27,6 +28,7 @@ ALIGNED = 0.985  # Cosine of 10 degrees: the file's own axis is meant.
 FACING = 0.94  # Cosine of 20 degrees.
 DIRECTIONS = 1500
 MAX_VOTERS = 4000
+REFINING_CONES_DEG = (8.0, 5.0, 4.0)
 OUTER = 0.08  # Of a length: the shell's share at each end.
 # What each sign is worth, in the natural logarithm of odds. Guesses, then held to the rooms of
 # the tests, turned to all six axes.
@@ -110,23 +112,13 @@ def _dominant_frame(normals: np.ndarray) -> np.ndarray:
     ways = np.stack([flat * np.cos(angle), flat * np.sin(angle), height], axis=1)
     ways = np.concatenate([np.eye(3), ways])
     votes = (np.abs(ways @ known.T) > np.cos(np.radians(6))).sum(axis=1)
-    first = _refine_direction(known, ways[int(np.argmax(votes))])
+    first = refine_direction(known, ways[int(np.argmax(votes))], REFINING_CONES_DEG, 5)
     across = np.abs(ways @ first) < np.sin(np.radians(5))
-    second = _refine_direction(known, ways[int(np.argmax(np.where(across, votes, -1)))])
+    start = ways[int(np.argmax(np.where(across, votes, -1)))]
+    second = refine_direction(known, start, REFINING_CONES_DEG, 5)
     second -= first * (first @ second)
     second /= np.linalg.norm(second)
     return np.stack([first, second, np.cross(first, second)])
-
-
-def _refine_direction(normals: np.ndarray, way: np.ndarray) -> np.ndarray:
-    """Move a direction to the mean of the normals around it."""
-    for within_deg in (8.0, 5.0, 4.0):
-        near = normals[np.abs(normals @ way) > np.cos(np.radians(within_deg))]
-        if len(near) < 5:
-            return way
-        _, vectors = np.linalg.eigh(near.T @ near)
-        way = vectors[:, -1] * (1.0 if vectors[:, -1] @ way > 0 else -1.0)
-    return way
 
 
 def _up_score(samples: SurfaceSamples, up: np.ndarray, usual_up: str) -> float:
