@@ -1,4 +1,4 @@
-"""Rotation matrices from rotation vectors and from quaternions in x, y, z, w order.
+"""Rotation matrices from vectors, from quaternions in x, y, z, w order, and from any matrix.
 
 Rotation vectors are not converted with SciPy, whose last bits vary between versions: generated
 captures must have the same bytes for the same seed in every version.
@@ -23,6 +23,12 @@ def rotation_from_vector(vector: np.ndarray) -> np.ndarray:
     x, y, z = vector / angle
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def nearest_rotation(matrix: np.ndarray) -> np.ndarray:
+    """Return the rotation that is nearest to a 3x3 matrix."""
+    left, _, right = np.linalg.svd(matrix)
+    return left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
 
 
 def rotation_from_quaternion(quaternion: np.ndarray) -> np.ndarray:

@@ -1,5 +1,7 @@
 """Removal of lens distortion from images, at any target size."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from world2minecraft.core.jit import njit
@@ -10,15 +12,7 @@ from world2minecraft.geometry.unprojection import pixel_rays, project
 def pinhole_camera(camera: Camera, width_px: int) -> Camera:
     """Return a camera without distortion, with the same field of view at another image width."""
     height_px = max(1, round(camera.height_px * width_px / camera.width_px))
-    across, down = width_px / camera.width_px, height_px / camera.height_px
-    return Camera(
-        width_px,
-        height_px,
-        camera.fx_px * across,
-        camera.fy_px * down,
-        camera.cx_px * across,
-        camera.cy_px * down,
-    )
+    return replace(camera.scaled_to(width_px, height_px), distortion=(0.0,) * 5)
 
 
 def undistort_image(colour: np.ndarray, camera: Camera, target: Camera) -> np.ndarray:

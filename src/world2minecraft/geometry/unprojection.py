@@ -23,14 +23,16 @@ def pixel_rays(camera: Camera) -> np.ndarray:
     x, y = bent_x, bent_y
     if any(camera.distortion):
         for _ in range(UNDISTORT_ROUNDS):
-            scale, shift_x, shift_y = _lens(x, y, camera.distortion)
+            scale, shift_x, shift_y = lens_distortion(x, y, camera.distortion)
             x, y = (bent_x - shift_x) / scale, (bent_y - shift_y) / scale
     rays = np.stack([x, y], axis=2).astype(np.float32)
     rays.flags.writeable = False
     return rays
 
 
-def _lens(x: np.ndarray, y: np.ndarray, distortion: tuple[float, ...]):
+def lens_distortion(
+    x: np.ndarray, y: np.ndarray, distortion: tuple[float, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return OpenCV's radial factor and tangential shifts at undistorted (x, y)."""
     k1, k2, p1, p2, k3 = distortion
     square = x * x + y * y
@@ -43,7 +45,7 @@ def _lens(x: np.ndarray, y: np.ndarray, distortion: tuple[float, ...]):
 def project(points_m: np.ndarray, camera: Camera) -> np.ndarray:
     """Project points [..., 3] of the camera frame, z > 0, to pixels float64 [..., 2]."""
     x, y = points_m[..., 0] / points_m[..., 2], points_m[..., 1] / points_m[..., 2]
-    scale, shift_x, shift_y = _lens(x, y, camera.distortion)
+    scale, shift_x, shift_y = lens_distortion(x, y, camera.distortion)
     return np.stack(
         [
             (x * scale + shift_x) * camera.fx_px + camera.cx_px,

@@ -9,7 +9,6 @@ from tests.capture.sfm.box_room import poses
 
 from world2minecraft.capture.sfm import SfmParameters, find_poses, results
 from world2minecraft.capture.sfm import pycolmap_access as pycolmap_session
-from world2minecraft.capture.sfm.bundle_adjustment import project_points
 from world2minecraft.capture.sfm.camera_groups import (
     default_camera,
     from_colmap,
@@ -24,6 +23,7 @@ from world2minecraft.capture.sfm.pose_verification import find_outliers, sampson
 from world2minecraft.capture.sfm.progress import ProgressSteps
 from world2minecraft.core.errors import CaptureError, MissingExtraError
 from world2minecraft.core.types import Camera
+from world2minecraft.geometry.unprojection import project
 
 BENT = Camera(640, 480, 500.0, 510.0, 310.0, 250.0, (-0.2, 0.05, 0.001, -0.002, 0.01))
 
@@ -74,7 +74,7 @@ def test_the_most_similar_and_neighbours_are_paired():
 
 def test_normalising_inverts_lens_distortion():
     rays = np.random.default_rng(0).uniform(-0.5, 0.5, (50, 2))
-    pixels = project_points(BENT, np.concatenate([rays, np.ones((50, 1))], axis=1) * 3.0)
+    pixels = project(np.concatenate([rays, np.ones((50, 1))], axis=1) * 3.0, BENT)
     assert np.allclose(normalise_pixels(BENT, pixels), rays, atol=1e-8)
 
 
@@ -92,7 +92,7 @@ def test_cameras_come_back_from_colmap_and_see_alike(camera):
         made = to_colmap(pycolmap, camera, 1, simple=False)
         assert from_colmap(made) == camera
         points = np.random.default_rng(0).uniform([-1, -1, 2], [1, 1, 4], (20, 3))
-        assert np.allclose(made.img_from_cam(points), project_points(camera, points), atol=1e-6)
+        assert np.allclose(made.img_from_cam(points), project(points, camera), atol=1e-6)
 
 
 def test_plausible_cameras():

@@ -28,6 +28,7 @@ from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.pycolmap_access import pycolmap_session
 from world2minecraft.capture.sfm.rigs import make_rigs, places_of, rig_pose, to_rigid
 from world2minecraft.core.types import Camera
+from world2minecraft.geometry.unprojection import project
 
 CORNERS = ((0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.8, 0.8))  # Of the picture,
 DEPTHS = (0.6, 1.6)  # and how far, by the middle depth: near for the place, far for the turn.
@@ -285,18 +286,6 @@ def _reprojection_errors(
         mine = rows[:, 1] == i
         world_to_camera = np.linalg.inv(pose)
         local = points[rows[mine, 0]] @ world_to_camera[:3, :3].T + world_to_camera[:3, 3]
-        off = project_points(cameras[i], local) - photos[i].pixels[rows[mine, 2]]
+        off = project(local, cameras[i]) - photos[i].pixels[rows[mine, 2]]
         errors[mine] = np.linalg.norm(off, axis=1)
     return errors
-
-
-def project_points(camera: Camera, points: np.ndarray) -> np.ndarray:
-    """Project points [K, 3] in front of a camera to pixels, float64 [K, 2]."""
-    k1, k2, p1, p2, k3 = camera.distortion
-    x, y = (points[:, :2] / points[:, 2:]).T
-    r2 = x * x + y * y
-    radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
-    bent_x = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
-    bent_y = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
-    across = camera.fx_px * bent_x + camera.cx_px
-    return np.stack([across, camera.fy_px * bent_y + camera.cy_px], axis=1)

@@ -7,6 +7,7 @@ import numpy as np
 
 from world2minecraft.capture.sfm.features import Features
 from world2minecraft.core.types import Camera
+from world2minecraft.geometry.unprojection import lens_distortion
 
 # Focal length by the longer side: phones 0.7 to 0.9, webcams and Kinects 0.8 to 0.9.
 DEFAULT_FOCAL = 0.8
@@ -134,21 +135,11 @@ def normalise_pixels(camera: Camera, pixels: np.ndarray) -> np.ndarray:
         camera: Intrinsics with distortion.
         pixels: Pixel positions, [K, 2].
     """
-    k1, k2, p1, p2, k3 = camera.distortion
     bent = (pixels - [camera.cx_px, camera.cy_px]) / [camera.fx_px, camera.fy_px]
     straight = bent.copy()
     for _ in range(20):  # A fixed point; phones' lenses need four rounds to 1e-9.
-        x, y = straight.T
-        r2 = x * x + y * y
-        radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
-        aside = np.stack(
-            [
-                2 * p1 * x * y + p2 * (r2 + 2 * x * x),
-                p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
-            ],
-            axis=1,
-        )
-        straight = (bent - aside) / np.maximum(radial, 0.1)[:, None]
+        radial, *aside = lens_distortion(*straight.T, camera.distortion)
+        straight = (bent - np.stack(aside, axis=1)) / np.maximum(radial, 0.1)[:, None]
     return straight
 
 

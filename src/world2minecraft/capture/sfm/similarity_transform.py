@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.types import checks
+from world2minecraft.geometry.rotations import nearest_rotation
 
 MAX_ITERATIONS = 60  # It settles to 1e-9 in about ten.
 MAX_VIEW_RATIO = 0.75  # Real kitchen: 0.47, two models: 0.2; independent errors: 0.9 to 1.
@@ -150,9 +151,7 @@ def _centred(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 def _kabsch(given: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """Return the rotation that best carries weighted points [N, 3] to others, up to a shift."""
-    pull = (_centred(wanted, weight).T * weight) @ _centred(given, weight)
-    left, _, right = np.linalg.svd(pull)
-    return left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
+    return nearest_rotation((_centred(wanted, weight).T * weight) @ _centred(given, weight))
 
 
 def _initial_similarity(turns: np.ndarray, given: np.ndarray, wanted: np.ndarray):
@@ -185,11 +184,9 @@ def _robust_weights(turns, given, wanted, found, reach_m) -> tuple[np.ndarray, n
 
 def _fit_rotation(turns, given, wanted, scale, near, turned) -> np.ndarray:
     """Return the rotation that fits both the centres and the rotations of the poses."""
-    a = given - np.average(given, axis=0, weights=near)
-    b = wanted - np.average(wanted, axis=0, weights=near)
+    a, b = _centred(given, near), _centred(wanted, near)
     pull = scale * np.einsum("i,ia,ib->ab", near, b, a) + np.einsum("i,iab->ab", turned, turns)
-    left, _, right = np.linalg.svd(pull)
-    return left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
+    return nearest_rotation(pull)
 
 
 def _fit_scale_and_shift(turned, wanted, near, scale) -> tuple[float, np.ndarray]:

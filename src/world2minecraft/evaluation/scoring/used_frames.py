@@ -17,6 +17,7 @@ from world2minecraft.evaluation.scoring.same_room import check_same_room
 from world2minecraft.evaluation.scoring.truth_files import Truth, read_truth
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.formats.scan_record import read_source_to_scan
+from world2minecraft.geometry.rotations import nearest_rotation
 
 COMPUTED = "capture"  # Where ``prepare`` keeps what it made.
 MIN_POSED = 3
@@ -119,9 +120,8 @@ def move_truth(known: Truth, source_to_scan: np.ndarray) -> Truth:
 def common_move(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> np.ndarray:
     """Return the rigid 4x4 transform between two sequences of poses [4, 4], best on average."""
     between = np.mean([b[:3, :3] @ a[:3, :3].T for a, b in zip(one, other, strict=True)], axis=0)
-    left, _, right = np.linalg.svd(between)
     move = np.eye(4)
-    move[:3, :3] = left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
+    move[:3, :3] = nearest_rotation(between)
     shifts = [b[:3, 3] - move[:3, :3] @ a[:3, 3] for a, b in zip(one, other, strict=True)]
     move[:3, 3] = np.mean(shifts, axis=0)
     return move
