@@ -53,6 +53,18 @@ class OrientedPoints:
         )
 
 
+def cell_codes(points: np.ndarray, cell: float | np.float32) -> np.ndarray:
+    """Return a number for each point [N, D] that only the points of its cell share, int64 [N]."""
+    cells = np.floor(points / cell).astype(np.int64)
+    if not len(cells):
+        return np.zeros(0, np.int64)
+    cells -= cells.min(axis=0)
+    codes = cells[:, 0]
+    for column in cells.T[1:]:
+        codes = codes * (column.max() + 1) + column
+    return codes
+
+
 def collect_oriented_points(
     views: Iterable[View], most_each: int = MAX_POINTS_PER_VIEW
 ) -> OrientedPoints:

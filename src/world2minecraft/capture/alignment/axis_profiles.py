@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.geometry.oriented_points import OrientedPoints
+from world2minecraft.geometry.oriented_points import OrientedPoints, cell_codes
 
 CELL_M = 0.10  # Support is counted in distinct patches of this side: many looks at one are one.
 SEARCH_RADIUS_M = 0.08  # A door's leaf lies up to 5 cm behind its wall.
@@ -65,7 +65,7 @@ def axis_profile(points_m: np.ndarray, axis: int, bin_m: float = 0.03) -> AxisPr
     start = float(np.floor(points_m[:, axis].min() / bin_m) - 1) * bin_m
     bins = ((points_m[:, axis] - start) / bin_m).astype(np.int64)
     count = int(bins.max()) + 2
-    occupied = np.unique(cell_codes(other_axes(points_m, axis)) * count + bins)
+    occupied = np.unique(cell_codes(other_axes(points_m, axis), CELL_M) * count + bins)
     near = np.unique(np.concatenate([occupied - 1, occupied, occupied + 1]))
     return AxisProfile(start, bin_m, _area_per_bin(near, count), _area_per_bin(occupied, count))
 
@@ -98,7 +98,7 @@ def face_position_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
 
 def points_per_cell(points_m: np.ndarray, axis: int) -> np.ndarray:
     """Return for each point the number of points in the same 10 cm cell of a face."""
-    codes = cell_codes(other_axes(points_m, axis))
+    codes = cell_codes(other_axes(points_m, axis), CELL_M)
     _, index, counts = np.unique(codes, return_inverse=True, return_counts=True)
     return counts[index]
 
@@ -106,18 +106,6 @@ def points_per_cell(points_m: np.ndarray, axis: int) -> np.ndarray:
 def other_axes(points: np.ndarray, axis: int) -> np.ndarray:
     """Return the coordinates [N, 2] of points along the two axes other than ``axis``."""
     return points[:, [other for other in range(3) if other != axis]]
-
-
-def cell_codes(points_m: np.ndarray, cell_m: float = CELL_M) -> np.ndarray:
-    """Return a number for each point [N, D] that only the points of its cell share, int64 [N]."""
-    cells = np.floor(points_m / cell_m).astype(np.int64)
-    if not len(cells):
-        return np.zeros(0, np.int64)
-    cells -= cells.min(axis=0)
-    codes = cells[:, 0]
-    for column in cells.T[1:]:
-        codes = codes * (column.max() + 1) + column
-    return codes
 
 
 def tukey_weights(off_m: np.ndarray, limit_m: float) -> np.ndarray:

@@ -21,11 +21,10 @@ import numpy as np
 from world2minecraft.capture.alignment.axis_profiles import (
     AxisProfile,
     axis_profile,
-    cell_codes,
     points_per_cell,
     tukey_weights,
 )
-from world2minecraft.geometry.oriented_points import OrientedPoints
+from world2minecraft.geometry.oriented_points import OrientedPoints, cell_codes
 from world2minecraft.geometry.rotations import rotation_from_vector
 
 MIN_FACING_COSINE = 0.97  # Cosine of 14 degrees.

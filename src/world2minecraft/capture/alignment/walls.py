@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.capture.alignment.axis_profiles import (
+    CELL_M,
     axis_profile,
-    cell_codes,
     face_position_m,
     other_axes,
     tukey_weights,
 )
 from world2minecraft.core.coordinates import rotation_about_z
-from world2minecraft.geometry.oriented_points import OrientedPoints
+from world2minecraft.geometry.oriented_points import OrientedPoints, cell_codes
 
 MAX_WALL_LEAN = 0.17  # Sine of 10 degrees: how far a wall's normal may lean.
 MIN_FACING_COSINE = 0.94  # Cosine of 20 degrees.
@@ -147,7 +147,7 @@ def _find_side(surface: OrientedPoints, axis: int, sign: int) -> tuple[float, bo
 
 def _one_value_per_cell(points: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return one of the values for each occupied 10 cm cell."""
-    return values[np.unique(cell_codes(points), return_index=True)[1]]
+    return values[np.unique(cell_codes(points, CELL_M), return_index=True)[1]]
 
 
 def _find_ceiling(surface: OrientedPoints) -> tuple[float, bool]:

@@ -24,16 +24,19 @@ MAX_COORDINATE_M = 1e9
 MAX_TEXT_BYTES = 64 << 20  # An hour of odometry at 60 Hz takes about 30 MB.
 
 
-def parse_number(path: AnyPath, stated: Mapping[str, Any], key: str) -> float:
-    """Return a finite number from a JSON object.
+def parse_number(
+    path: AnyPath, stated: Mapping[str, Any], key: str, default: float | None = None
+) -> float:
+    """Return a finite number from a JSON object, or ``default`` if it is missing.
 
     Raises:
-        CaptureError: If the value is missing or is not a finite number.
+        CaptureError: If the value is not a finite number, or is missing without a default.
     """
-    value = to_float(stated.get(key))
-    if not math.isfinite(value):
-        raise CaptureError(path, f'"{key}" must be a number, got {str(stated.get(key))[:40]}')
-    return value
+    value = stated.get(key, default)
+    number = to_float(value)
+    if not math.isfinite(number):
+        raise CaptureError(path, f'"{key}" must be a number, got {str(value)[:40]}')
+    return number
 
 
 def to_float(value: object) -> float:

@@ -198,26 +198,22 @@ class Record3DSource:
         stated = read_json(path)
         if not isinstance(stated, dict):
             raise CaptureError(path, "must be a JSON object with K, w, h and poses")
-        pictures = files_by_stem(folder / ("rgbd" if packed else "rgb"), _PICTURES)
-        stems = {int(stem): stem for stem in pictures if _is_index(stem)}
-        if not stems:
+        named = files_by_stem(folder / ("rgbd" if packed else "rgb"), _PICTURES)
+        pictures = {int(stem): path for stem, path in named.items() if _is_index(stem)}
+        if not pictures:
             raise CaptureError(folder, "contains no frames (rgbd/0.jpg); export the data again")
         lenses, poses = _lenses(path, stated), _poses(path, stated)
         size = _depth_size(folder, path, stated) if packed else None
         notes: tuple[str, ...] = ()
         if poses is not None and len(poses) > 1 and np.ptp(poses, axis=0).max() < _MIN_POSE_CHANGE:
-            poses, notes = (
-                None,
-                (
-                    (
-                        "the capture has no poses: it was recorded with the front camera, which "
-                        "Record3D does not track"
-                    ),
-                ),
+            poses = None
+            notes = (
+                "the capture has no poses: it was recorded with the front camera, which Record3D "
+                "does not track",
             )
         frames = tuple(
-            _frame(folder, index, pictures[stem], lenses, poses, size)
-            for index, stem in sorted(stems.items())
+            _frame(folder, index, picture, lenses, poses, size)
+            for index, picture in sorted(pictures.items())
         )
         return Capture(
             folder,

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.images import SUFFIXES, read_header
+from world2minecraft.capture.readers.apps.app_values import parse_number
 from world2minecraft.capture.readers.datasets.label_ids import Reading, label_reading
 from world2minecraft.capture.readers.panoramas import (
     is_panorama_size,
@@ -60,7 +61,7 @@ class NerfstudioSource:
                 path,
                 'contains no camera poses ("transform_matrix"); use the folder of images instead',
             )
-        scale = _number(path, stated, "applied_scale", 1.0)
+        scale = parse_number(path, stated, "applied_scale", 1.0)
         if scale <= 0:
             raise CaptureError(path, f'"applied_scale" must be above 0, got {scale}')
         reading = label_reading(folder / LABEL_FOLDER)
@@ -87,7 +88,7 @@ def _depth_unit(path: AnyPath, stated: dict[str, Any]) -> str | None:
     """Return metres per depth unit, from the field of nerfstudio or of instant-ngp."""
     for key in ("depth_unit_scale_factor", "integer_depth_scale"):
         if stated.get(key) is not None:
-            return f"{_number(path, stated, key):.17g}"
+            return f"{parse_number(path, stated, key):.17g}"
     return None
 
 
@@ -196,12 +197,12 @@ def _camera(path: AnyPath, stated: dict[str, Any], image: AnyPath) -> Camera:
             path, "uses a fisheye lens, which is not supported; undistort the images first"
         )
     if "w" in stated and "h" in stated:
-        width, height = _number(path, stated, "w"), _number(path, stated, "h")
+        width, height = parse_number(path, stated, "w"), parse_number(path, stated, "h")
     else:
         width, height = read_header(image).size
     focal = _focal(path, stated, width)
-    lens = tuple(_number(path, stated, key, 0.0) for key in ("k1", "k2", "p1", "p2", "k3"))
-    if _number(path, stated, "k4", 0.0) != 0:
+    lens = tuple(parse_number(path, stated, key, 0.0) for key in ("k1", "k2", "p1", "p2", "k3"))
+    if parse_number(path, stated, "k4", 0.0) != 0:
         raise CaptureError(
             path,
             "uses the distortion coefficient k4, which is not supported; undistort "
@@ -212,9 +213,9 @@ def _camera(path: AnyPath, stated: dict[str, Any], image: AnyPath) -> Camera:
             int(width),
             int(height),
             focal,
-            _number(path, stated, "fl_y", focal),
-            _number(path, stated, "cx", width / 2),
-            _number(path, stated, "cy", height / 2),
+            parse_number(path, stated, "fl_y", focal),
+            parse_number(path, stated, "cx", width / 2),
+            parse_number(path, stated, "cy", height / 2),
             lens,
         )
     except ValueError as error:
@@ -223,23 +224,15 @@ def _camera(path: AnyPath, stated: dict[str, Any], image: AnyPath) -> Camera:
 
 def _focal(path: AnyPath, stated: dict[str, Any], width: float) -> float:
     if "fl_x" in stated:
-        return _number(path, stated, "fl_x")
+        return parse_number(path, stated, "fl_x")
     if "camera_angle_x" not in stated:
         raise CaptureError(
             path, "contains no intrinsics; expected fl_x, fl_y, cx, cy, w and h, or camera_angle_x"
         )
-    angle = _number(path, stated, "camera_angle_x")
+    angle = parse_number(path, stated, "camera_angle_x")
     if not 0 < angle < math.pi:
         raise CaptureError(path, f"camera_angle_x must be between 0 and pi, got {angle}")
     return width / (2 * math.tan(angle / 2))
-
-
-def _number(path: AnyPath, stated: dict[str, Any], key: str, default: float | None = None) -> float:
-    value = stated.get(key, default)
-    right = isinstance(value, int | float) and not isinstance(value, bool)
-    if not right or not abs(value) < 1e300:  # A whole number of JSON may be of any length.
-        raise CaptureError(path, f'"{key}" must be a number, got {str(value)[:40]}')
-    return float(value)
 
 
 def _pose(path: AnyPath, entry: dict[str, Any], scale: float) -> np.ndarray | None:

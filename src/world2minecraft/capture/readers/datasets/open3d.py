@@ -18,7 +18,7 @@ from world2minecraft.capture.readers.datasets.intrinsics import (
     stated_camera,
 )
 from world2minecraft.capture.readers.datasets.text_tables import (
-    natural_sort_key,
+    files_with_suffix,
     read_rows,
     to_floats,
 )
@@ -186,7 +186,9 @@ def _camera(folder: AnyPath) -> tuple[Camera, tuple[str, ...]]:
 def _pairs(folder: AnyPath) -> list[tuple[AnyPath, AnyPath]]:
     """Pair images by name, or by order if the names differ and the counts match."""
     colour_folder = _colour_folder(folder) or folder
-    colours, depths = (_images(place) for place in (colour_folder, folder / "depth"))
+    colours, depths = (
+        files_with_suffix(place, (*SUFFIXES, ".npy")) for place in (colour_folder, folder / "depth")
+    )
     by_stem = {path.stem: path for path in depths}
     named = [(path, by_stem[path.stem]) for path in colours if path.stem in by_stem]
     if named and len(named) == len(colours):
@@ -198,10 +200,3 @@ def _pairs(folder: AnyPath) -> list[tuple[AnyPath, AnyPath]]:
             "depth/; the counts or the file names must match",
         )
     return list(zip(colours, depths, strict=True))
-
-
-def _images(folder: AnyPath) -> list[AnyPath]:
-    return sorted(
-        (path for path in folder.iterdir() if path.suffix.lower() in (*SUFFIXES, ".npy")),
-        key=natural_sort_key,
-    )

@@ -11,7 +11,11 @@ import numpy as np
 
 from world2minecraft.capture.readers.apps.app_values import to_float
 from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
-from world2minecraft.capture.readers.datasets.text_tables import read_rows, to_floats
+from world2minecraft.capture.readers.datasets.text_tables import (
+    numbered_files,
+    read_rows,
+    to_floats,
+)
 from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
@@ -46,8 +50,8 @@ class ReplicaSource:
             raise CaptureError(path, "must contain 16 numbers per line, a 4x4 pose")
         words = [word for row in rows for word in row]
         poses = to_floats(path, words).reshape(len(rows), 4, 4)
-        images = _numbered(folder / "results", "frame")
-        depths = _numbered(folder / "results", "depth")
+        images = numbered_files((folder / "results").glob("frame*.*"), "frame")
+        depths = numbered_files((folder / "results").glob("depth*.*"), "depth")
         camera, scale, notes = _camera(folder)
         frames = []
         for number, colour in sorted(images.items()):
@@ -68,15 +72,6 @@ class ReplicaSource:
         return Capture(
             folder, "replica", tuple(frames), depth_unit=unit, notes=notes, depth_kind="exact"
         )
-
-
-def _numbered(folder: AnyPath, prefix: str) -> dict[int, AnyPath]:
-    found = {}
-    for path in sorted(folder.glob(f"{prefix}*.*"), key=str):
-        digits = path.stem.removeprefix(prefix)
-        if digits.isdecimal() and len(digits) <= 9:
-            found[int(digits)] = path
-    return found
 
 
 def _camera(folder: AnyPath) -> tuple[Camera, float, tuple[str, ...]]:

@@ -21,7 +21,11 @@ from world2minecraft.capture.readers.datasets.scannet_metadata import (
     read_scene_info,
     up_vector,
 )
-from world2minecraft.capture.readers.datasets.text_tables import read_matrix
+from world2minecraft.capture.readers.datasets.text_tables import (
+    files_with_suffix,
+    numbered_files,
+    read_matrix,
+)
 from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
@@ -46,10 +50,9 @@ class ScanNetFolderSource:
         Raises:
             CaptureError: If images, poses or intrinsics are missing or not valid.
         """
-        colours, depths = _images(folder / "color"), _images(folder / "depth")
-        poses = {
-            int(path.stem): path for path in (folder / "pose").glob("*.txt") if _numbered(path)
-        }
+        colours = numbered_files(files_with_suffix(folder / "color", SUFFIXES))
+        depths = numbered_files(files_with_suffix(folder / "depth", SUFFIXES))
+        poses = numbered_files((folder / "pose").glob("*.txt"))
         numbers = sorted(colours.keys() | depths.keys())
         if not numbers or not poses:
             raise CaptureError(folder, "contains no numbered images and poses, such as pose/0.txt")
@@ -77,19 +80,6 @@ def _matrix_files(folder: AnyPath) -> dict[str, AnyPath]:
                 found[kind] = folder / name
                 break
     return found
-
-
-def _numbered(path: AnyPath) -> bool:
-    return path.stem.isdecimal() and len(path.stem) <= 9
-
-
-def _images(folder: AnyPath) -> dict[int, AnyPath]:
-    found = folder.iterdir() if folder.is_dir() else ()
-    return {
-        int(path.stem): path
-        for path in sorted(found, key=str)
-        if _numbered(path) and path.suffix.lower() in SUFFIXES
-    }
 
 
 def _cameras(folder: AnyPath, colours: list[AnyPath], depths: list[AnyPath]) -> dict[str, Camera]:

@@ -10,7 +10,11 @@ from world2minecraft.capture.readers.datasets.label_ids import (
     MappedLabels,
     find_label_table,
 )
-from world2minecraft.capture.readers.datasets.text_tables import to_floats
+from world2minecraft.capture.readers.datasets.text_tables import (
+    files_with_suffix,
+    numbered_files,
+    to_floats,
+)
 from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import read_bytes
@@ -80,7 +84,7 @@ def find_labels(scene: AnyPath, name: str) -> tuple[dict[int, MappedLabels], tup
     notes: list[str] = []
     for place in [place for kind in LABEL_KINDS for place in _label_places(scene, name, kind)]:
         try:
-            images = _numbered(place)
+            images = numbered_files(files_with_suffix(place, (".png",)))
         except InputError as error:  # A broken zip of labels must not stop a scan.
             broken = place.path if isinstance(place, ArchivePath) else place
             notes.append(f"ignoring {broken.name}: it {error.reason}")
@@ -98,12 +102,6 @@ def _label_places(scene: AnyPath, name: str, kind: str) -> list[AnyPath]:
     if isinstance(zipped, Path) and is_zip(zipped):
         places += [ArchivePath(zipped, kind), ArchivePath(zipped)]
     return places
-
-
-def _numbered(folder: AnyPath) -> dict[int, AnyPath]:
-    """Return the numbered images of a folder by number; the result is empty if it is missing."""
-    found = folder.glob("*.png") if folder.is_dir() else ()
-    return {int(path.stem): path for path in found if path.stem.isdecimal() and len(path.stem) <= 9}
 
 
 def _map_labels(

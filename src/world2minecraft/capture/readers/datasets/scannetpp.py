@@ -18,6 +18,7 @@ from world2minecraft.capture.images import SUFFIXES, ImageHeader, ImagePlace
 from world2minecraft.capture.readers.apps.video_frames import VideoFrame
 from world2minecraft.capture.readers.datasets.embedded_images import FileSlice, open_seekable
 from world2minecraft.capture.readers.datasets.intrinsics import first_image_size, matrix_camera
+from world2minecraft.capture.readers.datasets.text_tables import files_with_suffix, numbered_files
 from world2minecraft.capture.source_types import Capture, FrameFiles, as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, DamagedFileError
@@ -88,12 +89,7 @@ def _entries(path: AnyPath) -> dict[int, dict[str, Any]]:
 
 def _files(folder: AnyPath) -> dict[int, ImagePlace]:
     """Return the images of a folder, such as ``frame_000012.jpg``, by number."""
-    found: dict[int, ImagePlace] = {}
-    for path in sorted(folder.glob("frame_*"), key=str) if folder.is_dir() else ():
-        digits = path.stem.removeprefix("frame_")
-        if digits.isdecimal() and len(digits) <= 9 and path.suffix.lower() in SUFFIXES:
-            found[int(digits)] = path
-    return found
+    return dict(numbered_files(files_with_suffix(folder, SUFFIXES), "frame_"))
 
 
 def _pictures(place: AnyPath, entries: dict[int, dict[str, Any]]) -> dict[int, ImagePlace]:

@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.capture.images import SUFFIXES
 from world2minecraft.capture.readers.datasets.intrinsics import first_image_size, matrix_camera
 from world2minecraft.capture.readers.datasets.text_tables import (
-    natural_sort_key,
+    files_with_suffix,
     read_matrix,
     read_rows,
     to_floats,
@@ -47,7 +47,8 @@ class SunSource:
             CaptureError: If images cannot be paired, or intrinsics or poses are not valid.
         """
         depth_folder = _depth_folder(folder) or folder
-        pairs = _pairs(folder, _images(folder / "image"), _images(depth_folder))
+        colours = files_with_suffix(folder / "image", SUFFIXES)
+        pairs = _pairs(folder, colours, files_with_suffix(depth_folder, SUFFIXES))
         matrix = read_matrix(_intrinsics_file(folder), [(3, 3), (4, 4)])
         size = first_image_size([colour for colour, _ in pairs])
         if size is None:
@@ -77,13 +78,6 @@ def _depth_folder(folder: AnyPath) -> AnyPath | None:
     """Return the depth folder. ``depth_bfx`` is the second choice: its holes are inpainted."""
     return next(
         (folder / name for name in ("depth", "depth_bfx") if (folder / name).is_dir()), None
-    )
-
-
-def _images(folder: AnyPath) -> list[AnyPath]:
-    return sorted(
-        (path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES),
-        key=natural_sort_key,
     )
 
 

@@ -1,7 +1,7 @@
 """Parsing of numbers in the text files of data sets, with size limits and precise errors."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import PurePosixPath
 
 import numpy as np
@@ -62,6 +62,29 @@ def natural_sort_key(path: AnyPath) -> list[tuple[int, str]]:
     """Return a sort key that orders file names by the numbers in them: 9.png before 10.png."""
     parts = _DIGITS.split(path.name)
     return [(int(part[:18]), "") if part.isdecimal() else (-1, part) for part in parts]
+
+
+def numbered_files(paths: Iterable[AnyPath], prefix: str = "") -> dict[int, AnyPath]:
+    """Return the files whose names are a prefix and a number, such as ``frame_000012``, by number.
+
+    Of several files with the same number, the last one by path is returned.
+    """
+    found = {}
+    for path in sorted(paths, key=str):
+        digits = path.stem.removeprefix(prefix)
+        if path.stem.startswith(prefix) and digits.isdecimal() and len(digits) <= 9:
+            found[int(digits)] = path
+    return found
+
+
+def files_with_suffix(folder: AnyPath, suffixes: Collection[str]) -> list[AnyPath]:
+    """Return the files of a folder with one of the suffixes, sorted by the numbers in their names.
+
+    The folder may be missing.
+    """
+    held = folder.iterdir() if folder.is_dir() else ()
+    found = [path for path in held if path.suffix.lower() in suffixes]
+    return sorted(found, key=natural_sort_key)
 
 
 def check_relative_path(stated_by: AnyPath, name: str) -> PurePosixPath:

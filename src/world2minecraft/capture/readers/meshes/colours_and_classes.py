@@ -143,6 +143,12 @@ def colours_of_columns(columns: Mapping[str, np.ndarray]) -> np.ndarray | None:
     return None
 
 
+def colours_or_black(values: np.ndarray) -> np.ndarray:
+    """Convert colours to uint8 [N, 3] as ``to_uint8_colours`` does; colours of 0 stay black."""
+    found = to_uint8_colours(values)
+    return np.zeros(values.shape, np.uint8) if found is None else found
+
+
 def to_uint8_colours(values: np.ndarray) -> np.ndarray | None:
     """Convert colours of any common value range to uint8 [N, 3].
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.colours_and_classes import to_uint8_colours
+from world2minecraft.capture.readers.meshes.colours_and_classes import colours_or_black
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_POINTS, LoadedGeometry
 from world2minecraft.capture.readers.meshes.optional_libraries import import_optional
 from world2minecraft.capture.readers.meshes.voxel_downsampling import VoxelDownsampler
@@ -103,9 +103,7 @@ def _las_colour(chunk: Any) -> np.ndarray | None:
     if not {"red", "green", "blue"} <= set(chunk.point_format.dimension_names):
         return None
     values = np.stack([np.asarray(chunk[name]) for name in ("red", "green", "blue")], axis=1)
-    # The format asks for 16 bits; some writers leave 8. A chunk of black stays black.
-    found = to_uint8_colours(values)
-    return np.zeros(values.shape, np.uint8) if found is None else found
+    return colours_or_black(values)  # The format asks for 16 bits; some writers use 8.
 
 
 def load_e57(place: AnyPath) -> LoadedGeometry:
@@ -151,8 +149,7 @@ def _add_scan(thinner: VoxelDownsampler, file: Any, scan: int) -> None:
     colour = None
     if coloured:
         values = np.stack([read[f"color{name}"] for name in ("Red", "Green", "Blue")], axis=1)
-        found = to_uint8_colours(values)
-        colour = np.zeros(values.shape, np.uint8) if found is None else found
+        colour = colours_or_black(values)
     for start in range(0, len(points), CHUNK):
         part = slice(start, start + CHUNK)
         thinner.add(points[part], None if colour is None else colour[part])

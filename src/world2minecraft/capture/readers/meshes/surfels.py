@@ -11,6 +11,7 @@ import numpy as np
 
 from world2minecraft.capture.readers.meshes.cloud_splatting import Surfels
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import PointCloud
+from world2minecraft.geometry.oriented_points import cell_codes
 
 CELLS_M = (0.06, 0.12, 0.24)  # The first that holds enough points is taken.
 MIN_POINTS = 6
@@ -78,11 +79,7 @@ def assign_cells(points: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
     """Return the cell number of each point as int64 [N], and the number of occupied cells."""
     if not len(points):
         return np.zeros(0, np.int64), 0
-    cells = np.floor(points / np.float32(cell_m)).astype(np.int64)
-    cells -= cells.min(axis=0)
-    spans = cells.max(axis=0) + 1
-    code = (cells[:, 0] * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
-    _, own = np.unique(code, return_inverse=True)
+    _, own = np.unique(cell_codes(points, np.float32(cell_m)), return_inverse=True)
     return own, int(own.max()) + 1
 
 

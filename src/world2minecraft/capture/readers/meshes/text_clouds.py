@@ -17,7 +17,7 @@ from world2minecraft.capture.readers.meshes.colours_and_classes import (
     class_of_name,
     classes_of_label_ids,
     colours_of_columns,
-    to_uint8_colours,
+    colours_or_black,
 )
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_POINTS, LoadedGeometry
 from world2minecraft.capture.readers.meshes.voxel_downsampling import VoxelDownsampler
@@ -102,7 +102,9 @@ def add_text(place: AnyPath, thinner: VoxelDownsampler, label: int | None = None
                 labels, note = classes_of_label_ids(place, column, columns[column])
         else:
             points = rows[:, :3]
-            colour = None if colour_at is None else _to_colours(rows[:, colour_at : colour_at + 3])
+            colour = (
+                None if colour_at is None else colours_or_black(rows[:, colour_at : colour_at + 3])
+            )
         thinner.add(points, colour, labels)
         if thinner.read > MAX_POINTS:
             raise LimitError(
@@ -193,11 +195,6 @@ def _colour_column(rows: np.ndarray) -> int | None:
         if values.min() >= 0 and values.max() <= 1 and not unit and values.max() > 0:
             return start
     return None
-
-
-def _to_colours(values: np.ndarray) -> np.ndarray:
-    found = to_uint8_colours(values)
-    return np.zeros(values.shape, np.uint8) if found is None else found
 
 
 def load_s3dis(place: AnyPath) -> LoadedGeometry:

@@ -6,6 +6,7 @@ Memory use stays close to ``MAX_POINTS`` points for files of any length.
 import numpy as np
 
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import PointCloud, are_places
+from world2minecraft.geometry.oriented_points import cell_codes
 
 CELL_M = 0.015  # Under a fifth of a cell of the room; a scanner's noise is half of it.
 MAX_POINTS = 4_000_000
@@ -117,11 +118,5 @@ class VoxelDownsampler:
 
 def _cells(points: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the first point of each cell, the cell of each point, and the cells' point counts."""
-    cells = np.floor(points / np.float32(cell)).astype(np.int64)
-    cells -= cells.min(axis=0)
-    spans = cells.max(axis=0) + 1
-    code = (cells[:, 0] * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
-    _, first, own, counts = np.unique(
-        code, return_index=True, return_inverse=True, return_counts=True
-    )
-    return first, own, counts
+    codes = cell_codes(points, np.float32(cell))
+    return np.unique(codes, return_index=True, return_inverse=True, return_counts=True)[1:]
