@@ -72,7 +72,7 @@ def main() -> None:
 
 
 class Found(NamedTuple):
-    """The kinds of work that make a call, and the size of its code in kB."""
+    """The kinds of work that make a call, and the size of its compiled code in kB."""
 
     work: set[str]
     size: int

@@ -82,7 +82,7 @@ def read_table(folders: list[Path]) -> dict[str, list[Any]]:
 
 
 def _java_key(block: BlockType, number: int) -> str:
-    """The key of a Java state: properties sorted, brackets even where there are none."""
+    """Return the key of a Java state: sorted properties, in brackets even if there are none."""
     pairs = sorted(block.values_at(number).items())
     return f"{block.name}[{','.join(f'{key}={value}' for key, value in pairs)}]"
 

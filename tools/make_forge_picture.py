@@ -45,7 +45,7 @@ def choose(page: Page, number: int) -> None:
     page.locator(".template").nth(1).wait_for()
     page.mouse.move(1, 1)
     page.evaluate("window.__forge.idle()")
-    page.wait_for_timeout(1800)  # The time of a frame is no longer told then.
+    page.wait_for_timeout(1800)  # The frame time is hidden by then.
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Makes docs/gallery.md and the pictures of it, the tutorials and the README, of own scenes alone.
+"""Make docs/gallery.md and the pictures of it, the tutorials and the README, of own scenes alone.
 
     python tools/make_gallery.py            some minutes, 300 MB in a folder that is thrown away
 
@@ -47,7 +47,7 @@ def render(stem: str, title: str, words: str, take: int = 0) -> Shot:
 
 
 class Scene(NamedTuple):
-    """What is made first, and the pictures of it."""
+    """A world that is made first, and the pictures of it."""
 
     title: str
     about: str

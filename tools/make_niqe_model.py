@@ -1,4 +1,4 @@
-"""Fits the NIQE model that is shipped, from the free photographs of two Python packages.
+"""Fit the NIQE model that is shipped, from the free photographs of two Python packages.
 
     pip install scikit-image scikit-learn
     python tools/make_niqe_model.py            writes metrics/image_quality/data/niqe_own.json

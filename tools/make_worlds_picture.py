@@ -1,4 +1,4 @@
-"""Makes docs/images/worlds.jpg: a room of a generated house in each of the styles.
+"""Make docs/images/worlds.jpg: a room of a generated house in each of the styles.
 
     python tools/make_worlds_picture.py            two minutes
 

@@ -193,7 +193,7 @@ class _Tracing:
 
 
 def _meets(fault: Fault, name: str, lines: set[tuple[str, int]]) -> bool:
-    """Whether a test reaches a fault: its line, or the module where it is no function's.
+    """Return whether a test reaches a fault: its line, or the module where it is no function's.
 
     Of a statement over several lines, Python tells only some; so lines near it count too.
     """

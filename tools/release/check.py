@@ -1,10 +1,10 @@
-"""Try a release as a stranger gets it: ``make release-check``.
+"""Try a release as a new user gets it: ``make release-check``.
 
 A wheel and an sdist are built into ``dist/`` and looked through; a wheel built of the sdist alone
 must hold the same. Then, for each Python from 3.11 to 3.14 that is found, the wheel is installed
 into a fresh environment with the pinned files, and ``w2m demo`` makes its world there, with
-neither a compiler nor Node to be found. Exit code 1: something is amiss; 0: all that could be tried
-went well. A Python that is not there is told, and is no failure.
+neither a compiler nor Node to be found. The exit code is 1 if a check fails and 0 otherwise. A
+Python version that is not installed is reported, and is no failure.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from zipfile import ZipFile
 ROOT = Path(__file__).resolve().parents[2]
 HASHES = ROOT / "tools/release/requirements.txt"
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
-MAX_WHEEL_MB = 40.0  # What a stranger may be asked to fetch.
+MAX_WHEEL_MB = 40.0  # Maximum size of the download.
 PACKAGE = "world2minecraft"
 # What the program cannot do without, one of a kind.
 NEEDED = (
@@ -67,7 +67,7 @@ def build(root: Path, dist: Path) -> tuple[Path, Path]:
 
 
 def wheel_faults(wheel: Path) -> list[str]:
-    """Return what is amiss with a wheel: its size, what it lacks, what should not be in it."""
+    """Return the faults of a wheel: its size, missing files, and files that should not be in it."""
     with ZipFile(wheel) as opened:
         names = opened.namelist()
     size_mb = wheel.stat().st_size / 1e6
@@ -118,12 +118,12 @@ def tried(version: str, wheel: Path) -> list[str]:
             started = time.monotonic()
             _install(python, Path(folder) / "venv", wheel)
             installed = time.monotonic()
-            told = _demo(Path(folder))
+            faults = _demo(Path(folder))
         except subprocess.CalledProcessError as failed:
             return [f"Python {version}: {failed.cmd[0]} ... ended with {failed.returncode}"]
         demo_s = time.monotonic() - installed
     print(f"Python {version}: installed in {installed - started:.0f} s, demo in {demo_s:.0f} s")
-    return [f"Python {version}: {fault}" for fault in told]
+    return [f"Python {version}: {fault}" for fault in faults]
 
 
 def interpreter(version: str) -> str | None:

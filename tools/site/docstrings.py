@@ -1,8 +1,7 @@
-"""Griffe extension: docstrings as Markdown reads them.
+"""Griffe extension that converts docstrings to Markdown.
 
-Examples (``>>> ...``) become code, and not quotations of quotations; what a function raises, which
-the code tells in one running text, becomes one item an error; arguments that are told together
-become one item each.
+Examples (``>>> ...``) become code instead of nested quotations. Exceptions, which docstrings list
+in one text, and arguments that are described together become one list item each.
 """
 
 import re
