@@ -20,7 +20,7 @@ from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera, View
 
 WORK_WIDTH_PX = 320  # Shifts below are in pixels of a colour image of this width.
-BLUR_PX = 1.5  # So wide that the coarse steps below cannot pass a peak by.
+BLUR_PX = 1.5  # So wide that the coarse steps below do not miss a peak.
 JUMP = 0.06  # Of the nearer depth: more than noise and slanted surfaces give between two pixels.
 MAX_HOLE_PX = 8  # A Kinect's shadows next to near things are wider; the rest suffices.
 POINTS_PER_MAP = 700
@@ -28,7 +28,7 @@ SCALES = np.arange(0.80, 1.2001, 0.02)
 SHIFTS_PX = np.arange(-15.0, 15.1, 3.0)
 REFINEMENTS = ((0.01, 1.5), (0.005, 0.75), (0.0025, 0.375))
 MIN_GAIN = 1.25  # The kitchen: over 2.6; where depth and colour share a camera: at most 1.05.
-MIN_SCORE = 0.04  # Edges must lie on more colour change than the image's mean, by this of 1.
+MIN_SCORE = 0.04  # How much more the colour changes at depth edges than on average, from 0 to 1.
 MIN_POINTS = 400
 MIN_INSIDE_SHARE = 0.6
 

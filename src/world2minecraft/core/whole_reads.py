@@ -18,7 +18,7 @@ from world2minecraft.core.errors import ConflictError, InputError, OutputError
 from world2minecraft.core.locks import LOCK_FILE, Lock
 
 CHANGING = ".changing"
-PATIENCE_S, PAUSE_S = 2.0, 0.02  # A save of a room replaces five files in some milliseconds.
+PATIENCE_S, PAUSE_S = 2.0, 0.02  # Saving a room replaces five files within some milliseconds.
 # Files of a run that state what is being done rather than results.
 STATEMENTS = ("manifest.json", "run.json")
 Value = TypeVar("Value")

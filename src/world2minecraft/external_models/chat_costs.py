@@ -53,7 +53,7 @@ def read_prices(path: str | Path = PRICES_FILE) -> dict[str, Price]:
         prices = {str(name): Price(*map(float, pair)) for name, pair in table.items()}
     except MALFORMED as error:
         raise DamagedFileError(
-            path, "not a valid price table; expected lines such as `MODEL: [1.25, 10.0]`"
+            path, "is not a valid price table; expected lines such as `MODEL: [1.25, 10.0]`"
         ) from error
     for name, price in prices.items():
         if not (0 <= price.prompt_usd < 1e6 and 0 <= price.completion_usd < 1e6):

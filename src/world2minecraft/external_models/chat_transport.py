@@ -26,7 +26,7 @@ from world2minecraft.core.errors import MissingExtraError, ServerError, UnknownN
 from world2minecraft.external_models.chat_costs import CHARACTERS_PER_TOKEN, estimate_tokens
 from world2minecraft.external_models.chat_messages import Question, Reply
 
-NO_KEY = "none"  # The SDK wants a key, a server of one's own does not.
+NO_KEY = "none"  # The SDK requires a key, even for local servers.
 MAX_REPLY_BYTES = 256 << 10  # 1,024 tokens are about 4 KiB.
 MAX_EXCERPT = 300  # Characters of a server's own message in an error.
 MAX_TOKENS_COUNTED = 10_000_000

@@ -16,12 +16,8 @@ from world2minecraft.formats.volume_crop import Box, crop_volume, trim_air
 from world2minecraft.formats.volume_formats import find_blocks, read_volume, with_scene_labels
 from world2minecraft.minecraft.worlds.world_writer import read_level, read_world
 
-SPAWN_REACH = (
-    64,
-    32,
-    64,
-)  # Blocks to each side of the spawn, of a world that comes without a scene,
-SPAWN_REACH_UP = 96  # and so many over it.
+# Blocks that are read around and above the spawn of a world without a scene.
+SPAWN_REACH, SPAWN_REACH_UP = (64, 32, 64), 96
 SCENE_MARGIN = 2  # Blocks around a scene: display entities may stand out of it.
 
 

@@ -44,7 +44,7 @@ from world2minecraft.geometry.colour import srgb_to_linear
 
 HEADER = "HM3D Semantic Annotations"
 MAX_ID = 10_000  # Habitat's own limit.
-_TURN = 0.618034  # Of the colour circle from one object to the next: neighbours differ most.
+_TURN = 0.618034  # Step on the colour circle between objects, so that neighbours differ.
 
 
 def write_habitat(

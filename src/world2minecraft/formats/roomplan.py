@@ -22,7 +22,7 @@ from world2minecraft.core.types import checks
 
 MAX_BYTES = 64 << 20  # A house of RoomPlan has under 2 MB.
 MAX_PARTS = 10_000
-MAX_FILES = 2_000  # Looked at for one that is a plan.
+MAX_FILES = 2_000  # Number of files that are searched for a plan.
 MAX_DISTANCE_M = 1_000.0
 MAX_SIZE_M = 100.0
 MIN_UPRIGHT_COSINE = 0.9  # Cosine of how far a wall may lean.

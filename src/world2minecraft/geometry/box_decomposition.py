@@ -21,8 +21,8 @@ from world2minecraft.core.jit import njit
 
 MAX_PARTITION_SEARCH_CELLS = 4_000_000  # Above it one sweep is made: 48 would take seconds.
 REACH = 2  # Cells between boxes that may be joined; a box over a wider gap changes the shape.
-MAX_BOXES = 600  # More are left as they are: each step looks at every pair of neighbours.
-RECOLOUR = 0.5  # What a cell costs that keeps its place and takes another label.
+MAX_BOXES = 600  # More boxes are kept: each step compares all pairs of neighbours.
+RECOLOUR = 0.5  # Cost of a cell that changes its label.
 MAX_COVER_SHARE = 0.75  # A cover is taken where it has at most this share of a partition's boxes.
 MIN_COVER_BOXES = 8  # With fewer boxes a partition is always taken.
 MAX_COVER_SEARCH_CELLS = 1_000_000

@@ -19,8 +19,8 @@ SQUARES_ACROSS = 64  # 10 px at 640: 6 cm at 3 m.
 MIN_DEPTH_SHARE = 0.5  # Of a square's pixels that must have depth.
 ROUGH_M, ROUGH_GROWTH = 0.003, 0.0035  # rms of a flat square, 1.5 times the rgbd sensor's noise.
 MIN_RMS_M = 0.0003  # Millimetre steps of stored depth.
-MAX_SLOPE_SIGMA = 0.12  # 7 degrees: a normal less sure than that says nothing.
-MERGE_F = 3.0  # Nine more parameters fit better by chance; over this they really do.
+MAX_SLOPE_SIGMA = 0.12  # 7 degrees; less certain normals are not used.
+MERGE_F = 3.0  # F statistic above which nine more parameters fit better than by chance.
 MAX_DEPTH_M = 6.0
 
 

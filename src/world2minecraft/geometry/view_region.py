@@ -26,7 +26,7 @@ REGION_KINDS = ("paper", "free")
 AXIS_OFFSET_CELLS = 0  # Both by the sweep of docs/reference/occupancy-labels.md.
 DIAGONAL_OFFSET_CELLS = 4
 FLOOR_LAYERS = 1  # Of the box, below the floor's top face.
-_STEP = 1e-6  # Cells: a place so near a border is on it.
+_STEP = 1e-6  # Tolerance in cells at a border.
 
 
 @dataclass(frozen=True, eq=False)

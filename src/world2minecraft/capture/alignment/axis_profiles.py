@@ -10,10 +10,10 @@ import numpy as np
 
 from world2minecraft.geometry.oriented_points import OrientedPoints, cell_codes
 
-CELL_M = 0.10  # Support is counted in distinct patches of this side: many looks at one are one.
+CELL_M = 0.10  # Area is counted in patches of this side, each of which counts once.
 SEARCH_RADIUS_M = 0.08  # A door's leaf lies up to 5 cm behind its wall.
 BIN_M = 0.01
-LIMITS_M = (0.03, 0.02, 0.012, 0.012)  # The last parts a wall from a rug or a leaf 2 cm away.
+LIMITS_M = (0.03, 0.02, 0.012, 0.012)  # The last one separates a wall from a rug 2 cm away.
 MIN_SIGMA_M = 0.003  # Error of a face apart from noise, in metres; caps a patch's weight.
 
 

@@ -16,7 +16,7 @@ from world2minecraft.geometry.oriented_points import OrientedPoints, cell_codes
 
 MAX_WALL_LEAN = 0.17  # Sine of 10 degrees: how far a wall's normal may lean.
 MIN_FACING_COSINE = 0.94  # Cosine of 20 degrees.
-MIN_WALL_M2 = 0.5  # A wardrobe's door has more; what is small is furniture.
+MIN_WALL_M2 = 0.5  # Smaller surfaces are furniture; a wardrobe's door has more.
 MIN_WALL_SHARE = 0.2  # Minimum area, as a share of the largest surface facing the same way.
 MAX_BEYOND_SHARE = 0.03  # Maximum share of patches outside: seen through doors or mirrors.
 MIN_CEILING_M = 1.8

@@ -107,8 +107,7 @@ def _head(sheet: Sheet, summary: "CaptureSummary") -> None:
     route = summary.route
     words = f"{route.called[0].upper()}{route.called[1:]} ({summary.source})"
     usable = f"{summary.usable} of {summary.frames} frames usable"
-    line = f"{words}  ·  {usable}  ·  {route.words}, {route.about}"
-    line = line.replace("·", "-")
+    line = f"{words}  -  {usable}  -  {route.words}, {route.about}"
     sheet.text((EDGE_PX, 84), sheet.clipped(line, 20, WIDTH_PX - 2 * EDGE_PX), 20, FAINT)
     sheet.line([(EDGE_PX, 120), (WIDTH_PX - EDGE_PX, 120)], RULE, 1)
 

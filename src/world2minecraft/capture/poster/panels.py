@@ -275,7 +275,7 @@ def _draw_dashed_line(sheet: Sheet, start: Point, end: Point) -> None:
 def _draw_cameras(
     sheet: Sheet, plan: TopView, place: PanelTransform, doubtful: frozenset[int], walked: bool
 ) -> None:
-    """Draw the camera path and the view directions, from teal to orange in time."""
+    """Draw the camera path and the view directions, from teal to pink in time."""
     poses, count = plan.cameras, len(plan.cameras)
     points = [place.at(float(pose[0, 3]), float(pose[1, 3])) for pose in poses]
     for index in range(count - 1) if walked else ():

@@ -14,10 +14,8 @@ from world2minecraft.capture.quality.survey import Survey
 from world2minecraft.core.errors import MissingExtraError
 
 FEW_FRAMES, FEW_PHOTOS, MIN_PHOTOS = 10, 20, 3
-BLURRED_SHARE, MIN_SHARPNESS = (
-    0.3,
-    0.08,
-)  # Of the median; and at all: three pixels of blur leave 0.06.
+BLURRED_SHARE = 0.3  # Share of the median sharpness.
+MIN_SHARPNESS = 0.08  # Three pixels of blur leave 0.06.
 DARK_BRIGHTNESS, BARE_PICTURE_SHARE, MAX_BARE_PICTURES = 40.0, 0.85, 0.25
 TOLERATED_SHARE = 0.1  # One picture in ten: fewer are left out without harm.
 LOW_OVERLAP, ISOLATED_SHARE = 0.45, 0.2

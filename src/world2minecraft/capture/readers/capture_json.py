@@ -28,7 +28,7 @@ VERSION = 1
 _KIND = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}")
 DEPTH_KINDS = ("sensor", "stereo", "network", "exact")
 SCALES = ("metric", "estimated", "unknown")
-MAX_NOTES, MAX_NOTE_CHARS = 30, 400  # Sentences, and letters of each.
+MAX_NOTES, MAX_NOTE_CHARS = 30, 400  # Number of notes, and length of each.
 JPEG_QUALITY = 95
 _CAMERA_FIELDS = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 

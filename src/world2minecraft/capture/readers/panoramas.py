@@ -37,10 +37,10 @@ MAX_SIDE_PX = 1024  # Maximum width of a view; photos are read at this size too.
 MIN_WIDTH_PX = 1000
 ASPECT_TOLERANCE = 0.01
 MIN_PANORAMAS = 3
-CHECKED = 3  # Pictures of a folder that are compared at their edges.
-SEAM_PX = 256  # Width at which the left edge is compared with the right one,
-MAX_SEAM_RATIO = 3.0  # which differs at most by so many times what columns side by side do,
-MAX_SEAM_GREY = 4.0  # or by so little.
+CHECKED = 3  # Number of images of a folder whose edges are compared.
+SEAM_PX = 256  # Width at which the left edge is compared with the right edge.
+MAX_SEAM_RATIO = 3.0  # Maximum difference of the edges / difference of neighbouring columns.
+MAX_SEAM_GREY = 4.0  # Differences below this are always accepted.
 MAX_CACHED = 2  # Decoded panoramas; a panorama of 8192 x 4096 px takes 100 MB.
 ADVICE = (
     "take at least 4 panoramas of the room, 0.5 to 1.5 m apart, with lights on and nothing moving"

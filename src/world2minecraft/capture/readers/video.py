@@ -31,14 +31,14 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.core.types import Camera
 
-SMALL_PX = 192  # The longer side of the small pictures.
-BLOCK = 48  # The side of a block of them; shifts of up to half of it are seen.
+SMALL_PX = 192  # Longer side of the reduced images.
+BLOCK = 48  # Side of the blocks that are correlated; shifts of up to half of it are detected.
 MIN_PEAK = 0.045  # Correlation under it is chance: a bare wall, or another scene.
 MIN_MOTION = 0.04  # Share of the longer side; less motion is camera shake.
 FRAME_STEP = 0.12  # Motion between chosen frames / longer side; 7/8 of them overlap.
 SEARCH_STEPS = 0.4  # Search radius for the sharpest frame, in steps.
 MAX_SECONDS = 3600.0
-SHARP_ROWS = 6  # Each sixth row tells the sharpness.
+SHARP_ROWS = 6  # Sharpness is measured in every sixth row.
 SUFFIXES = (".mov", ".mp4", ".m4v", ".webm", ".avi", ".mkv")
 DEFAULT_FRAMES = 100  # Frames for one room; more take longer and add little.
 FOCAL_KEYS = ("com.apple.quicktime.camera.focal_length.35mm_equivalent",)

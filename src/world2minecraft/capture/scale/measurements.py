@@ -25,10 +25,10 @@ LEVEL_RANGE_M = (0.25, 1.30)  # Heights of furniture tops that are measured, in 
 MIN_LEVEL_M2 = 0.10  # A seat has 0.16.
 MIN_CEILING_OVER_CAMERA = 1.15  # Wall cupboards and shelves have undersides too, at the eye.
 MIN_CEILING_M2, MIN_CEILING_SHARE = 0.5, 0.4
-OTHER_STOREY_RATIO = 1.7  # Times the lowest cameras' height: cameras over that stand on stairs.
+OTHER_STOREY_RATIO = 1.7  # Cameras above this multiple of the lowest cameras' height are on stairs.
 SINGLE_STOREY_SHARE = 0.9  # Minimum share of cameras over the lowest floor of one storey.
 TOP_QUANTILE = 0.995
-MERGE_DISTANCE_M = 0.035  # Two peaks nearer than that are one noisy face.
+MERGE_DISTANCE_M = 0.035  # Two closer peaks are one noisy face.
 
 
 def collect_unscaled(views: Iterable[View], max_per_view: int = 4096) -> OrientedPoints:

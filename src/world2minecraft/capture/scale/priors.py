@@ -38,7 +38,7 @@ LEVEL_PRIORS = (
     HeightPrior("sideboard", 0.83, 0.070, 0.07),
 )
 BACKGROUND = 0.15 / 1.65  # Density of other objects, uniform in log height from 0.25 to 1.3 m.
-LEVEL_TRUST = 0.7  # Faces of one room are not independent: two of a table's leaves say one thing.
+LEVEL_TRUST = 0.7  # Faces of one room are not independent, such as the two leaves of a table.
 FULL_AREA_M2 = 0.4  # A smaller face counts less: a stack of books has a top as well.
 MIN_LEVEL_TRUST = 0.15
 

@@ -30,12 +30,12 @@ from world2minecraft.capture.sfm.rigs import make_rigs, places_of, rig_pose, to_
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import project
 
-CORNERS = ((0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.8, 0.8))  # Of the picture,
-DEPTHS = (0.6, 1.6)  # and how far, by the middle depth: near for the place, far for the turn.
-ANCHORS = 2 * len(CORNERS) * len(DEPTHS)  # Each is seen twice: COLMAP takes no point seen once.
-MIN_ANGLE_DEG = 1.5  # Rays that meet at less tell no depth.
-MIN_POINTS = 20  # A photo that sees fewer is not held by them.
-MIN_PHOTOS_FOR_RADIAL = 15  # With so many photos a lens takes a second term of distortion.
+CORNERS = ((0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.8, 0.8))  # Positions of the anchors in the image.
+DEPTHS = (0.6, 1.6)  # / median depth: near anchors fix the position, far ones the rotation.
+ANCHORS = 2 * len(CORNERS) * len(DEPTHS)  # Each is observed twice, as COLMAP requires.
+MIN_ANGLE_DEG = 1.5  # Rays that meet at a smaller angle do not determine a depth.
+MIN_POINTS = 20  # Fewer points do not constrain a photo.
+MIN_PHOTOS_FOR_RADIAL = 15  # From here on, a second term of radial distortion is estimated.
 
 
 def anchor_pixels(camera: Camera) -> np.ndarray:

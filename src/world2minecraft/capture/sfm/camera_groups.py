@@ -13,7 +13,7 @@ from world2minecraft.geometry.unprojection import lens_distortion
 DEFAULT_FOCAL = 0.8
 # Focal lengths nearer than that are one lens that breathes with its focus.
 SAME_FOCAL_TOLERANCE = 0.02
-MIN_FOCAL, MAX_FOCAL = 0.3, 2.0  # Focal lengths by the longer side that rooms are taken with.
+MIN_FOCAL, MAX_FOCAL = 0.3, 2.0  # Focal lengths / longer side of photos of rooms.
 MAX_DISTORTION = 0.6  # Terms of distortion; wide phones have 0.3.
 
 
@@ -138,8 +138,9 @@ def normalise_pixels(camera: Camera, pixels: np.ndarray) -> np.ndarray:
     bent = (pixels - [camera.cx_px, camera.cy_px]) / [camera.fx_px, camera.fy_px]
     straight = bent.copy()
     for _ in range(20):  # A fixed point; phones' lenses need four rounds to 1e-9.
-        radial, *aside = lens_distortion(*straight.T, camera.distortion)
-        straight = (bent - np.stack(aside, axis=1)) / np.maximum(radial, 0.1)[:, None]
+        x, y = straight.T
+        radial, *shift = lens_distortion(x, y, camera.distortion)
+        straight = (bent - np.stack(shift, axis=1)) / np.maximum(radial, 0.1)[:, None]
     return straight
 
 

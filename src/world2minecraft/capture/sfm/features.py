@@ -13,7 +13,7 @@ from world2minecraft.core.errors import CaptureError, LimitError
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo, PhotoStream, RigMember
 
-MAX_PHOTOS = 3000  # 1.5 GB of features at most would be too much; 3000 photos have 1.
+MAX_PHOTOS = 3000  # Their features take about 1 GB.
 PEAK_THRESHOLD = 0.0067  # COLMAP's own threshold, for images of 0 to 1.
 
 

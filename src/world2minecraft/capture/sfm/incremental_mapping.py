@@ -50,12 +50,12 @@ from world2minecraft.core.types.photos import PhotoStream
 
 Model = dict[int, tuple[np.ndarray, Camera]]
 MIN_SHARED_PHOTOS = 3  # Two photos fit any two models.
-MAX_ROTATION_DEG = 3.0  # How far shared photos may be turned after the best similarity,
-MAX_SHIFT_SHARE = 0.05  # and moved, by the way between the farthest of them.
-MEDIAN_DEPTH = 2.5  # What is seen in rooms is about so many metres away; only a start for scale.
-OTHER_FOCALS = (0.5, 1.2)  # By the longer side: wide lenses of phones, and long ones.
+MAX_ROTATION_DEG = 3.0  # Maximum rotation of shared photos after the best similarity.
+MAX_SHIFT_SHARE = 0.05  # Their maximum shift / distance of the farthest of them.
+MEDIAN_DEPTH = 2.5  # Typical depth in rooms in metres, which sets the initial scale.
+OTHER_FOCALS = (0.5, 1.2)  # Focal lengths / longer side of wide lenses of phones and of long ones.
 ENOUGH_SHARE = 0.6  # A model of this share of the linked photos needs no second trial.
-MIN_PLACED_SHARE = 0.25  # Fewer make no room; of bare walls 6 of 40 made one that was wrong.
+MIN_PLACED_SHARE = 0.25  # Fewer photos show no room; 6 of 40 photos of bare walls gave a wrong one.
 MIN_PHOTOS = 3
 
 

@@ -21,17 +21,17 @@ from world2minecraft.capture.sfm.rigs import places_of
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import Camera
 
-SELF_PRODUCT = 512.0**2  # A descriptor times itself.
-MAX_RATIO = 0.8  # The next best must be so much farther (Lowe's).
-MAX_ANGLE_RAD = 0.7  # rad between two descriptors; COLMAP's.
-MAX_WORDS = 512  # Descriptors of the photos themselves that tell alike ones, where there are many.
+SELF_PRODUCT = 512.0**2  # Product of a descriptor with itself.
+MAX_RATIO = 0.8  # Lowe's ratio of the best to the second best distance.
+MAX_ANGLE_RAD = 0.7  # Angle between two descriptors; COLMAP's default.
+MAX_WORDS = 512  # Number of descriptors used as words to find similar photos in large captures.
 MAX_THREADS = 4  # Matrix products fill the memory's bandwidth with more.
 
 Pair = tuple[int, int]
-MAX_TRIALS = 2000  # Of RANSAC: finds a geometry that a fifth of the matches obey.
+MAX_TRIALS = 2000  # RANSAC finds a geometry that a fifth of the matches support.
 # Of the longer side: matches of larger pictures lie that far off, 4 px at least.
 MAX_ERROR_SHARE = 0.004
-PLANAR_CONFIGS = (4, 5, 6)  # COLMAP's numbers of planar, panoramic, and either.
+PLANAR_CONFIGS = (4, 5, 6)  # COLMAP's codes for planar, panoramic, and either.
 # A turn has singular values that are all one; a focal length 10 % off shows so.
 MAX_ROTATION_STRETCH = 1.1
 

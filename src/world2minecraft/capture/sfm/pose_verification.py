@@ -37,12 +37,12 @@ from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
 
-MIN_INLIERS = 30  # Points that a pose found again must agree with; COLMAP's own least.
-MIN_POINTS = 50  # Fewer say nothing of poses.
-MIN_POINTS_PER_PHOTO = 80  # Points that a photo sees on average, to be free of what is stated,
-NEARLY_RIGHT_PX = 4.0  # unless that is off by more. Bare generated rooms: 20 and 2 px.
-KNOWN = ("stated", "exact")  # Cameras that are good if the poses are.
-MAX_REFINED_ERROR_PX = 1.5  # Refined poses that are off by more have run away.
+MIN_INLIERS = 30  # Points that support a recovered pose; COLMAP's default minimum.
+MIN_POINTS = 50  # Fewer points do not verify poses.
+MIN_POINTS_PER_PHOTO = 80  # With this mean, poses may leave the stated ones.
+NEARLY_RIGHT_PX = 4.0  # Or with a larger error. Bare generated rooms: 20 points and 2 px.
+KNOWN = ("stated", "exact")  # Cameras that are correct if the poses are.
+MAX_REFINED_ERROR_PX = 1.5  # Refined poses with a larger error have diverged.
 
 
 def epipolar_errors_px(

@@ -15,7 +15,7 @@ from world2minecraft.core.types import Camera, SparseScene
 
 MIN_FEATURES = 60  # A photo with fewer shows a bare wall, or is out of focus.
 CHANCE_MATCHES = 6  # Number of features that match by chance.
-BLURRED_SHARE = 0.5  # Times the usual sharpness.
+BLURRED_SHARE = 0.5  # Share of the median sharpness.
 CAPTURE_ADVICE = (
     "move sideways around the room so that each photo overlaps the next by more than half"
 )

@@ -21,10 +21,10 @@ SAMPLE_GRID = 7  # A grid of 7x7 rays, each at three depths, stands for what a p
 DEPTH_PERCENTILES = (20, 50, 80)
 MIN_SHARED_POINTS = 20  # Common points that prove an unobstructed view.
 PARALLEL_PHOTOS = 2  # Photos swept side by side; each needs about 60 MB.
-TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
+TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By number of confirming photos; the last: 4.
 SURE_TRUST = 160  # Trust of depth that may decide where a flat patch lies.
 PLANE_TRUST = np.uint8(96)
-MIN_PLANE_VOTES = 2  # Two photos may guess alike by chance; three hardly.
+MIN_PLANE_VOTES = 2  # Two photos may agree by chance; three hardly do.
 MIN_SPARSE_POINTS = 20
 STAGE = "stereo"
 

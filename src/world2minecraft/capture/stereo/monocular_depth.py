@@ -23,7 +23,7 @@ from world2minecraft.core.types import Camera, DepthMap, PhotoStream, SparseScen
 
 Kind = Literal["metric", "inverse"]
 
-FILLED_TRUST = 96  # Below all that was measured.
+FILLED_TRUST = 96  # Lower than any measured depth.
 SURE_TRUST = 255
 MAX_FIT_ERROR = 0.15  # Guess: beyond this a network has not understood the picture.
 MAX_LOCAL_ERROR = 0.05  # Guess: about a voxel at two metres.
@@ -32,14 +32,14 @@ MIN_WEIGHT = 90.0  # Weight in the picture below which nothing is fitted.
 MIN_LOCAL_WEIGHT = 45.0  # Likewise around a hole: five points.
 # Half widths of the local windows, as shares of the picture's width.
 WINDOW_SHARES = (1 / 4, 1 / 8, 1 / 16, 1 / 32)
-MAX_LOG_CORRECTION = 0.25  # One wrong point must not outweigh all that is right around it.
+MAX_LOG_CORRECTION = 0.25  # Limits the influence of a single wrong point.
 NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest of what was measured.
 DEPTH_MODELS = Registry(
     "depth_model", {"hf": "world2minecraft.capture.stereo.hf_depth:HuggingFaceDepth"}
 )
 # More than half, so that it is registered; less than what several photos confirm.
 NETWORK_TRUST = 160
-WIDTH_PX = 640  # Networks see more in more pixels, and each photo costs them alone.
+WIDTH_PX = 640  # Networks see more in larger images, but take longer for each photo.
 STAGE = "stereo"
 
 

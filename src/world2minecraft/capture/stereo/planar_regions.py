@@ -14,7 +14,7 @@ MIN_PATCH_SHARE = 0.002  # Minimum share of the image.
 RIM_PX = 3  # To either side of a patch's outline; windows reach no farther.
 MIN_RIM_PX = 40
 MIN_INLIER_SHARE = 0.5  # Minimum share of the rim's depths on the plane.
-TOLERANCE = 0.02  # Of the depth, likewise: less than what agrees with another photo.
+TOLERANCE = 0.02  # Share of the depth; less than the difference at which photos agree.
 # Of the depth: what is found so far behind the rim's plane is a reflection.
 REFLECTION_SHARE = 0.04
 RANSAC_TRIALS = 80  # A plane that holds half of the rim is missed once in 40,000.

@@ -22,7 +22,7 @@ from world2minecraft.geometry.rotations import rotation_from_vector
 
 TRAJECTORY = "lowres_wide.traj"
 SAME_TIME_S = 0.009  # About half a frame at 60 Hz; stamps of a frame differ by 1 ms.
-MAX_GAP_S = 0.25  # Poses come every 0.1 s; over a longer gap nothing is told between them.
+MAX_GAP_S = 0.25  # Poses come every 0.1 s; they are not interpolated over longer gaps.
 COLOUR_FOLDERS = ("vga_wide", "lowres_wide")  # The first holds the same view at 640x480.
 ARKITSCENES_UP = np.array([0.0, 0.0, 1.0])
 _STEM = re.compile(r"(?:.*_)?(\d{1,9}\.\d{1,9})", re.ASCII)

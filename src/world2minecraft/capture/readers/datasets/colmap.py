@@ -50,7 +50,7 @@ _IMAGE = struct.Struct("<I7dI")
 _Image = tuple[int, np.ndarray, int, str]
 _COUNT = struct.Struct("<Q")
 IMAGE_FOLDERS = ("images", "rgb", "image", ".")
-_SAMPLED = 20  # Names that are looked for to tell which folder the photos lie in.
+_SAMPLED = 20  # Number of names that are tried to find the folder of the photos.
 
 
 @dataclass(frozen=True, eq=False)

@@ -144,7 +144,7 @@ class Bag:
                 raise DamagedFileError(
                     self.path, f"lacks an image of topic {topic}; copy the file again"
                 )
-            self._latest = (topic, time_ns, found)  # Its header and its pixels are asked in turn.
+            self._latest = (topic, time_ns, found)  # The header is read before the pixels.
         return self._latest[2]
 
     def _messages(self, topic: str, kind: str, time_ns: int | None) -> Iterator[Any]:

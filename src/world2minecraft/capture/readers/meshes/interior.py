@@ -23,20 +23,20 @@ from world2minecraft.geometry.connected_components import label_components
 CELL_M = 0.10
 MAX_CELLS = 6_000_000  # A flat of 25 x 20 x 12 m; larger places have larger cells.
 PADDING_CELLS = 3  # Cells around the box, so that rays end in air.
-SAMPLE_STEP = 0.45  # Of a cell: so near to each other are the places that mark a triangle's cells.
+SAMPLE_STEP = 0.45  # Spacing of the samples that mark the cells of a triangle, in cells.
 MAX_SAMPLES = 2_000_000_000
 CHECKED_VIEWS = 12
-DOWNSCALE = 8  # Times smaller images tell it as well.
-CLEAR_CELLS = 2  # About 0.25 m, a head's breadth: no nearer to surface than that is looked from.
-MIN_SPACE_M3 = 1.5  # Of cells so clear: a bathroom of 1.5 x 1.2 m; inside a wardrobe are 0.6.
-MIN_SINGLE_SPACE_M3 = 0.6  # Of the largest space, where there is no such: a shower room.
-MIN_HEIGHT_M = 0.8  # Of the clear part of a space in which one can stand.
+DOWNSCALE = 8  # Views that test a place for being inside are smaller by this factor.
+CLEAR_CELLS = 2  # About 0.25 m: cameras keep this distance from surfaces.
+MIN_SPACE_M3 = 1.5  # Clear space of a bathroom of 1.5 x 1.2 m; the inside of a wardrobe has 0.6.
+MIN_SINGLE_SPACE_M3 = 0.6  # Of the largest space if none reaches MIN_SPACE_M3: a shower room.
+MIN_HEIGHT_M = 0.8  # Height of the clear part of a space in which a person can stand.
 DOWN_VOTES, SIDE_VOTES, BOTH_VOTES = 5, 6, 12  # Of 9 down, 8 level, and 17 level or up.
 # Of 8 level directions, one long wall or one block meets at most 3; two walls at a corner meet 5.
 CORNER_SIDE_VOTES = 4
-STANDING_M = 1.6  # Height of a person's eyes: so high over the floor is looked from over low walls.
-HINTED_SIDE_VOTES, HINTED_BOTH_VOTES = 3, 6  # Where the user names a place inside.
-MAX_HINT_DISTANCE_M = 1.0  # So far may the named place be from the space that it names.
+STANDING_M = 1.6  # Eye height of a person, from which places behind low walls are visible.
+HINTED_SIDE_VOTES, HINTED_BOTH_VOTES = 3, 6  # Used if the user names a place inside.
+MAX_HINT_DISTANCE_M = 1.0  # Maximum distance of the named place from the space.
 
 
 @dataclass(frozen=True, eq=False)

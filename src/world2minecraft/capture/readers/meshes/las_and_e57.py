@@ -17,7 +17,7 @@ from world2minecraft.core.errors import DamagedFileError, LimitError, reason_of
 
 CHUNK = 1_000_000
 RECORD_BYTES = 54  # The head of a variable length record of LAS.
-MAX_SCAN_POINTS = 80_000_000  # An E57 scan lies in memory whole, 27 bytes a point.
+MAX_SCAN_POINTS = 80_000_000  # An E57 scan is read whole, with 27 bytes per point.
 
 
 def load_las(place: AnyPath) -> LoadedGeometry:

@@ -16,7 +16,7 @@ from world2minecraft.core.types import Camera
 
 NEAR_M = 0.01
 NO_FACE = -1
-GREY = 178  # What has no colour of its own.
+GREY = 178  # Grey value of surfaces without colour.
 
 
 class Pinhole(NamedTuple):

@@ -29,7 +29,7 @@ from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, render_
 from world2minecraft.capture.readers.meshes.orientation_and_unit import find_orientation, find_unit
 from world2minecraft.capture.readers.meshes.surface_sampling import sample_surface
 from world2minecraft.capture.readers.meshes.surfels import estimate_surfels
-from world2minecraft.capture.readers.meshes.text_clouds import load_s3dis
+from world2minecraft.capture.readers.meshes.text_clouds import S3DIS_FOLDER, load_s3dis
 from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views
 from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath, file_stamp
@@ -61,14 +61,9 @@ READERS = {
     ".txt": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
     ".csv": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
 }
-AMBIGUOUS_SUFFIXES = (
-    ".txt",
-    ".csv",
-    ".asc",
-)  # Anything may be in them: taken only where they are named.
+AMBIGUOUS_SUFFIXES = (".txt", ".csv", ".asc")  # Read only if the file itself is given.
 MESH_READERS = Registry("solid format", READERS)
-ANNOTATIONS = "Annotations"  # S3DIS: one file a thing, in a folder next to the room's own.
-LABELLED = ".labels"  # ScanNet: the same mesh again, coloured by class.
+LABELLED = ".labels"  # ScanNet: a second file of the mesh, coloured by class.
 MAX_CACHE_BYTES = 192 << 20  # All 120 views of 480 x 360: 1.4 MB each.
 MODES = {"colour": "RGB", "depth": "float32", "labels": "L"}
 RenderedView = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -92,7 +87,8 @@ def find_mesh_file(path: AnyPath) -> AnyPath | None:
         return path if path.suffix.lower() in READERS else None
     if not path.is_dir():
         return None
-    if any((path / ANNOTATIONS).glob("*.txt")) if (path / ANNOTATIONS).is_dir() else False:
+    annotations = path / S3DIS_FOLDER
+    if annotations.is_dir() and any(annotations.glob("*.txt")):
         return path
     order = [suffix for suffix in READERS if suffix not in AMBIGUOUS_SUFFIXES]
     found = [entry for entry in path.iterdir() if entry.suffix.lower() in order]

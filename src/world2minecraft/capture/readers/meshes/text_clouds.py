@@ -29,7 +29,7 @@ MAX_BYTES = 8 << 30
 MAX_COLUMNS = 64
 NAMES = {"x": "x", "y": "y", "z": "z", "r": "red", "g": "green", "b": "blue"}
 LABEL_NAMES = ("label", "class", "classification", "semantic")
-S3DIS_FOLDER = "Annotations"
+S3DIS_FOLDER = "Annotations"  # Contains one file per object.
 MAX_FILES = 5000
 
 

@@ -14,7 +14,7 @@ from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
 
 CAMERA = Camera(480, 360, 240.0, 240.0, 240.0, 180.0)  # 90 degrees wide.
-HEIGHTS_M = (1.55, 0.6, 1.1, 2.0)  # Of eyes, a child's, a desk's, an arm's reach.
+HEIGHTS_M = (1.55, 0.6, 1.1, 2.0)  # Eyes of an adult and a child, a desk, and an arm's reach.
 POSITION_SPACING_M = 0.6
 MAX_POSITIONS = 400
 YAWS = 8
@@ -22,8 +22,8 @@ PITCHES_DEG = (-12.0, -42.0, 28.0)  # With 74 degrees of height: from straight d
 RAYS_WIDE, RAYS_HIGH = 24, 18
 REACH_M = 4.5  # Beyond, a pixel covers over 2 cm; fusion takes up to 6 m.
 MIN_VIEWS, MAX_VIEWS = 40, 120
-MIN_GAIN = 0.08  # Of the first view's: less is not worth another.
-VIEW_GAINS = (1.0, 0.5, 0.25)  # Of the first, second and third look at a place.
+MIN_GAIN = 0.08  # Views with a smaller share of the gain of the first are not added.
+VIEW_GAINS = (1.0, 0.5, 0.25)  # Gain of the first, second and third view of a place.
 
 
 def choose_views(grid: SurfaceGrid, interior: Interior) -> np.ndarray:

@@ -10,7 +10,7 @@ from world2minecraft.geometry.oriented_points import cell_codes
 
 CELL_M = 0.015  # Under a fifth of a cell of the room; a scanner's noise is half of it.
 MAX_POINTS = 4_000_000
-UNIT_BY_LENGTH = ((120.0, 1.0), (6000.0, 0.01))  # So many units at most, of so many metres.
+UNIT_BY_LENGTH = ((120.0, 1.0), (6000.0, 0.01))  # (maximum length in units, unit in metres).
 
 
 class VoxelDownsampler:
