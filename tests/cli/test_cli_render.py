@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import world2minecraft as w2m
 from world2minecraft import cli
 from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.formats.world_labels import scene_from_volume, write_scene
 from world2minecraft.minecraft.file_format import WriteOptions
@@ -238,6 +240,7 @@ def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
     [
         ("big", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got 'big'"),
         ("-3x4", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got '-3x4'"),
+        ("²x3", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got '²x3'"),
         ("0x4", "invalid camera: width_px must be 1 to 20000, got 0"),
         ("99999x4", "invalid camera: width_px must be 1 to 20000, got 99999"),
         ("9000x9000", "9000x9000 with 2 x 2 samples per pixel is too large; the limits are "
@@ -247,6 +250,18 @@ def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
 def test_a_wrong_size_is_told(schem, size, text, capsys):
     assert render(schem, size=size) == 2
     assert capsys.readouterr().err == f"error: {text}\n"
+
+
+@pytest.mark.parametrize("view", ["isometric", "plan", "inside"])
+@pytest.mark.parametrize("size", [(0, 0), (-5, 3), (99999, 99999)])
+def test_a_wrong_size_of_one_image_is_told(build, view, size):
+    with pytest.raises(UsageError, match=rf"size {size[0]}x{size[1]}: |size must be|width_px"):
+        w2m.render(build, size=size, view=view)
+
+
+def test_a_pose_of_three_numbers_is_told(schem):
+    with pytest.raises(UsageError, match="a pose must be x, y, z, yaw and pitch, got 3 values"):
+        w2m.render_files(schem, poses=[(1.0, 64.0, 2.0)])
 
 
 def test_threads_are_counted(schem, capsys):

@@ -91,6 +91,10 @@ def test_edits_without_later_overlap_can_be_undone_and_redone(tmp_path):
     assert seen(history.volume) == whole
     with pytest.raises(UsageError, match="there is nothing to redo"):
         history.redo()
+    history.undo()
+    for number in (-1, len(edits)):
+        with pytest.raises(UsageError, match=f"edit {number + 1} has not been undone"):
+            history.redo(number)
 
 
 def test_what_a_later_edit_covers_is_not_undone_before_it(tmp_path):

@@ -1,7 +1,7 @@
 """Inspect and segment captures before a reconstruction, and join finished runs to a home."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,6 @@ from world2minecraft.core.progress import Progress, no_progress
 
 if TYPE_CHECKING:
     from world2minecraft.capture import CaptureSummary
-    from world2minecraft.capture.options import ScanOptions
     from world2minecraft.formats.roomplan import CapturedPlan
     from world2minecraft.reconstruction.recognition.label_folder import LabelledFolder
 
@@ -154,11 +153,9 @@ def inspect_capture(capture: str | Path, *, settings: Settings | None = None) ->
     from world2minecraft.capture import describe_capture
     from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
     from world2minecraft.formats.roomplan import read_roomplan
-    from world2minecraft.reconstruction.parameters import Parameters, with_settings
 
     place = Path(capture)
-    chosen = [f"{key}={value}" for key, value in (settings or {}).items()]
-    options = with_settings(Parameters(), chosen).capture
+    options = _reader_options(settings)
     plan = find_lone_roomplan(place)
     if plan is not None:
         return CaptureReport(place, plan=read_roomplan(plan))
@@ -211,6 +208,7 @@ def segment_capture(
         ...
         world2minecraft.core.errors.UnknownNameError: no network is named 'ade'; ...
     """
+    from world2minecraft.capture.options import parse_options
     from world2minecraft.core.output_folders import output_folder
     from world2minecraft.reconstruction.recognition.label_folder import write_label_images
     from world2minecraft.reconstruction.recognition.segmentation import (
@@ -226,7 +224,7 @@ def segment_capture(
         raise UsageError(
             f"min_probability (--min-probability) must be from 0 to 1, got {min_probability}"
         )
-    options = _reader_options(settings)
+    options = parse_options(_reader_options(settings))
     source, place = Path(capture), Path(out)
     _check_no_roomplan(source)
     with output_folder(place, LABELS, "written", force=force, keep=False):
@@ -243,13 +241,12 @@ def segment_capture(
     return CaptureLabels(source, semantics, written)
 
 
-def _reader_options(settings: Settings | None) -> "ScanOptions":
+def _reader_options(settings: Settings | None) -> Mapping[str, str]:
     """Return the options of the capture reader in settings by key."""
-    from world2minecraft.capture.options import parse_options
     from world2minecraft.reconstruction.parameters import Parameters, with_settings
 
     chosen = [f"{key}={value}" for key, value in (settings or {}).items()]
-    return parse_options(with_settings(Parameters(), chosen).capture)
+    return with_settings(Parameters(), chosen).capture
 
 
 def _check_no_roomplan(capture: Path) -> None:

@@ -55,11 +55,12 @@ def render(
     from PIL import Image
 
     from world2minecraft.formats.build_reader import read_build
-    from world2minecraft.rendering.preview import plan_view, preview
+    from world2minecraft.rendering.preview import preview
 
     if view not in VIEWS:
         raise UnknownNameError("view", view, VIEWS)
-    width, height = size
+    if min(size) < 1:
+        raise UsageError(f"size must be 1 or more pixels per side, got {size[0]}x{size[1]}")
     build = read_build(path_of(source))
     volume = build.volume
     if view == "inside":
@@ -67,11 +68,21 @@ def render(
             raise UsageError(f"{path_of(source)} has no player spawn point; use view='isometric'")
         start = build.start
         return _inside(volume, (start.x, start.y, start.z, start.yaw_deg), size)
-    if view == "isometric":
-        try:
-            return Image.fromarray(preview(volume, width, height))
-        except ValueError as error:
-            raise UsageError(f"size {width}x{height}: {error}") from error
+    try:
+        if view == "isometric":
+            return Image.fromarray(preview(volume, *size))
+        return _plan(volume, size)
+    except ValueError as error:
+        raise UsageError(f"size {size[0]}x{size[1]}: {error}") from error
+
+
+def _plan(volume: "BlockVolume", size: tuple[int, int]) -> "Image":
+    """Return a plan in the middle of an image of a size."""
+    from PIL import Image
+
+    from world2minecraft.rendering.preview import plan_view
+
+    width, height = size
     across, along = volume.states.shape[0], volume.states.shape[2]
     plan = Image.fromarray(plan_view(volume, max(min(width // across, height // along), 1)))
     plan.thumbnail(size)
@@ -318,7 +329,7 @@ def game_pose(values: Sequence[float], at: str = "feet") -> "GamePose":
         at: Reference point of x, y and z: ``feet`` or ``eye``.
 
     Raises:
-        UsageError: If a value is out of range.
+        UsageError: If a value is out of range or there are not five.
 
     Example:
         >>> game_pose((4, 64, -3, 90, 10)).yaw_deg
@@ -326,5 +337,7 @@ def game_pose(values: Sequence[float], at: str = "feet") -> "GamePose":
     """
     from world2minecraft.rendering.views import GamePose
 
+    if len(values) != 5:
+        raise UsageError(f"a pose must be x, y, z, yaw and pitch, got {len(values)} values")
     x, y, z, yaw_deg, pitch_deg = values
     return GamePose(x, y, z, yaw_deg, pitch_deg, at)  # type: ignore[arg-type]

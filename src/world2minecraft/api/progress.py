@@ -63,7 +63,7 @@ STAGE_TEXTS = {
     "verify": "Verifying checksums",
     "views": "Planning views",
     "walks": "Planning walks",
-    "ways": "Planning ways to things",
+    "ways": "Planning routes to objects",
     "words": "Rephrasing instructions",
     "write": "Writing files",
 }

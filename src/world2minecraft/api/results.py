@@ -160,7 +160,8 @@ class Run:
             DamagedFileError: If ``room.npz`` does not contain a valid grid.
         """
         grid, scan_to_room, instances, _ = self._files
-        return Room(grid, {one.id: _name_of(one) for one in instances}, scan_to_room)
+        names = {one.id: object_title(one.name, one.class_id) for one in instances}
+        return Room(grid, names, scan_to_room)
 
     @cached_property
     def objects(self) -> tuple[RoomObject, ...]:
@@ -301,10 +302,6 @@ def load(path: str | Path) -> "Run | GeneratedRoom | Dataset":
         "is not a run, a generated room or a data set; for captures use w2m.reconstruct, for "
         "worlds and schematics w2m.render or w2m.convert",
     )
-
-
-def _name_of(instance: ObjectInstance) -> str:
-    return object_title(instance.name, instance.class_id)
 
 
 def _metres(sides: np.ndarray) -> str:

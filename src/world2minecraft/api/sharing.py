@@ -21,7 +21,7 @@ class SharedFile:
     Attributes:
         path: The file that was written.
         bytes: Its size.
-        things: Number of things with a name.
+        things: Number of named objects.
         photos: Number of photos in it.
         frames: Number of frames of a film. 0 for a page.
     """
@@ -46,8 +46,8 @@ def share(
     """Write a room as one file to send: a page to walk in, or a film of it coming together.
 
     A page has less than 5 MB and opens from disk in any browser, also on a phone. It contains the
-    blocks, their textures, and the names and sizes of the things; it needs no server and fetches
-    nothing. A film shows the cells of the reconstruction, then its things, then the blocks.
+    blocks, their textures, and the names and sizes of the objects; it needs no server and fetches
+    nothing. A film shows the cells of the reconstruction, then its objects, then the blocks.
 
     Args:
         source: Run, run folder, world, or block file such as ``house.schem``. A film needs a run.

@@ -85,7 +85,8 @@ def convert(
     Raises:
         UsageError: If the target exists or has an unknown suffix.
         ConflictError: If the target is a world that is open, or another process replaces it.
-        InputError: If the source cannot be read or the target cannot be written.
+        InputError: If the source cannot be read.
+        OutputError: If the target cannot be written.
 
     Example:
         >>> import world2minecraft as w2m

@@ -1,8 +1,11 @@
 """Parsers for arguments that several verbs have in common."""
 
+import re
 from pathlib import Path
 
 from world2minecraft.core.errors import UsageError
+
+SIZE = re.compile(r"\s*([0-9]{1,9})\s*x\s*([0-9]{1,9})\s*", re.IGNORECASE)
 
 
 def output_of(positional: Path | None, option: Path | None, metavar: str = "DIR") -> Path:
@@ -24,9 +27,23 @@ def size_of(text: str, option: str = "--size") -> tuple[int, int] | None:
     Raises:
         UsageError: If the text is not a valid size.
     """
-    if not text:
-        return None
-    sides = [side.strip() for side in text.lower().split("x")]
-    if len(sides) != 2 or not all(side.isdigit() for side in sides):
-        raise UsageError(f"{option} must be WIDTHxHEIGHT in pixels, such as 640x480, got {text!r}")
-    return int(sides[0]), int(sides[1])
+    return parse_size(text, option) if text else None
+
+
+def parse_size(text: str, option: str = "--size", example: str = "640x480") -> tuple[int, int]:
+    """Return the width and height in a text such as ``640x480``.
+
+    Args:
+        text: The text to parse.
+        option: Name of the option, for the error.
+        example: A valid size, for the error.
+
+    Raises:
+        UsageError: If the text is not a valid size.
+    """
+    found = SIZE.fullmatch(text)
+    if found is None:
+        raise UsageError(
+            f"{option} must be WIDTHxHEIGHT in pixels, such as {example}, got {text!r}"
+        )
+    return int(found[1]), int(found[2])

@@ -22,7 +22,6 @@ w2m demo --seed 7 -o other    build another living room in other/
 """
 DEMO_SEED = 5
 DEMO_FRAMES = 40
-MIN_FRAMES = 3  # The quality of the poses cannot be estimated from fewer frames.
 
 
 def run(

@@ -29,6 +29,18 @@ def more_option(*names: str, help: str, **facts: Any) -> Any:
     return typer.Option(*names, help=help, rich_help_panel=MORE, **facts)
 
 
+def option(*names: str, text: str, more: bool = False, **facts: Any) -> Any:
+    """Return an option, in the section "More options" if ``more`` is set.
+
+    Args:
+        *names: Names of the option, such as ``--seed``.
+        text: One sentence for the help.
+        more: Whether the option is in the section "More options".
+        **facts: Further arguments of ``typer.Option``.
+    """
+    return (more_option if more else typer.Option)(*names, help=text, **facts)
+
+
 def out_option(help: str, *names: str, **facts: Any) -> Any:
     """Return the option ``--out`` with its short form ``-o``.
 

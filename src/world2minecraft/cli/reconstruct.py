@@ -80,7 +80,7 @@ Semantics = Annotated[
     str,
     typer.Option("--semantics", metavar="auto|generated|none|hf:ID",
                  rich_help_panel=MORE,
-                 help="Segmentation network that names things; auto is the built-in one."),
+                 help="Segmentation network that names objects; auto is the built-in one."),
 ]  # fmt: skip
 FieldOfView = Annotated[
     float | None,

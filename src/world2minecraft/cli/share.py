@@ -41,7 +41,7 @@ def run(
 
     A page (.html) has less than 5 MB, opens from disk in any browser and on a phone, and fetches
     nothing. It contains no photo unless --photos is given. A film (.gif, .mp4, .webm, .webp) shows
-    the cells of a reconstruction, then its things, then the blocks.
+    the cells of a reconstruction, then its objects, then the blocks.
 
     Raises:
         UsageError: If the file exists without --force, or its suffix is unknown.
@@ -65,5 +65,5 @@ def run(
         print(f"{made.path}: {made.frames} frames, {made.bytes / 1e6:.1f} MB")
         return
     with_photos = f", {made.photos} photos" if made.photos else ""
-    print(f"{made.path}: {made.things} things{with_photos}, {made.bytes / 1e6:.1f} MB")
+    print(f"{made.path}: {made.things} objects{with_photos}, {made.bytes / 1e6:.1f} MB")
     print("  look   open it in a browser; it needs no other file and no network")

@@ -132,9 +132,9 @@ WAITING_VERBS = frozenset((
 # A shell completion script sets this variable to request names.
 COMPLETE_VARIABLE = "_W2M_COMPLETE"
 
-# The placeholder of a value without a metavar, by its type.
 IMPLIED_DEFAULT = re.compile(r"\[default: \((.+?)\)\]")  # Typer's form of show_default texts.
 EXAMPLE = re.compile(r"(\s*\S.*?)(\s{2,})(\S.*)")  # A command and its description.
+# The placeholder of a value without a metavar, by its type.
 VALUE_WORDS = {"Path": "PATH", "str": "TEXT", "float": "X", "int": "N"}
 
 EXAMPLES = """\

@@ -271,7 +271,7 @@ class History:
         if number is None and not self._undone:
             raise UsageError("there is nothing to redo")
         chosen = self._undone[-1] if number is None else number
-        if chosen >= len(self.journal.edits) or self.journal.is_done[chosen]:
+        if not 0 <= chosen < len(self.journal.edits) or self.journal.is_done[chosen]:
             raise UsageError(f"edit {chosen + 1} has not been undone")
         volume = apply_edits(self.volume, self.journal.edits[chosen])
         self.journal.redo(chosen)

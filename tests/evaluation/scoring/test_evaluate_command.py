@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run as w2m
-from world2minecraft.cli.evaluate.reconstruction import next_steps, score_rows, stage_table
+from world2minecraft.cli.evaluate.reconstruction import next_step, score_rows, stage_table
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
@@ -53,9 +53,8 @@ def test_the_stages_are_rows_after_the_run_itself(perfect, capture):
     facts = evaluate_reconstruction(perfect, capture)
     table = stage_table(facts | {"stages": {"fusion": facts}})
     assert list(table.columns[0].cells) == ["none", "fusion"]
-    assert next_steps(perfect, capture, True) == [
-        f"next: open {perfect / 'report.html'} in a browser"
-    ]
+    last = f"next: open {perfect / 'report.html'} in a browser"
+    assert next_step(perfect, capture, True) == last
 
 
 def test_the_truth_of_another_room_is_refused(perfect, capture, tmp_path, capsys):

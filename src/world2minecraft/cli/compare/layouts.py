@@ -51,8 +51,8 @@ def run(
     """Score room layouts of any method with the same rules.
 
     Bounding boxes are scored before they are converted to blocks.
-    docs/results/layout-baselines.md defines
-    out of bounds and collisions. A second table uses the rules of other methods.
+    docs/results/layout-baselines.md defines out of bounds and collisions. A second table uses the
+    rules of other methods.
 
     Raises:
         InputError: If a layout cannot be read.

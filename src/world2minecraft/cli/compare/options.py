@@ -8,9 +8,8 @@ import typer
 
 from world2minecraft.cli.panels import MORE
 
-DEFAULT_PX_M = (
-    3.5 / 256
-)  # Equals paper.layouts.importers.PX_M, without importing it for a help page.
+# Equals paper.layouts.importers.PX_M, without importing it for a help page.
+DEFAULT_PX_M = 3.5 / 256
 MAX_LISTED = 5
 
 Format = Annotated[

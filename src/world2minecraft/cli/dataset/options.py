@@ -1,18 +1,12 @@
 """Options of ``w2m dataset build`` and related verbs, and parsers for their values."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import option
 from world2minecraft.core.errors import UsageError
-
-
-def _option(*names: str, text: str, more: bool = False, **facts: Any) -> Any:
-    panel = {"rich_help_panel": MORE} if more else {}
-    return typer.Option(*names, help=text, **panel, **facts)
-
 
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the data set.")]
 NewFolder = Annotated[
@@ -20,95 +14,95 @@ NewFolder = Annotated[
     typer.Argument(metavar="DIR", help="Output folder of the data set.", show_default=False),
 ]
 OutFolder = Annotated[
-    Path | None, _option("--out", "-o", text="Output folder, instead of DIR.",
-                         metavar="DIR"),
+    Path | None, option("--out", "-o", text="Output folder, instead of DIR.",
+                        metavar="DIR"),
 ]  # fmt: skip
 Houses = Annotated[
     int | None,
-    _option("--houses", metavar="N", text="Generate this many furnished houses."),
+    option("--houses", metavar="N", text="Generate this many furnished houses."),
 ]
 Worlds = Annotated[
     Path | None,
-    _option("--worlds", metavar="DIR", text="Use all worlds, builds and schematics in a folder."),
+    option("--worlds", metavar="DIR", text="Use all worlds, builds and schematics in a folder."),
 ]
 World = Annotated[
     list[Path] | None,
-    _option("--world", "--schem", metavar="PLACE",
-            text="World, run folder or schematic. Repeatable."),
+    option("--world", "--schem", metavar="PLACE",
+           text="World, run folder or schematic. Repeatable."),
 ]  # fmt: skip
 TourFile = Annotated[
-    Path | None, _option("--tour", metavar="FILE", text="Tour file with the views of one --world.")
+    Path | None, option("--tour", metavar="FILE", text="Tour file with the views of one --world.")
 ]
 Screenshots = Annotated[
     Path | None,
-    _option("--screenshots", metavar="DIR",
-            text="Folder of in-game screenshots of one --world, with poses."),
+    option("--screenshots", metavar="DIR",
+           text="Folder of in-game screenshots of one --world, with poses."),
 ]  # fmt: skip
 At = Annotated[
     str,
-    _option("--at", metavar="feet|eye",
-            text="Reference point of screenshot positions; required with --screenshots."),
+    option("--at", metavar="feet|eye",
+           text="Reference point of screenshot positions; required with --screenshots."),
 ]  # fmt: skip
 Images = Annotated[
     int | None,
-    _option("--images", metavar="N", text="Total number of images.", show_default="50 per scene"),
+    option("--images", metavar="N", text="Total number of images.", show_default="50 per scene"),
 ]
 Preset = Annotated[
-    str, _option("--preset", text="Use the paper's exact number of images: 8k, 50k or 100k.")
+    str, option("--preset", text="Use the paper's exact number of images: 8k, 50k or 100k.")
 ]
 TestShare = Annotated[
-    float, _option("--test-share", text="Fraction of images in test scenes.", more=True)
+    float, option("--test-share", text="Fraction of images in test scenes.", more=True)
 ]
 CameraName = Annotated[
-    str, _option("--camera", text="nyu: 640x480 as in NYUv2; paper: 1920x1129, 70 degrees.")
+    str, option("--camera", text="nyu: 640x480 as in NYUv2; paper: 1920x1129, 70 degrees.")
 ]
 Size = Annotated[
     str,
-    _option("--size", metavar="WxH", text="Image size in pixels.", show_default="the camera's"),
+    option("--size", metavar="WxH", text="Image size in pixels.", show_default="the camera's"),
 ]
 Fov = Annotated[
     float | None,
-    _option("--fov", text="Vertical field of view in degrees.", show_default="the camera's"),
+    option("--fov", text="Vertical field of view in degrees.", show_default="the camera's"),
 ]
 Voxel = Annotated[
-    str, _option("--voxel", text="Cell size in metres, or block for one cell per block.")
+    str, option("--voxel", text="Cell size in metres, or block for one cell per block.")
 ]
 Region = Annotated[
     str,
-    _option("--region", more=True,
-            text="paper (along axes or diagonals) or free (rotated with the view)."),
+    option("--region", more=True,
+           text="paper (along axes or diagonals) or free (rotated with the view)."),
 ]  # fmt: skip
 LabelsOnly = Annotated[
-    bool, _option("--labels-only", text="Write labels and masks without images and depth.")
+    bool, option("--labels-only", text="Write labels and masks without images and depth.")
 ]
-ImageFormat = Annotated[str, _option("--image-format", text="jpg, png or webp.", more=True)]
-Quality = Annotated[int, _option("--quality", text="JPEG and WebP quality, 1 to 100.", more=True)]
+ImageFormat = Annotated[str, option("--image-format", text="jpg, png or webp.", more=True)]
+Quality = Annotated[int, option("--quality", text="JPEG and WebP quality, 1 to 100.", more=True)]
 PaperCompat = Annotated[
     bool,
-    _option("--paper-compat", text="Also store K and E as printed in the paper.", more=True),
+    option("--paper-compat", text="Also store K and E as printed in the paper.", more=True),
 ]
 BlockMap = Annotated[
     str,
-    _option(
+    option(
         "--block-map", more=True, text="Mapping from blocks to classes: nyu, paper, or a YAML file."
     ),
 ]
 Scale = Annotated[
     float | None,
-    _option("--blocks-per-metre", text="Scale of worlds that do not record it; 1 is true to size."),
+    option("--blocks-per-metre", text="Scale of worlds that do not record it; 1 is true to size."),
 ]
 Hour = Annotated[
     float | None,
-    _option("--hour", more=True, text="Time of day for all scenes, 0 to 24.",
-            show_default="each scene's own"),
+    option("--hour", more=True, text="Time of day for all scenes, 0 to 24.",
+           show_default="each scene's own"),
 ]  # fmt: skip
-Seed = Annotated[int, _option("--seed", text="The same seed gives the same result.")]
+Seed = Annotated[int, option("--seed", text="The same seed gives the same result.")]
 EngineName = Annotated[
-    str, _option("--engine", more=True, text="pool: this machine; ray: a Ray cluster.")
+    str, option("--engine", more=True, text="pool: this machine; ray: a Ray cluster.")
 ]
 Jobs = Annotated[
     int | None,
-    _option("--jobs", "-j", text="Number of processes.", show_default="one per core"),
+    option("--jobs", "-j", text="Number of processes.", show_default="one per core"),
 ]
 
 

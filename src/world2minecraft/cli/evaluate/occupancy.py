@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from world2minecraft.cli.json_output import JsonOutput
-from world2minecraft.cli.train.options import MORE, Cache, Device
+from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.train.options import Cache, Device
 
 if TYPE_CHECKING:
     from rich.table import Table

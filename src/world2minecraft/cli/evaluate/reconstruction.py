@@ -55,8 +55,7 @@ def run(
         write_json(json_path, facts)
         print(f"results  {json_path}")
     if out.is_dir() and (out / "scan.json").is_file():
-        for line in next_steps(out, truth, stages):
-            print(line)
+        print(next_step(out, truth, stages))
 
 
 def score_table(facts: dict[str, Any]) -> "Table":
@@ -157,10 +156,11 @@ def stage_table(facts: dict[str, Any]) -> "Table":
     return table
 
 
-def next_steps(out: Path, truth: Path, stages: bool) -> list[str]:
-    """Return the next commands to print."""
-    lines = ["" if stages else f"next: w2m evaluate reconstruction {out} {truth} --stages"]
-    return [line for line in lines if line] or [f"next: open {out / 'report.html'} in a browser"]
+def next_step(out: Path, truth: Path, stages: bool) -> str:
+    """Return the line with the next command."""
+    if stages:
+        return f"next: open {out / 'report.html'} in a browser"
+    return f"next: w2m evaluate reconstruction {out} {truth} --stages"
 
 
 def _pose_text(poses: dict[str, float]) -> str:

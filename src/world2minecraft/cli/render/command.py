@@ -71,6 +71,7 @@ def run(
     """
     from world2minecraft.api import render_files
     from world2minecraft.api.progress import show_progress
+    from world2minecraft.cli.arguments import parse_size
     from world2minecraft.core.precompile import compile_first
 
     flags = {"orbit": orbit, "tour": tour, "turntable": turntable}
@@ -78,7 +79,7 @@ def run(
     with show_progress() as progress:
         drawn = render_files(
             source, out, view=view, poses=option.poses_of(pose, poses), frames=frames,
-            opened=opened, box=option.box_of(box), size=option.size_of(size),
+            opened=opened, box=option.box_of(box), size=parse_size(size, example="1280x720"),
             vertical_fov_deg=vfov, horizontal_fov_deg=hfov, outputs=outputs.split(","),
             image_format=image_format, depth_format=depth_format, depth_scale=depth_scale,
             quality=quality, fps=fps, light=light, hour=hour, brightness=brightness,

@@ -1,26 +1,15 @@
 """Options of ``w2m render``, and parsers for their values."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.cli.panels import MORE
+from world2minecraft.cli.panels import more_option, option
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.api.pictures import CameraChoice, GamePose
-
-
-def _option(*names: str, text: str, metavar: str | None = None, default: str | bool = True) -> Any:
-    return typer.Option(*names, help=text, metavar=metavar, show_default=default)
-
-
-def _more(*names: str, text: str, metavar: str | None = None, default: str | bool = True) -> Any:
-    """Return an option in the section "More options"."""
-    return typer.Option(
-        *names, help=text, metavar=metavar, show_default=default, rich_help_panel=MORE
-    )
+    from world2minecraft.api.pictures import GamePose
 
 
 SourcePath = Annotated[
@@ -28,103 +17,114 @@ SourcePath = Annotated[
 ]
 Out = Annotated[
     Path | None,
-    _option("--out", "-o", metavar="FILE_OR_FOLDER", default="NAME.png, .gif",
-            text="Image (.png .jpg .webp .exr .npy), animation (.gif .apng .webp .mp4 .webm), "
-                 "or folder of images."),
+    option("--out", "-o", metavar="FILE_OR_FOLDER", show_default="NAME.png, .gif",
+           text="Image (.png .jpg .webp .exr .npy), animation (.gif .apng .webp .mp4 .webm), "
+                "or folder of images."),
 ]  # fmt: skip
 Outputs = Annotated[
-    str, _option("--outputs", metavar="A,B",
-                 text="rgb, depth, range, block, state, class, instance, face, id (state, class "
-                      "and instance), all ..."),
+    str, option("--outputs", metavar="A,B",
+                text="rgb, depth, range, block, state, class, instance, face, id (state, class "
+                     "and instance), all ..."),
 ]  # fmt: skip
 Pose = Annotated[
     list[str] | None,
-    _option("--pose", metavar="X,Y,Z,YAW,PITCH",
-            text="Feet position, as on the F3 screen, or eye position with ,eye. Repeatable."),
+    option("--pose", metavar="X,Y,Z,YAW,PITCH",
+           text="Feet position, as on the F3 screen, or eye position with ,eye. Repeatable."),
 ]  # fmt: skip
 Poses = Annotated[
     Path | None,
-    _option("--poses", metavar="FILE", text="JSON lines or CSV with x, y, z, yaw, pitch ..."),
+    option("--poses", metavar="FILE", text="JSON lines or CSV with x, y, z, yaw, pitch ..."),
 ]
-Orbit = Annotated[bool, _option("--orbit", text="Render views on a circle around the build.")]
-Tour = Annotated[bool, _option("--tour", text="Render a walk through the rooms at eye height.")]
+Orbit = Annotated[bool, option("--orbit", text="Render views on a circle around the build.")]
+Tour = Annotated[bool, option("--tour", text="Render a walk through the rooms at eye height.")]
 Turntable = Annotated[
-    bool, _option("--turntable", text="Render the build rotating on plain ground.")
+    bool, option("--turntable", text="Render the build rotating on plain ground.")
 ]
 Frames = Annotated[
     int | None,
-    _option("--frames", metavar="N", text="Number of images in an orbit, a tour or a turntable."),
+    option("--frames", metavar="N", text="Number of images in an orbit, a tour or a turntable."),
 ]
-Rate = Annotated[float, _more("--fps", text="Frames per second of an animation.")]
+Rate = Annotated[float, more_option("--fps", help="Frames per second of an animation.")]
 Opened = Annotated[
     bool | None,
-    _option("--open/--closed", text="Omit ceilings and near walls in views from outside.",
-            default="open for rooms with labels"),
+    option("--open/--closed", text="Omit ceilings and near walls in views from outside.",
+           show_default="open for rooms with labels"),
 ]  # fmt: skip
 BoxText = Annotated[
-    str, _more("--box", metavar="X0,Y0,Z0,X1,Y1,Z1",
-                 text="Render only the blocks in this box, with exclusive upper bounds."),
+    str, more_option("--box", metavar="X0,Y0,Z0,X1,Y1,Z1",
+                     help="Render only the blocks in this box, with exclusive upper bounds."),
 ]  # fmt: skip
-Size = Annotated[str, _option("--size", metavar="WxH", text="Image size in pixels.")]
+Size = Annotated[str, option("--size", metavar="WxH", text="Image size in pixels.")]
 VerticalFov = Annotated[
     float | None,
-    _more("--vfov", text="Vertical field of view in degrees.", default="70; --orbit 40"),
+    more_option("--vfov", help="Vertical field of view in degrees.", show_default="70; --orbit 40"),
 ]
 HorizontalFov = Annotated[
-    float | None, _more("--hfov", text="Horizontal field of view, instead of --vfov.")
+    float | None, more_option("--hfov", help="Horizontal field of view, instead of --vfov.")
 ]
 ImageFormat = Annotated[
-    str, _more("--format", metavar="png|jpg|webp", text="File format of colour images in a folder.")
+    str,
+    more_option(
+        "--format", metavar="png|jpg|webp", help="File format of colour images in a folder."
+    ),
 ]
 DepthFormat = Annotated[
-    str, _more("--depth-format", metavar="png|exr|npy",
-               text="png (16 bits), exr or npy (float32 metres)."),
+    str, more_option("--depth-format", metavar="png|exr|npy",
+                     help="png (16 bits), exr or npy (float32 metres)."),
 ]  # fmt: skip
-DepthScale = Annotated[int, _more("--depth-scale", text="Value of one metre in a depth PNG.")]
-Quality = Annotated[int, _more("--quality", text="JPEG and WebP quality, 1 to 100.")]
+DepthScale = Annotated[int, more_option("--depth-scale", help="Value of one metre in a depth PNG.")]
+Quality = Annotated[int, more_option("--quality", help="JPEG and WebP quality, 1 to 100.")]
 Hour = Annotated[
     float | None,
-    _option("--hour", text="Time of day, 0 to 24: 6 dawn, 19 dusk, 0 night.", default="11"),
+    option("--hour", text="Time of day, 0 to 24: 6 dawn, 19 dusk, 0 night.", show_default="11"),
 ]
 Light = Annotated[
     str | None,
-    _option("--light", metavar="shader|game|neutral",
-            text="Soft light, the game's light, or even light.", default="shader"),
+    option("--light", metavar="shader|game|neutral",
+           text="Soft light, the game's light, or even light.", show_default="shader"),
 ]  # fmt: skip
 Brightness = Annotated[
-    float, _more("--brightness", text="Brightness as in the game: 0 moody, 1 bright.")
+    float, more_option("--brightness", help="Brightness as in the game: 0 moody, 1 bright.")
 ]
-Exposure = Annotated[float | None, _more("--exposure", text="Exposure.", default="automatic")]
-SunShadow = Annotated[bool, _more("--sun-shadow/--no-sun-shadow", text="Render sun shadows.")]
+Exposure = Annotated[
+    float | None, more_option("--exposure", help="Exposure.", show_default="automatic")
+]
+SunShadow = Annotated[bool, more_option("--sun-shadow/--no-sun-shadow", help="Render sun shadows.")]
 Samples = Annotated[
     int | None,
-    _more("--samples", text="Rays along each side of a pixel, 1 to 4.", default="2; 1 in a folder"),
+    more_option(
+        "--samples",
+        help="Rays along each side of a pixel, 1 to 4.",
+        show_default="2; 1 in a folder",
+    ),
 ]
 Textures = Annotated[
     int | None,
-    _more("--textures", metavar="16|32|64|128", text="Texture size of a block face in pixels.",
-          default="16, or that of --pack"),
+    more_option("--textures", metavar="16|32|64|128", show_default="16, or that of --pack",
+                help="Texture size of a block face in pixels."),
 ]  # fmt: skip
 Packs = Annotated[
     list[Path] | None,
-    _more("--pack", metavar="PATH",
-            text="Resource pack or client jar. Repeatable; later packs take precedence."),
+    more_option("--pack", metavar="PATH",
+                help="Resource pack or client jar. Repeatable; later packs take precedence."),
 ]  # fmt: skip
-Photo = Annotated[bool, _option("--photo", text="Use path tracing: slow, with soft shadows.")]
-PhotoSamples = Annotated[int, _more("--photo-samples", text="Paths for each pixel of --photo.")]
-Device = Annotated[str, _more("--device", metavar="auto|cpu|gpu", text="Where to draw.")]
-Jobs = Annotated[
-    int, _more("--jobs", metavar="N", text="Processes that draw a folder or an animation.")
+Photo = Annotated[bool, option("--photo", text="Use path tracing: slow, with soft shadows.")]
+PhotoSamples = Annotated[
+    int, more_option("--photo-samples", help="Paths for each pixel of --photo.")
 ]
-Threads = Annotated[int | None, _more("--threads", text="Threads.", default="all cores")]
-AsJson = Annotated[bool, _option("--json", text="Print the poses and their files as JSON.")]
+Device = Annotated[str, more_option("--device", metavar="auto|cpu|gpu", help="Where to draw.")]
+Jobs = Annotated[
+    int, more_option("--jobs", metavar="N", help="Processes that draw a folder or an animation.")
+]
+Threads = Annotated[int | None, more_option("--threads", help="Threads.", show_default="all cores")]
+AsJson = Annotated[bool, option("--json", text="Print the poses and their files as JSON.")]
 
 
 def view_of(flags: dict[str, bool], pose: list[str] | None, poses: Path | None) -> str:
     """Return the view selected by the options, or ``start`` if none is selected.
 
     Raises:
-        UsageError: they choose several.
+        UsageError: If several options select a view.
     """
     given = {"pose": bool(pose), "poses": poses is not None, **flags}
     chosen = sorted(name for name, is_given in given.items() if is_given)
@@ -141,29 +141,6 @@ def poses_of(pose: list[str] | None, poses: Path | None) -> "list[GamePose] | Pa
         UsageError: If a pose is invalid.
     """
     return [pose_of(text) for text in pose] if pose else poses
-
-
-def size_of(text: str) -> tuple[int, int]:
-    """Return the width and height given with ``--size``.
-
-    Raises:
-        UsageError: If the text is not a valid size.
-    """
-    parts = text.lower().split("x")
-    if len(parts) != 2 or not all(part.strip().isdigit() for part in parts):
-        raise UsageError(f"--size must be WIDTHxHEIGHT in pixels, such as 1280x720, got {text!r}")
-    return int(parts[0]), int(parts[1])
-
-
-def camera_choice(size: str, vfov: float | None, hfov: float | None) -> "CameraChoice":
-    """Return the camera settings given with ``--size``, ``--vfov`` and ``--hfov``.
-
-    Raises:
-        UsageError: If a value is invalid.
-    """
-    from world2minecraft.api.pictures import camera_choice as choose
-
-    return choose(size_of(size), vfov, hfov)
 
 
 def pose_of(text: str) -> "GamePose":

@@ -137,6 +137,7 @@ def run(
     """
     from world2minecraft.api import build_navigation_set
     from world2minecraft.api.progress import show_progress
+    from world2minecraft.cli.arguments import parse_size
     from world2minecraft.core.precompile import compile_first
 
     with show_progress() as progress:
@@ -156,22 +157,13 @@ def run(
             annotations=annotations,
             every_keyframe=every_keyframe,
             moves=moves,
-            size=_size(size),
+            size=parse_size(size, example="640x360"),
             seed=seed,
             workers=workers,
             force=force,
             progress=compile_first(progress, "navigation"),
         )
     _print_summary(out, built)
-
-
-def _size(text: str) -> tuple[int, int]:
-    from world2minecraft.core.errors import UsageError
-
-    parts = text.lower().split("x")
-    if len(parts) != 2 or not all(part.isdecimal() for part in parts):
-        raise UsageError(f"--size must be WIDTHxHEIGHT, such as 640x360, got {text!r}")
-    return int(parts[0]), int(parts[1])
 
 
 def _print_summary(out: Path, built: "BuiltSet") -> None:
