@@ -386,6 +386,7 @@ CHUNK_DAMAGE = {
     "no version": write_nbt({"xPos": 0, "zPos": 0}),
     "another place": chunk_with({}, xPos=7),
     "a block entity without a place": chunk_with({}, block_entities=[{"id": "x"}]),
+    "block entities that are no list": chunk_with({}, block_entities=5),
     "no NBT": b"hello",
 }
 

@@ -17,13 +17,13 @@ from world2minecraft.core.types import BlockEntity, Entity
 from world2minecraft.minecraft.entities import entity_nbt, entity_tags
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
 from world2minecraft.minecraft.versions import game_version
+from world2minecraft.minecraft.worlds.chunks import read_block_entities
 from world2minecraft.minecraft.worlds.in_place_editing import (
     RegionFile,
     StateNumbers,
     clear_light,
     new_chunk,
     parse_chunk,
-    read_block_entities,
     read_region_file,
     read_sections,
     set_block_entities,

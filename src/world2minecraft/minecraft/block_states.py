@@ -12,6 +12,7 @@ from functools import lru_cache
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.block_table import block_table
 
+AIRS = frozenset(("minecraft:air", "minecraft:cave_air", "minecraft:void_air"))
 MAX_TEXT = 1000  # The longest state of the game has about 150 characters.
 _NAME = re.compile(r"[a-z0-9_.-]+:[a-z0-9_./-]+")
 _WORD = re.compile(r"[a-z0-9_]+")

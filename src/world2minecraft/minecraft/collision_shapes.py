@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.minecraft.block_states import BlockState, parse_state
 from world2minecraft.minecraft.block_table import BlockType, block_table
 
-# Blocks whose shapes those of mods and newer games with such names are taken to have.
+# Known blocks whose shapes blocks of mods and newer games with these name endings take.
 TWINS = {
     "_trapdoor": "oak_trapdoor",
     "_door": "oak_door",

@@ -107,7 +107,7 @@ def block_display(
             "translation": _floats(_rotation_about_y(rest) @ low),
         },
         "view_range": Float(view_range),
-        # Said outright, so that whoever turns the volume finds it and turns it.
+        # Stated, so that a rotation of the volume rotates it too.
         "Rotation": _floats([0.0, 0.0]),
         "Tags": owner_tags(class_id, instance),
     }

@@ -187,7 +187,7 @@ def _json_of(text: Any, depth: int) -> Any:
         return [_json_of(part, depth + 1) for part in text] or ""
     if not isinstance(text, dict):
         return text if isinstance(text, str) else str(text)
-    if list(text) == [""]:  # What NBT puts around a text in a list of other things.
+    if list(text) == [""]:  # What NBT puts around a text in a list of other types.
         return _json_of(text[""], depth + 1)
     found: dict[str, Any] = {}
     for key, value in text.items():

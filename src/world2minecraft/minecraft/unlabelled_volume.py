@@ -17,7 +17,7 @@ from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
 MAX_CELLS = 64 << 20  # 400 blocks a side; a volume of this size takes 340 MB.
 MAX_STATES = 0xFFFF
 MAX_FILE_BYTES = 96 << 20  # As it lies on disk: packed and unpacked are held together.
-# Where a file says to stand in its world; the formats have no place for it, and ignore the tag.
+# The tag with the position of a file in its world, which the formats have no field for and ignore.
 OWN_TAG = "World2Minecraft"
 Corner = tuple[int, int, int]
 
@@ -32,6 +32,18 @@ def build_palette(texts: Iterable[str], path: str | Path) -> tuple[tuple[str, ..
     if len(palette) > MAX_STATES:
         raise LimitError(path, f"has {len(palette):,} block states, the limit is {MAX_STATES:,}")
     return palette, {state: number for number, state in enumerate(palette)}
+
+
+def invalid_file(path: str | Path, what: str, error: Exception) -> DamagedFileError:
+    """Return the error for a file that is not a valid ``what``, with a missing key if that is why.
+
+    Args:
+        path: The file.
+        what: Name of the format with its article, such as ``a valid structure file``.
+        error: One of ``MALFORMED``, raised while the contents of the file were read.
+    """
+    missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
+    return DamagedFileError(path, f"is not {what}{missing}")
 
 
 def check_size(size: Iterable[int], path: str | Path) -> tuple[int, int, int]:

@@ -64,8 +64,7 @@ def visual_boxes(state: str) -> np.ndarray:
     Returns:
         The boxes as read-only float32 [N, 6] with x0, y0, z0, x1, y1, z1 in block units within the
         unit cube: x is east, y is up and z is south. The boxes do not overlap, except at the edges
-            of
-        vines. Air, barriers and light blocks have no box.
+        of vines. Air, barriers and light blocks have no box.
 
     Raises:
         UsageError: If the text is not a valid block state.

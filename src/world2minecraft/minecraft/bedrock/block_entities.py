@@ -121,14 +121,7 @@ def java_data(data: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
         sides = {ours: _java_side(data.get(theirs)) for ours, theirs in SIDES}
         return java, {**sides, "is_waxed": Byte(bool(data.get("IsWaxed", 0)))}
     if kind == "Banner":
-        rows = [row for row in _list(data.get("Patterns")) if isinstance(row, Mapping)]
-        patterns = [
-            {
-                "Pattern": str(row.get("Pattern", "")),
-                "Color": 15 - _number(row.get("Color", 0)) % 16,
-            }
-            for row in rows
-        ]
+        patterns = _patterns(data)
         return "minecraft:banner", {"Patterns": patterns} if patterns else {}
     return None
 

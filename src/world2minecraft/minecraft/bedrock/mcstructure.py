@@ -29,7 +29,12 @@ from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 from world2minecraft.minecraft.nbt import NbtLimits
 from world2minecraft.minecraft.rules.connections import update_connections
-from world2minecraft.minecraft.unlabelled_volume import build_palette, check_size, unlabelled_volume
+from world2minecraft.minecraft.unlabelled_volume import (
+    build_palette,
+    check_size,
+    invalid_file,
+    unlabelled_volume,
+)
 
 FORMAT_VERSION = 1
 MAX_BYTES = 96 << 20  # 12 million blocks, eight bytes each; the numbers are read in place.
@@ -98,8 +103,7 @@ def read_mcstructure(path: str | Path, losses: Losses | None = None) -> BlockVol
     try:
         return _volume_of(tree, source, counted)
     except MALFORMED as error:
-        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is not a valid Bedrock structure{missing}") from error
+        raise invalid_file(source, "a valid Bedrock structure", error) from error
 
 
 class McstructureFormat(FileFormat):

@@ -13,11 +13,10 @@ from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any
 
-from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
+from world2minecraft.minecraft.block_states import AIRS, BlockState, complete, parse_state
 from world2minecraft.minecraft.block_table import block_table
 from world2minecraft.minecraft.nbt import Byte
 
-AIRS = {"minecraft:air", "minecraft:cave_air", "minecraft:void_air"}
 TABLE_FILE = "data/bedrock_states.json.gz"
 
 

@@ -18,12 +18,10 @@ from world2minecraft.minecraft.commands.player_scale import (
     size_functions,
 )
 from world2minecraft.minecraft.commands.writer import (
-    block_commands,
+    build_commands,
     chunk_rows,
     clear_commands,
-    data_commands,
-    entity_commands,
-    entity_tag,
+    probe_columns,
 )
 from world2minecraft.minecraft.entities import check_displays
 from world2minecraft.minecraft.entity_conversion import convert_volume
@@ -98,13 +96,7 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
     volume = convert_volume(volume, version.data_version)
     files = {"pack.mcmeta": pack_mcmeta(f"Builds {name}", version)}
     files |= size_functions(volume.blocks_per_metre)
-    commands = [
-        *block_commands(volume, version),
-        *data_commands(volume),
-        # Those of an earlier run go first, so that none ever stands there twice.
-        *([f"kill @e[tag={entity_tag(volume)}]"] if volume.entities else []),
-        *entity_commands(volume),
-    ]
+    commands = build_commands(volume, version)
     files |= build_job_files(volume, name, "build", commands, "built")
     files |= build_job_files(volume, name, "clear", clear_commands(volume), "cleared")
     return files
@@ -117,7 +109,7 @@ def build_job_files(
     rows = chunk_rows(volume)
     parts = [commands[at : at + MAX_COMMANDS] for at in range(0, len(commands), MAX_COMMANDS)]
     wait, text = f"{name}:{verb}/wait", json.dumps({"text": f"{name} is {done}."})
-    loaded = " ".join(f"if loaded {x} {volume.corner[1]} {z}" for x, z in _probes(volume))
+    loaded = " ".join(f"if loaded {x} {volume.corner[1]} {z}" for x, z in probe_columns(volume))
     start = f"{name}:{verb}/part_0" if parts else f"{name}:{verb}/end"
     # The wait repeats itself until every corner of the box is loaded, then takes itself back.
     files = {
@@ -137,11 +129,3 @@ def build_job_files(
     for path, lines in files.items():
         result |= function_files(name, path, "\n".join(lines) + "\n")
     return result
-
-
-def _probes(volume: BlockVolume) -> list[tuple[int, int]]:
-    """Return the corners of the box and points every 64 blocks between them."""
-    x, _, z = volume.corner
-    x1, z1 = x + volume.states.shape[0] - 1, z + volume.states.shape[2] - 1
-    xs, zs = sorted({*range(x, x1, 64), x1}), sorted({*range(z, z1, 64), z1})
-    return [(px, pz) for px in xs for pz in zs]

@@ -6,13 +6,7 @@ from world2minecraft.core.files import write_text
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_renames import count_unknown_blocks
 from world2minecraft.minecraft.commands.parser import read_command_list
-from world2minecraft.minecraft.commands.writer import (
-    block_commands,
-    chunk_rows,
-    data_commands,
-    entity_commands,
-    entity_tag,
-)
+from world2minecraft.minecraft.commands.writer import build_commands, chunk_rows
 from world2minecraft.minecraft.entities import check_displays
 from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
@@ -37,13 +31,7 @@ def write_command_list(
     version = version or game_version()
     check_displays(volume, version)
     volume = convert_volume(volume, version.data_version)
-    commands = [
-        *block_commands(volume, version),
-        *data_commands(volume),
-        # Those of an earlier run go first, so that none ever stands there twice.
-        *([f"kill @e[tag={entity_tag(volume)}]"] if volume.entities else []),
-        *entity_commands(volume),
-    ]
+    commands = build_commands(volume, version)
     head = [f"# {len(commands):,} commands for Minecraft {version.name}, made by World2Minecraft."]
     if len(commands) > CHAIN_LIMIT:
         limit = f"# The game runs at most {CHAIN_LIMIT:,} commands per function;"

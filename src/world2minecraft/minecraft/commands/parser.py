@@ -36,7 +36,7 @@ from world2minecraft.minecraft.unlabelled_volume import (
 ORDERING = ("forceload ", "schedule ", "kill @e[tag=w2m_")
 MAX_BYTES = 64 << 20  # Two million commands of this program take about as much.
 MAX_LINES = 4_000_000
-ANY_VERSION = 1 << 30  # A list does not say its game's; names of newer ones mean what they mean.
+ANY_VERSION = 1 << 30  # A list does not state its game version; newer names are unambiguous.
 MAX_DATA = 50_000  # Entities, and blocks with data.
 MAX_FILLED = 4 * MAX_CELLS  # Of all commands together: setting blocks again and again takes time.
 Place = tuple[int, int, int]
@@ -45,7 +45,7 @@ _WHOLE = re.compile(r"~?(-?\d{1,8})|~")
 _NUMBER = re.compile(r"~?(-?\d{1,8}(?:\.\d{1,20})?)|~")
 _ID = re.compile(r"[a-z0-9_.-]+:[a-z0-9_./-]+")
 _OWN_TAG = re.compile(r"w2m_-?\d+_-?\d+_-?\d+")
-# Whose data a block's is, where its own name is no block entity's: by the ends of names.
+# Block entities that are not named like their block, by the end of the block's name.
 _DATA_OF = {
     "_hanging_sign": "hanging_sign",
     "_sign": "sign",

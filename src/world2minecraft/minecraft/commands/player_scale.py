@@ -21,8 +21,8 @@ SCALE_LIMITS = (0.0625, 16.0)
 STEP_LIMITS = (0.0, 10.0)
 FIRST_SCALE_FORMAT = 41  # 1.20.5
 PLAIN_NAMES_FORMAT = 57  # 1.21.2
-# A click on a plaque makes large and small in turn; a tag remembers which it is, and the functions
-# set it, so that one who typed the command before clicks to come back.
+# A click on a plaque switches between the two sizes. A tag stores the current one; the functions
+# set it too, so that a click also works after a typed command.
 _TOGGLE = """\
 tag @s[tag=w2m.human_size] add w2m.back
 execute if entity @s[tag=w2m.back] run function w2m:game_size
@@ -31,17 +31,16 @@ tag @s[tag=w2m.back] remove w2m.back
 """
 
 
-def size_pack(blocks_per_metre: float, version: GameVersion | None = None) -> bytes:
+def size_pack(blocks_per_metre: float) -> bytes:
     """Return a zipped data pack with functions that change the player's size.
 
-    The functions are ``w2m:human_size``, ``w2m:game_size`` and ``w2m:toggle_size``.
+    The functions are ``w2m:human_size``, ``w2m:game_size`` and ``w2m:toggle_size``. The pack works
+    in every known game.
 
     Args:
         blocks_per_metre: The scale of the room, by which the player is enlarged.
-        version: The game whose ``pack_format`` the pack declares. The pack works in every known
-            game.
     """
-    files = {"pack.mcmeta": pack_mcmeta("The player's size for this room", version)}
+    files = {"pack.mcmeta": pack_mcmeta("The player's size for this room")}
     files |= size_functions(blocks_per_metre)
     return pack_zip(files)
 

@@ -21,12 +21,11 @@ _WHOLE_KINDS: dict[str, Any] = {"b": (Byte, 8), "s": (Short, 16), "l": (Long, 64
 _ARRAYS = {"B": np.int8, "I": np.int32, "L": np.int64}
 
 
-def read_snbt(text: str, start: int = 0) -> tuple[Any, int]:
-    r"""Parse one SNBT value from a text.
+def read_snbt(text: str) -> tuple[Any, int]:
+    r"""Parse the SNBT value at the start of a text.
 
     Args:
         text: The text to parse.
-        start: Offset of the value in the text.
 
     Returns:
         The value, with types as in ``minecraft.nbt``, and the offset after its end.
@@ -39,7 +38,7 @@ def read_snbt(text: str, start: int = 0) -> tuple[Any, int]:
         >>> read_snbt('{Count:3b, list:[1.5f, 2f], "name":\'my room\'}')[0]
         {'Count': 3, 'list': [1.5, 2.0], 'name': 'my room'}
     """
-    return SnbtReader().read(text, start)
+    return SnbtReader().read(text)
 
 
 class SnbtReader:
@@ -48,9 +47,9 @@ class SnbtReader:
     def __init__(self, values: int = MAX_VALUES) -> None:
         self.values_left = values
 
-    def read(self, text: str, start: int = 0) -> tuple[Any, int]:
+    def read(self, text: str) -> tuple[Any, int]:
         """Parse one value, as ``read_snbt`` does."""
-        return self._value(text, start, 0)
+        return self._value(text, 0, 0)
 
     def _value(self, text: str, at: int, depth: int) -> tuple[Any, int]:
         self.values_left -= 1

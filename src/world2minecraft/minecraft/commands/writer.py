@@ -22,6 +22,7 @@ from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 from world2minecraft.minecraft.versions import GameVersion
 
 MAX_LOADED_CHUNKS = 256  # What one forceload command takes.
+PROBE_STEP = 64  # Blocks.
 _CONTROLS = re.compile(r"[\x00-\x1f\x7f]")
 _ENTITY_ID = re.compile(r"[a-z0-9_.-]+:[a-z0-9_./-]+")
 
@@ -48,6 +49,22 @@ def block_commands(volume: BlockVolume, version: GameVersion) -> list[str]:
         else:
             commands.append(f"fill {x0} {y0} {z0} {x1} {y1} {z1} {names[state]}")
     return commands
+
+
+def build_commands(volume: BlockVolume, version: GameVersion) -> list[str]:
+    """Return the commands that set all blocks and their data, then summon all entities.
+
+    Entities of an earlier run are removed first, so that none is there twice.
+
+    Raises:
+        UsageError: If a palette entry or an entity ID is invalid.
+    """
+    return [
+        *block_commands(volume, version),
+        *data_commands(volume),
+        *([f"kill @e[tag={entity_tag(volume)}]"] if volume.entities else []),
+        *entity_commands(volume),
+    ]
 
 
 def air_commands(volume: BlockVolume, mask: np.ndarray) -> list[str]:
@@ -115,6 +132,17 @@ def chunk_rows(volume: BlockVolume) -> list[str]:
             x1, z1 = min(x0 + side, x + size_x) - 1, min(z0 + side, z + size_z) - 1
             rows.append(f"{max(x0, x)} {max(z0, z)} {x1} {z1}")
     return rows
+
+
+def probe_columns(volume: BlockVolume) -> list[tuple[int, int]]:
+    """Return x and z of the corners of the box and of points every 64 blocks between them.
+
+    Where all of them are loaded, so are all chunks of the box.
+    """
+    x, _, z = volume.corner
+    x1, z1 = x + volume.states.shape[0] - 1, z + volume.states.shape[2] - 1
+    xs, zs = (sorted({*range(a, b, PROBE_STEP), b}) for a, b in ((x, x1), (z, z1)))
+    return [(px, pz) for px in xs for pz in zs]
 
 
 def entity_tag(volume: BlockVolume) -> str:

@@ -69,7 +69,7 @@ def sweep_with_step(
 ) -> tuple[float, float, float]:
     """Return how far a box can move along a movement vector if it may step up by a given height."""
     best = sweep_box(boxes, box, np.array([way[0], height, way[2]]), touch)
-    reach = box.copy()  # All that it would pass over: as high as all of that lets it.
+    reach = box.copy()  # The space that it crosses, all of which limits the height of the step.
     reach[:3] += np.minimum([way[0], 0, way[2]], 0)
     reach[3:] += np.maximum([way[0], 0, way[2]], 0)
     up = free_distance(boxes, reach, 1, height, touch)

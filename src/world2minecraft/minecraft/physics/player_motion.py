@@ -54,7 +54,7 @@ def step(world: World, body: Body, keys: Keys, scale: float = 1.0) -> Body:
     crouched = keys.sneak or (body.crouched and not _fits(boxes, body, scale))
     sprints = keys.sprint and keys.forward and not keys.back and not crouched
     velocity = [v if abs(v) >= NEGLIGIBLE * scale else 0.0 for v in body.velocity]
-    if body.on_ground:  # One who stands is pressed to the ground, be it in the first tick.
+    if body.on_ground:  # A standing player is pressed to the ground, also in the first tick.
         velocity[1] = -GRAVITY * FALL_DRAG * scale
     wait = max(body.jump_wait - 1, 0) if keys.jump else 0
     if keys.jump and body.on_ground and wait == 0:

@@ -26,7 +26,7 @@ from world2minecraft.minecraft.physics.player_body import HEIGHT, STEP_HEIGHT, T
 _OPENED = ("_door", "_fence_gate")
 _LOCKED = ("minecraft:iron_door",)
 HEIGHT_STEPS = 16  # Heights a block.
-MAX_FLOORS = 16  # Stands over each other in one column; towers have more.
+MAX_FLOORS = 16  # Standing places above each other in one column; towers have more.
 SKY = np.iinfo(np.int32).max  # The ceiling of what is open above.
 WET = 254  # The class of liquids: neither a way nor a ground.
 _FULL = (1 << HEIGHT_STEPS) - 1

@@ -206,8 +206,7 @@ def light_tables(
         hidden_lamps: Whether the game's invisible light blocks emit light.
 
     Returns:
-        The words, uint32 [P + 1], and the emitted light levels, uint8
-        [P + 1], 0 to 15.
+        The words, uint32 [P + 1], and the emitted light levels, uint8 [P + 1], 0 to 15.
     """
     words = [SHUT, *map(opacity_word, palette)]
     gives = [

@@ -17,7 +17,7 @@ import numpy as np
 
 from world2minecraft.core.former_names import getter
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
+from world2minecraft.minecraft.block_states import AIRS, BlockState, complete, parse_state
 from world2minecraft.minecraft.rules.block_traits import pattern_of
 from world2minecraft.minecraft.rules.connections import StateGrid, update_connections
 from world2minecraft.minecraft.rules.light import block_light, lets_light_through
@@ -34,7 +34,6 @@ from world2minecraft.minecraft.rules.supports import (
 __getattr__ = getter(__name__)
 
 DATA_FILE = "data/support_rules.json"
-_AIR = ("minecraft:air", "minecraft:cave_air", "minecraft:void_air")
 _WATER = ("water", "bubble_column", "seagrass", "tall_seagrass", "kelp", "kelp_plant")
 MELTS_ABOVE = 11  # Ice and snow melt in brighter block light.
 _MELTING = ("minecraft:ice", "minecraft:snow")
@@ -116,7 +115,7 @@ def offers_support(text: str, offer: str, direction: int) -> bool:
     if word in ("full", "rigid", "centre"):
         return getattr(faces, word)[toward]
     answers = {
-        "any": lambda: state.name not in _AIR,
+        "any": lambda: state.name not in AIRS,
         "holds": lambda: not _names("replaceable").match(bare),
         "solid": lambda: is_solid(text),
         "loose": lambda: not is_solid(text),
@@ -143,7 +142,7 @@ def holds_water(text: str) -> bool:
 def is_floodable(text: str) -> bool:
     """Return whether flowing water would replace a block state."""
     state = complete(parse_state(text))
-    if state.name in _AIR:
+    if state.name in AIRS:
         return True
     if holds_water(text) or state.get("waterlogged"):
         return False
@@ -232,10 +231,7 @@ def find_unstable(volume: BlockVolume) -> list[UnstableBlock]:
     Args:
         volume: The blocks. Positions in the result are in world coordinates.
     """
-    found = [
-        (cell, state, reason) for cell, state, reason in _all_cells(volume.states, volume.palette)
-    ]
-    found += _melting(volume)
+    found = find_unstable_cells(volume.states, volume.palette) + _melting(volume)
     corner = volume.corner
     return [
         UnstableBlock((x + corner[0], y + corner[1], z + corner[2]), state, reason)
@@ -252,7 +248,7 @@ def find_unstable_cells(
         states: Palette indices, uint16 [X, Y, Z] in block axes.
         palette: Block states. Index 0 need not be air.
     """
-    return sorted(_all_cells(states, palette))
+    return sorted(find_unmet_cells(states, palette) + _changing(states, palette))
 
 
 def find_unmet_cells(
@@ -265,12 +261,6 @@ def find_unmet_cells(
     grid = StateGrid(states, palette)
     found = [*_unmet(grid), *_flowing(grid)]
     return sorted((_place(grid, cell), palette[int(grid.flat[cell])], why) for cell, why in found)
-
-
-def _all_cells(
-    states: np.ndarray, palette: Sequence[str]
-) -> list[tuple[tuple[int, int, int], str, str]]:
-    return find_unmet_cells(states, palette) + _changing(states, palette)
 
 
 def _place(grid: StateGrid, cell: int) -> tuple[int, int, int]:

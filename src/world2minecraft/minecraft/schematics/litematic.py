@@ -29,6 +29,7 @@ from world2minecraft.minecraft.bit_packing import (
     straddled_word_count,
     unpack_straddled,
 )
+from world2minecraft.minecraft.block_states import AIRS
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.file_format import Losses
@@ -49,6 +50,7 @@ from world2minecraft.minecraft.unlabelled_volume import (
     build_palette,
     check_size,
     enclosing_box,
+    invalid_file,
     join_volumes,
     own_tag,
     stated_corner,
@@ -133,10 +135,9 @@ def _version_for(version: GameVersion) -> int:
 
 
 def _metadata(regions: Mapping[str, BlockVolume], name: str, size: np.ndarray) -> dict[str, Any]:
-    air = {"minecraft:air", "minecraft:cave_air", "minecraft:void_air"}
     blocks = 0
     for volume in regions.values():
-        filled = np.array([state not in air for state in volume.palette])
+        filled = np.array([state not in AIRS for state in volume.palette])
         blocks += int(filled[volume.states].sum())
     return {
         "Name": name,
@@ -245,8 +246,7 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
             for name, region in named.items()
         }
     except MALFORMED as error:
-        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is not a valid Litematica file{missing}") from error
+        raise invalid_file(source, "a valid Litematica file", error) from error
     if losses is not None:
         _count_losses(root, losses)
     return found

@@ -31,6 +31,7 @@ from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     build_palette,
     check_size,
+    invalid_file,
     unlabelled_volume,
 )
 
@@ -61,8 +62,7 @@ def read_schematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
     try:
         return _volume_of(root, source, Losses() if losses is None else losses)
     except MALFORMED as error:
-        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is not a valid legacy schematic{missing}") from error
+        raise invalid_file(source, "a valid legacy schematic", error) from error
 
 
 def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolume:

@@ -16,15 +16,12 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.types import BlockEntity, Entity
+from world2minecraft.minecraft.block_colours import DYES
 from world2minecraft.minecraft.block_renames import read_state
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.rules.attached_entities import move_attachment
 from world2minecraft.minecraft.signs import upgrade_sign
 
-COLOURS = (
-    *("white", "orange", "magenta", "light_blue", "yellow", "lime", "pink", "gray"),
-    *("light_gray", "cyan", "purple", "blue", "brown", "green", "red", "black"),
-)
 HEADS = ("skeleton", "wither_skeleton", "zombie", "player", "creeper", "dragon")
 FLOWERS = (
     *("poppy", "blue_orchid", "allium", "azure_bluet", "red_tulip", "orange_tulip"),
@@ -142,7 +139,7 @@ def _named(state: BlockState, name: str) -> str:
 
 
 def _colour(value: Any, default: int) -> str:
-    return COLOURS[_whole(value, default) % len(COLOURS)]
+    return DYES[_whole(value, default) % len(DYES)]
 
 
 def _whole(value: Any, default: int) -> int:

@@ -30,6 +30,7 @@ from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     build_palette,
     check_size,
+    invalid_file,
     unlabelled_volume,
 )
 from world2minecraft.minecraft.versions import GameVersion, game_version
@@ -116,8 +117,7 @@ def read_schem(path: str | Path, losses: Losses | None = None) -> BlockVolume:
             losses.add("biomes", int("BiomeData" in tree or "Biomes" in tree))
         return _volume_of(tree, source)
     except MALFORMED as error:
-        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is not a valid Sponge schematic{missing}") from error
+        raise invalid_file(source, "a valid Sponge schematic", error) from error
 
 
 # Writing.

@@ -36,6 +36,7 @@ from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     build_palette,
     check_size,
+    invalid_file,
     own_tag,
     stated_corner,
     unlabelled_volume,
@@ -395,8 +396,7 @@ def parse_structure(
     try:
         return _volume_of(root, source, Losses() if losses is None else losses, variant)
     except MALFORMED as error:
-        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
-        raise DamagedFileError(source, f"is not a valid structure file{missing}") from error
+        raise invalid_file(source, "a valid structure file", error) from error
 
 
 def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: int) -> BlockVolume:

@@ -24,6 +24,7 @@ from world2minecraft.minecraft.commands.writer import (
     data_commands,
     entity_commands,
     entity_tag,
+    probe_columns,
     state_in_version,
 )
 from world2minecraft.minecraft.entity_conversion import convert_volume
@@ -31,7 +32,6 @@ from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES, RconClient
 from world2minecraft.minecraft.versions import GameVersion
 
-PROBE_STEP = 64  # Blocks between the places at which it is asked whether chunks are loaded.
 # What games compute again from the neighbours of a block, in the volume or outside it.
 _FROM_NEIGHBOURS = frozenset(
     [
@@ -70,13 +70,14 @@ Probe = tuple[int, int, int, str]  # x, y, z and the expected block state.
 class BuildPlan:
     """The commands of a build by phase. Running commands twice in order gives the same blocks.
 
-    load, release: Commands that force-load the chunks, and commands that release them.
-    loaded: Positions (x, y, z) that must be loaded before any block is set.
-    work: Commands that clear and set blocks, block data and entities, in order.
-    entities_from: The index in ``work`` from which entities are placed. Running these commands
-    twice
-        would duplicate entities, so the first one removes existing entities.
-    probes: The blocks to check at the end.
+    Attributes:
+        load: Commands that force-load the chunks.
+        loaded: Positions (x, y, z) that must be loaded before any block is set.
+        work: Commands that clear and set blocks, block data and entities, in order.
+        entities_from: The index in ``work`` from which entities are placed. Running these commands
+            twice would duplicate entities, so the first one removes existing entities.
+        probes: The blocks to check at the end.
+        release: Commands that release the chunks.
     """
 
     load: tuple[str, ...]
@@ -127,7 +128,7 @@ def plan_build(
     rows = chunk_rows(volume)
     return BuildPlan(
         load=tuple(f"forceload add {row}" for row in rows),
-        loaded=_corners(volume),
+        loaded=tuple((x, volume.corner[1], z) for x, z in probe_columns(volume)),
         work=(*blocks, *data, *gone, *entities),
         entities_from=len(blocks) + len(data),
         probes=_probes(volume, version, samples, air),
@@ -148,15 +149,6 @@ def _drop_long_commands(what: str, commands: Sequence[str], losses: Losses) -> l
     short = [command for command in commands if len(command.encode()) <= MAX_COMMAND_BYTES]
     losses.add(what, len(commands) - len(short))
     return short
-
-
-def _corners(volume: BlockVolume) -> tuple[tuple[int, int, int], ...]:
-    """Return the corners of the box and points between them as positions to check for loading."""
-    x, y, z = volume.corner
-    x1, z1 = x + volume.states.shape[0] - 1, z + volume.states.shape[2] - 1
-    xs = sorted({*range(x, x1, PROBE_STEP), x1})
-    zs = sorted({*range(z, z1, PROBE_STEP), z1})
-    return tuple((px, y, pz) for px in xs for pz in zs)
 
 
 def lasting_state(state: str) -> str:
@@ -279,8 +271,8 @@ class LiveBuilder:
         reply = self._send(f"execute if loaded {x} {y} {z}")
         if _SYNTAX_ERROR not in reply:
             return _PASSED in reply
-        # Games before 1.19.4 do not know the question. Of a block they tell, whichever it is,
-        # where its chunk is loaded.
+        # Games before 1.19.4 do not know this condition. They test a block, with either result,
+        # only if its chunk is loaded.
         reply = self._send(f"execute if block {x} {y} {z} minecraft:air")
         return _PASSED in reply or _FAILED in reply
 
@@ -365,7 +357,7 @@ class LiveBuilder:
             return 0
         if known != self._key() or not 0 <= done <= len(self._plan.work):
             return 0
-        # Entities would stand there twice: they are set from their first one on.
+        # Entities would be there twice, so all of them are placed again.
         return min(done, self._plan.entities_from)
 
     def _set_done(self, done: int) -> None:

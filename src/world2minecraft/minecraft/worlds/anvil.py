@@ -27,6 +27,8 @@ BLOCK_BITS = 16  # lz4-java's blocks of 64 KiB.
 SEED, MASK = 0x9747B28C, 0x0FFFFFFF
 _LZ4_HEADER = struct.Struct("<8sBiiI")
 SECTOR = 4096
+MAX_SECTORS = 255  # A longer record lies in a file of its own.
+LEVEL = 1  # Of zlib: a third of the time of level 6, and most of a file is padding.
 MAX_REGION_BYTES = 512 << 20
 MAX_CHUNK_BYTES = 16 << 20  # Unpacked; a chunk of 4,096 kinds of blocks in 24 sections has 4 MB.
 GZIP, ZLIB, PLAIN, LZ4, CUSTOM = 1, 2, 3, 4, 127
@@ -153,14 +155,12 @@ def xxhash32(data, seed):  # pragma: no cover
 
 
 def pack_region(
-    chunks: Mapping[tuple[int, int], bytes], level: int = 1, compression: str = "zlib"
+    chunks: Mapping[tuple[int, int], bytes], compression: str = "zlib"
 ) -> tuple[bytes, dict[str, bytes]]:
     """Pack the chunks of one region into a region file.
 
     Args:
         chunks: NBT bytes by chunk position (x, z) in the world, all in the same region.
-        level: The zlib level. Level 1 takes a third of the time of level 6, and most of a file is
-            padding.
         compression: One of gzip, zlib (readable by every game), none and lz4 (since 1.20.5).
 
     Returns:
@@ -173,32 +173,52 @@ def pack_region(
     if compression not in COMPRESSIONS:
         known = ", ".join(COMPRESSIONS)
         raise UsageError(f"compression must be one of {known}, got {compression!r}")
-    stated = COMPRESSIONS[compression]
+    kind = COMPRESSIONS[compression]
+    records: dict[tuple[int, int], bytes] = {}
+    outside: dict[str, bytes] = {}
+    for place, data in chunks.items():
+        packed = pack_chunk(data, kind)
+        records[place] = bytes([kind]) + packed
+        if len(packed) + _CHUNK_HEADER.size > MAX_SECTORS * SECTOR:
+            outside[outside_name(place)], records[place] = packed, bytes([kind | EXTERNAL])
+    return pack_records(records, {}), outside
+
+
+def pack_records(
+    records: Mapping[tuple[int, int], bytes], times: Mapping[tuple[int, int], int]
+) -> bytes:
+    """Return the bytes of a region file with the given chunks.
+
+    Args:
+        records: Compressed chunks by position in the world, each after its compression byte.
+        times: Time in seconds at which each chunk was saved. The default is 0.
+    """
     table = np.zeros((2, 1024), ">u4")
     body: list[bytes] = []
-    outside: dict[str, bytes] = {}
     sector = 2
-    for (x, z), data in sorted(chunks.items(), key=lambda item: item[0][::-1]):
-        packed, kind = pack_chunk(data, stated, level), stated
-        if len(packed) + _CHUNK_HEADER.size > 255 * SECTOR:
-            outside[f"c.{x}.{z}.mcc"] = packed
-            packed, kind = b"", stated | EXTERNAL
-        record = _CHUNK_HEADER.pack(len(packed) + 1, kind) + packed
-        record += bytes(-len(record) % SECTOR)
-        count = len(record) // SECTOR
-        table[0, (x & 31) + (z & 31) * 32] = sector << 8 | count
-        body.append(record)
-        sector += count
-    return b"".join([table.tobytes(), *body]), outside
+    for place, record in sorted(records.items(), key=lambda item: item[0][::-1]):
+        whole = len(record).to_bytes(4, "big") + record
+        whole += bytes(-len(whole) % SECTOR)
+        slot = (place[0] & 31) + (place[1] & 31) * 32
+        table[0, slot] = sector << 8 | len(whole) // SECTOR
+        table[1, slot] = times.get(place, 0)
+        body.append(whole)
+        sector += len(whole) // SECTOR
+    return b"".join([table.tobytes(), *body])
 
 
-def pack_chunk(data: bytes, kind: int = ZLIB, level: int = 1) -> bytes:
+def outside_name(place: tuple[int, int]) -> str:
+    """Return the name of the separate file for a chunk that is too large for its region file."""
+    return f"c.{place[0]}.{place[1]}.mcc"
+
+
+def pack_chunk(data: bytes, kind: int = ZLIB) -> bytes:
     """Compress the NBT of a chunk with the method ``GZIP``, ``ZLIB``, ``PLAIN`` or ``LZ4``."""
     if kind == PLAIN:
         return data
     if kind == LZ4:
         return pack_lz4(data)
-    return pack_gzip(data, level) if kind == GZIP else zlib.compress(data, level)
+    return pack_gzip(data, LEVEL) if kind == GZIP else zlib.compress(data, LEVEL)
 
 
 def read_region(
@@ -277,7 +297,7 @@ def _read_chunk(path: Path, stream: BinaryIO, position: tuple[int, int], sectors
         )
     source = path
     if kind & EXTERNAL:
-        source = path.parent / f"c.{position[0]}.{position[1]}.mcc"
+        source = path.parent / outside_name(position)
         packed = read_bytes(source, MAX_CHUNK_BYTES)
     return unpack_chunk(packed, kind & ~EXTERNAL, source, position)
 

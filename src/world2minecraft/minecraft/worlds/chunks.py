@@ -20,7 +20,7 @@ from world2minecraft.core.errors import (
     LimitError,
     UsageError,
 )
-from world2minecraft.core.types import AIR
+from world2minecraft.core.types import AIR, BlockEntity
 from world2minecraft.minecraft.bit_packing import (
     SECTION,
     pack_section,
@@ -430,6 +430,23 @@ def read_chunk(
     if not isinstance(root.get("sections", []), list):
         raise DamagedFileError(path, f"chunk {place} contains a sections tag that is not a list")
     return root, (old_sections if is_old else _sections)(root, place, path)
+
+
+def read_block_entities(root: Mapping[str, Any], path: Path) -> list[BlockEntity]:
+    """Return the block entities of a chunk.
+
+    Raises:
+        DamagedFileError: If a block entity has no ID or position.
+    """
+    try:
+        return [_block_entity(nbt) for nbt in root.get("block_entities", [])]
+    except MALFORMED as error:
+        raise DamagedFileError(path, "contains a block entity without ID or position") from error
+
+
+def _block_entity(nbt: Mapping[str, Any]) -> BlockEntity:
+    rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
+    return BlockEntity((int(nbt["x"]), int(nbt["y"]), int(nbt["z"])), str(nbt["id"]), rest)
 
 
 def _sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> Iterator[Section]:

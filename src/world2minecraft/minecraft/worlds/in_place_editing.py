@@ -5,7 +5,6 @@ instead rebuilds the table of a region file and copies the records of unchanged 
 """
 
 import struct
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -27,15 +26,17 @@ from world2minecraft.minecraft.state_nbt import state_entry, state_text
 from world2minecraft.minecraft.worlds.anvil import (
     EXTERNAL,
     MAX_CHUNK_BYTES,
+    MAX_SECTORS,
     SECTOR,
     ZLIB,
+    outside_name,
+    pack_chunk,
+    pack_records,
     region_position,
     unpack_chunk,
 )
 
 MAX_EDITED_BYTES = 128 << 20  # It is held three times; regions of players have 2 to 20 MB.
-LEVEL = 1  # As anvil.pack_region: a third of the time of 6, and most of a file is padding.
-MAX_SECTORS = 255  # A longer record lies in a file of its own.
 _RECORD_HEADER = struct.Struct(">IB")
 FIRST_DATA_VERSION = 2860  # 1.18, the first game with this layout.
 FULL = ("minecraft:full", "full")
@@ -86,7 +87,7 @@ class RegionFile:
         """
         records, changed = dict(self.records), {}
         for place, data in sorted(chunks.items()):
-            packed, name = zlib.compress(data, LEVEL), outside_name(place)
+            packed, name = pack_chunk(data), outside_name(place)
             was_outside = bool(records.get(place, b"\0")[0] & EXTERNAL)
             if len(packed) + _RECORD_HEADER.size > MAX_SECTORS * SECTOR:
                 changed[name], records[place] = packed, bytes([ZLIB | EXTERNAL])
@@ -94,7 +95,7 @@ class RegionFile:
             records[place] = bytes([ZLIB]) + packed
             if was_outside:
                 changed[name] = None
-        return {self.path.name: _pack_region(records, self.times), **changed}
+        return {self.path.name: pack_records(records, self.times), **changed}
 
 
 def read_region_file(path: Path) -> RegionFile:
@@ -123,11 +124,6 @@ def read_region_file(path: Path) -> RegionFile:
     return RegionFile(path, records, saved)
 
 
-def outside_name(place: Place) -> str:
-    """Return the name of the separate file for a chunk that is too large for its region file."""
-    return f"c.{place[0]}.{place[1]}.mcc"
-
-
 def _record(data: bytes, location: int, path: Path, place: Place) -> bytes:
     start, sectors = (location >> 8) * SECTOR, location & 255
     if start < 2 * SECTOR or not sectors or start + _RECORD_HEADER.size > len(data):
@@ -137,21 +133,6 @@ def _record(data: bytes, location: int, path: Path, place: Place) -> bytes:
     if not 1 <= length <= sectors * SECTOR - 4 or len(record) != length:
         raise DamagedFileError(path, f"chunk {place} declares {length:,} bytes but contains fewer")
     return record
-
-
-def _pack_region(records: Mapping[Place, bytes], times: Mapping[Place, int]) -> bytes:
-    table = np.zeros((2, 1024), ">u4")
-    body: list[bytes] = []
-    sector = 2
-    for place, record in sorted(records.items(), key=lambda item: item[0][::-1]):
-        whole = len(record).to_bytes(4, "big") + record
-        whole += bytes(-len(whole) % SECTOR)
-        slot = (place[0] & 31) + (place[1] & 31) * 32
-        table[0, slot] = sector << 8 | len(whole) // SECTOR
-        table[1, slot] = times.get(place, 0)
-        body.append(whole)
-        sector += len(whole) // SECTOR
-    return b"".join([table.tobytes(), *body])
 
 
 @dataclass
@@ -308,25 +289,6 @@ def set_section(root: dict[str, Any], place: int, cells: np.ndarray, numbers: St
     biomes = near.get("biomes", VOID_BIOMES)
     root["sections"].append({"Y": Byte(place), "block_states": blocks, "biomes": biomes})
     root["sections"].sort(key=lambda section: int(section["Y"]))
-
-
-def read_block_entities(root: dict[str, Any], path: Path) -> list[BlockEntity]:
-    """Return the block entities of a chunk.
-
-    Raises:
-        DamagedFileError: If a block entity has no ID or position.
-    """
-    found = []
-    for nbt in root["block_entities"]:
-        try:
-            rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
-            position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
-            found.append(BlockEntity(position, str(nbt["id"]), rest))
-        except MALFORMED as error:
-            raise DamagedFileError(
-                path, "contains a block entity without ID or position"
-            ) from error
-    return found
 
 
 def set_block_entities(root: dict[str, Any], entities: Sequence[BlockEntity]) -> None:

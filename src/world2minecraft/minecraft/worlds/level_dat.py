@@ -9,7 +9,7 @@ from world2minecraft.minecraft.versions import GameVersion
 
 MAKER = "world2minecraft"  # The game drops unknown tags when it saves: then the mark is gone.
 MAKER_TAG = "MadeBy"
-UNDO_FOLDER = "w2m_undo"  # In a world that was built into since: how to take that back.
+UNDO_FOLDER = "w2m_undo"  # In a world that was built into: the files that undo the build.
 TICKS_PER_HOUR = 1000
 FIRST_WITH_DIMENSIONS = 2554  # 20w22a, of 1.16.
 FIRST_WITHOUT_SEEDS = 3105  # 1.19.

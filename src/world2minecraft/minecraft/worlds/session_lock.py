@@ -4,7 +4,7 @@ The game keeps the first byte of the file locked while it has the world open. If
 acquired, no game has the world open, and the game cannot open the world until it is released.
 """
 
-# Not by filelock: it locks by flock, and Java, with it the game, by POSIX locks, which do not meet.
+# Not with filelock, which uses flock: Java, and so the game, uses POSIX locks, which ignore flock.
 
 import errno
 from collections.abc import Iterator

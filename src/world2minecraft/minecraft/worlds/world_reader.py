@@ -1,6 +1,6 @@
 """Reading of Minecraft Java world folders as volumes."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -20,7 +20,7 @@ from world2minecraft.minecraft.unlabelled_volume import (
     unlabelled_volume,
 )
 from world2minecraft.minecraft.worlds.anvil import read_region, region_position
-from world2minecraft.minecraft.worlds.chunks import Section, read_chunk
+from world2minecraft.minecraft.worlds.chunks import Section, read_block_entities, read_chunk
 from world2minecraft.minecraft.worlds.level_dat import no_world
 
 MAX_SECTIONS = MAX_CELLS // SECTION  # Held before the volume's size is known.
@@ -132,7 +132,7 @@ def _gather(regions: list[Path], box: Box | None) -> "_ChunkContents":
                     f"exceeds the limit of {MAX_CELLS:,} blocks or the memory limit; "
                     "use a box (--box) to read a part of the world",
                 )
-            held = _block_entities(root, path)
+            held = read_block_entities(root, path)
             found.block_entities += found.within(upgrade_signs(held, root["DataVersion"]), path)
             found.entities += found.within(_entities(root.get("Entities", []), path), path)
     return found
@@ -202,18 +202,6 @@ def _overlaps(place: Place, box: Box | None) -> bool:
         return True
     x, z = place[0] * 16, place[1] * 16
     return box[0] < x + 16 and x < box[3] and box[2] < z + 16 and z < box[5]
-
-
-def _block_entities(root: dict[str, Any], path: Path) -> Iterator[BlockEntity]:
-    for nbt in root.get("block_entities", []):
-        try:
-            rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
-            position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
-            yield BlockEntity(position, str(nbt["id"]), rest)
-        except MALFORMED as error:
-            raise DamagedFileError(
-                path, "contains a block entity without ID or position"
-            ) from error
 
 
 def _fill(
