@@ -14,14 +14,14 @@ from world2minecraft.core.files import read_json
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.world_labels import read_scene
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.minecraft.physics.shortest_paths import shortest_path
+from world2minecraft.minecraft.physics.shortest_paths import reachable, shortest_path
 from world2minecraft.minecraft.physics.walk_graph import walk_graph
 from world2minecraft.minecraft.rules.stability import find_unstable
 from world2minecraft.minecraft.worlds.world_reader import read_level
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.procgen.worlds import generate_world, write_worlds
 from world2minecraft.procgen.worlds.furniture_choice import MOST_A_ROOM
-from world2minecraft.procgen.worlds.house_world import LEVEL, count_reachable_floor
+from world2minecraft.procgen.worlds.house_world import LEVEL, floor_places
 from world2minecraft.procgen.worlds.world_files import house_layouts
 
 GONE = ("falls", "pops off", "breaks", "flows")  # What a block does that cannot stay.
@@ -76,6 +76,14 @@ def test_a_house_has_structure_and_furniture(house):
     assert {int(one) for one in wanted} <= classes
     assert len(classes) >= 9
     assert len(house.things) >= 6 * 5
+
+
+def count_reachable_floor(volume, house, spawn):
+    """The places on the floor of each room that are reached from a spawn, and all of them."""
+    graph = walk_graph(volume)
+    found = reachable(graph, graph.nearest(spawn))
+    floors = [floor_places(graph, house, room) for room in house.rooms]
+    return [(int((found & floor).sum()), int(floor.sum())) for floor in floors]
 
 
 @pytest.mark.parametrize("which", ["house", "tall", "game_scale"])

@@ -108,7 +108,7 @@ def _drop_near_roofs(labels: np.ndarray) -> None:
 def _drop_near_walls(room: Room, labels: np.ndarray, instance: np.ndarray, slab: int) -> None:
     """Remove the walls at x = max and y = 0, near the camera, down to a rim, and what hangs there.
 
-    Things that reach higher than a metre hang there, or lean there as a curtain or a door does.
+    Objects that reach higher than a metre hang or lean there, such as curtains and doors.
     """
     rim, deep = slab + round(RIM_M / room.voxel_m), slab + round(NEAR_M / room.voxel_m)
     labels[-slab:, :, rim:] = 0

@@ -85,7 +85,8 @@ def _read(folder: Path) -> Room:
     )
 
 
-def _stated(layout: Layout) -> dict[str, Any]:
+def layout_to_json(layout: Layout) -> dict[str, Any]:
+    """Return the name, the floor, the height and the openings of a layout as JSON values."""
     return {
         "name": layout.name,
         "floor_z_m": round(layout.floor_z_m, 4),
@@ -101,6 +102,12 @@ def _stated(layout: Layout) -> dict[str, Any]:
             }
             for opening in layout.openings
         ],
+    }
+
+
+def _stated(layout: Layout) -> dict[str, Any]:
+    return {
+        **layout_to_json(layout),
         "objects": [
             {
                 "class": CLASS_NAMES[item.class_id],

@@ -15,9 +15,10 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.core.output_folders import check_writable
 from world2minecraft.core.progress import Progress, no_progress
-from world2minecraft.core.types import Layout, LayoutObject, Opening, View
+from world2minecraft.core.types import LayoutObject, View
 from world2minecraft.core.whole_reads import changing
 from world2minecraft.formats.objects_and_placements import round_metres
+from world2minecraft.procgen.room_files import layout_to_json
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.phone import phone_shots, write_photos, write_video
 from world2minecraft.procgen.sensors.scan_frames import (
@@ -63,7 +64,7 @@ def scan_room(
             first 60 % of the frames are recorded, so that some corners remain unseen.
         width: Width of the images in pixels.
         height: Height of the images in pixels.
-        label_names: Whether the label images have the names of things, with a ``labels.json``,
+        label_names: Whether the label images have the names of objects, with a ``labels.json``,
             instead of the twelve classes.
         progress: Callback after each frame, with the stage ``capture``.
 
@@ -182,7 +183,7 @@ def write_truth(
         "seed": room.seed,
         "size_m": round_metres(room.size_m),
         "objects": [object_to_json(n, item) for n, item in enumerate(room.objects, start=1)],
-        "layouts": [_stated_layout(layout) for layout in room.layouts],
+        "layouts": [layout_to_json(layout) for layout in room.layouts],
     }
     write_json(Path(folder) / "truth.json", truth)
 
@@ -196,24 +197,4 @@ def object_to_json(number: int, item: LayoutObject) -> dict[str, Any]:
         "center_m": round_metres(item.center_m),
         "size_m": round_metres(item.size_m),
         "yaw_deg": item.yaw_deg,
-    }
-
-
-def _stated_layout(layout: Layout) -> dict[str, Any]:
-    return {
-        "name": layout.name,
-        "floor_z_m": round(layout.floor_z_m, 4),
-        "wall_height_m": round(layout.wall_height_m, 4),
-        "floor_polygon_m": [round_metres(corner) for corner in layout.floor_polygon_m],
-        "openings": [_stated_opening(opening) for opening in layout.openings],
-    }
-
-
-def _stated_opening(opening: Opening) -> dict[str, Any]:
-    return {
-        "kind": opening.kind,
-        "start_m": round_metres(opening.start_m),
-        "end_m": round_metres(opening.end_m),
-        "sill_m": round(opening.sill_m, 4),
-        "head_m": round(opening.head_m, 4),
     }

@@ -63,7 +63,6 @@ MAX_REGIONS = 4096
 VERSIONS = range(4, 8)  # 1.13 to today; before them blocks had the names of 1.12.
 MIN_BITS = 2
 DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.
-Corner = tuple[int, int, int]
 
 
 # Writing.

@@ -32,7 +32,7 @@ from world2minecraft.procgen.rooms.placement import (
     picture_anywhere,
     snap_to_voxels,
 )
-from world2minecraft.procgen.rooms.recipes import KINDS
+from world2minecraft.procgen.rooms.recipes import KINDS, shuffled_walls
 
 LOW_M = 0.5  # What is kept free from below this height is a way; above it, a window's air.
 WIDTHS_M = ((1.0, 1.6), (0.8, 1.2), (0.6, 0.8))  # Of the counters beside and under the sink.
@@ -45,9 +45,8 @@ LEAF_M = (0.88, 2.0)
 
 def furnish_galley(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     """Furnish a kitchen with a row of fridge, counter, cooker with hood and sink, and a table."""
-    walls = [int(wall) for wall in plan.rng.permutation(4)]
     placed = None
-    for wall in sorted(walls, key=lambda n: -plan.ground.walls[n].length_m):
+    for wall in sorted(shuffled_walls(plan), key=lambda n: -plan.ground.walls[n].length_m):
         for counters in WIDTHS_M:
             for backwards in (False, True):
                 placed = placed or _run(plan, style, wall, counters, backwards)

@@ -30,9 +30,9 @@ def toilet() -> Model:
     return Model("toilet", FURN, (d, w, h), parts)
 
 
-def washstand(front: Colour, *, width: float = 0.8) -> Model:
+def washstand(front: Colour) -> Model:
     """Return a model of a washbasin on a cupboard with two drawers. Its rim is at 0.86 m."""
-    d, w, h = 0.52, round_to_step(width), 1.02
+    d, w, h = 0.52, 0.8, 1.02
     light = shade(front, 1.06)
     parts = (
         Part((-d / 2, -w / 2 + 0.04, 0.24, d / 2 - 0.04, w / 2 - 0.04, 0.74), front),

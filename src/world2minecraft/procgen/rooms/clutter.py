@@ -24,7 +24,7 @@ TABLE_THINGS_PER_M2 = 5.0
 FLOOR_THINGS_PER_M2 = 0.7
 ODD_THINGS = 3
 TRIES = 12
-# What carries things: the height of its top where that is not the model's own, metres.
+# What objects stand on: the height of its top in metres where that is not the model's own.
 BED_TOPS = {"bed": 0.56, "sofa": 0.46}
 TOPS: dict[str, float | None] = {
     **dict.fromkeys(

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from world2minecraft.procgen.rooms.clutter import Doors
 from world2minecraft.procgen.rooms.clutter_models import bag, carton, laundry
 from world2minecraft.procgen.rooms.decor import curtain
 from world2minecraft.procgen.rooms.floor_shapes import Box
@@ -24,7 +25,6 @@ from world2minecraft.procgen.rooms.placement import (
     snap_to_voxels,
 )
 
-Doors = list[tuple[float, float]]
 MAX_RUG_DEG, MAX_TURN_DEG = 14, 9
 PUSHED_M = (0.30, 0.24, 0.18, 0.12)  # How far a chair is pushed under its table.
 MAX_DRAWN = 0.5  # Share of a window that one curtain covers at most.

@@ -84,9 +84,7 @@ class Completion:
     def hang_over(self, model: Model, below: Item | None, z_m: float) -> Item | None:
         """Hang a model on the wall behind an item, or anywhere if there is no space."""
         if below is not None:
-            wall = round(below.yaw_deg / 90) % 4
-            along = below.y_m if wall % 2 == 0 else below.x_m
-            placed = self.plan.add(self.plan.at_wall(model, wall, along, z_m))
+            placed = self.plan.add(self.plan.behind(below, model, z_m))
             if placed is not None:
                 return placed
         return self.hang(model, z_m)

@@ -83,7 +83,7 @@ def wall_clock() -> Model:
 
 
 def wall_shelf(width: float, wood: Colour, rng: np.random.Generator) -> Model:
-    """Return a model of a board on a wall with books and a few things on it."""
+    """Return a model of a board on a wall with books and a plant on it."""
     d, w = 0.24, round_to_step(width)
     parts = [Part((-d / 2, -w / 2, 0.0, d / 2, w / 2, 0.04), wood, "wood")]
     y = -w / 2 + 0.04

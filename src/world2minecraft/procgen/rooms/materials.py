@@ -13,9 +13,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.room import Room
 
-RUG_RUN = (
-    25  # Voxels: boards are 7 wide and tiles 20, so what is of one colour for longer is a rug.
-)
+RUG_RUN = 25  # Voxels of one colour that are a rug: boards are 7 wide, and tiles 20.
 TALL_M = 0.9  # The grain of a cupboard runs upwards, that of a table lengthwise.
 CLOTH_NAMES = frozenset(
     (
@@ -60,14 +58,13 @@ def room_materials(room: Room) -> np.ndarray:
     for number, (box, item) in enumerate(zip(boxes, room.objects, strict=False), start=1):
         if box is not None:
             own = room.instance[box] == number
-            found = _thing(item.name, item.class_id, box, room.colour[box], wooden[box], number)
+            found = _object_materials(item.name, box, room.colour[box], wooden[box], number)
             materials[box][own] = found[own]
     return materials
 
 
-def _thing(
+def _object_materials(
     name: str,
-    class_id: int,
     box: tuple[slice, ...],
     colour: np.ndarray,
     wooden: np.ndarray,

@@ -109,6 +109,12 @@ class Plan:
         x, y = side.point(along_m, model.size_m[0] / 2 + gap_m)
         return snap_to_voxels(Item(model, x, y, z_m, 90.0 * side.turn))
 
+    def behind(self, item: Item, model: Model, z_m: float, shift_m: float = 0.0) -> Item:
+        """Return a model on the wall behind an item, its middle ``shift_m`` along the wall."""
+        wall = round(item.yaw_deg / 90) % 4
+        along = item.y_m if wall % 2 == 0 else item.x_m
+        return self.at_wall(model, wall, along + shift_m, z_m)
+
     def fits(self, item: Item, *, may_block: bool = False, among: list[Item] | None = None) -> bool:
         """Return whether an item is inside the room and overlaps no item or reserved space.
 
@@ -188,14 +194,12 @@ class Plan:
                 return placed
         return None
 
-    def add_before(
-        self, model: Model, anchor: Item, gap_m: float, *, left_m: float = 0.0, facing: bool = True
-    ) -> Item | None:
-        """Place a model in front of another item, facing the item or in the same direction."""
+    def add_before(self, model: Model, anchor: Item, gap_m: float) -> Item | None:
+        """Place a model in front of another item, facing the item."""
         away = anchor.model.size_m[0] / 2 + gap_m + model.size_m[0] / 2
-        x, y = anchor.point(away, left_m)
-        yaw = anchor.yaw_deg + (180.0 if facing else 0.0)
-        return self.add(snap_to_voxels(Item(model, x, y, anchor.z_m, yaw % 360)), may_block=True)
+        x, y = anchor.point(away, 0.0)
+        yaw = (anchor.yaw_deg + 180.0) % 360
+        return self.add(snap_to_voxels(Item(model, x, y, anchor.z_m, yaw)), may_block=True)
 
     def add_upon(
         self, model: Model, base: Item, front_m: float, left_m: float, *, top_m: float | None = None
@@ -299,12 +303,9 @@ def pendant_over(plan: Plan, board: Item, colour: Colour) -> None:
 
 def pictures_over(plan: Plan, below: Item, z_m: float, count: int = 2) -> None:
     """Place pictures on the wall behind an item."""
-    wall = round(below.yaw_deg / 90) % 4
-    along = below.y_m if wall % 2 == 0 else below.x_m
     for n in range(count):
         model = decor.picture(plan.rng.uniform(0.5, 0.8), plan.rng.uniform(0.4, 0.6), plan.rng)
-        shift = (n - (count - 1) / 2) * 0.95
-        plan.add(plan.at_wall(model, wall, along + shift, z_m))
+        plan.add(plan.behind(below, model, z_m, (n - (count - 1) / 2) * 0.95))
 
 
 def picture_anywhere(plan: Plan) -> None:

@@ -89,7 +89,7 @@ def furnish_bed(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     """
     rng = plan.rng
     width = float(rng.choice([1.4, 1.6, 1.8]))
-    walls = tuple(int(wall) for wall in rng.permutation(4))
+    walls = shuffled_walls(plan)
     bed = plan.add_at_walls(
         seating.bed(width, style.wood, style.cloth), walls, along=(0.5, 0.45, 0.55), clear_m=0.5
     )
@@ -203,7 +203,7 @@ def furnish_dining(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     plan.add_upon(decor.bowl(), board, 0.1, 0.45)
     pendant_over(plan, board, style.second_cloth)
     side = storage.cabinet("sideboard", (0.46, 1.6, 0.84), 4, 1, style.wood, style.dark_wood)
-    chest = plan.add_at_walls(side, tuple(int(w) for w in rng.permutation(4)), along=(0.5,))
+    chest = plan.add_at_walls(side, shuffled_walls(plan), along=(0.5,))
     if chest:
         plan.add_upon(decor.table_lamp(style.dark_wood), chest, 0.0, 0.6)
         plan.add_upon(decor.bowl(), chest, 0.0, -0.3)
@@ -221,7 +221,7 @@ def furnish_study(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     Returns None if the desk or its chair does not fit.
     """
     rng = plan.rng
-    walls = tuple(int(wall) for wall in rng.permutation(4))
+    walls = shuffled_walls(plan)
     desk = plan.add_at_walls(
         seating.desk(rng.uniform(1.4, 1.7), style.wood, WHITE), walls, along=(0.5, 0.4, 0.6),
         clear_m=0.9,
@@ -272,19 +272,13 @@ def furnish_bathroom(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     if bath is None or basin is None or seat is None:
         return None
     glass = washing.mirror(0.7)
-    plan.add(_behind(plan, basin, glass, 1.14))
+    plan.add(plan.behind(basin, glass, 1.14))
     plan.add_at_walls(washing.washing_machine(), walls, along=(0.0, 1.0), clear_m=0.5)
     tall = storage.cabinet("bath_cabinet", (0.34, 0.4, 1.7), 1, 2, WHITE, WHITE)
     plan.add_at_walls(tall, walls, along=(0.0, 1.0), clear_m=0.4)
     plan.add_at_walls(washing.towel(style.cloth), walls, z_m=0.8)
     plan.add_in_corner(decor.waste_bin((200, 202, 204)))
     return (rug_around(basin, 0.5, 0.0, style.second_cloth),)
-
-
-def _behind(plan: Plan, item: Item, model: Model, z_m: float) -> Item:
-    """Return a model on the wall behind an item."""
-    wall = round(item.yaw_deg / 90) % 4
-    return plan.at_wall(model, wall, item.y_m if wall % 2 == 0 else item.x_m, z_m)
 
 
 def furnish_hall(plan: Plan, style: Style) -> tuple[Rug, ...] | None:

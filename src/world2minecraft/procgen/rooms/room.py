@@ -159,7 +159,14 @@ class FurnishedPlan:
 
     def layout(self) -> Layout:
         """Return the room as a layout."""
-        return room_layout(self.plan, self.holes, self.items, self.kind)
+        ground = self.plan.ground
+        return Layout(
+            floor_polygon_m=ground.polygon_m,
+            wall_height_m=ground.size_m[2],
+            openings=tuple(hole.opening(ground) for hole in self.holes),
+            objects=tuple(layout_object(item) for item in self.items),
+            name=self.kind,
+        )
 
 
 def furnish_plan(
@@ -213,17 +220,6 @@ def _paint(made: FurnishedPlan) -> voxels.Canvas:
     for number, item in enumerate(made.items, start=1):
         voxels.paint_item(canvas, item, number, plan.rng)
     return canvas
-
-
-def room_layout(plan: Plan, holes: tuple[Hole, ...], items: list[Item], name: str = "") -> Layout:
-    """Return the layout of a furnished plan, in the frame of the plan."""
-    return Layout(
-        floor_polygon_m=plan.ground.polygon_m,
-        wall_height_m=plan.size_m[2],
-        openings=tuple(hole.opening(plan.ground) for hole in holes),
-        objects=tuple(layout_object(item) for item in items),
-        name=name,
-    )
 
 
 def layout_object(item: Item) -> LayoutObject:

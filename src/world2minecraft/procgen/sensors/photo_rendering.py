@@ -49,7 +49,7 @@ def hang_lamps(room: Room) -> np.ndarray:
 def _lamp_m(room: Room, layout: Layout) -> list[float]:
     x, y = _middle_m(layout.floor_polygon_m)
     cell = np.floor(([x, y, layout.floor_z_m] - room.origin_m) / room.voxel_m + 1e-6).astype(int)
-    i, j, k = np.clip(cell, 0, np.array(room.labels.shape) - 1)  # A room that was read may lie.
+    i, j, k = np.clip(cell, 0, np.array(room.labels.shape) - 1)  # A file may be wrong.
     column = room.labels[i, j, k:] == int(SemanticClass.CEILING)
     height = layout.wall_height_m
     if column.any():  # Under a roof the ceiling may be lower than the walls are high.

@@ -153,7 +153,7 @@ def _shot(
     to_scan: np.ndarray,
     number: int,
 ) -> Shot:
-    # The scale has a source of its own: with and without it the noise is the same.
+    # The scale has its own generator, so that the noise does not depend on it.
     scale = scale_factor(how.depth_scale_sigma, np.random.default_rng([how.seed, 4, number]))
     rng = np.random.default_rng([how.seed, 3, number])
     model, camera = find_sensor(how.sensor), how.camera

@@ -15,7 +15,7 @@ TILE, PICTURE, LEAF = int(Material.TILE), int(Material.PICTURE), int(Material.LE
 TEXT, STONE, VIEW = int(Material.TEXT), int(Material.STONE), int(Material.VIEW)
 POSTER_STEP_M = 1.5  # One poster at most on each stretch of wall of this length.
 POSTER_SHARE = 0.5
-FLOOR_SEED = 40  # Of what is no thing; those of things follow.
+FLOOR_SEED = 40  # Of surfaces without an object; the seeds of objects follow.
 
 
 @njit

@@ -42,9 +42,9 @@ def plan_walk(room: Room, moments: int, rng: np.random.Generator) -> WalkPath:
     """Plan a tour of ``moments`` positions through all rooms, starting at a random door."""
     places_m, stays = _way(room, build_navmesh(room), rng)
     steps = np.linalg.norm(np.diff(places_m, axis=0), axis=1)
-    steps[steps > JUMP_M] = 0.0  # Where no way leads one is carried, and takes no picture.
+    steps[steps > JUMP_M] = 0.0  # No pictures are taken where no path leads on.
     leave = np.cumsum(stays + np.concatenate([[0.0], steps]))
-    # A stay is time at one place: each place stands twice, when one comes and when one goes.
+    # A pause is time at one place, so each place is listed at arrival and at departure.
     times = np.column_stack([leave - stays, leave]).reshape(-1)
     wanted = (np.arange(moments) + 0.5) / moments * times[-1]
     twice = places_m.repeat(2, axis=0)
@@ -85,7 +85,7 @@ def _all_stops(room: Room, stands: NavMesh, rng: np.random.Generator) -> list[in
     here, stops = _entrance(room, stands, left, rng), []
     while left:
         away = dijkstra(stands.links, directed=False, indices=here)
-        # A room that no way leads to comes last; one is carried there.
+        # Rooms that no path leads to come last.
         away = np.where(np.isfinite(away), away, 1e6)
         n = min(left, key=lambda n: (float(away[left[n]].min()), n))
         places = left.pop(n)

@@ -30,7 +30,7 @@ TURN_LIMITS = np.radians([6.0, 100.0])
 CLASS_WORTH = np.ones(12)
 CLASS_WORTH[[int(SemanticClass.CEILING), int(SemanticClass.FLOOR)]] = 0.4, 0.6
 CLASS_WORTH[[int(SemanticClass.WALL), int(SemanticClass.WINDOW)]] = 0.8
-CLASS_WORTH[5:] = 2.0  # Furniture and things.
+CLASS_WORTH[5:] = 2.0  # Furniture and objects.
 
 
 class ViewPlanner:

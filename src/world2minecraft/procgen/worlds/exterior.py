@@ -96,18 +96,13 @@ def put_facade(canvas: WorldCanvas, house: BlockHouse, exterior: Exterior) -> No
             wall = exterior.plinth if storey == 0 and z < plinth else exterior.wall
             if z >= ground + house.height or (storey and z == ground - 1):
                 wall = exterior.post
-            _fill(canvas, skin & ~corner, z, wall)
-            _fill(canvas, corner, z, exterior.plinth if wall == exterior.plinth else exterior.post)
+            level = canvas.at(0, 0, z)[2]
+            _fill(canvas, skin & ~corner, level, wall)
+            post = exterior.plinth if wall == exterior.plinth else exterior.post
+            _fill(canvas, corner, level, post)
     for gap in house.gaps:
         if len(gap.rooms) == 1:
             _trim(canvas, gap, exterior)
-
-
-def _fill(canvas: WorldCanvas, columns: np.ndarray, z: int, block: str) -> None:
-    """Set a block at a layer of the house in columns, where nothing is."""
-    level = canvas.at(0, 0, z)[2]
-    x, y = np.nonzero(columns & (canvas.states[:, :, level] == 0))
-    canvas.set((x, y, np.full(len(x), level)), f"minecraft:{block}", UNKNOWN)
 
 
 def outward(gap: BlockGap) -> int:
@@ -198,12 +193,13 @@ def _put_slope(
             base = exterior.wood if rim else exterior.roof
             at = own & (edge == rim)
             state = f"{base}_slab[type=bottom]" if half % 2 else full_block(base)
-            _put_air(canvas, at, top, state)
+            _fill(canvas, at, top, state)
             for below in range(level, top):
-                _put_air(canvas, at & (walls | (below == top - 1)), below, full_block(base))
+                _fill(canvas, at & (walls | (below == top - 1)), below, full_block(base))
 
 
-def _put_air(canvas: WorldCanvas, columns: np.ndarray, level: int, block: str) -> None:
+def _fill(canvas: WorldCanvas, columns: np.ndarray, level: int, block: str) -> None:
+    """Set a block in the columns that have air at a layer of the canvas."""
     x, y = np.nonzero(columns & (canvas.states[:, :, level] == 0))
     canvas.set((x, y, np.full(len(x), level)), f"minecraft:{block}", UNKNOWN)
 

@@ -31,10 +31,9 @@ NUDGES = sorted(
     ((a, b) for a in range(-2, 3) for b in range(-2, 3)),
     key=lambda step: (abs(step[0]) + abs(step[1]), step),
 )
-FLAT = ("rug",)  # Families that one walks over.
 PLACES_TRIED = 24
-MAX_DROP = 2  # Blocks that a thing of a layout may stand lower than its place.
-HELD_SHARE = 0.6  # Share of the bottom or back of a thing that something must hold.
+MAX_DROP = 2  # Blocks that an item of a layout may stand lower than its place.
+HELD_SHARE = 0.6  # Share of the bottom or back of furniture that must be supported.
 HANGING = ("curtain", "curtain_sheer", "curtain_single", "shower_curtain")
 Corner = tuple[int, int, int]
 
@@ -142,7 +141,6 @@ class Furnisher:
         rng: np.random.Generator,
         *,
         above: int | None = None,
-        size_m: Sequence[float] | None = None,
     ) -> int:
         """Place one of several designs with its back to a bare wall.
 
@@ -151,14 +149,13 @@ class Furnisher:
             room: The room.
             rng: Random generator for the design, its size and its position.
             above: Number of layers above the floor, for hanging designs.
-            size_m: Size of the design in metres. The default is random.
 
         Returns:
             The instance number, or 0 if no design fits.
         """
         for name in self.rarest_first(names, rng):
             for turns in rng.permutation(4).tolist():
-                found = self.design(name, room, turns, rng, size_m)
+                found = self.design(name, room, turns, rng)
                 if found is None:
                     break
                 z = room.ground + (above or 0)
@@ -169,15 +166,7 @@ class Furnisher:
                         return placed
         return 0
 
-    def put_free(
-        self,
-        names: Sequence[str],
-        room: BlockRoom,
-        rng: np.random.Generator,
-        *,
-        size_m: Sequence[float] | None = None,
-        tries: int = PLACES_TRIED,
-    ) -> int:
+    def put_free(self, names: Sequence[str], room: BlockRoom, rng: np.random.Generator) -> int:
         """Place one of several designs on the floor, near the middle of the room if possible.
 
         Returns:
@@ -185,7 +174,7 @@ class Furnisher:
         """
         name = self.rarest_first(names, rng)[0]
         turns = int(rng.integers(4))
-        found = self.design(name, room, turns, rng, size_m)
+        found = self.design(name, room, turns, rng)
         if found is None:
             return 0
         middle = [(a + b) / 2 for a, b in zip(room.low, room.high, strict=True)]
@@ -193,7 +182,7 @@ class Furnisher:
         if most[0] < room.low[0] or most[1] < room.low[1]:
             return 0
         spots = np.stack(
-            [rng.integers(room.low[n], most[n] + 1, size=tries) for n in (0, 1)], axis=1
+            [rng.integers(room.low[n], most[n] + 1, size=PLACES_TRIED) for n in (0, 1)], axis=1
         )
         off = spots + np.array([found.size[0], found.size[2]]) / 2 - middle
         for n in np.argsort(np.hypot(*off.T), kind="stable"):

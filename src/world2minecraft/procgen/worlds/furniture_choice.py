@@ -21,7 +21,7 @@ from world2minecraft.furniture.materials import (
 from world2minecraft.furniture.template import Template
 from world2minecraft.procgen.worlds.styles import RoomLook
 
-# A thing's name in a layout -> the designs that may stand for it.
+# The designs that can represent an item of a layout, by the name of the item.
 DESIGNS: dict[str, tuple[str, ...]] = {
     "armchair": (
         "armchair", "armchair_leather", "armchair_white", "armchair_wing", "armchair_wooden_arms",
@@ -107,9 +107,9 @@ DESIGNS: dict[str, tuple[str, ...]] = {
     "washstand": ("pedestal_basin", "vanity", "sink_unit"),
     "whiteboard": ("projector_screen",),
 }  # fmt: skip
-# Things of a layout that are alike within a room, as the chairs at one table.
+# Items of a layout that look the same within a room, such as the chairs at one table.
 ALIKE = ("chair", "stool", "nightstand", "wall_cabinet", "office_chair", "counter")
-# How many of a design a room holds at most; of all others one.
+# The most of a design that a room has. The limit of all others is 1.
 MOST_A_ROOM: dict[str, int] = {
     **dict.fromkeys(DESIGNS["chair"] + DESIGNS["stool"] + DESIGNS["child_chair"], 8),
     **dict.fromkeys(DESIGNS["office_chair"] + DESIGNS["desk"], 4),
@@ -120,7 +120,7 @@ MOST_A_ROOM: dict[str, int] = {
     **dict.fromkeys(DESIGNS["armchair"] + DESIGNS["narrow_bed"] + DESIGNS["kitchen_table"], 2),
     **dict.fromkeys(("crate", "box", "hanging_plant", "washing_machine", "planter_box"), 2),
 }
-# Groups of which a room holds one thing.
+# Groups of designs of which a room has at most one.
 ONE_OF: tuple[tuple[str, ...], ...] = (
     ("picture", "portrait", "wall_mirror"),
     ("standing_mirror", "vanity"),

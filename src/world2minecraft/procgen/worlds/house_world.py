@@ -11,7 +11,7 @@ from world2minecraft.construction.spawn import Spawn, find_spawn
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.physics.shortest_paths import connected_parts, reachable
+from world2minecraft.minecraft.physics.shortest_paths import connected_parts
 from world2minecraft.minecraft.physics.walk_graph import WalkGraph, walk_graph
 from world2minecraft.procgen.houses.house import check_house
 from world2minecraft.procgen.houses.room_furnishing import furnish_cells
@@ -54,28 +54,6 @@ LEVEL = 0.5  # Blocks: carpets lie on a floor, slabs stand on it.
 BLOCKS_PER_METRE = 25 / 6
 SCALES = (2.0, 6.0)  # Blocks per metre that the library's designs are made for in blocks.
 DAWN, DUSK = 7, 18  # Before and after, rooms are lit by more lamps.
-
-
-def count_reachable_floor(
-    volume: BlockVolume, house: BlockHouse, spawn: tuple[float, float, float]
-) -> list[tuple[int, int]]:
-    """Count the reachable places and all places on the floor of each room.
-
-    Args:
-        volume: The blocks of the house.
-        house: The plan of the house.
-        spawn: Start position of the feet in world block coordinates. The walk starts at the nearest
-            place where a person fits.
-
-    Returns:
-        A pair (reachable places, all places) for each room.
-    """
-    graph = walk_graph(volume)
-    if not len(graph):
-        return [(0, 0)] * len(house.rooms)
-    found = reachable(graph, graph.nearest(spawn))
-    floors = [floor_places(graph, house, room) for room in house.rooms]
-    return [(int((found & floor).sum()), int(floor.sum())) for floor in floors]
 
 
 def find_walkable_spawn(volume: BlockVolume, house: BlockHouse) -> Spawn:

@@ -119,7 +119,7 @@ SMALL_DESIGNS: dict[str, tuple[str, ...]] = {  # What is put on the tables and c
 SMALL_SHARE = 0.45  # Of the low tables and cupboards.
 PICTURE_SHARE = 0.6  # Of the rooms.
 CARRIERS = (int(SemanticClass.TABLE), int(SemanticClass.FURN))
-LOW_M = 1.3  # One sees what stands on a cupboard as high as this.
+LOW_M = 1.3  # What stands on a cupboard up to this height is visible.
 SHELVES = {  # How many shelves hang in a room at most.
     "living": 2, "bed": 1, "children": 2, "office": 2, "study": 2, "dining": 1, "kitchen": 1,
     "hall": 2, "library": 1, "games": 1, "music": 1,

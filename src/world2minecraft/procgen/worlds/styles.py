@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 WET = ("bathroom", "kitchen", "laundry")
-CALM, CALM_SHARE = 2, 0.7  # Most rooms have calm walls, so that furniture is what one sees.
+CALM = 2  # The first walls of a style are calm, so that the furniture stands out.
 ACCENT_SHARE = 0.35  # Share of rooms with one accent wall, where the style has one.
 NEUTRALS = ("white", "light_gray", "gray", "black", "brown")  # Dyes that go with all others.
 COLOURS = (  # Other dyes. None starts with the name of another one before it.

@@ -17,6 +17,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.minecraft.block_states import known_blocks
+from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.procgen.worlds.block_house import BlockRoom
 from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
 from world2minecraft.procgen.worlds.shell import FACINGS
@@ -25,6 +26,7 @@ from world2minecraft.procgen.worlds.styles import NEUTRALS, colour_of
 MOUNTS = ("board", "tall", "soil", "wall", "hanging", "water", "bed")
 HOME = "home"
 DEALS_TRIED = 12
+MIN_RACK = 4  # Blocks.
 FURN, OBJS = int(SemanticClass.FURN), int(SemanticClass.OBJS)
 WALL = int(SemanticClass.WALL)
 Corner = tuple[int, int, int]
@@ -138,7 +140,6 @@ class StandBuilder:
         boards: Sequence[int],
         board: str,
         *,
-        least: int = 4,
         most: int = 99,
         home: bool = False,
     ) -> int:
@@ -148,8 +149,7 @@ class StandBuilder:
             room: The room.
             boards: Layers of the boards above the floor.
             board: Material of the boards: a block that has a slab, such as ``oak``.
-            least: Minimum length in blocks.
-            most: Maximum length in blocks.
+            most: Maximum length in blocks. The minimum is ``MIN_RACK``.
             home: Whether the wares are those of homes, in the colours of the room.
 
         Returns:
@@ -157,7 +157,7 @@ class StandBuilder:
         """
         if not boards:  # At two blocks a metre a room is too low for some.
             return 0
-        found = self._longest_wall(room, (boards[0], boards[-1] + 2), least)
+        found = self._longest_wall(room, (boards[0], boards[-1] + 2))
         if found is None:
             return 0
         cells, turns = found
@@ -165,7 +165,7 @@ class StandBuilder:
         columns = np.array(cells[start : start + most])
         if boards[0] < self.furnisher.ways.head:
             if not self.furnisher.ways.stay(room, columns):
-                columns = columns[: max(least, len(columns) // 2)]
+                columns = columns[: max(MIN_RACK, len(columns) // 2)]
                 if not self.furnisher.ways.stay(room, columns):
                     return 0
             self.furnisher.ways.take(room, columns)
@@ -377,7 +377,7 @@ class StandBuilder:
         return held
 
     def _longest_wall(
-        self, room: BlockRoom, layers: tuple[int, int], least: int
+        self, room: BlockRoom, layers: tuple[int, int]
     ) -> tuple[list[tuple[int, int]], int] | None:
         """Return the columns of the longest free stretch of bare wall, and its direction."""
         best: tuple[list[tuple[int, int]], int] | None = None
@@ -387,7 +387,7 @@ class StandBuilder:
                 if column is not None and self._is_bare(column, room, turns, layers):
                     run.append(column)
                     continue
-                if len(run) >= least and (best is None or len(run) > len(best[0])):
+                if len(run) >= MIN_RACK and (best is None or len(run) > len(best[0])):
                     best = (run, turns)
                 run = []
         return best
@@ -422,8 +422,6 @@ class StandBuilder:
 
     def _is_top(self, cell: Corner) -> bool:
         """Return whether a block has a full top face."""
-        from world2minecraft.minecraft.collision_shapes import boxes_of  # noqa: PLC0415
-
         boxes = boxes_of(self.canvas.palette[int(self.canvas.states[cell])])
         whole = (boxes[:, 3] - boxes[:, 0] > 0.99) & (boxes[:, 5] - boxes[:, 2] > 0.99)
         return bool((whole & (boxes[:, 4] > 0.99)).any())

@@ -11,7 +11,7 @@ from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.formats.layout import write_layouts
 from world2minecraft.formats.world_labels import scene_from_volume, write_scene
-from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
+from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
 from world2minecraft.procgen.worlds.block_house import BlockGap, BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.furnishing import PlacedFurniture
@@ -69,9 +69,7 @@ def _object(thing: PlacedFurniture, scale: float) -> LayoutObject:
     return LayoutObject(thing.class_id, (low + high) / 2, size, yaw, thing.design)
 
 
-def write_house(
-    made: HouseWorld, folder: str | Path, *, name: str, mc_version: str = DEFAULT_VERSION
-) -> None:
+def write_house(made: HouseWorld, folder: str | Path, *, name: str) -> None:
     """Write the world, scene, designs, layout and description of a house to a folder.
 
     The folder contains ``world/``, ``scene.json``, ``scene.npz``, ``designs.json``, ``layout.json``
@@ -80,9 +78,8 @@ def write_house(
 
     Raises:
         OutputError: If the folder cannot be written.
-        UnknownNameError: If the Minecraft version is unknown.
     """
-    target, version = Path(folder), game_version(mc_version)
+    target, version = Path(folder), game_version()
     spawn = made.spawn
     write_world(
         made.volume,
