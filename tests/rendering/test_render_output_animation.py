@@ -37,6 +37,12 @@ def test_frames_come_back_in_their_order(tmp_path, suffix):
     assert [one.name for one in tmp_path.iterdir()] == [path.name]
 
 
+def test_a_gif_frame_lasts_at_least_a_hundredth_of_a_second(tmp_path):
+    write(tmp_path / "a.gif", rate_hz=240.0)
+    with Image.open(tmp_path / "a.gif") as image:
+        assert image.info["duration"] == 10
+
+
 def test_the_same_frames_give_the_same_bytes(tmp_path):
     for name in ("a.gif", "b.gif"):
         write(tmp_path / name)

@@ -254,6 +254,8 @@ def test_what_is_no_csv_is_told(tmp_path):
         ('{"x": 1, "y": 2, "z": 3, "pitch": 4}', "line 1 does not contain yaw"),
         ('{"x": 1, "y": 2, "z": 3, "yaw": "north", "pitch": 4}',
          "line 1 is not a valid pose (could not convert string to float: 'north')"),
+        ('{"x": 1, "y": 2, "z": 3, "yaw": 0, "pitch": 0, "t": NaN}',
+         "line 1 is not a valid pose (t must be a finite number, got nan)"),
         ('{"x": 1, "y": 2, "z": 3, "yaw": 0, "pitch": 100}',
          "line 1 is not a valid pose (pitch must be -90 (up) to 90 (down) degrees, got 100)"),
         (json.dumps({"x": 1, "y": 2, "z": 3, "yaw": 0, "pitch": 0, "width": 1e9, "height": 4,

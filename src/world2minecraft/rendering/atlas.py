@@ -12,9 +12,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from world2minecraft.rendering.light.tone_mapping import linear_to_srgb, srgb_to_linear
-from world2minecraft.rendering.texture import Texture
+from world2minecraft.rendering.texture import SIZES_PX, Texture
 
-SIZES_PX = (16, 32, 64, 128)
 MATERIAL = ("normal x", "normal y", "roughness", "metal", "emission")
 MAX_CACHED_PX = 32  # 12 kB a texture with all its levels.
 _ROWS: WeakKeyDictionary[Texture, dict[int, tuple[np.ndarray, np.ndarray]]] = WeakKeyDictionary()

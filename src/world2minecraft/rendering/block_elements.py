@@ -10,6 +10,7 @@ rotation, lock or mirror of a model file is a single matrix.
 """
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -111,6 +112,14 @@ def face_uv(
     for _ in range(rotation_deg // 90 % 4):  # Clockwise: what was left is now up.
         rows = np.stack([rows[1], one - rows[0]])
     return np.stack([u0 * one + (u1 - u0) * rows[0], v0 * one + (v1 - v0) * rows[1]])
+
+
+@lru_cache(maxsize=1 << 14)
+def cached_face_uv(side: int, low, high, rect, rotation_deg: int) -> np.ndarray:
+    """Return ``face_uv``, read-only and cached: thousands of blocks share few boxes."""
+    uv = face_uv(side, low, high, rect, rotation_deg)
+    uv.flags.writeable = False
+    return uv
 
 
 def _rect_in_block(side: int, low, high) -> tuple[float, float, float, float]:

@@ -215,8 +215,8 @@ def _room_columns_without_doors(volume: BlockVolume) -> np.ndarray:
     """
     doors = [n for n, state in enumerate(volume.palette) if "_door[" in state]
     blocks = np.isin(volume.states, doors)
-    things = np.unique(volume.instance[blocks])
-    columns = np.any(blocks | np.isin(volume.instance, things[things > 0]), axis=1)
+    objects = np.unique(volume.instance[blocks])
+    columns = np.any(blocks | np.isin(volume.instance, objects[objects > 0]), axis=1)
     semantic = np.where(np.asarray(columns)[:, None, :], np.uint8(0), volume.semantic)
     return room_columns(semantic, volume.blocks_per_metre)
 
@@ -246,9 +246,9 @@ def room_columns(semantic: np.ndarray, blocks_per_metre: float) -> np.ndarray:
     """
     floor = floor_columns(semantic)
     named = (semantic >= SemanticClass.CHAIR) & (semantic != UNKNOWN)
-    things = named.any(axis=1) & ~_wall_columns(semantic)
+    objects = named.any(axis=1) & ~_wall_columns(semantic)
     side = 2 * int(MIN_ROOM_WIDTH_M / 2 * blocks_per_metre) + 1
-    wide = np.asarray(ndimage.binary_opening(floor | things, np.ones((side, side))), bool)
+    wide = np.asarray(ndimage.binary_opening(floor | objects, np.ones((side, side))), bool)
     parts, count = label_components(wide, corners=False)
     floors = np.bincount(parts[floor], minlength=count + 1)
     rooms = wide & (floors[parts] >= MIN_ROOM_M2 * blocks_per_metre**2)
@@ -256,7 +256,7 @@ def room_columns(semantic: np.ndarray, blocks_per_metre: float) -> np.ndarray:
 
 
 def _beyond_floor(floor: np.ndarray, axis: int, side: int) -> np.ndarray:
-    """Tell which columns [X, Z] lie past the last floor of their row, towards ``side``."""
+    """Return the columns, bool [X, Z], past the last floor of their row, towards ``side``."""
     rows = np.moveaxis(floor, axis, 0)
     rows = rows[::-1] if side > 0 else rows
     beyond = ~np.logical_or.accumulate(rows, axis=0)
@@ -271,7 +271,7 @@ def _beyond_floor(floor: np.ndarray, axis: int, side: int) -> np.ndarray:
 
 
 def _floor_on_both_sides(floor: np.ndarray, axis: int, reach: int) -> np.ndarray:
-    """Tell which columns [X, Z] have floor within reach on either side along an axis."""
+    """Return the columns, bool [X, Z], with floor within reach on either side along an axis."""
     sides = []
     for step in (-1, 1):
         near = np.zeros_like(floor)

@@ -236,7 +236,7 @@ def _add_box(space, bounds, i, j, k):
 
 @njit
 def _is_layer_free(space, box, face):
-    """Tell whether the layer of cells before a face of a box is air within the grid."""
+    """Return whether the layer of cells before a face of a box is air within the grid."""
     axis = face % 3
     low, high = box[:3].copy(), box[3:].copy()
     if face > 2:

@@ -33,7 +33,7 @@ class Card:
 
     title: str
     note: str
-    volumes: Mapping[str, BlockVolume]  # label, such as "1 block/m", to the thing
+    volumes: Mapping[str, BlockVolume]  # label, such as "1 block/m", to the object
 
 
 def contact_sheet(groups: Mapping[str, Sequence[Card]], columns: int = COLUMNS) -> np.ndarray:
@@ -94,7 +94,7 @@ def _plain(text: str) -> str:
 
 
 def _axes() -> tuple[np.ndarray, np.ndarray]:
-    """Return the way from the thing to the eye, and the picture's axes in the room, [2, 3]."""
+    """Return the direction from the object to the eye, and the image axes in the room, [2, 3]."""
     up, turn = np.radians(ELEVATION_DEG), np.radians(TURN_DEG)
     toward = np.array([np.cos(up) * np.cos(turn), -np.cos(up) * np.sin(turn), np.sin(up)])
     pose = look_at(toward, np.zeros(3))
@@ -137,7 +137,7 @@ def object_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
 def sheet_png(page: np.ndarray) -> bytes:
     """Encode a page, uint8 [H, W, 3], as a PNG with 256 colours to reduce its size."""
     stream = io.BytesIO()
-    method = Image.Quantize.MAXCOVERAGE  # Small things keep their colours, off by 22 at most.
+    method = Image.Quantize.MAXCOVERAGE  # Small objects keep their colours, off by 22 at most.
     few = Image.fromarray(page).quantize(256, method, kmeans=3, dither=Image.Dither.NONE)
     few.save(stream, "PNG", optimize=True)
     return stream.getvalue()

@@ -17,7 +17,7 @@ from world2minecraft.rendering.scene_baking import Baker, element_corners, is_pa
 from world2minecraft.rendering.scene_tables import ABSOLUTE, PANE, owner_of_cell
 
 MAX_DISPLAY_ENTITIES = 200_000  # A house in display style has some thousands.
-MAX_CELLS = 4_000_000  # That one thing is listed in.
+MAX_CELLS = 4_000_000  # That one element is listed in.
 MAX_MARGIN = 64  # Cells by which the grid grows on a side.
 _FLAT = 1e-9  # Blocks: a box thinner than this has no inside that a ray could enter.
 _TOUCH = 1e-6
@@ -73,8 +73,8 @@ def display_entity_elements(
             guests.append(PlacedElement(replace(element, turn=matrix), len(semantic), flags))
         semantic.append(cube.class_id)
         instance.append(cube.instance)
-    things = EntityLabels(np.array(semantic, np.uint8), np.array(instance, np.uint16))
-    return things, [guest for guest in guests if _has_volume(guest)]
+    labels = EntityLabels(np.array(semantic, np.uint8), np.array(instance, np.uint16))
+    return labels, [guest for guest in guests if _has_volume(guest)]
 
 
 def split_overhanging(

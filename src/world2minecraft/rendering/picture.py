@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.observed_free_space import observed_free_space
@@ -34,7 +35,7 @@ class Picture:
     range_m: np.ndarray  # float32 [H, W], along the ray
     block_index: np.ndarray  # int32 [H, W], C-order index into volume.states
     face: np.ndarray  # uint8 [H, W], of block axes: -x +x -y +y -z +z
-    cube_index: np.ndarray  # int32 [H, W], into the scene's things; -1 for none
+    cube_index: np.ndarray  # int32 [H, W], of the display entity, -1 for none
     colour: np.ndarray | None = None  # uint8 [H, W, 3]
     semantic: np.ndarray | None = None  # uint8 [H, W]
     instance: np.ndarray | None = None  # uint16 [H, W]
@@ -165,6 +166,17 @@ def picture_of(arrays: PixelArrays, outputs: Collection[str]) -> Picture:
         opaque_cube_index=arrays.opaque_thing if opaque else None,
         normal=arrays.normal if "normal" in outputs else None,
     )
+
+
+def visible_furniture(picture: Picture) -> float:
+    """Return the sum over all objects of the square root of their visible pixels.
+
+    The picture needs the outputs ``semantic`` and ``instance``.
+    """
+    if picture.instance is None or picture.semantic is None:
+        return 0.0
+    is_object = picture.semantic >= SemanticClass.CHAIR
+    return float(np.sqrt(np.bincount(picture.instance[is_object].astype(np.int64))).sum())
 
 
 def _mean_of_squares(colour: np.ndarray, samples: int) -> np.ndarray:

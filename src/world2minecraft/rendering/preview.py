@@ -16,7 +16,13 @@ from world2minecraft.rendering.cutaway import (
     without_near_walls,
     without_partitions,
 )
-from world2minecraft.rendering.picture import MAX_PIXELS, Picture, render_parallel, render_volume
+from world2minecraft.rendering.picture import (
+    MAX_PIXELS,
+    Picture,
+    render_parallel,
+    render_volume,
+    visible_furniture,
+)
 from world2minecraft.rendering.plain_models import PlainModels
 from world2minecraft.rendering.scene import prepare_scene
 from world2minecraft.rendering.shading_parameters import BACKDROP, NEUTRAL
@@ -116,10 +122,7 @@ def _visible_furniture(opened: BlockVolume, near_x: int, near_z: int) -> float:
     camera, pose = dollhouse_camera(cut, near_x, near_z, SCOUT_PX, SCOUT_PX * 3 // 4)
     scene = prepare_scene(cut, PlainModels())
     picture = render_volume(scene, camera, pose, outputs=("semantic", "instance"))
-    if picture.instance is None or picture.semantic is None:
-        return 0.0
-    shown = np.bincount(picture.instance[picture.semantic >= 5].astype(np.int64))
-    return float(np.sqrt(shown).sum())
+    return visible_furniture(picture)
 
 
 def dollhouse_camera(

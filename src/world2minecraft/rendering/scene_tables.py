@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Values of ``space`` that are no air.
+# Values of ``space`` for cells that are not air.
 FULL, BOXES = -1, -2
 # Bits of an element's flags.
 ABSOLUTE = 1  # Coordinates are the grid's, not those of the listing cell.
@@ -21,7 +21,7 @@ UNSHADED = 4  # The same light on every side.
 JOINS = 8  # Glass and its like: no face towards a neighbour of the same look.
 EVEN = 16  # Corners are not darkened: its model has no ambient occlusion.
 PANE = 32  # Glass: where its texture has holes one sees through, and yet there is a surface.
-# Columns of ``traits``. An owner is the number of a standing thing, -1 for the cell that an element
+# Columns of ``traits``. An owner is the number of a display entity, -1 for the cell that an element
 # was met in, or -2 - n for cell n of the volume, from which it reaches out.
 TURN, FLAGS, OWNER = 0, 1, 2
 
@@ -54,7 +54,7 @@ class SceneTables(NamedTuple):
     window: np.ndarray  # int64 [2, 3]: the volume's first cell in this grid, and its shape
     semantic: np.ndarray  # uint8 [N]: class of each cell of the volume
     instance: np.ndarray  # uint16 [N]: object of each cell
-    thing_semantic: np.ndarray  # uint8 [S]: class of each standing thing
+    thing_semantic: np.ndarray  # uint8 [S]: class of each display entity
     thing_instance: np.ndarray  # uint16 [S]
 
 

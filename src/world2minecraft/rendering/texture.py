@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+SIZES_PX = (16, 32, 64, 128)  # The sides of the textures in an atlas.
 MAX_SIDE_PX = 1024  # A side; larger ones are a mistake or a trap.
 
 

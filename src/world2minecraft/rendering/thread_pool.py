@@ -13,9 +13,9 @@ from typing import TypeVar
 
 Item = TypeVar("Item")
 
-MAX_THREADS = 512  # They are started one by one, as works wait for them.
+MAX_THREADS = 512  # A thread starts only when work is waiting for it.
 _lock = Lock()
-_running: list[ThreadPoolExecutor] = []  # None or one.
+_running: list[ThreadPoolExecutor] = []  # At most one.
 
 
 def run_parallel(work: Callable[[Item], object], items: Sequence[Item]) -> None:

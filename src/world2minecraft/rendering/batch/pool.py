@@ -92,7 +92,7 @@ class SlotRing:
 
 
 def pictures_of(reply: Reply, ring: SlotRing, block: SharedArrays) -> list[tuple[int, Any]]:
-    """Yield the results of a task, or copies of its images, each with its number."""
+    """Return the results of a task, or copies of its images, each with its number."""
     if reply.made is not None:
         return list(enumerate(reply.made, reply.first))
     task = ring.taken[reply.first]

@@ -25,7 +25,7 @@ from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.shading_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.views.cameras import Shot
 
-Thing = TypeVar("Thing")
+Item = TypeVar("Item")
 Made = TypeVar("Made")
 
 SPARE = 2  # Items that may wait, besides those in progress.
@@ -35,7 +35,7 @@ Write = Callable[[int, Shot, Picture], Any]
 MAX_WRITERS = 256
 
 
-def prefetch(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, None, None]:
+def prefetch(items: Iterator[Item], most: int = SPARE) -> Generator[Item, None, None]:
     """Yield the items of an iterable, which a thread reads up to ``most`` items ahead.
 
     If the consumer stops early, the thread ends after its current item, and the iterator is closed.
@@ -52,8 +52,8 @@ def prefetch(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, Non
     def take() -> None:
         """Queue the items, then the end or the error of the iterator."""
         try:
-            for thing in things:
-                put("thing", thing)
+            for item in items:
+                put("item", item)
                 if stop.is_set():
                     break
             put("end", None)
@@ -61,7 +61,7 @@ def prefetch(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, Non
             put("error", error)
         finally:
             with suppress(Exception):
-                getattr(things, "close", lambda: None)()
+                getattr(items, "close", lambda: None)()
 
     thread = Thread(target=take, name="world2minecraft-ahead", daemon=True)
     thread.start()
@@ -81,12 +81,12 @@ def prefetch(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, Non
 
 
 def ordered_map(
-    things: Iterator[Thing], work: Callable[[Thing], Made], threads: int, most: int
+    items: Iterator[Item], work: Callable[[Item], Made], threads: int, most: int
 ) -> Generator[Made, None, None]:
     """Yield the results of ``work`` for all items, in order, computed by threads.
 
     Args:
-        things: Items, which are read in the caller's thread.
+        items: Items, which are read in the caller's thread.
         work: Function, called on one of the threads.
         threads: Number of threads.
         most: Maximum number of items in progress or waiting.
@@ -96,8 +96,8 @@ def ordered_map(
     waiting: deque[Future[Made]] = deque()
     with ThreadPoolExecutor(threads, "world2minecraft-write") as executor:
         try:
-            for thing in things:
-                waiting.append(executor.submit(work, thing))
+            for item in items:
+                waiting.append(executor.submit(work, item))
                 _raise_first(waiting)
                 while waiting and (len(waiting) >= most or waiting[0].done()):
                     yield waiting.popleft().result()

@@ -33,7 +33,7 @@ from world2minecraft.rendering.block_elements import (
     BlockModel,
     Element,
     ElementFace,
-    face_uv,
+    cached_face_uv,
 )
 from world2minecraft.rendering.block_models.face_pictures import has_texture
 from world2minecraft.rendering.block_models.rules import ModelRule, rule_for
@@ -229,16 +229,8 @@ def _face(side: int, low, high, part: Mapping[str, Any], dress: PartContext) -> 
         words = PLAIN  # A property of a mod's block has a value that the rule does not foresee.
     place = _value_for_face(part.get("uv", "place"), name) or "place"
     rect = None if place == "place" else WHOLE if place == "fit" else tuple(place)
-    matrix = _matrix(side, low, high, rect, part.get("spin", {}).get(name, 0))
+    matrix = cached_face_uv(side, low, high, rect, part.get("spin", {}).get(name, 0))
     return ElementFace(_recipe(words, dress.name), matrix)
-
-
-@lru_cache(maxsize=1 << 14)
-def _matrix(side: int, low, high, rect, rotation_deg: int) -> np.ndarray:
-    """Return ``face_uv``, read-only: many states share a box."""
-    matrix = face_uv(side, low, high, rect, rotation_deg)
-    matrix.flags.writeable = False
-    return matrix
 
 
 @lru_cache(maxsize=1 << 14)

@@ -167,7 +167,7 @@ def renderer_for(
 
 
 def _has_card() -> bool:
-    """Tell whether there is a graphics card, and wgpu to use it."""
+    """Return whether there is a graphics card, and wgpu to use it."""
     if sys.platform == "linux" and not _shows_card(Path("/dev")):
         return False
     try:

@@ -40,7 +40,7 @@ def plan_submissions(
 ) -> SubmissionPlan:
     """Divide images so that a submission fits into ``most_bytes``, with at least one row.
 
-    ``load_pictures`` is the number of images, or None if it is unknown.
+    ``pictures`` is the number of images, or None if it is unknown.
     """
     height, width = ask.size
     row_words = width * ask.layout.planes

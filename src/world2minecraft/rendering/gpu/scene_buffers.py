@@ -36,7 +36,7 @@ class PackedScene:
     light: np.ndarray  # uint32, two entries of the lattice a word
     tables: np.ndarray  # uint32
     texels: np.ndarray  # uint32 [L * M]: red lowest, alpha highest
-    labels: np.ndarray  # uint32 [N + S]: class, and instance from bit 16 on; cells, then things
+    labels: np.ndarray  # uint32 [N + S]: class, instance from bit 16; cells, then entities
     offsets: dict[str, int]
 
     @property

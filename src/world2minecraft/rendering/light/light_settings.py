@@ -98,15 +98,11 @@ class LightSettings:
         return SOFT_SHADE if self.soft_shade else tuple(v**SCREEN_POWER for v in GAME_SHADE)
 
     def background(self, exposure: float = 1.0) -> Background:
-        """Return the sky for the kernel, which is exposed half as much as the lit surfaces."""
+        """Return the background for the kernel, with ``exposure`` if the settings have none."""
         if self.preset == "neutral":
             greys = srgb_to_linear(np.array(NEUTRAL_SKY) / 255).reshape(-1)
             return Background._make([*greys.tolist(), 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
-        sky = self.sky
-        exposure = exposure if self.exposure is None else self.exposure
-        ground = 0.5 * np.array(sky.horizon)
-        colours = np.array([sky.zenith, sky.horizon, ground, sky.sun]) * exposure**0.5
-        return Background._make([*colours.reshape(-1).tolist(), *sky.sun_direction])
+        return self.sky.background(exposure if self.exposure is None else self.exposure)
 
 
 def mix(first: Sequence[float], second: Sequence[float], share: float) -> np.ndarray:

@@ -97,6 +97,12 @@ class Sky:
     horizon: tuple[float, float, float]
     sun_direction: tuple[float, float, float]  # unit, block axes: x east, y up, z south
 
+    def background(self, exposure: float = 1.0) -> Background:
+        """Return the sky for the kernel, which is exposed half as much as the lit surfaces."""
+        ground = 0.5 * np.array(self.horizon)
+        colours = np.array([self.zenith, self.horizon, ground, self.sun]) * exposure**0.5
+        return Background._make([*colours.reshape(-1).tolist(), *self.sun_direction])
+
 
 def sky_at(hour: float) -> Sky:
     """Return the sky at an hour of the day, 0 to 24. The sun rises in the east at 6.

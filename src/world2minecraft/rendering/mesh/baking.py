@@ -39,7 +39,6 @@ from world2minecraft.rendering.scene_tables import ABSOLUTE, FULL
 ALONG = np.array([[1, 2], [1, 2], [0, 2], [0, 2], [0, 1], [0, 1]])
 # Bits 0 to 3: the walls near an eye that stands towards (block x, block z) of these signs.
 CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))
-CEILING, PARTITIONS = 1 << 4, 1 << 5
 _NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyond it.
 OPEN = np.array([60, 0, 0], np.uint8)  # Daylight and free corners: faces that a cut lays bare.
 NO_STATE = NO_COVER = 65_535
@@ -103,13 +102,13 @@ def cut_bits(volume: BlockVolume) -> tuple[np.ndarray, np.ndarray]:
     ways = [without_near_walls(volume, *corner) if has_floor else volume for corner in CORNERS]
     ways += [without_ceiling(volume), without_partitions(volume)]
     blocks = np.zeros(volume.states.shape, np.uint8)
-    things = np.zeros(len(display_cubes(volume.entities)), np.uint8)
+    entities = np.zeros(len(display_cubes(volume.entities)), np.uint8)
     for bit, cut in enumerate(ways):
         blocks |= ((cut.states != volume.states).astype(np.uint8)) << bit
         kept = {id(entity) for entity in cut.entities}
         gone = [id(one) not in kept for one in volume.entities if display_cubes((one,))]
-        things |= np.array(gone, np.uint8) << bit
-    return blocks, things
+        entities |= np.array(gone, np.uint8) << bit
+    return blocks, entities
 
 
 def sample_lattice(
@@ -219,9 +218,9 @@ def mesh_of(
         for rows in numbers
     ]
     parts = _of_blocks(volume, models, baker.looks, templates, cuts, lattice)
-    things = display_cubes(volume.entities)
+    cubes = display_cubes(volume.entities)
     for guest, number in free:
-        cube = things[guest.owner]
+        cube = cubes[guest.owner]
         facts = (NO_STATE, cube.class_id, cube.instance, thing_cuts[guest.owner])
         parts.append(
             _with_light(_place_freestanding(quads_of(number, guest.element, table), facts), lattice)

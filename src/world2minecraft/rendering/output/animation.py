@@ -105,7 +105,7 @@ def _save(held: list[np.ndarray], draft: Path, kind: str, rate_hz: float) -> Non
         images = _with_shared_palette(images)
     first, rest = images[0], images[1:]
     options = {
-        "GIF": {"duration": round(100 / rate_hz) * 10, "optimize": False, "disposal": 1},
+        "GIF": {"duration": max(round(100 / rate_hz), 1) * 10, "optimize": False, "disposal": 1},
         "PNG": {"duration": 1000 / rate_hz, "default_image": False},
         "WEBP": {"duration": round(1000 / rate_hz), "quality": WEBP_QUALITY, "method": 4},
     }[kind]
@@ -124,7 +124,7 @@ def _with_shared_palette(images: list[Image.Image]) -> list[Image.Image]:
 
 @contextmanager
 def _atomic_file(target: Path) -> Iterator[Path]:
-    """Give a file beside the target, which becomes the target when the block ends well."""
+    """Yield a temporary file that replaces the target if the block ends without an error."""
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         folder = tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}.")
@@ -142,7 +142,7 @@ def _atomic_file(target: Path) -> Iterator[Path]:
 
 @contextmanager
 def _ffmpeg(draft: Path, suffix: str, rate_hz: float, target: Path) -> Iterator[FrameWriter]:
-    """Run ffmpeg for a block, which is given what sends it frames."""
+    """Run ffmpeg for a block, and yield the function that sends it a frame."""
     program = ffmpeg_program()
     running: list[subprocess.Popen[bytes]] = []
     with tempfile.TemporaryFile() as messages:

@@ -37,8 +37,8 @@ class Emitters(NamedTuple):
     """L luminous boxes. ``b`` indexes the three pairs of faces: -x +x, -y +y, -z +z."""
 
     row_of_cell: np.ndarray  # int32 [X, Y, Z]: the first of a cell's rows, -1 for none
-    row_of_element: np.ndarray  # int32 [E]: of standing things, -1 for none
-    cell: np.ndarray  # int64 [L]: flat cell, -1 of standing things
+    row_of_element: np.ndarray  # int32 [E]: of display entities, -1 for none
+    cell: np.ndarray  # int64 [L]: flat cell, -1 of display entities
     element: np.ndarray  # int32 [L], -1 for one that is not seen
     corner: np.ndarray  # float64 [L, 3]
     edges: np.ndarray  # float64 [L, b, 3]
@@ -91,7 +91,7 @@ def element_levels(tables: SceneTables, material: np.ndarray) -> np.ndarray:
 
 
 def _find_emitters(scene: BlockScene, own: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return flat cells (-1 for standing things), elements (-1 for unseen) and levels of lamps.
+    """Return flat cells (-1 for display entities), elements (-1 for unseen) and levels.
 
     A cell's level is what its block gives, in the game's count, else what its elements say. All
     elements of a block shine where it gives light and none says so; a block without any, as

@@ -101,7 +101,7 @@ def irradiance(light: np.ndarray, film: Film) -> np.ndarray:
 
 
 def picture_exposure(bright: np.ndarray, film: Film, daylight: float) -> float:
-    """Return the exposure of an image, computed from its light, not from how dark its things are.
+    """Return the exposure of an image, computed from its light, not from the colours of surfaces.
 
     Args:
         bright: The result of ``irradiance``.

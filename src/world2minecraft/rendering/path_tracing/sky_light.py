@@ -44,13 +44,10 @@ def sky_light(light: LightSettings) -> SkyLight:
     if light.preset != "shader":
         raise ValueError(f"photos need the light preset 'shader', got {light.preset!r}")
     sky = light.sky
-    ground = 0.5 * np.array(sky.horizon)
-    colours = np.array([sky.zenith, sky.horizon, ground, sky.sun])
-    background = Background._make([*colours.reshape(-1).tolist(), *sky.sun_direction])
     scale = np.array(sky.shade) / _open_light(sky.zenith, sky.horizon)
     red, green, blue = (SUN * value for value in sky.sun)
     scale_r, scale_g, scale_b = (float(value) for value in scale)
-    return SkyLight(background, scale_r, scale_g, scale_b, red, green, blue, SUN_COSINE)
+    return SkyLight(sky.background(), scale_r, scale_g, scale_b, red, green, blue, SUN_COSINE)
 
 
 def uniform_sky(red: float, green: float, blue: float) -> SkyLight:

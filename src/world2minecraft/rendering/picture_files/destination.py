@@ -127,10 +127,8 @@ class Writer:
 
         return write
 
-    def colour(self, shot: Shot, colour: np.ndarray | None) -> None:
-        """Write an image that only has colour."""
-        if colour is None:
-            raise ValueError("the image has no colour; request the output 'colour'")
+    def colour(self, shot: Shot, colour: np.ndarray) -> None:
+        """Write an image that only has colour, uint8 [H, W, 3]."""
         if self._moving is not None:
             self._moving(colour)
             self._line(shot, {"rgb": self.target.path.name})

@@ -9,17 +9,17 @@ from world2minecraft.rendering import DAY, BlockScene, LightSettings, Picture
 from world2minecraft.rendering.block_elements import ModelSource, ModelSourceStack
 from world2minecraft.rendering.block_models import BuiltinModels, stand_ins
 from world2minecraft.rendering.path_tracing import emitters_of, render_photo
+from world2minecraft.rendering.path_tracing.photo import MAX_SAMPLES as MAX_PHOTO_SAMPLES
 from world2minecraft.rendering.picture_files.shot_selection import Kind, Medium
 from world2minecraft.rendering.presentation.shot_rendering import DrawOptions, draw_shots
 from world2minecraft.rendering.resource_packs import ResourcePackModels
 from world2minecraft.rendering.shading_parameters import BACKDROP
+from world2minecraft.rendering.texture import SIZES_PX
 from world2minecraft.rendering.views import Shot
 
-TEXTURES_PX = (16, 32, 64, 128)
 MAX_SAMPLES = 4
 MAX_JOBS = 256
 DEVICES = ("auto", "cpu", "gpu")
-MAX_PHOTO_SAMPLES = 4096
 STILL_SAMPLES = 2
 OWN_PX = 16  # As in the game.
 
@@ -46,11 +46,8 @@ class Looks:
                 f"{len(marked)} of {len(palette)} block states ({share:.1%}) have no model "
                 f"and are rendered as plain boxes: {names}{more}"
             )
-        if self.packs is not None and self.packs.problem_count:
-            notes.append(
-                f"{self.packs.problem_count} problems in the resource packs, first: "
-                f"{self.packs.problems[0]}"
-            )
+        if self.packs is not None and self.packs.summary:
+            notes.append(self.packs.summary)
         return notes
 
 
@@ -79,7 +76,7 @@ class DrawSettings:
     def __post_init__(self):
         if self.samples is not None and not 1 <= self.samples <= MAX_SAMPLES:
             raise UsageError(f"samples must be 1 to {MAX_SAMPLES}, got {self.samples}")
-        if self.texture_px is not None and self.texture_px not in TEXTURES_PX:
+        if self.texture_px is not None and self.texture_px not in SIZES_PX:
             raise UsageError(f"the texture size must be 16, 32, 64 or 128, got {self.texture_px}")
         if not 1 <= self.photo_samples <= MAX_PHOTO_SAMPLES:
             raise UsageError(
@@ -186,10 +183,5 @@ def _photos(
         except ValueError as error:
             raise UsageError(f"photo: {error}") from error
         step(settings.photo_samples - reported)
-        light = replace(light, exposure=clamp_exposure(picture.exposure))
+        light = replace(light, exposure=min(max(picture.exposure, 0.01), 100.0))
         yield picture
-
-
-def clamp_exposure(exposure: float) -> float:
-    """Return an exposure clipped to the valid range."""
-    return min(max(exposure, 0.01), 100.0)

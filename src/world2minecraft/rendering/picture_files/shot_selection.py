@@ -28,6 +28,7 @@ ORBIT_FOV_DEG = 40.0  # For views from outside; less distortion than the game's.
 TURN_S = 5.0  # Duration of an animated orbit or turntable, in seconds.
 FOLDER_TURN, FOLDER_TOUR = 36, 24  # Pictures in a folder.
 MAX_FRAMES = 1_000_000
+MAX_STEP_M = 0.25  # Between the frames of an animation: more looks like jumps.
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class CameraChoice:
                 "the vertical and the horizontal field of view (--vfov, --hfov) cannot be "
                 "combined; give only one of them"
             )
-        self.camera(70.0)  # Raises where a value is out of range.
+        self.camera(GAME_FOV_DEG)  # Raises where a value is out of range.
 
     @property
     def fov_given(self) -> bool:
@@ -61,9 +62,6 @@ class CameraChoice:
             vertical_fov_deg=vertical,
             horizontal_fov_deg=self.horizontal_fov_deg,
         )
-
-
-MAX_STEP_M = 0.25  # Between the frames of a moving picture: more looks like jumps.
 
 
 @dataclass(frozen=True)

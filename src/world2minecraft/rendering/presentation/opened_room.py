@@ -14,6 +14,7 @@ from world2minecraft.rendering.cutaway import (
     without_near_walls,
     without_partitions,
 )
+from world2minecraft.rendering.picture import visible_furniture
 from world2minecraft.rendering.plain_models import PlainModels
 from world2minecraft.rendering.presentation.shot_rendering import DrawOptions, draw_shots
 from world2minecraft.rendering.scene import prepare_scene
@@ -58,11 +59,7 @@ class OpenedBuild:
         ]
         scene = prepare_scene(self.seen_by(shot.camera_to_room), PlainModels())
         options = DrawOptions(outputs=("semantic", "instance"))
-        picture = next(draw_shots(scene, [shot], options))
-        if picture.instance is None or picture.semantic is None:
-            return 0.0
-        is_object = picture.semantic >= SemanticClass.CHAIR
-        return float(np.sqrt(np.bincount(picture.instance[is_object].astype(np.int64))).sum())
+        return visible_furniture(next(draw_shots(scene, [shot], options)))
 
     def seen_by(self, camera_to_room: np.ndarray) -> BlockVolume:
         """Return the volume for a camera outside, with the walls on its side cut down to a rim.

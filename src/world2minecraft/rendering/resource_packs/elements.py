@@ -18,6 +18,7 @@ from world2minecraft.rendering.block_elements import (
     FACE_NAMES,
     Element,
     ElementFace,
+    cached_face_uv,
     face_uv,
 )
 from world2minecraft.rendering.resource_packs.json_validation import (
@@ -231,17 +232,9 @@ def _face(side: int, raw: Any, box, texture_of, tint_of) -> ElementFace:
     index = int(as_number(face.get("tintindex", -1), "tintindex"))
     return ElementFace(
         texture_of(as_text(face.get("texture"), "texture of a face")),
-        _uv(side, box[0], box[1], rect, rotation),
+        cached_face_uv(side, box[0], box[1], rect, rotation),
         tint_of(index) if index >= 0 else None,
     )
-
-
-@lru_cache(maxsize=1 << 14)
-def _uv(side: int, low, high, rect, rotation: int) -> np.ndarray:
-    """Return ``face_uv``; few boxes are those of thousands of blocks."""
-    uv = face_uv(side, low, high, rect, rotation)
-    uv.flags.writeable = False
-    return uv
 
 
 def _rotation(raw: Any) -> np.ndarray | None:

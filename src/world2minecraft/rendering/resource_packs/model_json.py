@@ -121,13 +121,12 @@ def _heaviest(entry: Any) -> ModelPart:
 class FlatModel:
     """A model merged with its parents: raw elements, and texture names by key.
 
-    ``in_code`` says that the game renders the block in code, as for chests and beds.
+    There are no elements if the game renders the block in code, as for chests and beds.
     """
 
     elements: tuple[Mapping[str, Any], ...]
     textures: Mapping[str, Any]
     ambient_occlusion: bool
-    in_code: bool
 
 
 def flatten_model(name: str, resources: PackStack) -> FlatModel:
@@ -151,9 +150,9 @@ def flatten_model(name: str, resources: PackStack) -> FlatModel:
         if "loader" in model:
             raise ValueError(f"model {name} uses a mod's own format, which is not supported")
     if not elements:
-        return FlatModel((), textures, True, in_code=True)
+        return FlatModel((), textures, True)
     boxes = [as_object(one, "an element") for one in as_list(elements, "elements", MAX_ELEMENTS)]
-    return FlatModel(tuple(boxes), textures, occlusion is not False, in_code=False)
+    return FlatModel(tuple(boxes), textures, occlusion is not False)
 
 
 def _chain(name: str, resources: PackStack) -> list[dict[str, Any]]:

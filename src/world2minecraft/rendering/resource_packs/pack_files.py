@@ -166,7 +166,7 @@ def _at_its_root(files: PackFiles, source: Path) -> PackFiles:
 
 
 def _hint(source: Path, inner: list[str]) -> str:
-    """Return what the thing seems to be instead, for the message."""
+    """Return what the path seems to be instead, for the message."""
     if inner:
         return f", but contains one: use {source / inner[0]}"
     if not source.is_dir():

@@ -93,8 +93,8 @@ class ResourcePackModels:
         if not self.problem_count:
             return ""
         first, count = self._resources.problems[0], self.problem_count
-        things = "1 problem" if count == 1 else f"{count} problems"
-        return f"{things} in the resource packs, first: {first}"
+        problems = "1 problem" if count == 1 else f"{count} problems"
+        return f"{problems} in the resource packs, first: {first}"
 
     @property
     def texture_px(self) -> int:
@@ -178,6 +178,6 @@ def _shining(model: BlockModel) -> BlockModel:
 
 
 def _texture_name(face: str, textures: Mapping[str, object], ending: str) -> str:
-    """Return the name of a face's texture, marked where the block is of clear stuff."""
+    """Return the name of a face's texture, marked if the block is of a transparent material."""
     name = texture_of(face, textures)
     return name if not ending or names_clear_material(name) else name + ending

@@ -36,7 +36,10 @@ LAVA_LIGHT = 15
 # A frame of the flowing texture is two blocks wide and high; the first quarter is one block.
 _FLOW_SCALE = 0.5
 # Endings of names that say a shape, and those of what it may be made of.
-SHAPES = ("stairs", "slab", "wall", "fence_gate", "fence", "button", "pressure_plate")
+SHAPES = (
+    *("stairs", "slab", "wall", "fence_gate", "fence", "button", "pressure_plate"),
+    *("pane", "carpet"),
+)
 MADE_OF = ("", "s", "_planks", "_block", "_block_side")
 OTHER_ENDINGS = {"_wood": "_log", "_hyphae": "_stem", "_carpet": "_wool", "_block": ""}
 COVERS = ("waxed_", "infested_")  # Prefixes of blocks that look the same without them.
@@ -51,7 +54,10 @@ BOXES = (
     *("cactus", "snow", "whole blocks that one sinks into"),
 )
 CROSSES = ("sapling", "flower", "tuft", "mushroom", "tall plant", "cobweb", "stalk")
-FACINGS = {"up": (270, 0), "down": (90, 0), "north": (0, 0), "east": (0, 90)}
+FACINGS = {
+    **{"up": (270, 0), "down": (90, 0)},
+    **{"north": (0, 0), "east": (0, 90), "south": (0, 180), "west": (0, 270)},
+}
 AXES = {"x": (90, 90), "y": (0, 0), "z": (90, 0)}
 Names = Callable[[str], str | None]  # A picture's name without its folder to the texture's, or None
 
@@ -89,10 +95,6 @@ def _face(side: int, high: tuple[float, float, float], still: str, flow: str, ti
     uv = face_uv(side, (0.0, 0.0, 0.0), high)
     flows = side not in (2, 3) and flow != still
     return ElementFace(flow if flows else still, uv * _FLOW_SCALE if flows else uv, tint)
-
-
-SHAPES += ("pane", "carpet")
-FACINGS |= {"south": (0, 180), "west": (0, 270)}
 
 
 def implied_model(

@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from world2minecraft.rendering.atlas import to_linear
+from world2minecraft.rendering.light.tone_mapping import linear_to_srgb
 from world2minecraft.rendering.resource_packs.elements import OVER, TIMES
 from world2minecraft.rendering.resource_packs.json_validation import (
     as_list,
@@ -78,18 +80,9 @@ def _tint(texture: Texture, tint: np.ndarray) -> Texture:
     if (tint == 255).all():
         return texture
     colour = texture.colour.copy()
-    product = _linear(colour[..., :3]) * _linear(tint)
-    colour[..., :3] = np.round(_srgb(product) * 255)
+    product = to_linear(colour[..., :3]) * to_linear(tint)
+    colour[..., :3] = np.round(linear_to_srgb(product) * 255)
     return replace(texture, colour=colour)
-
-
-def _linear(values: np.ndarray) -> np.ndarray:
-    share = values / 255
-    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-
-
-def _srgb(light: np.ndarray) -> np.ndarray:
-    return np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 def _blend_over(below: Texture, above: Texture) -> Texture:

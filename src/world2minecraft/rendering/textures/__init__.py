@@ -5,15 +5,11 @@ emission. ``GENERATORS`` contains all generators, ``recipe_of`` writes a recipe,
 ``texture_sheet`` shows all textures.
 """
 
+from world2minecraft.rendering.texture import SIZES_PX
 from world2minecraft.rendering.textures.catalogue import GENERATORS, GROUPS
 from world2minecraft.rendering.textures.generator import Accent, Generator
 from world2minecraft.rendering.textures.recipe import Recipe
-from world2minecraft.rendering.textures.synthesis import (
-    SIZES_PX,
-    parse_recipe,
-    recipe_of,
-    texture_of,
-)
+from world2minecraft.rendering.textures.synthesis import parse_recipe, recipe_of, texture_of
 from world2minecraft.rendering.textures.texture_sheet import texture_sheet
 
 __all__ = [

@@ -19,7 +19,7 @@ def main(words: list[str]) -> None:
         UsageError: If the arguments are not a file name and up to two numbers.
         OutputError: If the file cannot be written.
     """
-    if not 1 <= len(words) <= 3 or not all(word.isdigit() for word in words[1:]):
+    if not 1 <= len(words) <= 3 or not all(word.isdecimal() for word in words[1:]):
         raise UsageError(USAGE)
     numbers = [int(word) for word in words[1:]]
     size_px, repeat = (numbers + [16, 1][len(numbers) :])[:2]

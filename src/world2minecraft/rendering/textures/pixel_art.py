@@ -63,9 +63,9 @@ def doubled(drawn: np.ndarray) -> np.ndarray:
     return fine
 
 
-def by_letter(drawn: np.ndarray, values: Mapping[str, float], rest: float = 0.0) -> np.ndarray:
+def by_letter(drawn: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
     """Return the value assigned to each texel's letter, float64 [N, N]."""
-    result = np.full(drawn.shape, rest)
+    result = np.zeros(drawn.shape)
     for letter, value in values.items():
         result[drawn == letter] = value
     return result

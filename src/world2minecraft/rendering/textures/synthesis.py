@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.rendering.texture import Texture
+from world2minecraft.rendering.texture import SIZES_PX, Texture
 from world2minecraft.rendering.textures.canvas import canvas_of
 from world2minecraft.rendering.textures.catalogue import GENERATORS
 from world2minecraft.rendering.textures.recipe import (
@@ -15,7 +15,6 @@ from world2minecraft.rendering.textures.recipe import (
 )
 from world2minecraft.rendering.textures.texture_baking import texture_from
 
-SIZES_PX = (16, 32, 64, 128)
 MAX_CACHED = 512  # Textures; 88 MB at 128 px.
 
 

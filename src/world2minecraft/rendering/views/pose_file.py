@@ -10,6 +10,7 @@ Other keys are ignored.
 import csv
 import io
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -130,6 +131,8 @@ def _pose(row: Mapping[str, Any], number: int, source: Path) -> TourPose:
         stated = row.get("vertical_fov_deg")
         fov_deg = None if stated is None else float(stated)
         t_s = float(row.get("t", 0.0))
+        if not math.isfinite(t_s):
+            raise ValueError(f"t must be a finite number, got {t_s}")
         return TourPose(pose, t_s, _camera(row), frame, tour, scene, image, fov_deg)
     except (TypeError, ValueError, OverflowError, UsageError) as error:
         raise DamagedFileError(source, f"line {number} is not a valid pose ({error})") from error

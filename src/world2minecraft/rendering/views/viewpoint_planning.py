@@ -94,7 +94,7 @@ def _shares_m2(graph: WalkGraph) -> np.ndarray:
 
 
 def _indoors(hiding: ViewBlockers, feet: np.ndarray) -> np.ndarray:
-    """Tell which places, feet [N, 3], have a roof and see walls in nearly all directions."""
+    """Return which feet [N, 3] are under a roof with walls in nearly all directions, bool [N]."""
     result = _values_at(hiding.roofed, feet, hiding)
     roofed = np.flatnonzero(result)
     eyes = feet[roofed] + np.array([0, eye_height_blocks(hiding.blocks_per_metre), 0])

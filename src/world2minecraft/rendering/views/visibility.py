@@ -64,7 +64,7 @@ def _measures(state: str) -> tuple[float, float]:
 class ViewRays(NamedTuple):
     """The results of rays from N positions at P pitches and Y yaws, as arrays [N, P, Y]."""
 
-    far_m: np.ndarray  # float64, FAR_M where a ray meets nothing
+    far_m: np.ndarray  # float64, MAX_VIEW_M where a ray meets nothing
     cell: np.ndarray  # int64, C-order index of the cell that it ends at, -1 for none
 
 

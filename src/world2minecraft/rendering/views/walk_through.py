@@ -26,7 +26,7 @@ HEADINGS = 72  # Five degrees apart.
 PITCHES_DEG = (-4.0, 8.0, 22.0)  # Pitch angles of the rays; positive is down.
 NEAR_M, GOOD_M = 0.6, 3.2  # No view, a good view.
 SKY_WORTH = 0.1  # Value of a ray that hits nothing.
-THING_WORTH = 0.45  # More for a ray that meets furniture,
+FURNITURE_WORTH = 0.45  # More for a ray that meets furniture,
 AHEAD_WORTH = 0.22  # for looking the way one goes,
 WALL_COST = 0.8  # less for a wall before one's nose, within
 WALL_M = 1.1
@@ -63,9 +63,9 @@ def best_headings(
     """
     yaws_deg = np.arange(HEADINGS) * (360.0 / HEADINGS)
     far_m, cell = cast_view_rays(hiding, eyes, yaws_deg, np.array(PITCHES_DEG))
-    thing = (cell >= 0) & (semantic.reshape(-1)[cell] >= SemanticClass.CHAIR)
+    furniture = (cell >= 0) & (semantic.reshape(-1)[cell] >= SemanticClass.CHAIR)
     worth = np.clip((far_m - NEAR_M) / (GOOD_M - NEAR_M), 0, 1)
-    worth = np.where(cell < 0, SKY_WORTH, worth) + THING_WORTH * thing
+    worth = np.where(cell < 0, SKY_WORTH, worth) + FURNITURE_WORTH * furniture
     column = worth.mean(axis=1)  # [N, HEADINGS]
     middle_m = far_m[:, 1:].min(axis=1)
     rating = _windows(column, half_fov_deg)
@@ -228,7 +228,7 @@ def _smoothed(feet: np.ndarray, hiding: ViewBlockers, eye_blocks: float) -> np.n
 
 
 def _too_near(eyes: np.ndarray, hiding: ViewBlockers) -> np.ndarray:
-    """Tell which eyes come within a hand's breadth of a cell that hides the view."""
+    """Return which eyes are within 12 cm of a cell that hides the view, bool [N]."""
     reach = 0.12 * hiding.blocks_per_metre
     bad = np.zeros(len(eyes), bool)
     for dx in (-reach, reach):
