@@ -16,12 +16,13 @@ from world2minecraft.rendering.light import (
 )
 from world2minecraft.rendering.light.sky import sky_at, sun_direction
 from world2minecraft.rendering.light.tone_mapping import (
+    ENCODE_STEPS,
+    PALING,
+    SHOULDER,
     filmic_tone,
     linear_to_srgb,
     screen_tone,
     srgb_to_linear,
-    tone_map,
-    tone_map_picture,
 )
 
 
@@ -48,6 +49,23 @@ def glow_of(emission, params):
 @njit
 def sky_of(dx, dy, dz, background):
     return background_light(dx, dy, dz, background)
+
+
+def tone_map(light, shoulder=SHOULDER):
+    """Return linear colours compressed below 1, as the kernel should."""
+    peak = light.max(axis=-1, keepdims=True)
+    room = 1 - shoulder
+    over = np.maximum(peak - shoulder, 0)
+    pressed = np.where(over > 0, 1 - room * room / (room + over), peak)
+    scaled = light * np.where(over > 0, pressed / np.maximum(peak, 1e-12), 1)
+    pale = 1 - 1 / (1 + PALING * (peak - pressed))
+    return scaled + (pressed - scaled) * pale
+
+
+def tone_map_picture(light, tone):
+    """Return the screen colours of linear light, uint8 [..., 3], as the kernel should."""
+    pressed = tone_map(light, tone.shoulder) if tone.shoulder < 1 else light
+    return tone.encode[(np.minimum(pressed, 1) * (ENCODE_STEPS - 1) + 0.5).astype(np.int64)]
 
 
 NORMALS = np.array([(-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1)], float)

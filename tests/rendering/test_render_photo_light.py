@@ -8,18 +8,27 @@ from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering import LightSettings, prepare_scene
 from world2minecraft.rendering.block_elements import BlockModel, Element, ElementFace, face_uv
-from world2minecraft.rendering.light.sky import sun_direction
+from world2minecraft.rendering.light.sky import Background, sun_direction
 from world2minecraft.rendering.path_tracing import emitters_of
 from world2minecraft.rendering.path_tracing.film import Film, new_film
 from world2minecraft.rendering.path_tracing.light_sampling import UNSEEN_SOFT
 from world2minecraft.rendering.path_tracing.path_kernel import trace_rows
 from world2minecraft.rendering.path_tracing.scattering import PathScene, new_path
-from world2minecraft.rendering.path_tracing.sky_light import SkyLight, sky_light, uniform_sky
+from world2minecraft.rendering.path_tracing.sky_light import SUN_COSINE, SkyLight, sky_light
 from world2minecraft.rendering.ray_caster.ray import GridCamera
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.texture import Texture
 
 SMALL = Camera(32, 24, 24.0, 24.0, 16.0, 12.0)
+
+
+def uniform_sky(red, green, blue):
+    """Return a uniform sky without a sun, for white furnace tests."""
+    colour = (red, green, blue)
+    background = Background._make([*colour, *colour, *colour, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+    return SkyLight(background, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, SUN_COSINE)
+
+
 NO_SKY = uniform_sky(0.0, 0.0, 0.0)
 GREY_SRGB = 188  # 0.5 of linear light.
 GREY = ((GREY_SRGB / 255 + 0.055) / 1.055) ** 2.4

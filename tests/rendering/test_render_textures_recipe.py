@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
+from texture_table import generator_table
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.rendering.textures import (
@@ -16,7 +17,6 @@ from world2minecraft.rendering.textures import (
     texture_sheet,
 )
 from world2minecraft.rendering.textures.__main__ import main
-from world2minecraft.rendering.textures.generator_docs import generator_table
 
 
 def test_one_texture_has_one_name():

@@ -178,11 +178,9 @@ def save_room(
         >>> save_room(w2m.generate_room("bathroom"), tmp / "bathroom").kind
         'bathroom'
     """
-    import io
-
     from PIL import Image
 
-    from world2minecraft.core.files import write_bytes
+    from world2minecraft.core.files import image_bytes, write_bytes
     from world2minecraft.core.output_folders import output_folder
     from world2minecraft.procgen import room_picture, write_generated
 
@@ -191,9 +189,8 @@ def save_room(
         progress("write", 0, 2, "layout.json, truth.npz")
         write_generated(room, folder)
         progress("write", 1, 2, "preview.png")
-        picture = io.BytesIO()
-        Image.fromarray(room_picture(room)).save(picture, "PNG")
-        write_bytes(folder / "preview.png", picture.getvalue())
+        picture = image_bytes(Image.fromarray(room_picture(room)), "PNG")
+        write_bytes(folder / "preview.png", picture)
         progress("write", 2, 2)
     return room
 

@@ -2,7 +2,6 @@
 
 import base64
 import html
-import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,7 +12,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.errors import InputError
-from world2minecraft.core.files import read_json
+from world2minecraft.core.files import image_bytes, read_json
 from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid
 from world2minecraft.core.vocabulary import object_title
 
@@ -309,7 +308,5 @@ def _metres(sides: np.ndarray) -> str:
 
 
 def _img(picture: "Image") -> str:
-    data = io.BytesIO()
-    picture.save(data, "PNG")
-    text = base64.b64encode(data.getvalue()).decode()
+    text = base64.b64encode(image_bytes(picture, "PNG")).decode()
     return f'<img src="data:image/png;base64,{text}" style="max-width: 100%"/>'

@@ -32,6 +32,13 @@ MAX_ARRAY_BYTES = 4 << 30  # A 400 x 400 x 100 grid of FusedEvidence takes about
 MAX_ARRAYS_BYTES = 6 << 30  # A home of 600 million cells takes 5.4 GB.
 
 
+def image_bytes(image: Any, kind: str, **options: Any) -> bytes:
+    """Encode a Pillow image as ``PNG``, ``JPEG`` or ``WEBP``, with options of its ``save``."""
+    stream = io.BytesIO()
+    image.save(stream, kind, **options)
+    return stream.getvalue()
+
+
 def write_bytes(path: str | Path, data: bytes) -> None:
     """Write ``data`` to ``path`` atomically, creating parent folders.
 

@@ -5,15 +5,14 @@ writers convert names to the target version. Blocks that the target version does
 names and are counted as losses.
 """
 
-import json
 from collections.abc import Callable
 from functools import cache, lru_cache
-from importlib.resources import files
 
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_states import BlockState, parse_state
+from world2minecraft.minecraft.data_files import read_data
 from world2minecraft.minecraft.entity_conversion import count_lost_data
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.versions import GameVersion, name_in_version, new_names
@@ -135,10 +134,8 @@ def _with_sides(text: str, change: Callable[[str], str]) -> str:
 
 @cache
 def _versions_of() -> dict[str, int]:
-    text = files("world2minecraft.minecraft").joinpath("data/blocks_since.json").read_text("utf-8")
-    return {
-        f"minecraft:{name}": since for since, names in json.loads(text)["since"] for name in names
-    }
+    listed = read_data("blocks_since.json")["since"]
+    return {f"minecraft:{name}": since for since, names in listed for name in names}
 
 
 def _first_version(name: str) -> int:

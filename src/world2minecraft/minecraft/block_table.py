@@ -5,15 +5,12 @@ folder. The index of a state counts property values with the last property varyi
 first value of a boolean property is true.
 """
 
-import gzip
-import json
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
 import numpy as np
 
-TABLE_FILE = "data/blocks.json.gz"
+from world2minecraft.minecraft.data_files import read_data
 
 
 @dataclass(frozen=True)
@@ -67,8 +64,7 @@ class BlockTable:
 @cache
 def block_table() -> BlockTable:
     """Load the bundled block table. The result is cached."""
-    packed = files("world2minecraft.minecraft").joinpath(TABLE_FILE).read_bytes()
-    raw = json.loads(gzip.decompress(packed))
+    raw = read_data("blocks.json.gz")
     properties = [(name, tuple(values)) for name, values in raw["properties"]]
     blocks = {}
     for name, (numbers, default, shapes) in raw["blocks"].items():

@@ -1,12 +1,11 @@
 """The game versions that the program supports."""
 
-import json
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.minecraft.data_files import read_data
 
 DEFAULT_VERSION = "1.20.1"
 
@@ -86,5 +85,4 @@ def _renamed() -> dict[str, tuple[int, str]]:
 
 @cache
 def _table() -> dict[str, Any]:
-    text = files("world2minecraft.minecraft").joinpath("data/versions.json").read_text("utf-8")
-    return json.loads(text)
+    return read_data("versions.json")

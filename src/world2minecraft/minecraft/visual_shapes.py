@@ -4,18 +4,17 @@ The hand-written data file ``data/visual_boxes.json`` defines the visible boxes 
 signs, torches, plants and others. All other blocks look like their collision boxes.
 """
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cache, lru_cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
 
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.collision_shapes import boxes_of
+from world2minecraft.minecraft.data_files import read_data
 
 LUMINOUS = (
     "sea_lantern",
@@ -30,7 +29,6 @@ LUMINOUS = (
     "candle",
 )
 DARK = ("torchflower", "lit=false")  # A flower, and candles and torches that do not burn.
-DATA_FILE = "data/visual_boxes.json"
 # Clockwise from above, from the side that the data file's boxes are written for.
 QUARTERS = ("north", "east", "south", "west")
 
@@ -95,7 +93,7 @@ def find_visual_family(state: BlockState) -> VisualFamily | None:
 @cache
 def visual_families() -> tuple[VisualFamily, ...]:
     """Load the visual families from the bundled file. The first match of a block applies."""
-    raw = json.loads(files("world2minecraft.minecraft").joinpath(DATA_FILE).read_text("utf-8"))
+    raw = read_data("visual_boxes.json")
     return tuple(_family(entry) for entry in raw["families"])
 
 

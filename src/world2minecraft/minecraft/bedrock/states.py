@@ -5,19 +5,15 @@ notice in the data folder. States are written in the form of Bedrock 1.20.0, whi
 upgrades. States of Bedrock 1.17 to 1.26 can be read.
 """
 
-import gzip
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from importlib.resources import files
 from typing import Any
 
 from world2minecraft.minecraft.block_states import AIRS, BlockState, complete, parse_state
 from world2minecraft.minecraft.block_table import block_table
+from world2minecraft.minecraft.data_files import read_data
 from world2minecraft.minecraft.nbt import Byte
-
-TABLE_FILE = "data/bedrock_states.json.gz"
 
 
 @dataclass(frozen=True)
@@ -33,8 +29,7 @@ class BedrockTable:
 @cache
 def bedrock_table() -> BedrockTable:
     """Load the bundled table of Bedrock states. The result is cached."""
-    packed = files("world2minecraft.minecraft").joinpath(TABLE_FILE).read_bytes()
-    raw = json.loads(gzip.decompress(packed))
+    raw = read_data("bedrock_states.json.gz")
     return BedrockTable(raw["version"], tuple(raw["states"]), raw["written"], raw["read"])
 
 

@@ -1,19 +1,17 @@
 """Properties of blocks by name pattern, from a hand-written data file."""
 
-import json
 from fnmatch import translate
 from functools import cache, lru_cache
-from importlib.resources import files
 from re import Pattern
 from re import compile as compiled
 
-DATA_FILE = "data/block_rules.json"
+from world2minecraft.minecraft.data_files import read_data
 
 
 @cache
 def block_rules() -> dict[str, Pattern[str]]:
     """Load the name pattern of each list in the bundled data file. The result is cached."""
-    raw = json.loads(files("world2minecraft.minecraft").joinpath(DATA_FILE).read_text("utf-8"))
+    raw = read_data("block_rules.json")
     return {key: pattern_of(names) for key, names in raw.items() if isinstance(names, list)}
 
 

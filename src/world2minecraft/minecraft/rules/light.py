@@ -22,10 +22,8 @@ each cell a row index into ``words``, whose bits describe how light passes the c
   solid.
 """
 
-import json
 from fnmatch import fnmatchcase
 from functools import cache, lru_cache
-from importlib.resources import files
 
 import numpy as np
 
@@ -33,12 +31,12 @@ from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.collision_shapes import boxes_of, is_full_cube
+from world2minecraft.minecraft.data_files import read_data
 from world2minecraft.minecraft.rules.block_traits import pattern_of
 
 SHUT = 0xFFFFFF
 DIMS = 1 << 24
 SOLID = 1 << 25
-DATA_FILE = "data/light_levels.json"
 BRIGHTEST = 15
 # States whose shape holds light back face by face; the game's own list, in its words.
 SHAPED = (
@@ -357,7 +355,7 @@ def _light_from_sides(sky, flat, kinds, words, steps, lowest, top):
 
 @cache
 def _raw() -> dict:
-    return json.loads(files("world2minecraft.minecraft").joinpath(DATA_FILE).read_text("utf-8"))
+    return read_data("light_levels.json")
 
 
 @cache

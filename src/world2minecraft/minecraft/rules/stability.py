@@ -6,10 +6,8 @@ that it needs, by the rules in ``data/support_rules.json`` (which documents thei
 whether an update would change its connections.
 """
 
-import json
 from collections.abc import Iterable, Sequence
 from functools import cache, lru_cache
-from importlib.resources import files
 from re import Pattern
 from typing import Any, NamedTuple
 
@@ -18,6 +16,7 @@ import numpy as np
 from world2minecraft.core.former_names import getter
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_states import AIRS, BlockState, complete, parse_state
+from world2minecraft.minecraft.data_files import read_data
 from world2minecraft.minecraft.rules.block_traits import pattern_of
 from world2minecraft.minecraft.rules.connections import StateGrid, update_connections
 from world2minecraft.minecraft.rules.light import block_light, lets_light_through
@@ -33,7 +32,6 @@ from world2minecraft.minecraft.rules.supports import (
 
 __getattr__ = getter(__name__)
 
-DATA_FILE = "data/support_rules.json"
 _WATER = ("water", "bubble_column", "seagrass", "tall_seagrass", "kelp", "kelp_plant")
 MELTS_ABOVE = 11  # Ice and snow melt in brighter block light.
 _MELTING = ("minecraft:ice", "minecraft:snow")
@@ -211,7 +209,7 @@ def _rules() -> tuple[_Rule, ...]:
 
 @cache
 def _raw() -> dict[str, Any]:
-    return json.loads(files("world2minecraft.minecraft").joinpath(DATA_FILE).read_text("utf-8"))
+    return read_data("support_rules.json")
 
 
 class UnstableBlock(NamedTuple):

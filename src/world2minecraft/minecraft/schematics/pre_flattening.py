@@ -6,11 +6,9 @@ door stored its direction and whether it is open, and the upper half stored its 
 lower half of a tall plant stored its kind. Two adjacent chests formed a double chest.
 """
 
-import json
 import re
 from collections.abc import Callable, Mapping
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -19,6 +17,7 @@ from world2minecraft.core.types import BlockEntity, Entity
 from world2minecraft.minecraft.block_colours import DYES
 from world2minecraft.minecraft.block_renames import read_state
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
+from world2minecraft.minecraft.data_files import read_data
 from world2minecraft.minecraft.rules.attached_entities import move_attachment
 from world2minecraft.minecraft.signs import upgrade_sign
 
@@ -272,10 +271,8 @@ def legacy_state(number: int, value: int, names: Mapping[int, str]) -> tuple[str
 
 @cache
 def _table() -> dict[int, tuple[str, ...]]:
-    text = files("world2minecraft.minecraft").joinpath("data/legacy_blocks.json").read_text("utf-8")
-    return {
-        int(key): _states_by_value(states) for key, states in json.loads(text)["blocks"].items()
-    }
+    blocks = read_data("legacy_blocks.json")["blocks"]
+    return {int(key): _states_by_value(states) for key, states in blocks.items()}
 
 
 def _states_by_value(states: list[str | None]) -> tuple[str, ...]:

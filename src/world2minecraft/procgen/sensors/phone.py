@@ -17,7 +17,7 @@ from scipy import ndimage
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import MissingExtraError
-from world2minecraft.core.files import write_bytes
+from world2minecraft.core.files import image_bytes, write_bytes
 from world2minecraft.core.types import Camera, View
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.photo_rendering import (
@@ -135,9 +135,8 @@ def write_photos(folder: str | Path, views: Iterable[View]) -> None:
         OutputError: If the folder cannot be written.
     """
     for view in views:
-        buffer = io.BytesIO()
-        Image.fromarray(_colour(view)).save(buffer, "JPEG", quality=PHOTO_QUALITY)
-        write_bytes(Path(folder) / f"{view.name}.jpg", buffer.getvalue())
+        photo = image_bytes(Image.fromarray(_colour(view)), "JPEG", quality=PHOTO_QUALITY)
+        write_bytes(Path(folder) / f"{view.name}.jpg", photo)
 
 
 def write_video(path: str | Path, views: Iterable[View]) -> None:

@@ -1,4 +1,4 @@
-"""Tone mapping from linear light to the screen: tables for the kernels, and numpy versions.
+"""Tone mapping from linear light to the screen: the tables, and their use in the kernels.
 
 Light up to ``SHOULDER`` is unchanged. Brighter light is compressed below white by its brightest
 channel, which preserves hues, and slightly desaturated, as film does. A slight contrast curve is
@@ -58,32 +58,6 @@ def linear_to_srgb(light: np.ndarray) -> np.ndarray:
     """Convert linear light to sRGB values 0 to 1. Light outside 0 to 1 is clipped."""
     light = np.clip(np.asarray(light, np.float64), 0, 1)
     return np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
-
-
-def tone_map(light: np.ndarray, shoulder: float = SHOULDER) -> np.ndarray:
-    """Compress bright colours so that no channel reaches 1, keeping their hue.
-
-    Args:
-        light: Linear colours, 0 or more, [..., 3].
-        shoulder: Brightness of the largest channel from which colours are compressed.
-
-    Returns:
-        Linear colours below 1, float64 [..., 3]. Very bright ones are also shifted towards white.
-    """
-    light = np.maximum(np.asarray(light, np.float64), 0)
-    peak = light.max(axis=-1, keepdims=True)
-    room = 1 - shoulder
-    over = np.maximum(peak - shoulder, 0)
-    pressed = np.where(over > 0, 1 - room * room / (room + over), peak)
-    scaled = light * np.where(over > 0, pressed / np.maximum(peak, 1e-12), 1)
-    pale = 1 - 1 / (1 + PALING * (peak - pressed))
-    return scaled + (pressed - scaled) * pale
-
-
-def tone_map_picture(light: np.ndarray, tone: Tone) -> np.ndarray:
-    """Return the screen colours of linear light, uint8 [..., 3], as ``tone_map_pixel`` does."""
-    pressed = tone_map(light, tone.shoulder) if tone.shoulder < 1 else np.maximum(light, 0)
-    return tone.encode[(np.minimum(pressed, 1) * (ENCODE_STEPS - 1) + 0.5).astype(np.int64)]
 
 
 @inlined

@@ -12,6 +12,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import image_bytes
 from world2minecraft.rendering.output.exr import exr_bytes
 
 COLOUR_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
@@ -35,12 +36,12 @@ def colour_bytes(colour: np.ndarray, suffix: str, quality: int = QUALITY) -> byt
         UsageError: If the suffix is not supported.
     """
     if suffix == ".png":
-        return _saved(Image.fromarray(colour), "PNG", compress_level=_PNG_LEVEL)
+        return image_bytes(Image.fromarray(colour), "PNG", compress_level=_PNG_LEVEL)
     if suffix in (".jpg", ".jpeg"):
-        return _saved(Image.fromarray(colour), "JPEG", quality=quality, subsampling=0)
+        return image_bytes(Image.fromarray(colour), "JPEG", quality=quality, subsampling=0)
     if suffix == ".webp":
         lossless = quality >= _LOSSLESS
-        return _saved(Image.fromarray(colour), "WEBP", quality=quality, lossless=lossless)
+        return image_bytes(Image.fromarray(colour), "WEBP", quality=quality, lossless=lossless)
     raise UsageError(f"a colour image must end in {', '.join(COLOUR_SUFFIXES)}, got {suffix!r}")
 
 
@@ -75,7 +76,7 @@ def depth_numbers(depth_m: np.ndarray, per_metre: int = PER_METRE) -> np.ndarray
 
 def number_bytes(numbers: np.ndarray) -> bytes:
     """Encode ids, uint8 or uint16 [H, W], as a grey PNG."""
-    return _saved(Image.fromarray(numbers), "PNG", compress_level=_PNG_LEVEL)
+    return image_bytes(Image.fromarray(numbers), "PNG", compress_level=_PNG_LEVEL)
 
 
 def index_bytes(index: np.ndarray) -> bytes:
@@ -85,17 +86,11 @@ def index_bytes(index: np.ndarray) -> bytes:
     """
     packed = (index.astype(np.int64) + 1).astype("<u4")
     rgba = packed.view(np.uint8).reshape(*index.shape, 4)
-    return _saved(Image.fromarray(rgba, "RGBA"), "PNG", compress_level=_PNG_LEVEL)
+    return image_bytes(Image.fromarray(rgba, "RGBA"), "PNG", compress_level=_PNG_LEVEL)
 
 
 def normal_bytes(normal: np.ndarray) -> bytes:
     """Encode unit normals, float32 [H, W, 3], as a PNG: 128 + 127 n, black without a surface."""
     packed = np.rint(128 + 127 * normal).astype(np.uint8)
     packed[~normal.any(axis=2)] = 0
-    return _saved(Image.fromarray(packed), "PNG", compress_level=_PNG_LEVEL)
-
-
-def _saved(image: Image.Image, kind: str, **options: int | bool) -> bytes:
-    stream = io.BytesIO()
-    image.save(stream, kind, **options)
-    return stream.getvalue()
+    return image_bytes(Image.fromarray(packed), "PNG", compress_level=_PNG_LEVEL)

@@ -50,13 +50,6 @@ def sky_light(light: LightSettings) -> SkyLight:
     return SkyLight(sky.background(), scale_r, scale_g, scale_b, red, green, blue, SUN_COSINE)
 
 
-def uniform_sky(red: float, green: float, blue: float) -> SkyLight:
-    """Return a uniform sky without a sun, for white furnace tests."""
-    colour = (red, green, blue)
-    background = Background._make([*colour, *colour, *colour, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
-    return SkyLight(background, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, SUN_COSINE)
-
-
 def _open_light(zenith: tuple[float, ...], horizon: tuple[float, ...]) -> np.ndarray:
     """Return what open ground gets of the sky without its sun, over pi: float64 [3].
 

@@ -1,10 +1,9 @@
 """A contact sheet of all texture generators for visual inspection."""
 
-import io
-
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from world2minecraft.core.files import image_bytes
 from world2minecraft.rendering.textures.catalogue import GROUPS
 from world2minecraft.rendering.textures.recipe import PREFIX
 from world2minecraft.rendering.textures.synthesis import texture_of
@@ -73,6 +72,4 @@ def tiled(recipe: str, size_px: int, repeat: int, side_px: int) -> np.ndarray:
 
 def page_png(page: np.ndarray) -> bytes:
     """Encode a page, uint8 [H, W, 3], as a PNG with quantized colours to reduce its size."""
-    stream = io.BytesIO()
-    Image.fromarray(page & np.uint8(0xFE)).save(stream, "PNG", optimize=True)
-    return stream.getvalue()
+    return image_bytes(Image.fromarray(page & np.uint8(0xFE)), "PNG", optimize=True)
