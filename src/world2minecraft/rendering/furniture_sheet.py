@@ -3,7 +3,6 @@
 The projection is orthographic, and each object fills its tile, so that shapes can be compared.
 """
 
-import io
 import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,8 +11,9 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.core.coordinates import apply, look_at
+from world2minecraft.core.files import image_bytes
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.rendering.picture import render_parallel
+from world2minecraft.rendering.picture import picture_colour, render_parallel
 from world2minecraft.rendering.scene import prepare_scene
 from world2minecraft.rendering.shading_parameters import NEUTRAL
 
@@ -110,34 +110,30 @@ def _corners(volume: BlockVolume) -> np.ndarray:
     return apply(volume.block_to_room, corners.astype(np.float64))
 
 
-def object_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
-    """Return a square image of an object that faces room +x, uint8 [side_px, side_px, 3]."""
+def object_picture(volume: BlockVolume) -> np.ndarray:
+    """Return a square image of an object that faces room +x, uint8 [TILE_PX, TILE_PX, 3]."""
     toward, axes = _axes()
     flat = _corners(volume) @ axes.T
-    most = MAX_PX_PER_BLOCK * side_px / TILE_PX * volume.blocks_per_metre
-    px_per_metre = min(FILLED * side_px / float(np.ptp(flat, axis=0).max()), most)
+    most = MAX_PX_PER_BLOCK * volume.blocks_per_metre
+    px_per_metre = min(FILLED * TILE_PX / float(np.ptp(flat, axis=0).max()), most)
     middle = (flat.min(axis=0) + flat.max(axis=0)) / 2
     seen = axes.T @ middle + toward * (toward @ _corners(volume).mean(axis=0))
     pose = look_at(seen + toward * 50.0, seen)
     picture = render_parallel(
         prepare_scene(volume),
         px_per_metre,
-        (side_px, side_px),
+        (TILE_PX, TILE_PX),
         pose,
         outputs=("colour",),
         samples=SUPERSAMPLE,
         light=NEUTRAL,
         background=(CARD, CARD),
     )
-    if picture.colour is None:
-        raise ValueError("the image has no colour; request the output 'colour'")
-    return picture.colour
+    return picture_colour(picture)
 
 
 def sheet_png(page: np.ndarray) -> bytes:
     """Encode a page, uint8 [H, W, 3], as a PNG with 256 colours to reduce its size."""
-    stream = io.BytesIO()
     method = Image.Quantize.MAXCOVERAGE  # Small objects keep their colours, off by 22 at most.
     few = Image.fromarray(page).quantize(256, method, kmeans=3, dither=Image.Dither.NONE)
-    few.save(stream, "PNG", optimize=True)
-    return stream.getvalue()
+    return image_bytes(few, "PNG", optimize=True)

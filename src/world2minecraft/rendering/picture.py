@@ -168,6 +168,17 @@ def picture_of(arrays: PixelArrays, outputs: Collection[str]) -> Picture:
     )
 
 
+def picture_colour(picture: Picture) -> np.ndarray:
+    """Return the colours of an image, uint8 [H, W, 3].
+
+    Raises:
+        ValueError: If the image was rendered without the output ``colour``.
+    """
+    if picture.colour is None:
+        raise ValueError("the image has no colour; request the output 'colour'")
+    return picture.colour
+
+
 def visible_furniture(picture: Picture) -> float:
     """Return the sum over all objects of the square root of their visible pixels.
 

@@ -18,7 +18,7 @@ from world2minecraft.rendering.cutaway import (
 )
 from world2minecraft.rendering.picture import (
     MAX_PIXELS,
-    Picture,
+    picture_colour,
     render_parallel,
     render_volume,
     visible_furniture,
@@ -97,7 +97,7 @@ def render_preview(view: PreviewView) -> np.ndarray:
         samples=SUPERSAMPLE,
         threads=usable_cores(),
     )
-    return _colour_of(picture)
+    return picture_colour(picture)
 
 
 def _best_corner(opened: Sequence[BlockVolume]) -> tuple[int, int]:
@@ -216,16 +216,10 @@ def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
         light=NEUTRAL,
         background=(BACKDROP[0], BACKDROP[0]),
     )
-    return _colour_of(picture)
+    return picture_colour(picture)
 
 
 def _check_size(width_px: int, height_px: int) -> None:
     samples = width_px * height_px * SUPERSAMPLE**2
     if width_px < 1 or height_px < 1 or samples > MAX_PIXELS:
         raise ValueError(f"the image size {width_px}x{height_px} pixels is out of range")
-
-
-def _colour_of(picture: Picture) -> np.ndarray:
-    if picture.colour is None:
-        raise ValueError("the image has no colour; request the output 'colour'")
-    return picture.colour

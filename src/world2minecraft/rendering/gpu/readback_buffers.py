@@ -35,10 +35,8 @@ class SubmissionPlan:
     words: int  # 32-bit words of one job
 
 
-def plan_submissions(
-    ask: PictureRequest, pictures: int | None, most_bytes: int = SLOT_BYTES
-) -> SubmissionPlan:
-    """Divide images so that a submission fits into ``most_bytes``, with at least one row.
+def plan_submissions(ask: PictureRequest, pictures: int | None) -> SubmissionPlan:
+    """Divide images so that a submission fits into ``SLOT_BYTES``, with at least one row.
 
     ``pictures`` is the number of images, or None if it is unknown.
     """
@@ -46,7 +44,7 @@ def plan_submissions(
     row_words = width * ask.layout.planes
     # Many samples are much work: a submission that lasts seconds is stopped by some drivers.
     most_pixels = MAX_RAYS // ask.samples**2
-    room = max(min(most_bytes // 4, most_pixels * ask.layout.planes), row_words)
+    room = max(min(SLOT_BYTES // 4, most_pixels * ask.layout.planes), row_words)
     band_rows = min(height, room // row_words)
     words = band_rows * row_words
     jobs = max(1, min(MAX_JOBS, room // words))

@@ -194,17 +194,14 @@ class _Placed:
     cover: np.ndarray
 
 
-def mesh_of(
-    volume: BlockVolume, looks: ModelSource | None = None, *, texture_px: int = 16
-) -> BlockMesh:
+def mesh_of(volume: BlockVolume, looks: ModelSource | None = None) -> BlockMesh:
     """Return the mesh of a volume, including display entities.
 
     Args:
         volume: The blocks.
         looks: Source of models and textures. None uses the built-in set.
-        texture_px: Texture size in pixels: 16, 32, 64 or 128.
     """
-    baker = Baker(looks or BuiltinModels(texture_px), texture_px)
+    baker = Baker(looks or BuiltinModels())
     models = models_of(volume.palette, baker.looks)
     numbers = [bake_model(s, m, baker) for s, m in zip(volume.palette, models, strict=True)]
     guests = display_entity_elements(volume, baker.looks)[1]

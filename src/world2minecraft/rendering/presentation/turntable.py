@@ -10,6 +10,7 @@ from scipy.ndimage import gaussian_filter
 from world2minecraft.core.coordinates import invert
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.block_elements import ModelSource
+from world2minecraft.rendering.picture import picture_colour
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
 from world2minecraft.rendering.presentation.shot_rendering import (
     DrawOptions,
@@ -147,9 +148,8 @@ def turntable(
             replace(scene, exposure=exposure), fine, [one.camera_to_room for one in some], how
         )
         for shot, picture in zip(some, pictures, strict=True):
-            if picture.colour is None:
-                raise ValueError("the image has no colour; request the output 'colour'")
-            yield shot, _on_ground(picture.colour, picture.depth_m > 0, studio, shot, samples)
+            colour = picture_colour(picture)
+            yield shot, _on_ground(colour, picture.depth_m > 0, studio, shot, samples)
 
 
 def _on_ground(

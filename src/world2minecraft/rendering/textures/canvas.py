@@ -104,16 +104,13 @@ def fractal(
     salt: int,
     gain: float = 0.5,
     x: np.ndarray | None = None,
-    y: np.ndarray | None = None,
 ) -> np.ndarray:
     """Return noise with all finer octaves that the size can show, each scaled by ``gain``."""
-    total = noise(canvas, across, down, salt, x, y)
+    total = noise(canvas, across, down, salt, x)
     weight, octave = gain, 1
     while max(across, down) * 2**octave <= canvas.size_px:
         scale = 2**octave
-        total = total + weight * noise(
-            canvas, across * scale, down * scale, salt + 97 * octave, x, y
-        )
+        total = total + weight * noise(canvas, across * scale, down * scale, salt + 97 * octave, x)
         weight, octave = weight * gain, octave + 1
     return total
 
