@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 from world2minecraft.rendering.textures import cloth, fittings, ground, plants, stone, wood
-from world2minecraft.rendering.textures import fittings as openings
 from world2minecraft.rendering.textures import furniture_faces as faces
 from world2minecraft.rendering.textures import walls as wall
 from world2minecraft.rendering.textures.generator import Accent, Generator
@@ -141,20 +140,20 @@ FITTINGS = {
 }
 OPENINGS = {
     "glass": Generator(
-        openings.glass,
+        fittings.glass,
         "#d2e8ee",
         options={"stained": NO_YES},
         translucent=("*",),
     ),
     "door": Generator(
-        openings.door,
+        fittings.door,
         "#8f7144",
         (KNOB,),
         {"half": Choice(("upper", "lower")), "panes": Choice(("0", "2", "4"))},
         holes=("panes=2", "panes=4"),
         tiles=False,
     ),
-    "ladder": Generator(openings.ladder, "#7d613a", holes=("*",)),
+    "ladder": Generator(fittings.ladder, "#7d613a", holes=("*",)),
 }
 PLANTS = {
     "leaves": Generator(

@@ -16,18 +16,6 @@ from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import box, stones
 
 
-def weave(canvas: Canvas, threads: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the height, 0 to 1, and the identity of woven threads."""
-    step = SIDE / threads
-    column, row = np.floor(canvas.x / step), np.floor(canvas.y / step)
-    over = (column + row) % 2 == 0
-    x, y = (canvas.x / step) % 1 - 0.5, (canvas.y / step) % 1 - 0.5
-    along, across = np.where(over, x, y), np.where(over, y, x)
-    round_thread = np.clip(1 - 3.2 * across * across, 0, 1) * (1 - 1.6 * along * along)
-    identity = np.where(over, row * threads, column + threads * threads)
-    return round_thread, identity.astype(np.int64)
-
-
 def wool(canvas: Canvas, recipe: Recipe) -> Surface:
     """Return the wool texture: a knit of soft, short loops."""
     tufts = noise(canvas, 8, 8, 1) + 0.7 * noise(canvas, 16, 16, 2)
@@ -36,23 +24,21 @@ def wool(canvas: Canvas, recipe: Recipe) -> Surface:
     tone = 0.065 * tufts + 0.035 * loops
     height = 0.2 * tufts
     if canvas.fineness:
-        body, _ = _loops(canvas)
+        body = _loops(canvas)
         tone = tone - 0.035 * loops + canvas.fineness * 0.24 * (body - 0.6)
         tone = tone + 0.05 * fractal(canvas, 32, 32, 3)
         height = height + 0.45 * body
     return Surface(tone, height, roughness=1.0)
 
 
-def _loops(canvas: Canvas) -> tuple[np.ndarray, np.ndarray]:
-    """Return height, 0 to 1, and identity of stitches that lean left and right in turn."""
+def _loops(canvas: Canvas) -> np.ndarray:
+    """Return the height, 0 to 1, of stitches that lean left and right in turn."""
     column = np.floor(canvas.x)
     inside = canvas.x - column - 0.5
     lean = np.where(column % 2 == 0, 1.0, -1.0)
     place = (canvas.y + lean * inside * 1.2) % SIDE
-    row = np.floor(place)
-    part = place - row - 0.5
-    body = np.clip(1 - 2.6 * part * part, 0, 1) * np.clip(1 - 2.2 * inside * inside, 0, 1)
-    return body, (row * 16 + column).astype(np.int64)
+    part = place - np.floor(place) - 0.5
+    return np.clip(1 - 2.6 * part * part, 0, 1) * np.clip(1 - 2.2 * inside * inside, 0, 1)
 
 
 def carpet(canvas: Canvas, recipe: Recipe) -> Surface:

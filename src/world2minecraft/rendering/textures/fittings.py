@@ -94,7 +94,7 @@ def metal(canvas: Canvas, recipe: Recipe) -> Surface:
     strokes = noise(canvas, 2, 16, 1)
     if canvas.fineness:
         strokes = 0.6 * strokes + 0.6 * fractal(canvas, 2, 32, 2)
-    sheen = np.cos((canvas.y + canvas.x * 0.0) * (2 * np.pi / SIDE) + 0.6)
+    sheen = np.cos(canvas.y * (2 * np.pi / SIDE) + 0.6)
     tone = 0.045 * strokes + 0.05 * sheen
     height: np.ndarray = 0.02 * strokes
     if recipe.word("frame") == "1":

@@ -225,9 +225,9 @@ def gourd(canvas: Canvas, recipe: Recipe) -> Surface:
     tone = 0.16 * wave + 0.08 * noise(canvas, 16, 4, 1) + 0.04 * fractal(canvas, 16, 16, 2)
     thorn = np.zeros(wave.shape)
     if recipe.word("thorns") == "1":
-        column, row = np.floor(canvas.x / 4), np.floor((canvas.y + 2 * np.floor(canvas.x / 4)) / 4)
+        column = np.floor(canvas.x / 4)
         x, y = canvas.x - column * 4 - 2.5, (canvas.y + 2 * column) % 4 - 2.5
-        thorn = ((np.maximum(np.abs(x), np.abs(y)) < 0.51) & (row >= 0)).astype(np.float64)
+        thorn = (np.maximum(np.abs(x), np.abs(y)) < 0.51).astype(np.float64)
     return Surface(tone, 0.8 * wave + 0.3 * thorn, ((recipe.ink(1), thorn),), roughness=0.6)
 
 
