@@ -14,7 +14,7 @@ from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import AIR, Entity
 from world2minecraft.minecraft.commands import parser as command_reading
 from world2minecraft.minecraft.commands.parser import read_command_list, read_datapack
-from world2minecraft.minecraft.commands.snbt import SnbtReader, read_snbt
+from world2minecraft.minecraft.commands.snbt import SnbtReader
 from world2minecraft.minecraft.commands.writer import snbt
 from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
@@ -203,14 +203,14 @@ _LEAVES = st.one_of(
 
 @given(st.recursive(_LEAVES, lambda inner: st.dictionaries(_WORDS, inner) | st.lists(inner)))
 def test_text_of_nbt_is_read_as_it_was(value):
-    found, end = read_snbt(snbt(value))
+    found, end = SnbtReader().read(snbt(value))
     assert end == len(snbt(value))
     assert found == value
     assert type(found) is type(value)
 
 
 def test_arrays_and_words_are_read():
-    found, _ = read_snbt(
+    found, _ = SnbtReader().read(
         "{a:[I;1,2],b:[B;1b,-1b],c:[L;3L],d:word,e:true,f:1e3,g:.5f,h:99999999999}"
     )
     assert found["a"].dtype == np.int32 and found["a"].tolist() == [1, 2]
@@ -223,12 +223,12 @@ def test_arrays_and_words_are_read():
 @pytest.mark.parametrize("text", ["{", "[1", "{a}", "{a:1 b:2}", '"open', "", "[I;x]", "{:1}"])
 def test_text_that_is_no_nbt_is_refused(text):
     with pytest.raises(UsageError, match="NBT"):
-        read_snbt(text)
+        SnbtReader().read(text)
 
 
 def test_depth_is_bounded():
     with pytest.raises(UsageError, match="limit of 100 nested tags"):
-        read_snbt("[" * 5000)
+        SnbtReader().read("[" * 5000)
 
 
 def test_what_a_function_cannot_run_at_once_is_said(tmp_path):

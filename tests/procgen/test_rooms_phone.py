@@ -8,7 +8,7 @@ import pytest
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.procgen import generate_room, scan_room
-from world2minecraft.procgen.sensors.phone import TURN, plan_camera_track
+from world2minecraft.procgen.sensors.phone import LOOK_PHOTOS, LOOK_TURN, plan_camera_track
 from world2minecraft.procgen.sensors.photo_rendering import prepare_photos
 from world2minecraft.procgen.sensors.scan_frames import ScanSettings
 from world2minecraft.procgen.sensors.surface_textures import hash_to_unit
@@ -65,7 +65,7 @@ def test_a_person_who_films_turns_evenly(room):
     for smooth in (False, True):
         film = plan_camera_track(room, scene, camera, 40, np.random.default_rng(0), smooth=smooth)
         turns = np.abs(np.diff(film.angles, axis=0)).max(axis=0)
-        assert (turns <= TURN * 1.001).all()
+        assert (turns <= LOOK_TURN / LOOK_PHOTOS * 1.001).all()
         middle = film.pose(10.5)[:3, 3]
         assert np.allclose(middle, (film.pose(10)[:3, 3] + film.pose(11)[:3, 3]) / 2)
 

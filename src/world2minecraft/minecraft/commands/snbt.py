@@ -21,26 +21,6 @@ _WHOLE_KINDS: dict[str, Any] = {"b": (Byte, 8), "s": (Short, 16), "l": (Long, 64
 _ARRAYS = {"B": np.int8, "I": np.int32, "L": np.int64}
 
 
-def read_snbt(text: str) -> tuple[Any, int]:
-    r"""Parse the SNBT value at the start of a text.
-
-    Args:
-        text: The text to parse.
-
-    Returns:
-        The value, with types as in ``minecraft.nbt``, and the offset after its end.
-
-    Raises:
-        UsageError: If the text is not valid SNBT, nests deeper than 100 tags or contains too many
-            values.
-
-    Example:
-        >>> read_snbt('{Count:3b, list:[1.5f, 2f], "name":\'my room\'}')[0]
-        {'Count': 3, 'list': [1.5, 2.0], 'name': 'my room'}
-    """
-    return SnbtReader().read(text)
-
-
 class SnbtReader:
     """An SNBT parser with a limit on the total number of values that it reads."""
 
@@ -48,7 +28,19 @@ class SnbtReader:
         self.values_left = values
 
     def read(self, text: str) -> tuple[Any, int]:
-        """Parse one value, as ``read_snbt`` does."""
+        r"""Parse the SNBT value at the start of a text.
+
+        Returns:
+            The value, with types as in ``minecraft.nbt``, and the offset after its end.
+
+        Raises:
+            UsageError: If the text is not valid SNBT, nests deeper than 100 tags or contains too
+                many values.
+
+        Example:
+            >>> SnbtReader().read('{Count:3b, list:[1.5f, 2f], "name":\'my room\'}')[0]
+            {'Count': 3, 'list': [1.5, 2.0], 'name': 'my room'}
+        """
         return self._value(text, 0, 0)
 
     def _value(self, text: str, at: int, depth: int) -> tuple[Any, int]:

@@ -31,7 +31,6 @@ from world2minecraft.procgen.sensors.trajectory import camera_positions_m, plan_
 from world2minecraft.procgen.sensors.view_planning import ViewPlanner
 from world2minecraft.rendering.voxel_camera import VoxelScene
 
-TURN = np.radians([14.0, 6.0])  # Maximum yaw and pitch from one photo to the next.
 LOOK_TURN = np.radians([56.0, 24.0])  # Maximum yaw and pitch from one look to the next.
 LOOK_PHOTOS = 4  # One decides where to look every fourth photo,
 LOOK_PICTURES = 14  # and every fourteenth picture of a video: half a second.

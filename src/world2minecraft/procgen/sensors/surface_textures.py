@@ -8,7 +8,7 @@ than a pixel fade out, as in a lens. Strength 1 has the contrast of real rooms.
 from world2minecraft.core.jit import inlined, njit
 from world2minecraft.procgen.rooms.materials import Material
 
-BARE, WALL = int(Material.BARE), int(Material.WALL)
+WALL = int(Material.WALL)
 WOOD_X, WOOD_Y, WOOD_Z = int(Material.WOOD_X), int(Material.WOOD_Y), int(Material.WOOD_Z)
 CLOTH, PRINT, RUG = int(Material.CLOTH), int(Material.PRINT), int(Material.RUG)
 TILE, PICTURE, LEAF = int(Material.TILE), int(Material.PICTURE), int(Material.LEAF)
