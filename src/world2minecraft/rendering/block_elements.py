@@ -115,7 +115,13 @@ def face_uv(
 
 
 @lru_cache(maxsize=1 << 14)
-def cached_face_uv(side: int, low, high, rect, rotation_deg: int) -> np.ndarray:
+def cached_face_uv(
+    side: int,
+    low: tuple[float, float, float],
+    high: tuple[float, float, float],
+    rect: tuple[float, float, float, float] | None,
+    rotation_deg: int,
+) -> np.ndarray:
     """Return ``face_uv``, read-only and cached: thousands of blocks share few boxes."""
     uv = face_uv(side, low, high, rect, rotation_deg)
     uv.flags.writeable = False
