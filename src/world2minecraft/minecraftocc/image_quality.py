@@ -56,8 +56,8 @@ class PictureSource:
 
     name: str
     keys: tuple[str, ...]
-    read: Callable[[str], np.ndarray]  # returns uint8 [H, W, 3]
-    is_picture: Callable[[str], bool] | None = None  # Where some keys may be none.
+    read: Callable[[str], np.ndarray]
+    is_picture: Callable[[str], bool] | None = None
 
 
 def open_pictures(path: str | Path) -> PictureSource:
@@ -131,12 +131,12 @@ class QualityRow:
         without_niqe: Number of images that are too small or too uniform for NIQE.
     """
 
-    size: str  # "native" or "640x480"
+    size: str
     pictures: int
     niqe: Mapping[str, float | None]
     piqe: float | None
     laplacian: Mapping[int, float | None]
-    without_niqe: int  # Pictures that are too small or too flat for it.
+    without_niqe: int
 
 
 @dataclass(frozen=True)
@@ -154,8 +154,8 @@ class QualityReport:
     name: str
     rows: tuple[QualityRow, ...]
     variants: tuple[str, ...]
-    sizes_px: tuple[str, ...]  # of the pictures as they are
-    found: int = 0  # Pictures that the sample was taken of.
+    sizes_px: tuple[str, ...]
+    found: int = 0
 
 
 def sample_keys(

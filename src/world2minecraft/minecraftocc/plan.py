@@ -68,12 +68,12 @@ class Recipe:
 
     camera: Camera = field(default_factory=nyu_camera)
     region: RegionRule = field(default_factory=RegionRule)
-    is_block_cells: bool = False  # Cells are the scene's blocks, whatever the region's rule says.
+    is_block_cells: bool = False
     files: SampleFiles = field(default_factory=SampleFiles)
-    pictures: bool = True  # False: labels and masks alone.
+    pictures: bool = True
     block_map: str = "nyu"
-    hour: float | None = None  # The scene's own where None.
-    paper_compat: bool = False  # K and E as the paper prints them stand beside the right ones.
+    hour: float | None = None
+    paper_compat: bool = False
     seed: int = 0
 
     def facts(self) -> dict[str, Any]:
@@ -124,7 +124,7 @@ class SceneSpec:
     images: int = 0
     blocks_per_metre: float | None = None
     box: tuple[int, ...] | None = None
-    given: GivenViews | None = None  # Views are planned where None.
+    given: GivenViews | None = None
 
 
 @dataclass(frozen=True)

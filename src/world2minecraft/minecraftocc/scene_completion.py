@@ -74,8 +74,8 @@ class GridPlace:
         camera_to_world: Camera pose in the world, float64 [4, 4].
     """
 
-    origin_m: np.ndarray  # float64 [3], minimum corner of cell (0, 0, 0) in the world, z up
-    camera_to_world: np.ndarray  # float64 [4, 4]
+    origin_m: np.ndarray
+    camera_to_world: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,9 +88,9 @@ class CompletedFrame:
         observed: Whether the depth image observes each cell, occupied or free, bool [60, 60, 36].
     """
 
-    labels: np.ndarray  # uint8 [60, 60, 36], 0 to 11
-    confidence: np.ndarray  # float32 [60, 60, 36], the chance of the label
-    observed: np.ndarray  # bool [60, 60, 36], the cells that the picture saw, occupied or free
+    labels: np.ndarray
+    confidence: np.ndarray
+    observed: np.ndarray
 
 
 def read_grid_place(path: Path) -> GridPlace:

@@ -68,7 +68,7 @@ class PngFacts(NamedTuple):
 
     width_px: int
     height_px: int
-    texts: tuple[tuple[str, str], ...]  # keyword and text, in the order of the file
+    texts: tuple[tuple[str, str], ...]
 
 
 def read_png_facts(path: str | Path) -> PngFacts:
@@ -303,8 +303,8 @@ class RecordedView:
 
     image: Path
     camera: Camera
-    pose: GamePose  # at the feet or the eye, as it was stated
-    pose_source: str  # "poses.csv", "PNG texts", "file name with pattern {x}_{y}..."
+    pose: GamePose
+    pose_source: str
     frame: int = 0
     tour_id: str = ""
     t_s: float = 0.0

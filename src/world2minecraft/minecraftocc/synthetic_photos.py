@@ -57,7 +57,7 @@ class PhotoRooms:
 
     rooms: int = 20
     images: int = 400
-    test_share: float = 0.25  # Of the rooms, the last ones.
+    test_share: float = 0.25
     seed: int = 0
     camera: Camera = NYU_CAMERA
 

@@ -31,7 +31,7 @@ class FineClass:
         'design:chair_cafe'
     """
 
-    block: str  # "minecraft:oak_planks", without properties
+    block: str
     design: str = ""
 
     @property
@@ -53,12 +53,12 @@ class SceneVoxels:
         origin_m: Minimum corner of cell (0, 0, 0) in metres, float64 [3].
     """
 
-    labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
-    fine: np.ndarray  # uint16 [X, Y, Z]
-    instance: np.ndarray  # uint16 [X, Y, Z]
+    labels: np.ndarray
+    fine: np.ndarray
+    instance: np.ndarray
     fine_classes: tuple[FineClass, ...]
     voxel_m: float
-    origin_m: np.ndarray  # float64 [3], minimum corner of cell (0, 0, 0)
+    origin_m: np.ndarray
 
     def __post_init__(self):
         put = object.__setattr__
@@ -93,12 +93,12 @@ class OccLabels:
     """
 
     region: LabelRegion
-    labels: np.ndarray  # uint8, 0 to 11 or 255
-    fine: np.ndarray  # uint16, into the scene's fine classes
-    instance: np.ndarray  # uint16
-    in_frustum: np.ndarray  # bool, the centre falls into the image, in front of the camera
-    hits: np.ndarray  # uint32, how many pixels see the cell first
-    free: np.ndarray  # bool, a pixel's ray went through it, and it is empty
+    labels: np.ndarray
+    fine: np.ndarray
+    instance: np.ndarray
+    in_frustum: np.ndarray
+    hits: np.ndarray
+    free: np.ndarray
 
     def __post_init__(self):
         put = object.__setattr__
@@ -145,18 +145,18 @@ class OccSample:
         facts: Further facts, such as ``block_to_room``, the pose in the game and the light.
     """
 
-    key: str  # unique in a data set: SCENE-TOUR-FRAME, of letters, digits, - and _
+    key: str
     scene_id: str
     tour_id: str
     frame: int
     camera: Camera
-    camera_to_room: np.ndarray  # float64 [4, 4]
+    camera_to_room: np.ndarray
     occ: OccLabels
     fine_classes: tuple[FineClass, ...]
-    colour: np.ndarray | None = None  # uint8 [H, W, 3]
-    depth_m: np.ndarray | None = None  # float32 [H, W], z-depth, 0 where there is none
-    split: str = ""  # train, val, test or ""
-    facts: dict = field(default_factory=dict)  # block_to_room, the game's pose, light ...
+    colour: np.ndarray | None = None
+    depth_m: np.ndarray | None = None
+    split: str = ""
+    facts: dict = field(default_factory=dict)
 
     def __post_init__(self):
         put = object.__setattr__

@@ -34,8 +34,8 @@ class Target:
     """
 
     name: str
-    goals: tuple[tuple[float, float, float], ...]  # feet, world blocks
-    point: tuple[float, float, float] | None = None  # world blocks
+    goals: tuple[tuple[float, float, float], ...]
+    point: tuple[float, float, float] | None = None
 
 
 def targets_of(scene: VlnScene) -> tuple[Target, ...]:

@@ -83,15 +83,15 @@ class Landmark:
             number, "object" and "piece of furniture" are ambiguous.
     """
 
-    number: int  # its instance in the volume
+    number: int
     name: str
     noun: str
     class_id: int
     colour: str
-    center_m: np.ndarray  # float64 [3]
-    size_m: np.ndarray  # float64 [3]
-    design: str = ""  # of the furniture library, "" where unknown
-    room: int = -1  # of the scene's rooms
+    center_m: np.ndarray
+    size_m: np.ndarray
+    design: str = ""
+    room: int = -1
     is_unambiguous: bool = True
 
     @property

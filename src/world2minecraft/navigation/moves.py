@@ -39,10 +39,10 @@ class BodySize(NamedTuple):
         drop: The maximum height of a downward step.
     """
 
-    half: float  # of its width
+    half: float
     height: float
-    climb: float  # what it steps up without a jump
-    drop: float  # the farthest that it steps down
+    climb: float
+    drop: float
 
 
 @njit

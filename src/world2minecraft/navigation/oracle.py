@@ -47,11 +47,11 @@ class SearchRules(NamedTuple):
         max_nodes: The maximum number of search nodes.
     """
 
-    step_m: float  # the length of a step
-    goal_m: float  # how near to the goal ends the search
-    turn_m: float  # what a turn by one heading costs, in metres
-    fineness: float  # how many places along a step are told apart
-    max_nodes: int  # nodes to try
+    step_m: float
+    goal_m: float
+    turn_m: float
+    fineness: float
+    max_nodes: int
 
 
 @njit

@@ -49,9 +49,9 @@ class SceneRoom:
 
     number: int
     name: str
-    places: np.ndarray  # int64 [N], into the graph
+    places: np.ndarray
     floor_m2: float
-    center: tuple[float, float, float]  # feet, world blocks: the place nearest to its middle
+    center: tuple[float, float, float]
     doors: tuple[Door, ...] = ()
 
 

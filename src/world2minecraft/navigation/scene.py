@@ -74,13 +74,13 @@ class FloorTable(NamedTuple):
         metres_per_block: The scale.
     """
 
-    origin: np.ndarray  # float64 [2], x and z of the first column, world blocks
-    shape: np.ndarray  # int64 [2], columns along x and z
-    start: np.ndarray  # int64 [C + 1]
-    place: np.ndarray  # int32 [N]
-    feet: np.ndarray  # float64 [N, 3], by place
-    spacing: float  # blocks from a column to the next
-    level: float  # blocks
+    origin: np.ndarray
+    shape: np.ndarray
+    start: np.ndarray
+    place: np.ndarray
+    feet: np.ndarray
+    spacing: float
+    level: float
     metres_per_block: float
 
 

@@ -120,7 +120,7 @@ class Episode:
     """
 
     episode_id: str
-    scene: str  # path, as ``open_scene`` takes it
+    scene: str
     scene_id: str
     start: Stance
     goals: tuple[tuple[float, float, float], ...]
@@ -132,8 +132,8 @@ class Episode:
     trajectory_id: str = ""
     split: str = "train"
     max_steps: int = 500
-    oracle_version: str = ""  # of the follower that made ``moves``
-    facing: tuple[float, float, float] | None = None  # the thing itself, world blocks
+    oracle_version: str = ""
+    facing: tuple[float, float, float] | None = None
 
     def __post_init__(self):
         _check_known("move set", self.move_set, MOVE_SETS)
@@ -172,9 +172,9 @@ class Keyframe:
         sha256: The SHA-256 of the image.
     """
 
-    image: str  # path beside the records, POSIX
+    image: str
     stance: Stance
-    move: str  # the macro action from here: "move forward", "turn left", "turn right", "stop"
+    move: str
     chunk: tuple[Move, ...]
     sha256: str = ""
 
@@ -201,7 +201,7 @@ class Trajectory:
     path_m: float
     split: str = "train"
     metres_per_block: float = 1.0
-    source: str = "generated"  # or "recorded"
+    source: str = "generated"
 
 
 @dataclass(frozen=True)
@@ -216,7 +216,7 @@ class Option:
         stance: The stance of the image, if known.
     """
 
-    label: str  # a letter
+    label: str
     kind: str
     text: str = ""
     image: str = ""
@@ -255,12 +255,12 @@ class Item:
     history: tuple[str, ...]
     current: str
     options: tuple[Option, ...]
-    answer: str  # the label of the right option
+    answer: str
     split: str
-    composition: str  # "base" (reconstructions) or "extend" (large houses)
+    composition: str
     metres_per_block: float
     oracle_version: str
-    sha256: dict[str, str]  # of each image that it names
+    sha256: dict[str, str]
     extra: dict[str, Any]
 
     def __post_init__(self):

@@ -29,12 +29,12 @@ class OccInput:
         depth_m: Depth along the camera's z axis in metres, float32 [B, H, W], 0 for none; or None.
     """
 
-    image: Tensor  # float32 [B, 3, H, W], RGB, 0 to 1
-    intrinsics: Tensor  # float32 [B, 3, 3], pixels of ``image``; pixel centres lie at +0.5
-    camera_to_grid: Tensor  # float32 [B, 4, 4]
+    image: Tensor
+    intrinsics: Tensor
+    camera_to_grid: Tensor
     grid_shape: tuple[int, int, int]
     voxel_m: float
-    depth_m: Tensor | None = None  # float32 [B, H, W], 0 where there is none
+    depth_m: Tensor | None = None
 
     def to(self, device: torch.device | str) -> "OccInput":
         """Return a copy with all tensors on the given device."""
@@ -52,8 +52,8 @@ class OccTarget:
             It may differ from the input depth.
     """
 
-    labels: Tensor  # int64 [B, X, Y, Z], 0 to 11 or 255
-    in_frustum: Tensor  # bool [B, X, Y, Z]: the cell's centre falls into the picture
+    labels: Tensor
+    in_frustum: Tensor
     # float32 [B, H, W], 0 where there is none: the target of a depth branch, where that is not
     # the depth that the network is given.
     depth_m: Tensor | None = None
@@ -76,11 +76,11 @@ class OccOutput:
         facts: Scalars to log.
     """
 
-    logits: Tensor  # float32 [B, 12, X, Y, Z]
+    logits: Tensor
     auxiliary: tuple[Tensor, ...] = ()
-    relations: Tensor | None = None  # float32 [B, R, mega-voxels, voxels at 1/16]
-    depth_logits: Tensor | None = None  # float32 [B, bins, h, w]
-    facts: dict[str, Tensor] = field(default_factory=dict)  # scalars worth a log line
+    relations: Tensor | None = None
+    depth_logits: Tensor | None = None
+    facts: dict[str, Tensor] = field(default_factory=dict)
 
 
 def _to_device(value: Movable, device: torch.device | str) -> Movable:

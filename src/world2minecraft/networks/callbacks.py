@@ -49,12 +49,12 @@ class RunState:
     step: int = 0
     best_miou: float = -1.0
     best_step: int = 0
-    worse: int = 0  # Validations since the best one.
-    stopped: bool = False  # Early, because it got no better.
-    seconds: float = 0.0  # Of training and validation, all tries together.
-    cpu_seconds: float = 0.0  # The same of this process's processors.
-    sums: dict[str, float] = field(default_factory=dict)  # Of losses not yet logged,
-    summed: int = 0  # and of how many steps.
+    worse: int = 0
+    stopped: bool = False
+    seconds: float = 0.0
+    cpu_seconds: float = 0.0
+    sums: dict[str, float] = field(default_factory=dict)
+    summed: int = 0
 
 
 class TrainingCallback(lightning.Callback):

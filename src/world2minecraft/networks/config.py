@@ -117,29 +117,29 @@ class RunConfig:
     # A model of transformers for pictures, hf:ID; the network's own where empty.
     backbone: str = ""
     grid: str = "0.16"
-    image: tuple[int, int] = (320, 240)  # Width, height: half of NYUv2's, a guess for 0.16 m.
-    depth: str = "taught"  # To a depth branch; "given" shows it to the network too.
+    image: tuple[int, int] = (320, 240)
+    depth: str = "taught"
     # Of a scene, at most, in one sample; 0 is the network's own: ``DEFAULT_FRAMES``.
     frames: int = 0
-    steps: int = 2000  # The benchmark's.
-    batch: int = 4  # MonoScene's.
-    learning_rate: float = 5e-4  # A guess for networks trained from scratch; MonoScene's is 1e-4.
-    weight_decay: float = 1e-4  # MonoScene's.
+    steps: int = 2000
+    batch: int = 4
+    learning_rate: float = 5e-4
+    weight_decay: float = 1e-4
     schedule: str = "cosine"
-    warmup_steps: int = 100  # A guess: 5 % of the steps.
-    clip_norm: float = 1.0  # A guess; 0 clips nothing.
+    warmup_steps: int = 100
+    clip_norm: float = 1.0
     precision: str = "auto"
-    flip: float = 0.5  # MonoScene's share of mirrored frames,
-    jitter: float = 0.4  # and how far its colours are changed.
+    flip: float = 0.5
+    jitter: float = 0.4
     class_weights: str = "frequency"
-    val_share: float = 0.1  # Of training scenes; 0 validates on the test split, as MonoScene does.
+    val_share: float = 0.1
     validate_every: int = 200
-    validate_frames: int = 100  # At most, spread evenly.
-    patience: int = 0  # Validations without a better mIoU before it stops; 0 never stops.
+    validate_frames: int = 100
+    patience: int = 0
     checkpoint_every: int = 100
     seed: int = 0
-    threads: int = 0  # Of the CPU; 0 takes all.
-    workers: int = 0  # Processes that make batches.
+    threads: int = 0
+    workers: int = 0
 
     def __post_init__(self):
         put = object.__setattr__

@@ -249,7 +249,7 @@ class LossWeights:
     frusta: float = 1.0
     relations: float = 1.0
     depth: float = 1.0
-    auxiliary: float = 0.5  # Of the answers of earlier layers, as Symphonies has it.
+    auxiliary: float = 0.5
     classes: tuple[float, ...] | None = None
 
     def __post_init__(self):

@@ -37,9 +37,9 @@ class SceneTruth(NamedTuple):
         origin_m: Minimum corner in room coordinates in metres, float64 [3].
     """
 
-    labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
-    seen: np.ndarray  # bool [X, Y, Z], in view of any frame
-    origin_m: np.ndarray  # float64 [3], minimum corner in the room
+    labels: np.ndarray
+    seen: np.ndarray
+    origin_m: np.ndarray
 
 
 def memory_scores(

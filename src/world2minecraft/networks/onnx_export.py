@@ -149,12 +149,12 @@ class ExportReport(NamedTuple):
         size: Size of the file in bytes.
     """
 
-    difference: float  # the most that a logit differs from the network's, weights whole
-    moved: float  # the most that storing the weights small moves a logit by
-    moved_mean: float  # and on the mean, beside ``spread``, the standard deviation of all logits
+    difference: float
+    moved: float
+    moved_mean: float
     spread: float
-    renamed: float  # share of the cells that take another class by it
-    size: int  # bytes of the file
+    renamed: float
+    size: int
 
 
 def export_network(

@@ -33,9 +33,9 @@ class SceneFrame(NamedTuple):
     """
 
     scene_id: str
-    predicted: np.ndarray  # uint8 [X, Y, Z]
-    truth: np.ndarray  # uint8 [X, Y, Z]
-    in_view: np.ndarray  # bool, packed eight cells a byte
+    predicted: np.ndarray
+    truth: np.ndarray
+    in_view: np.ndarray
     grid_to_room: np.ndarray
 
     @classmethod
@@ -83,10 +83,10 @@ class Lattice(NamedTuple):
         origin_m: Minimum corner in room coordinates in metres, float64 [3].
     """
 
-    grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]]  # predicted, truth and mask of each box
-    cells: np.ndarray  # int [N, 3], where each box begins
+    grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]]
+    cells: np.ndarray
     shape: tuple[int, ...]
-    origin_m: np.ndarray  # float64 [3], minimum corner in the room
+    origin_m: np.ndarray
 
 
 def align_frames(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[Lattice | None, str]:

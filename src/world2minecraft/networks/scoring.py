@@ -72,9 +72,9 @@ class PredictedFrame(NamedTuple):
     """
 
     scene_id: str
-    predicted: np.ndarray  # uint8 [X, Y, Z]
+    predicted: np.ndarray
     known: KnownCells
-    grid_to_room: np.ndarray  # float64 [4, 4]
+    grid_to_room: np.ndarray
 
 
 def protocol_scores(

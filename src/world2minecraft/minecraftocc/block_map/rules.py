@@ -51,7 +51,7 @@ class Words:
     """
 
     namespaces: tuple[str, ...]
-    meanings: Mapping[str, str]  # a word -> a class or a kind
+    meanings: Mapping[str, str]
 
     @cached_property
     def _by_length(self) -> list[str]:

@@ -50,7 +50,7 @@ class ExportReport:
 
     out: Path
     written: int = 0
-    passed_over: int = 0  # Finished by an earlier run.
+    passed_over: int = 0
     keys: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 

@@ -39,13 +39,13 @@ class ExportRule:
             uses all.
     """
 
-    unknown: str = "keep"  # keep (255) or empty (0)
-    in_view: bool = False  # Cells outside the image become unknown, as the paper culls them.
-    short_bin: bool = False  # nyu: a .bin of its head alone, which loaders only look for by name.
-    data_root: str = DATA_ROOT  # occscannet, embodied: what paths inside the files begin with.
-    frames_per_scene: int = FRAMES_PER_SCENE  # embodied: evenly taken; 0 for all.
+    unknown: str = "keep"
+    in_view: bool = False
+    short_bin: bool = False
+    data_root: str = DATA_ROOT
+    frames_per_scene: int = FRAMES_PER_SCENE
 
-    axes: str = "published"  # occscannet: one of AXES_CHOICES.
+    axes: str = "published"
 
     def __post_init__(self):
         if self.axes not in AXES_CHOICES:

@@ -27,11 +27,11 @@ class NamedSample:
         scene_id: Name of the scene in the original data set.
     """
 
-    scene: str  # scene0000_00
-    frame: str  # 00000
-    split: str  # train or test
-    occupied: int  # How many cells are neither empty nor unknown.
-    scene_id: str  # Ours.
+    scene: str
+    frame: str
+    split: str
+    occupied: int
+    scene_id: str
 
     @property
     def path(self) -> str:

@@ -29,9 +29,9 @@ class LabelledBox:
         camera_to_world: Camera pose in the world, float64 [4, 4].
     """
 
-    labels: np.ndarray  # uint8 [60, 60, 36] as x, y, z up
-    origin_m: np.ndarray  # float64 [3], minimum corner of cell (0, 0, 0)
-    camera_to_world: np.ndarray  # float64 [4, 4]
+    labels: np.ndarray
+    origin_m: np.ndarray
+    camera_to_world: np.ndarray
 
 
 def check_standard_region(sample: OccSample) -> None:
@@ -168,9 +168,9 @@ class StoredFrame:
         in_image: Whether each cell is inside the image, bool [60, 60, 36].
     """
 
-    labels: np.ndarray  # uint8 [60, 60, 36] as x, y, z
+    labels: np.ndarray
     origin_m: np.ndarray
-    in_image: np.ndarray  # bool [60, 60, 36]
+    in_image: np.ndarray
 
 
 def read_stored_frame(path: Path) -> StoredFrame:

@@ -39,11 +39,11 @@ class ScenePackage:
         images: Image paths as stored in the package. They contain the scene name and frame number.
     """
 
-    labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
-    seen: np.ndarray  # bool [X, Y, Z], by any frame
-    origin_m: np.ndarray  # float64 [3], minimum corner of cell (0, 0, 0)
+    labels: np.ndarray
+    seen: np.ndarray
+    origin_m: np.ndarray
     voxel_m: float
-    images: tuple[str, ...]  # As they are written there; they name scene and number.
+    images: tuple[str, ...]
 
 
 def is_embodied(path: Path) -> bool:
@@ -117,7 +117,7 @@ class SceneSet:
     """
 
     path: Path
-    splits: dict[str, str]  # scene to train or test
+    splits: dict[str, str]
     frames: dict[str, tuple[Path, ...]]
 
     def read(self, scene: str) -> ScenePackage:

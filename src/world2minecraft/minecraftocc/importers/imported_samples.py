@@ -54,10 +54,10 @@ class ImportedSet:
 
     path: Path
     format: str
-    splits: dict[str, str]  # key to train, test or ""
+    splits: dict[str, str]
     read: Callable[[str], OccSample]
     notes: tuple[str, ...] = field(default=())
-    sha256: str = ""  # The sum of all samples, where the data set states it.
+    sha256: str = ""
 
     def keys(self, split: str | None = None) -> list[str]:
         """Return the sample keys of a split, or of all splits by default."""
@@ -124,10 +124,10 @@ class ImportedFrame:
         depth_m: Depth in metres, float32 [H, W], or None.
     """
 
-    name: Path  # For messages.
-    labels: np.ndarray  # uint8 [60, 60, 36] as x, y, z up
-    origin_m: np.ndarray  # float64 [3]
-    camera_to_world: np.ndarray  # float64 [4, 4]
+    name: Path
+    labels: np.ndarray
+    origin_m: np.ndarray
+    camera_to_world: np.ndarray
     camera: Camera
     colour: np.ndarray | None
     depth_m: np.ndarray | None

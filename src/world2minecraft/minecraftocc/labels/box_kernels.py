@@ -29,9 +29,9 @@ class CellLattice(NamedTuple):
         slack: Depth in blocks to which a shape may reach into a cell without being counted.
     """
 
-    start: np.ndarray  # float64 [3], minimum corner in the scene's grid of blocks
-    step: float  # a cell's side, blocks
-    slack: float  # what a shape may reach into a cell without counting, blocks
+    start: np.ndarray
+    step: float
+    slack: float
 
 
 class Slab(NamedTuple):
@@ -44,9 +44,9 @@ class Slab(NamedTuple):
             for display entity n.
     """
 
-    first: int  # the first layer
-    amount: np.ndarray  # float32 [A, B, C], how much of a cell its owner fills, blocks' volume
-    owner: np.ndarray  # int32 [A, B, C]: a cell of the volume, -2 - n for standing thing n
+    first: int
+    amount: np.ndarray
+    owner: np.ndarray
 
 
 @njit

@@ -26,11 +26,11 @@ class FineClassMap:
         of_thing: Fine class index of each display entity, uint16 [S].
     """
 
-    classes: tuple[FineClass, ...]  # the first is ``EMPTY``
-    table: np.ndarray  # uint16 [P, D]: of a palette entry and a design
-    states: np.ndarray  # uint16 [N], the volume's cells
-    designs: np.ndarray | None  # uint16 [N], their designs
-    of_thing: np.ndarray  # uint16 [S]
+    classes: tuple[FineClass, ...]
+    table: np.ndarray
+    states: np.ndarray
+    designs: np.ndarray | None
+    of_thing: np.ndarray
 
     def of_cells(self, cells: np.ndarray) -> np.ndarray:
         """Return the fine class indices, uint16, of cells with the given flat indices."""

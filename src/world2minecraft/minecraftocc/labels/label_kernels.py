@@ -23,9 +23,9 @@ class DepthImage(NamedTuple):
             surface.
     """
 
-    camera_to_cells: np.ndarray  # float64 [3, 4]
-    intrinsics: np.ndarray  # float64 [4]: fx, fy, cx, cy
-    depth: np.ndarray  # float32 [H, W], z-depth in metres, 0 where a ray meets nothing
+    camera_to_cells: np.ndarray
+    intrinsics: np.ndarray
+    depth: np.ndarray
 
 
 @lean

@@ -52,12 +52,12 @@ class SolidBoxes(NamedTuple):
         there: Whether the box has a visible face, bool [E].
     """
 
-    low: np.ndarray  # float64 [E, 3], of the straight box around each
-    high: np.ndarray  # float64 [E, 3]
-    centre: np.ndarray  # float64 [E, 3]
-    half: np.ndarray  # float64 [E, 3, 3]: row a is half the edge along the box's own axis a
-    straight: np.ndarray  # bool [E], whether the box is the straight one
-    there: np.ndarray  # bool [E], whether it has a face
+    low: np.ndarray
+    high: np.ndarray
+    centre: np.ndarray
+    half: np.ndarray
+    straight: np.ndarray
+    there: np.ndarray
 
 
 def solid_boxes(tables: SceneTables, metres_per_block: float) -> SolidBoxes:

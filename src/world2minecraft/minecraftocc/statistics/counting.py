@@ -125,12 +125,12 @@ class PictureCounts:
 
     scene_id: str
     split: str
-    size_px: str  # "640x480"
+    size_px: str
     region: str
-    class_voxels: np.ndarray  # int64 [12], cells in the frustum by class
-    uncut_voxels: int  # occupied cells, in the frustum or not
-    fine_pixels: Mapping[str, int] | None  # FineClass.name to pixels; None where not known
-    room: int | None = None  # Its number in the scene, where the sample states it.
+    class_voxels: np.ndarray
+    uncut_voxels: int
+    fine_pixels: Mapping[str, int] | None
+    room: int | None = None
 
 
 def picture_counts(sample: OccSample) -> PictureCounts:

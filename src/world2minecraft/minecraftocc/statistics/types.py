@@ -20,10 +20,10 @@ class FineCount:
         clear_pictures: Number of images in which at least ``MIN_PIXELS`` pixels see the class.
     """
 
-    name: str  # a block's id, or "design:NAME" for a piece of furniture, whatever it is made of
-    pixels: int  # over all pictures
-    pictures: int  # that see it at all
-    clear_pictures: int  # that see it by MIN_PIXELS or more
+    name: str
+    pixels: int
+    pictures: int
+    clear_pictures: int
 
     @property
     def is_furniture(self) -> bool:
@@ -50,9 +50,9 @@ class SceneCount:
 
     scene_id: str
     pictures: int
-    voxels: int  # as the paper counts
-    distinct_cells: int | None = None  # None where they were not counted
-    rooms: int | None = None  # None where it is not known
+    voxels: int
+    distinct_cells: int | None = None
+    rooms: int | None = None
 
 
 @dataclass(frozen=True)
@@ -75,13 +75,13 @@ class DatasetStatistics:
 
     name: str
     pictures: int
-    scenes: tuple[SceneCount, ...]  # by id
-    class_voxels: tuple[int, ...]  # of the 12 classes
-    uncut_voxels: int  # occupied cells of the whole regions, in the frustum or not
-    fine: tuple[FineCount, ...] | None  # most pixels first; None where pixels are not known
-    sizes_px: Mapping[str, int]  # "640x480" to its number of pictures
+    scenes: tuple[SceneCount, ...]
+    class_voxels: tuple[int, ...]
+    uncut_voxels: int
+    fine: tuple[FineCount, ...] | None
+    sizes_px: Mapping[str, int]
     splits: Mapping[str, int]
-    region: str = ""  # "60x60x36 cells of 0.08 m"
+    region: str = ""
 
     @property
     def voxels(self) -> int:

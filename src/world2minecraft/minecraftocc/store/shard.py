@@ -51,8 +51,8 @@ class Member:
         size: Size of the data in bytes.
     """
 
-    key: str  # "house_0001-a-000012"
-    kind: str  # "jpg", "depth.png", "occ.npz" or "json"
+    key: str
+    kind: str
     offset: int
     size: int
 

@@ -65,9 +65,9 @@ class TourRoom:
     """
 
     number: int
-    places: np.ndarray  # int64 [N], into the graph
+    places: np.ndarray
     floor_m2: float
-    classes: int  # of furniture and objects
+    classes: int
     objects: int
 
     @property

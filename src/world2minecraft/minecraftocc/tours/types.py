@@ -107,7 +107,7 @@ class PlannedView:
     tour_id: str
     frame: int
     camera: Camera
-    camera_to_room: np.ndarray  # float64 [4, 4]
+    camera_to_room: np.ndarray
     pose: GamePose
     t_s: float = 0.0
     room: int = 0

@@ -40,15 +40,15 @@ class ViewQuality:
         bright: Mean brightness from 0 to 1.
     """
 
-    near: np.ndarray  # the share of pixels nearer than NEAR_M
-    middle_m: np.ndarray  # the median depth
-    out: np.ndarray  # the share of sky and windows
-    classes: np.ndarray  # how many are seen
-    things: np.ndarray  # the share of pixels of furniture and objects
-    count: np.ndarray  # how many pieces of furniture and objects are seen
-    cells: np.ndarray  # how many blocks are seen
-    plane: np.ndarray  # the share of the largest plane
-    bright: np.ndarray  # 0 to 1
+    near: np.ndarray
+    middle_m: np.ndarray
+    out: np.ndarray
+    classes: np.ndarray
+    things: np.ndarray
+    count: np.ndarray
+    cells: np.ndarray
+    plane: np.ndarray
+    bright: np.ndarray
 
     def is_good(self, volume: BlockVolume, max_plane_share: float, min_things: int) -> np.ndarray:
         """Return whether each view of a volume is good enough to be used, bool [N].

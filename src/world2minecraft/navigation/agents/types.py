@@ -54,8 +54,8 @@ class Task:
     max_steps: int
     metres_per_block: float
     seed: int = 0
-    guide: Guide | None = None  # of privileged agents alone
-    plan: Callable[[Sequence[Stance]], np.ndarray] | None = None  # of those who ask for a map
+    guide: Guide | None = None
+    plan: Callable[[Sequence[Stance]], np.ndarray] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +69,8 @@ class Observation:
         done: The moves since the last decision, each with whether it collided.
     """
 
-    step: int  # moves made so far
-    colour: np.ndarray  # uint8 [H, W, 3]
+    step: int
+    colour: np.ndarray
     stance: Stance
     done: tuple[tuple[Move, bool], ...] = ()
 

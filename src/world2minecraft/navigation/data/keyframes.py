@@ -40,10 +40,10 @@ class KeyframeMark:
         chunk: The next moves, at most ``CHUNK_MOVES``.
     """
 
-    at: int  # of the moves: this many were made
+    at: int
     stance: Stance
-    move: Move  # the run that follows; STOP at the end
-    run: int  # how many moves it has
+    move: Move
+    run: int
     chunk: tuple[Move, ...]
 
     @property
@@ -126,9 +126,9 @@ class ValidityRule:
     max_keyframes: int = 40
     min_path_m: float = 1.5
     max_path_m: float = 25.0
-    min_distance_m: float = 1.0  # from start to end, on foot
-    min_mean: float = 8.0  # of a picture's grey, 0 to 255: darker is a black frame
-    min_hash_bits: int = 4  # bits of 64 by which a picture differs from the one before
+    min_distance_m: float = 1.0
+    min_mean: float = 8.0
+    min_hash_bits: int = 4
 
 
 def path_fault(

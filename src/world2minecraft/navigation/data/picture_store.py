@@ -44,10 +44,10 @@ class EncodedPicture:
 
     jpeg: bytes
     sha256: str
-    mean: float  # of its grey, 0 to 255
-    dhash: int  # 64 bits
-    detail: float  # how much its grey varies over the picture, a standard deviation
-    small: bytes  # its grey, uint8, ``COARSE_PX``
+    mean: float
+    dhash: int
+    detail: float
+    small: bytes
 
 
 def encode_picture(colour: np.ndarray) -> EncodedPicture:

@@ -74,10 +74,10 @@ class SceneRule:
     """
 
     trajectories: int = 24
-    views: int = 3  # Next-View questions of a trajectory, at most
+    views: int = 3
     move_set: str = "vlnce"
     levels: tuple[float, float, float] = (0.15, 0.25, 0.6)
-    balanced: bool = True  # one Next-Action question of each action, see ``next_action``
+    balanced: bool = True
     size_px: tuple[int, int] = (640, 360)
     seed: int = 0
 

@@ -82,12 +82,12 @@ class SceneJob:
     """
 
     path: str
-    folder: str  # of the set
+    folder: str
     composition: str
     split: str
     rule: SceneRule
     streams: tuple[str, ...] = ()
-    at: At = "eye"  # what streams tell that do not say it
+    at: At = "eye"
 
 
 def run_scene_jobs(
@@ -214,7 +214,7 @@ class BuiltSet:
     items: list[Item]
     works: list[SceneItems]
     leaks: Leaks
-    left_out: list[str]  # scenes that are not of the composition
+    left_out: list[str]
 
 
 def composition_of(path: str | Path) -> str:

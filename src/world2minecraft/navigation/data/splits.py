@@ -119,10 +119,10 @@ class Leaks:
         instructions: The shared instruction texts.
     """
 
-    images: tuple[str, ...]  # sums
-    scenes: tuple[str, ...]  # with val_unseen
+    images: tuple[str, ...]
+    scenes: tuple[str, ...]
     trajectories: tuple[str, ...]
-    instructions: tuple[str, ...]  # texts; those that name the goal alone come again by nature
+    instructions: tuple[str, ...]
 
     @property
     def is_clean(self) -> bool:

@@ -30,15 +30,15 @@ class SegmentationRule:
         pitch_deg: The maximum pitch up or down. Frames beyond it are dropped.
     """
 
-    gap_s: float = 1.0  # Longer between two frames, and something is missing,
-    fastest_m_s: float = 8.0  # faster, and one flew,
-    jump_m: float = 1.5  # farther at once, and one was teleported.
-    pause_s: float = 2.0  # Standing so long ends a walk,
-    still_m: float = 0.1  # within so much and
-    still_deg: float = 5.0  # without a turn;
-    look_deg: float = 300.0  # so does turning so far
-    look_m: float = 0.5  # within so much.
-    pitch_deg: float = 60.0  # Who looks at the feet or the sky sees no way.
+    gap_s: float = 1.0
+    fastest_m_s: float = 8.0
+    jump_m: float = 1.5
+    pause_s: float = 2.0
+    still_m: float = 0.1
+    still_deg: float = 5.0
+    look_deg: float = 300.0
+    look_m: float = 0.5
+    pitch_deg: float = 60.0
 
 
 def split_into_walks(

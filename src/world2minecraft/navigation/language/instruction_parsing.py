@@ -32,8 +32,8 @@ class ParsedInstruction(NamedTuple):
         landmarks: The landmark names, without immediate repetitions.
     """
 
-    turns: tuple[str, ...]  # left, right, around
-    landmarks: tuple[str, ...]  # their names; the same twice in a row counts once
+    turns: tuple[str, ...]
+    landmarks: tuple[str, ...]
 
 
 def parse_instruction(text: str, names: Iterable[str]) -> ParsedInstruction:

@@ -42,10 +42,10 @@ class RouteSegment:
 
     turn_deg: float
     length_m: float
-    at: str = ""  # where the turn is
+    at: str = ""
     towards: str = ""
-    passing: tuple[tuple[str, str], ...] = ()  # name and side, in order
-    into: str = ""  # the name of a room that one comes into
+    passing: tuple[tuple[str, str], ...] = ()
+    into: str = ""
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,8 @@ class Route:
     stretches: tuple[RouteSegment, ...]
     last_turn_deg: float
     stop: str = ""
-    stop_side: str = ""  # "front", "left" or "right" of the walker
-    corners_m: tuple[tuple[float, float], ...] = ()  # where each turn is, the last one's too
+    stop_side: str = ""
+    corners_m: tuple[tuple[float, float], ...] = ()
 
     def tells_turn(self, place_m: np.ndarray, side: str) -> bool:
         """Return whether the route describes a turn to a side at a position [2] of the room."""
@@ -99,12 +99,10 @@ class ObservedWalk:
         rooms: The name of the room at each stance, or "" if unknown.
     """
 
-    places_m: np.ndarray  # float64 [N, 2], metres of the room
-    yaws_deg: np.ndarray  # float64 [N], the game's
-    looks: dict[int, frozenset[int]]  # landmark numbers in the picture, by stance
-    rooms: Sequence[str] = field(
-        default_factory=tuple
-    )  # the room's name at each stance, "" unknown
+    places_m: np.ndarray
+    yaws_deg: np.ndarray
+    looks: dict[int, frozenset[int]]
+    rooms: Sequence[str] = field(default_factory=tuple)
 
 
 def describe_route(walk: ObservedWalk, landmarks: Sequence[Landmark], target: str = "") -> Route:

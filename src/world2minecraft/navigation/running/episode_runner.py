@@ -45,8 +45,8 @@ class EpisodeWalk:
     end: str
     steps: int
     decisions: int
-    invalid: int  # decisions that could not be read
-    failed: int  # decisions for which a server did not answer
+    invalid: int
+    failed: int
     score: EpisodeScore
 
 

@@ -32,10 +32,10 @@ class WalkedPath:
         collisions: The number of actions that collided.
     """
 
-    positions_m: np.ndarray  # float64 [T, 3], metres of the room
-    distance_m: np.ndarray  # float64 [T]
-    stopped: bool  # by its own word, not because it ran out of steps
-    steps: int  # actions, STOP among them
+    positions_m: np.ndarray
+    distance_m: np.ndarray
+    stopped: bool
+    steps: int
     collisions: int = 0
 
     def __post_init__(self):
@@ -71,8 +71,8 @@ class EpisodeScore:
         steps: The number of steps.
     """
 
-    ne_m: float  # navigation error: how far the goal still was
-    one_m: float  # the least that it ever was
+    ne_m: float
+    one_m: float
     success: tuple[bool, ...]
     oracle: tuple[bool, ...]
     spl: float

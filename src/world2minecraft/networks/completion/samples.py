@@ -94,10 +94,10 @@ class Sample:
     """
 
     sight: Sight
-    truth: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
-    kind: str  # of the look
-    hinted: bool  # whether the geometric labeller was used: only where walls lie along the axes
-    false_share: float  # of the occupied cells that the truth knows, those that are empty in it
+    truth: np.ndarray
+    kind: str
+    hinted: bool
+    false_share: float
 
 
 def make_samples(seed: int) -> list[Sample]:

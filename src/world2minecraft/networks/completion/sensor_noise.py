@@ -41,11 +41,11 @@ class ScanNoise:
     sensor: Sensor
     frame_scale: float
     scan_scale: float
-    misfit_m: np.ndarray  # float64 [3]
+    misfit_m: np.ndarray
     yaw_error_deg: float
     glass: float
     blots: float
-    lean_deg: np.ndarray  # float64 [2]
+    lean_deg: np.ndarray
     bend_m: float
     depth_step_m: float
 

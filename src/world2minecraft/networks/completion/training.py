@@ -84,10 +84,10 @@ class CompletionRun:
     steps: int = 4000
     batch: int = 4
     rate: float = 3e-3
-    fall: float = 0.35  # The part of the steps over which the rate falls.
+    fall: float = 0.35
     warm_steps: int = 50
-    decay: float = 0.02  # Of the weights.
-    mean_of: float = 0.99  # Of the running mean; a state counts for some 100 steps.
+    decay: float = 0.02
+    mean_of: float = 0.99
     seed: int = 0
     crop: tuple[int, int, int] = CROP
     size: CompletionSize = field(default_factory=CompletionSize)

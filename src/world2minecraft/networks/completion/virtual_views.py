@@ -48,8 +48,8 @@ class VirtualScan:
     """
 
     kind: ScanKind
-    poses: np.ndarray  # float64 [F, 4, 4], camera_to_room
-    room_to_grid: np.ndarray  # float64 [4, 4], the frame of the fused cells
+    poses: np.ndarray
+    room_to_grid: np.ndarray
     in_room_axes: bool
 
 

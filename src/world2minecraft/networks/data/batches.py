@@ -36,8 +36,8 @@ class Draws(NamedTuple):
         row: Index of the training frame in the data set, int64 [N].
     """
 
-    source: np.ndarray  # int32 [N], which set
-    row: np.ndarray  # int64 [N], which of its training frames
+    source: np.ndarray
+    row: np.ndarray
 
 
 def plan_draws(sizes: Sequence[int], weights: Sequence[float], count: int, seed: int) -> Draws:

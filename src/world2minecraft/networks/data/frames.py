@@ -60,16 +60,16 @@ class Frame:
 
     key: str
     scene_id: str
-    image: np.ndarray  # uint8 [H, W, 3]
-    depth_m: np.ndarray  # float32 [H, W], 0 where there is none
-    intrinsics: np.ndarray  # float32 [3, 3], pixel centres at +0.5
-    camera_to_grid: np.ndarray  # float32 [4, 4], metres from the corner of cell (0, 0, 0)
-    grid_to_room: np.ndarray  # float64 [4, 4], the same corner in the room
-    labels: np.ndarray  # uint8, 0 to 11 or 255
-    in_frustum: np.ndarray  # bool, the centre falls into the picture
-    seen: np.ndarray  # bool, some pixel sees the cell first
-    free: np.ndarray  # bool, empty, and a ray went through it
-    has_depth: bool  # Whether seen and free are known.
+    image: np.ndarray
+    depth_m: np.ndarray
+    intrinsics: np.ndarray
+    camera_to_grid: np.ndarray
+    grid_to_room: np.ndarray
+    labels: np.ndarray
+    in_frustum: np.ndarray
+    seen: np.ndarray
+    free: np.ndarray
+    has_depth: bool
 
     @property
     def known(self) -> KnownCells:

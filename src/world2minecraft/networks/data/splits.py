@@ -23,7 +23,7 @@ class Split(NamedTuple):
 
     train: list[int]
     val: list[int]
-    test: list[int]  # Empty where the set has no test split.
+    test: list[int]
 
     @property
     def scored(self) -> list[int]:

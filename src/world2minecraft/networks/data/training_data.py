@@ -32,7 +32,7 @@ class CacheLocation:
     """
 
     keep: bool = True
-    root: Path | None = None  # The user's cache folder where None.
+    root: Path | None = None
 
     @classmethod
     def parse(cls, text: str) -> "CacheLocation":
@@ -60,8 +60,8 @@ class RunData:
     parts: tuple[TrainingSet, ...]
     weights: tuple[float, ...]
     target: Frames
-    split: Split  # Of the target.
-    counts: np.ndarray  # int64 [12], training cells of each class, sets by their weights
+    split: Split
+    counts: np.ndarray
     descriptions: tuple[str, ...]
 
 

@@ -75,10 +75,10 @@ class CellProjection:
         size_px: Image height and width in pixels.
     """
 
-    pixels: Tensor  # float32 [B, N, 2]: u to the right, v down
-    depth_m: Tensor  # float32 [B, N], along the camera's z
-    inside: Tensor  # bool [B, N]: before the camera, and in the picture
-    size_px: tuple[int, int]  # height, width
+    pixels: Tensor
+    depth_m: Tensor
+    inside: Tensor
+    size_px: tuple[int, int]
 
 
 def project_cells(inputs: OccInput) -> CellProjection:

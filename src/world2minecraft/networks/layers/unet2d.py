@@ -32,7 +32,7 @@ class BackboneWidths:
     taps: tuple[int, int, int, int, int]
     blocks: tuple[int, int, int, int, int]
     inner: int
-    decoder: int  # channels of the decoder at 1/32; half as many at each step up
+    decoder: int
 
 
 class Encoder(nn.Module):

@@ -53,7 +53,7 @@ class SceneEvidence:
         values: The sums, float [B, 2 + 12 + K, X, Y, Z].
     """
 
-    values: Tensor  # float [B, 2 + 12 + K, X, Y, Z]
+    values: Tensor
 
     @property
     def weight(self) -> Tensor:
@@ -97,14 +97,14 @@ class SizeConfig:
         turns: Whether scenes are rotated by random quarter turns in training.
     """
 
-    channels: int  # of a cell while a frame is processed
-    features: int  # that are kept of a cell
-    reading: int  # channels of the network that reads the scene
+    channels: int
+    features: int
+    reading: int
     depth_channels: int
     bins: int
-    picture: str  # of ``WIDTHS``
-    reaches: tuple[int, ...] = (1, 2, 3)  # dilations
-    turns: bool = True  # Scenes are read at any quarter turn in training.
+    picture: str
+    reaches: tuple[int, ...] = (1, 2, 3)
+    turns: bool = True
 
 
 SIZE_CONFIGS = {
@@ -200,9 +200,9 @@ class FrameWindow:
         shape: Shape of the box before rotation: right, forward, up.
     """
 
-    quarters: int  # counter-clockwise from above; 0 looks along the scene's y
-    low: tuple[int, int, int]  # cells of the scene: the corner of the turned box
-    shape: tuple[int, int, int]  # in the frame's own order: right, forward, up
+    quarters: int
+    low: tuple[int, int, int]
+    shape: tuple[int, int, int]
 
     def box_to_scene(self, voxel_m: float) -> Tensor:
         """Return the matrix from box coordinates to scene coordinates in metres [4, 4]."""

@@ -34,10 +34,10 @@ class SizeConfig:
         reaches: Dilations of the 3D blocks.
     """
 
-    channels: int  # of a cell at the full grid
+    channels: int
     depth_channels: int
     bins: int
-    reaches: tuple[int, ...] = (1, 2, 3)  # dilations
+    reaches: tuple[int, ...] = (1, 2, 3)
 
 
 SIZE_CONFIGS = {

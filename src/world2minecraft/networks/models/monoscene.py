@@ -31,8 +31,8 @@ class SizeConfig:
         reaches: Dilations of the 3D blocks.
     """
 
-    channels: int  # of a cell at the full grid
-    reaches: tuple[int, ...] = (1, 2, 3)  # dilations
+    channels: int
+    reaches: tuple[int, ...] = (1, 2, 3)
 
 
 SIZE_CONFIGS = {"tiny": SizeConfig(16, (2,)), "small": SizeConfig(32), "full": SizeConfig(200)}

@@ -122,11 +122,11 @@ class SizeConfig:
         reaches: Dilations of the 3D blocks.
     """
 
-    channels: int  # of a cell at the full grid
-    picture: int  # of the picture's maps
-    volumes: tuple[int, int, int, int]  # at 1/32, 1/16, 1/8 and 1/4
+    channels: int
+    picture: int
+    volumes: tuple[int, int, int, int]
     bins: int
-    reaches: tuple[int, ...] = (1, 2, 3)  # dilations
+    reaches: tuple[int, ...] = (1, 2, 3)
 
 
 SIZE_CONFIGS = {

@@ -56,13 +56,13 @@ class Stage:
         shape: Shape of the grid.
     """
 
-    maps: Sequence[Tensor]  # [B, C, h, w] of each level
-    query_pixel: Tensor  # [B, Q, 2]: row, column as shares
-    query_cell: Tensor  # [B, Q, 3]
-    query_mark: Tensor  # [1, Q, C], distinguishes one query from another
-    cell_place: Tensor  # [B, N, 3]
-    cell_mark: Tensor  # [1, N, C], distinguishes one cell from another
-    in_view: Tensor  # bool [B, N]
+    maps: Sequence[Tensor]
+    query_pixel: Tensor
+    query_cell: Tensor
+    query_mark: Tensor
+    cell_place: Tensor
+    cell_mark: Tensor
+    in_view: Tensor
     shape: tuple[int, int, int]
 
 
@@ -135,7 +135,7 @@ class SizeConfig:
     points: int
     depth_channels: int
     bins: int
-    picture: str  # of ``WIDTHS``
+    picture: str
 
 
 SIZE_CONFIGS = {
