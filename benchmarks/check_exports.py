@@ -23,12 +23,13 @@ from rich.console import Console
 from rich.table import Table
 from tests.minecraftocc.exchange import page_loader
 
+from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.minecraftocc.building import build_dataset
 from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.minecraftocc.exporters import export_samples
+from world2minecraft.minecraftocc.formats.label_grids import cells_behind_depth
 from world2minecraft.minecraftocc.plan import house_scenes, plan_dataset
-from world2minecraft.minecraftocc.sample_figure import cells_behind_depth
 from world2minecraft.minecraftocc.store import open_store
 from world2minecraft.minecraftocc.types import OccSample
 
@@ -47,7 +48,8 @@ def count(sample: OccSample, loaded: page_loader.Loaded, matrix: np.ndarray, sum
         sums["cells in view or not, otherwise"] += int((loaded.in_view != occ.in_frustum).sum())
     found = page_loader.first_seen_labels(loaded, matrix, nudge_m=NUDGE_M)
     assert sample.depth_m is not None
-    pixels, cells = cells_behind_depth(sample, sample.depth_m)
+    camera_to_region = invert_rigid(occ.region.region_to_room) @ sample.camera_to_room
+    pixels, cells = cells_behind_depth(sample.depth_m, sample.camera, occ.region, camera_to_region)
     sums["pixels"] += len(pixels)
     own = occ.labels[tuple(cells.T)]
     sums["pixels with the same label"] += int((found.reshape(-1)[pixels] == own).sum())

@@ -145,7 +145,9 @@ def test_a_design_is_one_class_whatever_it_is_made_of():
 
 
 def test_rooms_are_reported_only_where_every_scene_has_them(samples):
-    counter = count_samples(samples, rooms={"house_0001": 5, "elsewhere": 9})
+    counter = count_samples(samples)
+    for scene, rooms in {"house_0001": 5, "elsewhere": 9}.items():
+        counter.set_rooms(scene, rooms)
     assert counter.result("x").rooms is None
     counter.set_rooms("house_0002", 7)
     assert counter.result("x").rooms == 12
@@ -181,7 +183,9 @@ def test_a_fine_class_without_a_design_is_its_block():
 def test_rooms_of_the_pictures_count_where_the_scene_tells_none(samples):
     told = [replace(one, facts={"room": n % 3}) for n, one in enumerate(samples)]
     assert [scene.rooms for scene in count_samples(told).result("x").scenes] == [3, 3]
-    assert count_samples(told, rooms={"house_0001": 9}).result("x").rooms == 12
+    counter = count_samples(told)
+    counter.set_rooms("house_0001", 9)
+    assert counter.result("x").rooms == 12
     one_silent = [*told[:7], samples[7]]
     assert [scene.rooms for scene in count_samples(one_silent).result("x").scenes] == [3, None]
 

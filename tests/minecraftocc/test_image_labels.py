@@ -14,7 +14,6 @@ from world2minecraft.minecraftocc.labels.image_labels import (
     cast_depth,
     cells_of_pixels,
     label_image,
-    label_view,
     occluded_cells,
     resize_camera,
     unknown_cells,
@@ -80,7 +79,9 @@ def test_a_cell_a_block_says_what_the_ids_of_its_pixels_say(world):
 def test_masks_are_laws(world, kind):
     volume, scene, voxels = world
     for pose in poses_in(volume, 6, 9):
-        occ = label_view(voxels, scene, CAMERA, pose, RegionRule(kind, (24, 22, 20)))
+        region = region_in(voxels, pose, RegionRule(kind, (24, 22, 20)))
+        camera, depth_m = cast_depth(scene, CAMERA, pose)
+        occ = label_image(voxels, region, camera, pose, depth_m)
         assert not (occ.free & (occ.fine > 0)).any()
         assert not (occ.visible & (occ.fine == 0)).any()
         parts = [occ.visible & occ.in_frustum, occluded_cells(occ), unknown_cells(occ)]

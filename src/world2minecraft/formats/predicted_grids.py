@@ -41,6 +41,7 @@ from world2minecraft.core.types import checks
 from world2minecraft.formats.class_ids import EMBODIED_EMPTY, ClassSet, read_class_set
 from world2minecraft.formats.safe_pickle import read_pickle
 from world2minecraft.formats.sscnet import FINE_PER_CELL, FINE_SHAPE, downsample_labels, read_bin
+from world2minecraft.geometry.rotations import nearest_rigid
 
 # How an array's axes lie: which of them are our x, y, z. Each is its own inverse.
 ORDERS = {"xyz": (0, 1, 2), "xzy": (0, 2, 1), "yxz": (1, 0, 2)}
@@ -284,12 +285,9 @@ def _numbers(values: Any, shape: tuple[int, ...], name: str, path: Path) -> np.n
 def _rigid(values: Any, path: Path, name: str = "cam_pose") -> np.ndarray:
     """Return a rigid transform with an exact rotation."""
     stored = _numbers(values, (4, 4), name, path)
-    left, _, right = np.linalg.svd(stored[:3, :3])
     if fault := checks.rigid_fault(stored, MAX_SKEW):
         raise DamagedFileError(path, f"{name} is not a rotation and a translation: it {fault}")
-    rigid = np.eye(4)
-    rigid[:3, :3], rigid[:3, 3] = left @ right, stored[:3, 3]
-    return checks.transform(name, rigid)
+    return checks.transform(name, nearest_rigid(stored))
 
 
 def interpret_grid(stored: StoredGrid, rules: GridRules, *, is_frame: bool) -> PredictedGrid:

@@ -39,6 +39,14 @@ def rotation_from_quaternion(quaternion: np.ndarray) -> np.ndarray:
     return Rotation.from_quat(np.asarray(quaternion, np.float64) / length).as_matrix()
 
 
+def nearest_rigid(pose: np.ndarray) -> np.ndarray:
+    """Return the rigid transform, float64 [4, 4], whose rotation is nearest to that of a pose."""
+    left, _, right = np.linalg.svd(np.asarray(pose[:3, :3], np.float64))
+    rigid = np.eye(4)
+    rigid[:3, :3], rigid[:3, 3] = left @ right, pose[:3, 3]
+    return rigid
+
+
 def pose_from_quaternion(translation: np.ndarray, quaternion: np.ndarray) -> np.ndarray:
     """Return the 4x4 transform of a translation and a quaternion x, y, z, w."""
     pose = np.eye(4)

@@ -7,6 +7,7 @@ from world2minecraft.capture.depth_images import check_depth_kind
 from world2minecraft.capture.images import read_colour, read_header, read_raw
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.types import Camera
+from world2minecraft.formats.sscnet import NYU_FOCAL_PX
 from world2minecraft.minecraftocc.cell_predictions import PredictedCells, predict_cells
 from world2minecraft.minecraftocc.scene_completion import (
     VOXEL_M,
@@ -15,8 +16,6 @@ from world2minecraft.minecraftocc.scene_completion import (
     depth_of_png,
 )
 from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
-
-NYU_FOCAL_PX = 518.8579
 
 
 @dataclass(frozen=True)

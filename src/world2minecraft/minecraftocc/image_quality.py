@@ -35,7 +35,7 @@ from world2minecraft.minecraftocc.store.folder import META
 KERNELS = (1, 5)
 PAPER_KERNEL, PAPER_VARIANT = 5, "skvideo"  # Inferred: see CAVEATS.
 NATIVE = "native"
-MAX_SIDE_PX = 16_384  # Of a side that pictures are resized to.
+MAX_SIDE_PX = 16_384  # Of resized images.
 CAVEATS = (
     "NIQE and PIQE are made for photographs, so their values for rendered blocks mean little.",
     "LV changes by hundreds with kernel k and image size, and counts block edges as detail.",
@@ -95,7 +95,7 @@ def _of_folder(folder: Path) -> PictureSource:
         raise InputError(folder, f"no image files found ({', '.join(SUFFIXES)})")
 
     def is_picture(key: str) -> bool:
-        return not read_header(folder / key).mode.startswith(("I", "F"))  # Depth and the like.
+        return not read_header(folder / key).mode.startswith(("I", "F"))  # Such as depth images.
 
     def read(key: str) -> np.ndarray:
         return read_colour(folder / key)
@@ -240,7 +240,7 @@ def measure_quality(
             found.setdefault("x".join(map(str, resize)), []).append(small)
     progress("quality", len(keys), len(keys))
     if resize is not None and sizes == {resize}:
-        del found["x".join(map(str, resize))]  # It would say the same again.
+        del found["x".join(map(str, resize))]  # It would repeat the first row.
     variants = tuple(model.name for model in models)
     rows = tuple(_row(size, figures, variants) for size, figures in found.items())
     return QualityReport(name, rows, variants, tuple(f"{w}x{h}" for w, h in sorted(sizes)))

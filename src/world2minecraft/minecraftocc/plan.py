@@ -6,7 +6,7 @@ independent of the engine and the machine.
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,10 +17,9 @@ from world2minecraft.minecraftocc.scene_sources import scene_id_of
 from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 from world2minecraft.minecraftocc.tours import nyu_camera
 
-TEST_SHARE = 0.2  # Of images and of scenes, where there is no preset.
+TEST_SHARE = 0.2  # Of the images and the scenes, without a preset.
 MAX_IMAGES, MAX_SCENES = 10_000_000, 100_000
-# Of a scene: with a number, a tour and a frame its keys have 90 letters at most.
-MAX_SCENE_NAME = 46
+MAX_SCENE_NAME = 46  # With number, tour and frame, a key then has at most 90 characters.
 
 
 @dataclass(frozen=True)
@@ -211,7 +210,7 @@ def plan_dataset(
         total = images or 0
         tests = _test_scenes(len(scenes), test_share)
         test = round(total * test_share)
-        # As many as scenes of either kind: at least one image is for training.
+        # At least one image per test scene, and at least one for training.
         test = min(max(test, tests), total - 1) if tests else 0
         train = total - test
     count = _test_scenes(len(scenes), test / (train + test))
@@ -222,7 +221,11 @@ def plan_dataset(
         **_share_evenly([scene.scene_id for scene in scenes if scene.scene_id not in names], train),
     }
     placed = [
-        _with_images(scene, "test" if scene.scene_id in names else "train", shares[scene.scene_id])
+        replace(
+            scene,
+            split="test" if scene.scene_id in names else "train",
+            images=shares[scene.scene_id],
+        )
         for scene in scenes
     ]
     return DatasetPlan(tuple(placed), how, preset)
@@ -282,8 +285,3 @@ def _share_evenly(names: list[str], images: int) -> dict[str, int]:
         return {}
     each, more = divmod(images, len(names))
     return {name: each + (number < more) for number, name in enumerate(names)}
-
-
-def _with_images(scene: SceneSpec, split: str, images: int) -> SceneSpec:
-    facts = {**scene.__dict__, "split": split, "images": images}
-    return SceneSpec(**facts)

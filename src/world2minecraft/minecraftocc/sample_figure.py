@@ -9,19 +9,17 @@ import numpy as np
 from world2minecraft.capture.poster.canvas import FAINT, INK, PANEL, RULE, Sheet
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN, display_name
 from world2minecraft.core.coordinates import apply, invert_rigid
-from world2minecraft.geometry.unprojection import unproject_depth
+from world2minecraft.minecraftocc.formats.label_grids import cells_behind_depth
 from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.rendering.voxel_camera import cast_voxels
 
 PANEL_PX = (480, 360)
 MARGIN_PX, LINE_PX, HEAD_PX = 24, 26, 54
-LABEL_SHARE = 0.6  # Of a label's colour over the picture's.
-INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is looked up.
-BESIDE_CELLS = 1
-VIEW_M = 7.0  # From corner to corner of a usual region.
+LABEL_SHARE = 0.6  # Opacity of the labels over the image.
+VIEW_M = 7.0  # Diagonal of the default region.
 NOTHING = (206, 203, 195)  # Empty cells from above; unknown ones are lighter.
 UNKNOWN_COLOUR = (232, 229, 222)
-# Near to far, dark to bright: even steps to the eye, for the colour-blind too.
+# Colours from near to far that are perceptually uniform, also for colour-blind people.
 RAMP = np.array(
     [(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)], np.float64
 )
@@ -52,7 +50,7 @@ def share_of_depth_in_cells(sample: OccSample) -> float | None:
     """
     if sample.depth_m is None:
         return None
-    _, cells = cells_behind_depth(sample, sample.depth_m)
+    _, cells = _cells_behind(sample, sample.depth_m)
     if not len(cells):
         return None
     return float(_dilate(sample.occ.occupied)[tuple(cells.T)].mean())
@@ -73,7 +71,7 @@ def project_labels(sample: OccSample) -> np.ndarray:
     met = labels.reshape(-1)[np.maximum(hits.voxel_index, 0)]
     met = np.where(hits.voxel_index >= 0, met, 0).astype(np.uint8)
     if sample.depth_m is not None:
-        pixels, cells = cells_behind_depth(sample, sample.depth_m)
+        pixels, cells = _cells_behind(sample, sample.depth_m)
         behind = sample.occ.labels[tuple(cells.T)]
         met.reshape(-1)[pixels[behind > 0]] = behind[behind > 0]
     return met
@@ -83,22 +81,9 @@ def _camera_to_region(sample: OccSample) -> np.ndarray:
     return invert_rigid(sample.occ.region.region_to_room) @ sample.camera_to_room
 
 
-def cells_behind_depth(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the cell just behind the surface that each pixel sees.
-
-    Returns:
-        The flat indices of the pixels in ascending order, int32 [N], and their cells in the region,
-        int64 [N, 3]. Pixels that see surfaces outside the region are omitted.
-    """
-    region = sample.occ.region
-    finite = np.isfinite(depth_m) & (depth_m > 0)
-    behind = np.where(finite, depth_m + np.float32(INTO_CELL * region.voxel_m), 0)
-    points, pixels = unproject_depth(
-        behind.astype(np.float32), sample.camera, _camera_to_region(sample)
-    )
-    cells = np.floor(points / np.float32(region.voxel_m)).astype(np.int64)
-    within = np.all((cells >= 0) & (cells < region.shape), axis=1)
-    return pixels[within], cells[within]
+def _cells_behind(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    to_region = _camera_to_region(sample)
+    return cells_behind_depth(depth_m, sample.camera, sample.occ.region, to_region)
 
 
 def overlay_labels(sample: OccSample) -> np.ndarray:
@@ -223,7 +208,7 @@ def _dilate(mask: np.ndarray) -> np.ndarray:
     for axis in range(3):
         ahead = [slice(None)] * 3
         behind = [slice(None)] * 3
-        ahead[axis], behind[axis] = slice(BESIDE_CELLS, None), slice(None, -BESIDE_CELLS)
+        ahead[axis], behind[axis] = slice(1, None), slice(None, -1)
         wide[tuple(ahead)] |= mask[tuple(behind)]
         wide[tuple(behind)] |= mask[tuple(ahead)]
     return wide

@@ -27,6 +27,7 @@ from world2minecraft.core.types import (
 )
 from world2minecraft.formats.predicted_grids import MAX_SKEW
 from world2minecraft.formats.sscnet import HEADER_BYTES
+from world2minecraft.geometry.rotations import nearest_rigid
 from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA, decode_depth
 from world2minecraft.reconstruction.fusion import (
     CleaningParameters,
@@ -52,17 +53,17 @@ SHAPE = (60, 60, 36)  # x, y, z; a file's own order is x, z up, y.
 FILE_AXES = (0, 2, 1)
 VOXEL_M = 0.08
 FAR_M = 8.0
-PLAUSIBLE_M = (0.4, 10.0)  # Where the middle of a room's depths lies, and its farthest.
+PLAUSIBLE_M = (0.4, 10.0)  # Minimum and maximum of the median depth of a room.
 CODES = ("auto", "rotated", "mm", "8000")
-UP_COSINE = 0.9  # A floor's normal.
-FLOOR_SHARE = 0.2  # Of the largest level's points: as much as a floor half hidden shows.
+UP_COSINE = 0.9  # Minimum cosine between the normal of a floor and up.
+FLOOR_SHARE = 0.2  # Of the points of the largest level; half of a floor may be hidden.
 MIN_FLOOR_POINTS = 200
 # The plane z = 0 of the world is the floor if a camera stands on it and almost nothing is below.
 CAMERA_HEIGHT_M = (0.3, 2.6)
 BELOW_M, BELOW_SHARE = 0.25, 0.02
-UNDER_M = 0.02  # Below the floor's top, in the floor.
+UNDER_M = 0.02  # Depth below the top of the floor that is inside its cells.
 ALONG_AXES_DEG = 5.0  # The geometric labeller finds walls up to this angle to the axes.
-LEVEL_COSINE = 0.2  # Between a wall's normal and up.
+LEVEL_COSINE = 0.2  # Maximum cosine between the normal of a wall and up.
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,15 +129,7 @@ def read_grid_place(path: Path) -> GridPlace:
         origin_m = checks.coordinates("origin_m", numbers[:3], (3,))
     except ValueError as error:
         raise DamagedFileError(path, str(error)) from error
-    return GridPlace(origin_m, _rigid(stored))
-
-
-def _rigid(pose: np.ndarray) -> np.ndarray:
-    """Return a pose in float64 with an exact rotation, since float32 has errors of 1e-7."""
-    result = pose.astype(np.float64)
-    u, _, v = np.linalg.svd(result[:3, :3])
-    result[:3, :3] = u @ v
-    return result
+    return GridPlace(origin_m, nearest_rigid(stored))
 
 
 def depth_of_png(path: Path, raw: np.ndarray, code: str = "auto") -> np.ndarray:

@@ -16,7 +16,7 @@ from world2minecraft.minecraftocc.plan import (
 )
 from world2minecraft.rendering.views import read_tour
 
-IMAGES_PER_SCENE = 50  # Where no number of images is given.
+IMAGES_PER_SCENE = 50  # Without a requested number of images.
 WORLD_SUFFIXES = (".schem", ".schematic", ".litematic", ".nbt")
 WORLD_MARKS = ("level.dat", "scene.json", "build/scene.json")
 

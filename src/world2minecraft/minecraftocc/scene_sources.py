@@ -39,25 +39,25 @@ from world2minecraft.minecraftocc.block_map.parser import MAPS
 from world2minecraft.minecraftocc.labels.fine_classes import map_fine_classes
 
 SECTION = 16
-# Chunks from the spawn within which a build counts as the one that is meant: 96 blocks.
+# Maximum distance in chunks of the main build from the spawn point, 96 blocks.
 NEAR_CHUNKS = 6
 MAX_CHUNKS = 6144  # About half a minute of reading; six regions.
-MAX_SIDE = 320  # Blocks; what is larger is cut around the middle of what was built.
+MAX_SIDE = 320  # Blocks; larger builds are cut around their centre.
 MARGIN = 2
-# By parts of names: what players build of, and what no landscape, ore or plant is.
+# Names of blocks that players build with and that do not occur in landscapes, ores or plants.
 BUILT = (
     "*_planks", "*_stairs", "*_slab", "*_concrete", "*_wool", "*_carpet", "*_bed", "*_door",
     "*glass", "*glass_pane", "*_terracotta", "smooth_*", "quartz_*", "polished_*_slab", "bricks",
     "*_bricks", "*_trapdoor", "*_fence", "bookshelf", "*_banner", "*_sign", "stripped_*", "iron_*",
     "sea_lantern", "flower_pot", "potted_*", "polished_*",
 )  # fmt: skip
-# ... but these stand in mines and ruins too: they go on with a build, and alone are none.
+# Exceptions that also occur in mines and ruins. They extend a build, but do not form one alone.
 WILD = ("oak_planks", "oak_fence", "rail", "mossy_stone_bricks", "stone_bricks")
 _BUILT = re.compile("|".join(translate(pattern) for pattern in BUILT))
 MIN_BUILT_KINDS = 3  # Kinds of built blocks that some section of a build must have.
-FOREIGN_SCALE = 1.0  # Blocks per metre of worlds that do not say theirs: players build so.
-OWN_MAP = MAPS[0]  # The map that our own truth is by.
-_FIRST = ("build", "world")  # Names of folders that say nothing of the scene.
+FOREIGN_SCALE = 1.0  # Blocks per metre of worlds that do not record their scale.
+OWN_MAP = MAPS[0]  # The block map of stored classes.
+_FIRST = ("build", "world")  # Names of folders that do not identify a scene.
 
 
 def find_built_box(world: Path) -> tuple[Box, str]:

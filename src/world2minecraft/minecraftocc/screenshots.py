@@ -34,7 +34,7 @@ from world2minecraft.rendering.views.pose_file import TourPose, read_tour
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 MAX_CHUNKS = 20_000
-MAX_TEXT, MAX_TEXTS = 1 << 16, 64  # Bytes of one text, unpacked; texts of a file.
+MAX_TEXT, MAX_TEXTS = 1 << 16, 64  # Bytes of a decompressed text; texts of a file.
 MAX_SIDE_PX = 20_000
 POSE_FIELDS = ("x", "y", "z", "yaw", "pitch")
 DEFAULT_PATTERNS = (
@@ -42,11 +42,11 @@ DEFAULT_PATTERNS = (
     "*{x},{y},{z},{yaw},{pitch}",
     "*{x} {y} {z} {yaw} {pitch}",
 )
-MAX_NAME = 255  # Letters, as most file systems have it.
+MAX_NAME = 255  # Characters, as in most file systems.
 MAX_PATTERN = 400
-MAX_WILD = 2  # Repeats of nearly anything: the time grows with the power of their number.
+MAX_WILD = 2  # Wildcards; the time grows exponentially with their number.
 NUMBER = r"[-+]?\d{1,9}(?:\.\d{1,9})?"
-_WHOLE = r"(?:(?<![\d.])|(?=[-+]))"  # Behind anything a number begins, and does not go on.
+_WHOLE = r"(?:(?<![\d.])|(?=[-+]))"  # A number begins here and is not continued.
 _EXAMPLE = "{x}_{y}_{z}_{yaw}_{pitch}"
 At = Literal["feet", "eye"]
 SIDECARS = ("poses.jsonl", "poses.csv", "tour.jsonl", "screenshots.jsonl", "screenshots.csv")
@@ -142,7 +142,7 @@ def _parse_text(kind: bytes, data: bytes, source: Path) -> tuple[str, str]:
         rest = _decompress(rest[1:], source)
     elif kind == b"iTXt":
         packed, encoding = rest[:1] == b"\1", "utf-8"
-        rest = rest[2:].partition(b"\0")[2].partition(b"\0")[2]  # Behind language and translation.
+        rest = rest[2:].partition(b"\0")[2].partition(b"\0")[2]  # Skip language and translation.
         rest = _decompress(rest, source) if packed else rest
     return keyword.decode("latin-1"), rest.decode(encoding, "replace")
 
@@ -185,7 +185,7 @@ class NamePattern:
             return None
         try:
             return {name: float(found[name]) for name in POSE_FIELDS}
-        except (TypeError, ValueError):  # A group that took part in no match, or no number.
+        except (TypeError, ValueError):  # A group without a match, or not a number.
             return None
 
 

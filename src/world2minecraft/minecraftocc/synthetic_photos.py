@@ -31,7 +31,7 @@ from world2minecraft.procgen.sensors.photo_rendering import (
 from world2minecraft.procgen.sensors.trajectory import plan_trajectory
 from world2minecraft.rendering.voxel_camera import cast_voxels
 
-FIRST_SEED = 40_000  # Of rooms: those of trials and of other sets are far below.
+FIRST_SEED = 40_000  # Of rooms. The seeds of benchmarks and other data sets are lower.
 ROOMS_PER_SEED = 1_000
 MAX_CLUTTER = 0.8
 FINE_CLASSES = (
@@ -129,7 +129,7 @@ def _room(plan: PhotoRooms, number: int) -> Room:
     kinds = sorted(KINDS)
     turn = seed % len(kinds)
     for kind in (*kinds[turn:], *kinds[:turn]):
-        with suppress(World2MinecraftError):  # Its furniture found no place here.
+        with suppress(World2MinecraftError):  # The furniture of this kind does not fit.
             return generate_room(seed, kind=kind, clutter=clutter, shape=None)
     raise UsageError(f"no room can be generated with seed {seed}; choose another seed (--seed)")
 

@@ -51,7 +51,7 @@ CONDITIONS = {
 }
 # A condition of two words asks for the kind or class of a neighbour: "over fence".
 NEIGHBOURS = {"over": (0, -1, 0), "under": (0, 1, 0)}
-# Of the thing that a block is part of: blocks inside that touch by faces. Metres.
+# Measures of the piece of furniture that a block is part of, in metres.
 MEASURES = {
     "at_m": "height of the block's underside above the floor",
     "height_m": "height of the piece from its lowest to its highest block",
@@ -63,10 +63,10 @@ MEASURES = {
     "filled": "fraction of the piece's bounding box that is filled, from 0 to 1",
     "open": "fraction of the piece's columns that are empty at the floor, as under a table top",
 }
-SHEET_M, RAISED_M = 1.2, 1.0  # Of a curtain; of one that hangs over a sofa's back.
-PLATE_M = 0.66  # Pictures hang higher than seats are; two blocks of a third of a metre.
-TALL_M = 1.4  # What is higher and of one height is one: wardrobes of two woods.
-UNDER_M = 0.5  # How thick a floor is, and what goes on of a wall beside it.
+SHEET_M, RAISED_M = 1.2, 1.0  # Minimum height of a curtain, and of one above furniture.
+PLATE_M = 0.66  # Minimum height of a picture above the floor, which is higher than seats.
+TALL_M = 1.4  # Adjacent pieces of this and of equal height are one, such as a wardrobe.
+UNDER_M = 0.5  # Maximum thickness of a floor, and maximum height of a wall beside it.
 ROOF_M, SKY_M, WIDE_M = 3.0, 1.8, 1.5
 SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 COARSE_BLOCKS_PER_METRE = 2.0  # Blocks per metre under which a chair is one block.
@@ -172,7 +172,7 @@ def _merge_tall_neighbours(parts: np.ndarray, count: int, tall: int) -> tuple[np
     edges = (one[alike], other[alike])
     graph = sparse.coo_matrix((np.ones(len(edges[0]), bool), edges), (count + 1, count + 1))
     found, own = csgraph.connected_components(graph, directed=False)
-    order = np.zeros(found, np.int32)  # Nothing, 0, is joined to none; it keeps its number.
+    order = np.zeros(found, np.int32)  # The number 0, for no piece, is never joined and is kept.
     order[own[0]] = 0
     rest = np.setdiff1d(np.arange(found), own[:1])
     order[rest] = np.arange(1, found)
@@ -387,18 +387,12 @@ class Context:
             result &= parts > 0
             for name, span in rule.spans.items():
                 own = name == "at_m"
-                result &= (
-                    _in_span(self._at_m(at), span)
-                    if own
-                    else self._pieces_within(name, span)[parts]
-                )
+                values = self._at_m(at) if own else self.pieces.measures[name][parts]
+                result &= _in_span(values, span)
             for name, span in rule.shares.items():
                 share = self.shares[:, self._are((name,))].sum(1)
                 result &= _in_span(share, span)[parts]
         return result
-
-    def _pieces_within(self, name: str, span: Span) -> np.ndarray:
-        return _in_span(self.pieces.measures[name], span)
 
     def _at_m(self, at: np.ndarray) -> np.ndarray:
         """Return the height of blocks above their floor in metres."""

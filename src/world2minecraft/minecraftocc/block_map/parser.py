@@ -121,7 +121,7 @@ def _resolve_extends(keys: dict[str, Any]) -> dict[str, Any]:
     result = below | keys
     for key in _TABLES:
         own, under = keys.get(key, {}), below.get(key, {})
-        # What a map says itself is asked first, also of two patterns that both fit.
+        # The map's own entries come first, so they also take precedence among patterns.
         rest = {name: value for name, value in under.items() if name not in _mapping(key, own)}
         result[key] = {**own, **rest}
     for key in _LISTS:

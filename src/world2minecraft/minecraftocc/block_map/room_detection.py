@@ -13,15 +13,13 @@ from scipy import ndimage
 from world2minecraft.geometry.connected_components import label_components
 
 OUTSIDE, FLOOR, CEILING, WALL, INSIDE = range(5)
-HEADROOM_M = 1.8  # A person stands under it; doors are 2 m.
-ROOF_M = 8.0  # A roof so high makes no room: halls are 6 m.
-FLOOR_M2 = 1.0  # The smallest floor, of a toilet.
-FURNITURE_M, FURNITURE_M2 = 1.3, 6.0  # So high, and as small as that, a flat top is a thing's.
-PLATEAU_M2 = 0.75  # A stretch of ceiling; the lintel of a door has 0.3.
-CLOSED_SHARE, HALF_CLOSED_SHARE = (
-    0.95,
-    0.5,
-)  # Shares of a wall's column: without and with a window that is open.
+HEADROOM_M = 1.8  # Minimum height of a room; doors are 2 m high.
+ROOF_M = 8.0  # Maximum height of a room; halls are 6 m high.
+FLOOR_M2 = 1.0  # Minimum area of a floor, such as that of a toilet.
+FURNITURE_M, FURNITURE_M2 = 1.3, 6.0  # Maximum height and area of a flat top of furniture.
+PLATEAU_M2 = 0.75  # Minimum area of a flat ceiling part; the lintel of a door has 0.3.
+# Minimum filled share of a wall's column, and of one with an open window below its top.
+CLOSED_SHARE, HALF_CLOSED_SHARE = 0.95, 0.5
 NO_BLOCK = np.int16(0x7FFF)
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from world2minecraft.core.classes import CLASS_NAMES
 
 Span = tuple[float, float]
-ANY = "*"  # The namespace of words that speak of every mod.
+ANY = "*"  # The namespace of words that apply to all mods.
 
 
 class Pattern(NamedTuple):
@@ -31,9 +31,9 @@ class Rule:
     """A class, with the conditions under which a block belongs to it."""
 
     class_name: str
-    where: tuple[str, ...] = ()  # names of conditions; "not NAME" turns one round
-    spans: Mapping[str, Span] = field(default_factory=dict)  # of the thing that it is part of
-    shares: Mapping[str, Span] = field(default_factory=dict)  # of that thing's blocks, by kind
+    where: tuple[str, ...] = ()  # names of conditions; "not NAME" inverts one
+    spans: Mapping[str, Span] = field(default_factory=dict)  # measures of the piece
+    shares: Mapping[str, Span] = field(default_factory=dict)  # kinds of the piece's blocks
 
     @property
     def always(self) -> bool:
@@ -63,11 +63,11 @@ class Words:
         If several words have this length, the last one in the name is used. Returns None if the
         name contains no known word.
         """
-        spoken = any(
+        applies = any(
             namespace != "minecraft" if start == ANY else namespace.startswith(start)
             for start in self.namespaces
         )
-        found = [word for word in self._by_length if word in name] if spoken else []
+        found = [word for word in self._by_length if word in name] if applies else []
         if not found:
             return None
         alike = [word for word in found if len(word) == len(found[0])]
@@ -80,19 +80,19 @@ class BlockMap:
 
     name: str
     about: str
-    blocks: Mapping[str, str]  # a full id -> a class or a kind
+    blocks: Mapping[str, str]  # class or kind of each full id
     words: tuple[Words, ...]
     kinds: Mapping[str, tuple[Pattern, ...]]  # in the order in which they are matched
-    whole: str  # what a full block is that nothing names; a class or a kind
-    other: str  # and one that is not full
-    structure: frozenset[str]  # the kinds that floors, walls and ceilings can be of
-    apart: frozenset[str]  # the kinds and classes that are no part of the thing they touch
-    sheets: frozenset[str]  # the kinds that curtains are of
-    plates: frozenset[str]  # the kinds that pictures are of
+    whole: str  # class or kind of a full block without an entry
+    other: str  # class or kind of any other block without an entry
+    structure: frozenset[str]  # kinds of floors, walls and ceilings
+    apart: frozenset[str]  # kinds and classes that are never part of an adjacent piece
+    sheets: frozenset[str]  # kinds of curtains
+    plates: frozenset[str]  # kinds of pictures
     rules: Mapping[str, tuple[Rule, ...]]  # of each kind
-    designs: tuple[tuple[Pattern, str], ...]  # our furniture designs -> a class
-    unless_known: frozenset[str]  # kinds whose class gives way to what is known already
-    entities: tuple[tuple[Pattern, str], ...]  # what stands free of the grid -> a class
+    designs: tuple[tuple[Pattern, str], ...]  # classes of furniture designs
+    unless_known: frozenset[str]  # kinds that do not replace a stored class
+    entities: tuple[tuple[Pattern, str], ...]  # classes of display entities
     _found: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def meaning(self, state: str) -> str:
@@ -103,7 +103,7 @@ class BlockMap:
             >>> load_block_map("nyu").meaning("minecraft:bookshelf")
             'furn'
         """
-        if state not in self._found:  # Scene after scene is built of the same states.
+        if state not in self._found:  # Scenes share most of their states.
             self._found[state] = self._meaning_of(state)
         return self._found[state]
 

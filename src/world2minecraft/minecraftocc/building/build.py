@@ -54,7 +54,7 @@ from world2minecraft.minecraftocc.store.writer import ShardContents, finish_stor
 from world2minecraft.minecraftocc.types import FineClass
 
 MAX_ROUNDS = 6
-CountViews = Callable[[list[SceneSpec]], Iterable[int]]  # Gives how many views each scene has.
+CountViews = Callable[[list[SceneSpec]], Iterable[int]]  # Returns the views of each scene.
 EMPTY = FineClass("minecraft:air")
 
 
@@ -316,7 +316,7 @@ class _Build:
             """Report the samples completed so far and their rate."""
             nonlocal done, first
             if done == 0 and count > 1:
-                first = count  # Found, not made.
+                first = count  # Samples of an earlier run, which took no time.
             done += count
             seconds = time.monotonic() - began
             rate = (done - first) / seconds if seconds > 0 else 0.0

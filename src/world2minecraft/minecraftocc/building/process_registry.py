@@ -7,7 +7,7 @@ folder lock and finds ``.crew`` unlocked can be sure that no old worker writes t
 more.
 """
 
-# Not by filelock: its locks that readers share are databases of SQLite beside the data set.
+# filelock is not used, because its shared locks are SQLite databases beside the data set.
 
 import os
 import time

@@ -13,7 +13,7 @@ from world2minecraft.minecraftocc.plan import GivenViews
 from world2minecraft.minecraftocc.screenshots import RecordedView, read_screenshots
 from world2minecraft.minecraftocc.tours import PlannedView, read_views
 
-MAX_TOUR_NAME = 30  # Of a tour, in the keys of its samples.
+MAX_TOUR_NAME = 30  # Characters of a tour name in the keys of its samples.
 
 
 def load_given_views(

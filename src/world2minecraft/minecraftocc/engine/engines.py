@@ -7,8 +7,8 @@ from typing import Any, Protocol
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.registry import Registry
 
-Tick = Callable[[int], None]  # Called with how many images more are done.
-Task = Callable[[Any, Tick], Any]  # At the top of a module; what it takes and gives is sent.
+Tick = Callable[[int], None]  # Called with the number of further images that are finished.
+Task = Callable[[Any, Tick], Any]  # Defined at module level; arguments and results are pickled.
 ENGINES = Registry(
     "engine",
     {
@@ -33,12 +33,7 @@ class InProcessEngine:
     def __exit__(self, *_: object) -> None:
         """Do nothing, because there are no processes to stop."""
 
-    def run(
-        self,
-        task: Callable[[Any, Callable[[int], None]], Any],
-        items: Sequence[Any],
-        tick: Callable[[int], None],
-    ) -> Iterator[tuple[int, Any]]:
+    def run(self, task: Task, items: Sequence[Any], tick: Tick) -> Iterator[tuple[int, Any]]:
         """Run a task for each item and yield the item's number and result, in order."""
         for number, item in enumerate(items):
             yield number, task(item, tick)
@@ -47,7 +42,7 @@ class InProcessEngine:
 class Engine(Protocol):
     """Interface of an engine, which runs a task for each of many items."""
 
-    notes: list[str]  # What went wrong and was repaired, in sentences.
+    notes: list[str]  # Errors that were recovered from, in sentences.
 
     def run(self, task: Task, items: Sequence[Any], tick: Tick) -> Iterator[tuple[int, Any]]:
         """Run a task for each item and yield the number and result of each item as it finishes.

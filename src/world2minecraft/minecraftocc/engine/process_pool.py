@@ -24,8 +24,8 @@ from typing import Any
 from world2minecraft.core.errors import WorkerError
 from world2minecraft.rendering.batch.workers import picklable_error
 
-UNCAUGHT = 1  # Exit code of a Python process that an exception ends.
-MAX_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
+UNCAUGHT = 1  # Exit code of a Python process after an uncaught exception.
+MAX_DEATHS = 3  # Workers that may die on the same item before it is considered the cause.
 PATIENCE_S = 5.0
 
 
@@ -66,7 +66,7 @@ class _ParentGone(BaseException):
 
 def run_worker(pipe: Connection) -> None:
     """Run the tasks that arrive through a pipe until the pipe is closed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent gets it, and ends us.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent handles it and stops its workers.
     Thread(target=_end_with_parent, daemon=True).start()
     limit_threads()
 
@@ -119,7 +119,7 @@ class _Worker:
 
     process: BaseProcess
     pipe: Connection
-    number: int | None = None  # Of the item that it works on.
+    number: int | None = None  # Of its current item.
 
 
 class PoolEngine:
@@ -187,7 +187,7 @@ class PoolEngine:
         for worker in self._workers:
             if worker.number is None and waiting:
                 number = waiting.popleft()
-                with suppress(OSError):  # It has died; that is heard with its pipe's end.
+                with suppress(OSError):  # A dead worker is detected by the end of its pipe.
                     worker.pipe.send(WorkItem(number, task, items[number]))
                 worker.number = number
 
@@ -224,7 +224,7 @@ class PoolEngine:
 
 def _start_worker() -> _Worker:
     """Start a worker with a new interpreter, so that all systems behave alike."""
-    # Late: a worker reads this file too, and begins faster without the renderer.
+    # Imported late, because workers import this module too and start faster without the renderer.
     from world2minecraft.rendering.batch.workers import ignore_interrupts  # noqa: PLC0415
 
     context = get_context("spawn")
@@ -232,5 +232,5 @@ def _start_worker() -> _Worker:
     process = context.Process(target=run_worker, args=(theirs,), name="w2m-dataset", daemon=True)
     with ignore_interrupts():
         process.start()
-    theirs.close()  # So that the pipe ends with the worker.
+    theirs.close()  # So that the pipe is closed when the worker exits.
     return _Worker(process, ours)

@@ -12,8 +12,8 @@ from typing import Any
 from world2minecraft.core.errors import MissingExtraError, WorkerError
 from world2minecraft.minecraftocc.engine.process_pool import limit_threads
 
-QUEUED_PER_CPU = 2  # Items in Ray's hands for each process, so that none waits.
-STORE_BYTES = 128 << 20  # Of shared memory: results are small.
+QUEUED_PER_CPU = 2  # Submitted items per process, so that none is idle.
+STORE_BYTES = 128 << 20  # Shared memory; results are small.
 RETRIES = 3
 
 
@@ -26,7 +26,7 @@ class RayEngine:
         Raises:
             MissingExtraError: If Ray is not installed.
         """
-        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Nothing is sent to anyone.
+        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Send no usage statistics.
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
         try:
             self._ray = import_module("ray")

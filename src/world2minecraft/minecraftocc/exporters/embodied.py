@@ -25,7 +25,7 @@ from world2minecraft.minecraftocc.formats.label_grids import (
 )
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, OccSample
 
-OFFICIAL_CELLS = (200, 220, 90)  # EmbodiedOcc's compiled operation holds no larger scene.
+OFFICIAL_CELLS = (200, 220, 90)  # Largest scene that EmbodiedOcc's compiled operation supports.
 
 
 class EmbodiedExporter:

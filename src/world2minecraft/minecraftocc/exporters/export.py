@@ -12,7 +12,7 @@ from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.exporters.options import FORMATS, Exporter, ExportRule
 from world2minecraft.minecraftocc.types import OccSample
 
-RECORD = "export.json"  # What was chosen, in the folder's root,
+RECORD = "export.json"  # The options of the export, in the root of the folder.
 EXPORT = FolderKind(
     {RECORD: "format"},
     (
@@ -20,7 +20,7 @@ EXPORT = FolderKind(
         "posed_images", "scene_occ", "test", "train", "val", "*.txt",
     ),
 )  # fmt: skip
-SOURCE = "sha256"  # and the sum of the data set that is exported.
+SOURCE = "sha256"  # Key of the checksum of the exported data set in this file.
 
 
 @runtime_checkable

@@ -35,7 +35,7 @@ from world2minecraft.minecraftocc.formats.label_grids import (
 from world2minecraft.minecraftocc.types import OccSample
 
 FOLDERS = {"train": "NYUtrain", "test": "NYUtest"}
-AXES = (0, 2, 1)  # Ours x, y, z; theirs x, z, y. The same swap leads back.
+AXES = (0, 2, 1)  # From x, y, z to x, z, y and back.
 
 
 class NyuExporter:

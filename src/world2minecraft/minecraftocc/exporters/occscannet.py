@@ -40,7 +40,7 @@ from world2minecraft.minecraftocc.formats.label_grids import (
 )
 from world2minecraft.minecraftocc.types import OccSample
 
-ORIGIN_DECIMALS = 4  # EmbodiedOcc's loader rounds to them, so that all loaders see one box.
+ORIGIN_DECIMALS = 4  # As EmbodiedOcc's loader rounds, so that all loaders use the same box.
 LISTS = {
     "train": ("train_subscenes.txt", "train_final.txt"),
     "test": ("val_subscenes.txt", "test_final.txt"),

@@ -12,13 +12,13 @@ from world2minecraft.rendering.output.images import colour_bytes
 
 FORMATS = ("nyu", "occscannet", "embodied", "npz")
 UNKNOWN_CHOICES = ("keep", "empty")
-# How labels of OccScanNet lie: y, x, z in the published files, which EmbodiedOcc and GPOcc swap
-# when they load them, and x, y, z for ISO, which does not.
+# Axes of OccScanNet labels: y, x, z in the published files, which EmbodiedOcc and GPOcc swap when
+# they load them, and x, y, z for ISO, which does not.
 AXES_CHOICES = {"published": (1, 0, 2), "iso": (0, 1, 2)}
 # Where ISO, EmbodiedOcc and GPOcc look for OccScanNet, from the folder that they run in.
 DATA_ROOT = "./data/occscannet"
-FRAMES_PER_SCENE = 30  # As EmbodiedOcc-ScanNet; its loader holds all frames of a scene at once.
-JPEG_QUALITY = 95  # As good as NYU's own colour images; the loaders take JPEG alone.
+FRAMES_PER_SCENE = 30  # As in EmbodiedOcc-ScanNet, whose loader reads whole scenes into memory.
+JPEG_QUALITY = 95  # As in NYU's colour images; the loaders read only JPEG.
 
 
 @dataclass(frozen=True)

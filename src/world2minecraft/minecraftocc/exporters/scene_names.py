@@ -12,7 +12,7 @@ from world2minecraft.core.errors import MALFORMED, DamagedFileError
 from world2minecraft.core.files import read_json, write_json
 
 TABLE = "names.json"
-SAVE_EVERY = 50  # Samples, or a twentieth of them: writing the table stays cheap as it grows.
+SAVE_EVERY = 50  # Samples, or a twentieth of the table, so that large tables are written rarely.
 
 
 @dataclass(frozen=True)

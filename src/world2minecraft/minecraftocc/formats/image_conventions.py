@@ -24,13 +24,13 @@ from world2minecraft.formats.sscnet import NYU_FOCAL_PX, NYU_SIZE_PX
 from world2minecraft.rendering.output.images import number_bytes
 
 NYU_MAX_MM = 8191
-MAX_MM = 65534  # 65535 is a hole to some cameras' readers.
+MAX_MM = 65534  # Some readers treat 65535 as a hole.
 LOW_BITS_SHARE = 0.01
 DepthCode = Literal["nyu", "mm"]
 WIDTH_PX, HEIGHT_PX = NYU_SIZE_PX
 HALF_PX = 0.5
 NYU_CAMERA = Camera(WIDTH_PX, HEIGHT_PX, NYU_FOCAL_PX, NYU_FOCAL_PX, 320 + HALF_PX, 240 + HALF_PX)
-TOLERANCE_PX = 1.01  # So far a picture may end short of the wanted one; its edge is repeated.
+TOLERANCE_PX = 1.01  # Pixels that may be missing at a border, which are repeated.
 SAME_FOCAL_PX, SAME_CENTRE_PX = 0.05, 0.51
 
 

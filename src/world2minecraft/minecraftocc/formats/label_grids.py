@@ -12,11 +12,18 @@ from world2minecraft.core.coordinates import apply, cell_centers_m, invert_rigid
 from world2minecraft.core.errors import InputError, LimitError
 from world2minecraft.core.types import Camera
 from world2minecraft.formats.safe_pickle import read_pickle
+from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.minecraftocc.formats.image_conventions import HALF_PX, HEIGHT_PX, WIDTH_PX
-from world2minecraft.minecraftocc.types import DEFAULT_SHAPE, DEFAULT_VOXEL_M, OccSample
+from world2minecraft.minecraftocc.types import (
+    DEFAULT_SHAPE,
+    DEFAULT_VOXEL_M,
+    LabelRegion,
+    OccSample,
+)
 
 TURN_TOLERANCE_DEG = 0.01
 MAX_CELLS = 100_000_000  # A hall of 64 x 64 x 12 m; its package would take 1.4 GB.
+INTO_CELL = 0.25  # Of a cell: how far behind its depth a surface point is moved into its cell.
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +100,29 @@ def cells_in_image(
     inside &= (down >= 0) & (down < camera.height_px)
     pixels = np.stack([np.where(inside, across, 0), np.where(inside, down, 0)], axis=-1)
     return inside, np.floor(pixels).astype(np.int64), depth_m
+
+
+def cells_behind_depth(
+    depth_m: np.ndarray, camera: Camera, region: LabelRegion, camera_to_region: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cell just behind the surface that each pixel sees.
+
+    Args:
+        depth_m: Depth along the camera's z axis in metres, float32 [H, W]; 0 for none.
+        camera: Camera of the depth.
+        region: Region of the cells.
+        camera_to_region: Matrix from camera coordinates to region coordinates, float64 [4, 4].
+
+    Returns:
+        The flat indices of the pixels in ascending order, int32 [N], and their cells in the region,
+        int64 [N, 3]. Pixels that see surfaces outside the region are omitted.
+    """
+    finite = np.isfinite(depth_m) & (depth_m > 0)
+    behind = np.where(finite, depth_m + np.float32(INTO_CELL * region.voxel_m), 0)
+    points, pixels = unproject_depth(behind.astype(np.float32), camera, camera_to_region)
+    cells = np.floor(points / np.float32(region.voxel_m)).astype(np.int64)
+    within = np.all((cells >= 0) & (cells < region.shape), axis=1)
+    return pixels[within], cells[within]
 
 
 def box_cells_in_image(box: LabelledBox, camera: Camera) -> np.ndarray:

@@ -100,7 +100,7 @@ def read_scene(path: Path) -> ScenePackage:
             path, "global_pts or global_mask does not have the shape of global_labels"
         )
     first = checked_place(centres.reshape(-1, 3).min(axis=0), "global_pts", path)
-    origin_m = first - DEFAULT_VOXEL_M / 2  # Theirs are centres.
+    origin_m = first - DEFAULT_VOXEL_M / 2  # The stored points are cell centres.
     images = stored["valid_img_paths"]
     names = tuple(str(name) for name in images) if isinstance(images, list) else ()
     return ScenePackage(labels, seen.astype(bool), origin_m, DEFAULT_VOXEL_M, names)

@@ -33,7 +33,7 @@ def _open_store(path: Path) -> ImportedSet:
     return ImportedSet(path, "store", splits, store.sample, sha256=store.sha256)
 
 
-# In the order in which they are tried: embodied holds occscannet.
+# In the order in which they are tried: an embodied folder contains an occscannet folder.
 IMPORTED: dict[str, FormatReader] = {
     "store": FormatReader(_is_store, _open_store),
     "embodied": FormatReader(is_embodied, open_embodied),

@@ -21,9 +21,9 @@ from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import MALFORMED, DamagedFileError, UnknownNameError
 from world2minecraft.core.types import Camera, checks
-from world2minecraft.geometry.unprojection import unproject_depth
+from world2minecraft.geometry.rotations import nearest_rigid
 from world2minecraft.minecraftocc.formats.image_conventions import DepthCode, decode_depth
-from world2minecraft.minecraftocc.formats.label_grids import cells_in_image
+from world2minecraft.minecraftocc.formats.label_grids import cells_behind_depth, cells_in_image
 from world2minecraft.minecraftocc.types import (
     DEFAULT_SHAPE,
     DEFAULT_VOXEL_M,
@@ -34,8 +34,7 @@ from world2minecraft.minecraftocc.types import (
 )
 
 CLASS_KINDS = tuple(FineClass(f"nyu:{name}") for name in CLASS_NAMES)
-INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is taken to lie in it.
-MAX_SKEW = 1e-3  # A pose of float32, or of a few printed digits, is put right within this.
+MAX_SKEW = 1e-3  # Poses in float32 or with few digits are corrected within this tolerance.
 HITS_FACT, FREE_FACT = "first surface, from depth", "cell centres in front of the depth"
 
 
@@ -234,10 +233,7 @@ def _orthonormal_pose(found: ImportedFrame) -> np.ndarray:
         raise DamagedFileError(
             found.name, f"the camera pose is not a rotation and a translation: it {fault}"
         )
-    left, _, right = np.linalg.svd(pose[:3, :3])
-    result = np.eye(4)
-    result[:3, :3], result[:3, 3] = left @ right, pose[:3, 3]
-    return result
+    return nearest_rigid(pose)
 
 
 def _labels_with_masks(
@@ -269,11 +265,8 @@ def _hits(found: ImportedFrame, region: LabelRegion, camera_to_region: np.ndarra
     """Count the pixels whose point, moved slightly behind its depth, is in each occupied cell."""
     if found.depth_m is None:
         return np.zeros(region.shape, np.uint32)
-    behind = np.where(found.depth_m > 0, found.depth_m + np.float32(INTO_CELL * region.voxel_m), 0)
-    points, _ = unproject_depth(behind.astype(np.float32), found.camera, camera_to_region)
-    cells = np.floor(points / np.float32(region.voxel_m)).astype(np.int32)
-    inside = np.all((cells >= 0) & (cells < region.shape), axis=1)
-    flat = np.ravel_multi_index(tuple(cells[inside].T), region.shape)
+    _, cells = cells_behind_depth(found.depth_m, found.camera, region, camera_to_region)
+    flat = np.ravel_multi_index(tuple(cells.T), region.shape)
     counts = np.bincount(flat, minlength=found.labels.size).reshape(region.shape)
     occupied = (found.labels > 0) & (found.labels != UNKNOWN)
     return np.where(occupied, counts, 0).astype(np.uint32)

@@ -27,9 +27,9 @@ from world2minecraft.minecraftocc.importers.imported_samples import (
 from world2minecraft.minecraftocc.types import OccSample
 
 FOLDERS = {"NYUtrain": "train", "NYUtest": "test"}
-AXES = (0, 2, 1)  # Theirs x, z up, y; ours x, y, z. The same swap leads back.
+AXES = (0, 2, 1)  # From x, z (up), y to x, y, z.
 STORED_SHAPE = (60, 36, 60)
-SAME_SHAPE = 0.01  # So far a picture's sides may be from 4:3 and still be one made smaller.
+SAME_SHAPE = 0.01  # Tolerance of the aspect ratio 4:3 of a resized image.
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from world2minecraft.minecraftocc.importers.imported_samples import (
 )
 from world2minecraft.minecraftocc.types import DEFAULT_SHAPE, OccSample
 
-AXES = (1, 0, 2)  # Theirs y, x, z; ours x, y, z. The same swap leads back.
+AXES = (1, 0, 2)  # From y, x, z to x, y, z.
 LISTS = {
     "train": ("train_subscenes.txt", "train_final.txt"),
     "test": ("val_subscenes.txt", "test_final.txt"),

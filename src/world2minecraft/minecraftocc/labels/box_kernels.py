@@ -14,7 +14,7 @@ from world2minecraft.core.jit import inlined, njit
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, FULL, OWNER
 
 NO_OWNER = -1
-# Blocks: how far around a block its cells are searched; thin shapes stick out.
+# Margin in blocks within which the cells of a block are searched, since thin shapes protrude.
 SEARCH_MARGIN = 0.1
 _MARGIN = 1e-4  # Of a cell's volume.
 _SAMPLES = 4  # Points per side by which the volume of a rotated box in a cell is counted.

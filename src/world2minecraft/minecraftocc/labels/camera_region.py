@@ -12,7 +12,8 @@ from world2minecraft.minecraftocc.types import SceneVoxels
 __all__ = ["RegionRule", "floor_under", "label_region", "region_in", "view_yaw_deg"]
 
 
-RUG_M = 0.25  # What lies so much higher than a floor that spreads wider is no floor of its own.
+RUG_M = 0.25  # Maximum height of a small area, such as a rug, above the floor that it lies on.
+AROUND_M = 1.0  # Maximum horizontal distance of a nearby floor from the camera.
 
 
 def region_in(
@@ -35,7 +36,7 @@ def region_in(
     )
 
 
-def floor_under(voxels: SceneVoxels, camera_to_room: np.ndarray, around_m: float = 1.0) -> float:
+def floor_under(voxels: SceneVoxels, camera_to_room: np.ndarray) -> float:
     """Return the height in metres of the floor below a camera.
 
     This is the top of the highest floor cell below the camera, in the nearest columns with a floor
@@ -46,11 +47,10 @@ def floor_under(voxels: SceneVoxels, camera_to_room: np.ndarray, around_m: float
     Args:
         voxels: Cells of the scene.
         camera_to_room: Camera pose in the room [4, 4].
-        around_m: Maximum horizontal distance of a nearby floor from the camera in metres.
     """
     eye = (camera_to_room[:3, 3] - voxels.origin_m) / voxels.voxel_m
     layers = int(np.clip(np.floor(eye[2]), 0, voxels.labels.shape[2]))
-    at, reach = np.floor(eye[:2]).astype(int), int(np.ceil(around_m / voxels.voxel_m))
+    at, reach = np.floor(eye[:2]).astype(int), int(np.ceil(AROUND_M / voxels.voxel_m))
     near = _floor_counts(voxels, at, reach, layers)
     for away in (0, 1, 3, reach):
         floor = np.flatnonzero(_floor_counts(voxels, at, away, layers))

@@ -99,7 +99,7 @@ def _pairs_there(volume: BlockVolume, codes: np.ndarray | None, count: int) -> n
         rows = np.flatnonzero(np.bincount(states, minlength=1))
         return np.column_stack([rows, np.zeros_like(rows)])
     there = np.zeros(len(volume.palette) * count, bool)
-    for first in range(0, len(states), 1 << 20):  # A piece at a time: few copies in memory.
+    for first in range(0, len(states), 1 << 20):  # In parts, to save memory.
         piece = slice(first, first + (1 << 20))
         there[states[piece].astype(np.int64) * count + codes[piece]] = True
     return np.column_stack(np.divmod(np.flatnonzero(there), count))

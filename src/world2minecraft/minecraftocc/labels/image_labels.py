@@ -24,7 +24,6 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.labels.camera_region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.free_space_kernels import TILE, mark_free, max_depth_tiles
 from world2minecraft.minecraftocc.labels.label_kernels import (
     DepthImage,
@@ -36,9 +35,9 @@ from world2minecraft.minecraftocc.labels.label_kernels import (
 from world2minecraft.minecraftocc.types import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.rendering import BlockScene, render_volume
 
-AROUND_M = 5e-6  # More than a depth under 40 m is rounded by, along the same ray.
-REACH_M = 0.006  # A point so far from a solid cell is rounding at a shape's edge.
-LABEL_WIDTH_PX = 640  # Of an image that is cast for labels alone.
+AROUND_M = 5e-6  # More than the rounding error of a depth below 40 m.
+REACH_M = 0.006  # Maximum distance to a solid cell that is caused by rounding at an edge.
+LABEL_WIDTH_PX = 640  # Width of images that are rendered only for labels.
 
 
 def label_image(
@@ -118,19 +117,6 @@ def resize_camera(camera: Camera, width_px: int) -> Camera:
         return camera
     height_px = max(round(camera.height_px * (width_px / camera.width_px)), 1)
     return camera.scaled_to(width_px, height_px)
-
-
-def label_view(
-    voxels: SceneVoxels,
-    scene: BlockScene,
-    camera: Camera,
-    camera_to_room: np.ndarray,
-    rule: RegionRule | None = None,
-) -> OccLabels:
-    """Label the cells of a view for which there is no image, with its depth from ``cast_depth``."""
-    region = region_in(voxels, camera_to_room, rule)
-    camera, depth_m = cast_depth(scene, camera, camera_to_room)
-    return label_image(voxels, region, camera, camera_to_room, depth_m)
 
 
 def occluded_cells(occ: OccLabels) -> np.ndarray:
@@ -246,7 +232,7 @@ def _resample_hits(
     source_cells(to_box, np.array(box.shape), source)
     source = source.reshape(-1)
     own = np.where(source >= 0, hits.reshape(-1)[source], 0).astype(np.uint32)
-    back = np.full(hits.size + 1, -1, np.int32)  # The last is of pixels that see no cell.
+    back = np.full(hits.size + 1, -1, np.int32)  # The last element is for pixels without a cell.
     back[source[source >= 0]] = np.flatnonzero(source >= 0)
     lost = np.flatnonzero((hits.reshape(-1) > 0) & (back[:-1] < 0))
     middles = np.stack(np.unravel_index(lost, box.shape), axis=-1) + 0.5

@@ -237,7 +237,7 @@ def nearest_solid(solid, px, py, pz, reach):
     i, j, k = int(px), int(py), int(pz)
     sx, sy, sz = _side(px - i, reach), _side(py - j, reach), _side(pz - k, reach)
     best, a, b, c = reach * reach, -1, -1, -1
-    if abs(sx) + abs(sy) + abs(sz) == 1:  # As it mostly is.
+    if abs(sx) + abs(sy) + abs(sz) == 1:  # The most frequent case.
         p, q, r = i + sx, j + sy, k + sz
         if 0 <= p < solid.shape[0] and 0 <= q < solid.shape[1] and 0 <= r < solid.shape[2]:
             return (p, q, r) if solid[p, q, r] != 0 else (a, b, c)

@@ -30,13 +30,13 @@ from world2minecraft.rendering import BlockScene, prepare_scene
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, TURN, SceneTables
 
 MIN_THICKNESS_M = 0.004
-_ALIGNED = 1e-6  # Blocks: what an edge may lean and still count as straight.
-# What a shape may reach into a cell without being there: rounding of 1/16 blocks.
+_ALIGNED = 1e-6  # Blocks: tolerance within which an edge is axis-aligned.
+# Depth to which a shape may reach into a cell without being counted, for rounding of 1/16 blocks.
 TOLERANCE_M = 0.001
 MIN_VOXEL_M = 0.01
 MAX_CELLS = 200_000_000  # A gigabyte of labels; a house of twelve rooms has three million.
-SLAB_CELLS = 4_000_000  # That are filled at a time.
-_SAME_BORDER = 1e-6  # Cells: borders nearer than this are one.
+SLAB_CELLS = 4_000_000  # Cells that are filled at a time.
+_SAME_BORDER = 1e-6  # Cells: tolerance within which two borders are the same.
 
 
 class SolidBoxes(NamedTuple):
@@ -130,21 +130,15 @@ def voxelize_scene(
     Raises:
         UsageError: If the cells are too small or exceed ``MAX_CELLS``, or if the blocks are not
             aligned with the room axes.
-
-    Example:
-        >>> from world2minecraft.procgen import generate_room
-        >>> TOLERANCE_M < MIN_VOXEL_M
-        True
     """
     if voxel_m is not None and not voxel_m >= MIN_VOXEL_M:
         raise UsageError(f"voxel_m must be at least {MIN_VOXEL_M} m, got {voxel_m}")
     scene = prepare_scene(volume) if scene is None else scene
     lattice, voxel_m = _lattice(volume, scene, voxel_m, within_m)
     names = map_fine_classes(volume, designs)
-    result = SceneVoxels(
+    return SceneVoxels(
         *_fill_lattice(volume, scene, lattice, names), names.classes, voxel_m, lattice.origin_m
     )
-    return result
 
 
 def _lattice(

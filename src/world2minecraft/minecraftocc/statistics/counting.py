@@ -30,7 +30,7 @@ class WorldCells:
 
     def __init__(self) -> None:
         self._blocks: dict[tuple[int, int, int], np.ndarray] = {}  # bits, uint8 [SIDE**3 / 8]
-        self._phase: np.ndarray | None = None  # Where centres lie in a cell, of a cell's side.
+        self._phase: np.ndarray | None = None  # Offset of the grid, in cells.
         self._voxel_m = 0.0
 
     def add(self, region: LabelRegion, chosen: np.ndarray) -> None:
@@ -189,7 +189,7 @@ class _SceneSums:
     pictures: int = 0
     voxels: int = 0
     rooms: int | None = None  # As stated for the scene.
-    rooms_seen: set[int | None] = field(default_factory=set)  # As pictures state.
+    rooms_seen: set[int | None] = field(default_factory=set)  # As stated by its images.
 
     def count_rooms(self) -> int | None:
         """Return the stated number of rooms, else the number of rooms stated by images."""
@@ -297,18 +297,9 @@ def add_sample(counter: StatisticsCounter, sample: OccSample) -> None:
     counter.add_cells(sample.scene_id, sample.occ)
 
 
-def count_samples(
-    samples: Iterable[OccSample], *, rooms: Mapping[str, int] | None = None
-) -> StatisticsCounter:
-    """Count samples of any data set, including their distinct cells.
-
-    Args:
-        samples: Samples to count, read one at a time.
-        rooms: Number of rooms in each scene, if known.
-    """
+def count_samples(samples: Iterable[OccSample]) -> StatisticsCounter:
+    """Count samples of any data set one at a time, including their distinct cells."""
     counter = StatisticsCounter()
     for sample in samples:
         add_sample(counter, sample)
-    for scene_id, count in (rooms or {}).items():
-        counter.set_rooms(scene_id, count)
     return counter

@@ -28,7 +28,7 @@ from world2minecraft.minecraftocc.store.folder import META, SCENES
 SCENE_ID = re.compile(r"[A-Za-z0-9_-]{1,90}")
 HOUSE = "house.json"
 MAX_VIEWS_BYTES = 256 << 20
-PART = 200  # Pictures that a process counts at once: two seconds of work.
+PART = 200  # Images that a process counts at a time, about two seconds of work.
 
 
 def statistics_of(
@@ -138,7 +138,7 @@ def _rooms_of_views(path: Path) -> int | None:
     try:
         lines = read_bytes(path, MAX_VIEWS_BYTES).splitlines()
         rooms = [json.loads(line)["room"] for line in lines if line.strip()]
-    except (*MALFORMED, InputError):  # Scenes without such a file are usual.
+    except (*MALFORMED, InputError):  # Many scenes have no such file.
         return None
     return len(set(rooms)) if all(isinstance(room, int) for room in rooms) else None
 
@@ -164,10 +164,10 @@ def _parts(
     with ProcessPoolExecutor(min(jobs, len(parts)), get_context("spawn")) as pool:
         tasks = deque((pool.submit(_count, str(store.folder), part), len(part)) for part in parts)
         try:
-            while tasks:  # In their order, so that the first part's grid of cells is the scene's.
-                task, pictures = tasks.popleft()  # Else every part would be held to the end.
+            while tasks:  # In order, so that the first part defines the grid of cells of a scene.
+                task, pictures = tasks.popleft()  # Otherwise all results would stay in memory.
                 yield task.result(), pictures
-        except RuntimeError as error:  # A broken pool is one.
+        except RuntimeError as error:  # BrokenProcessPool is a RuntimeError.
             raise WorkerError(
                 f"a worker process has exited ({error}); try a single job (--jobs 1)"
             ) from error

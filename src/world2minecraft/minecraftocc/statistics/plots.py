@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH_IN, HEIGHT_IN, DPI = 7.6, 4.2, 200
-ROW_IN = 0.3  # The height of a class.
+ROW_IN = 0.3  # Height of a row.
 FAINT, RULE, OURS = "#6d747c", "#dfe3e7", "#3f7cac"
-MAX_LABEL = 0.08  # Of the axis: the widest step, where there are few.
+MAX_LABEL = 0.08  # Of the axis: maximum width of a step.
 
 
 def write_plots(statistics: DatasetStatistics, folder: str | Path) -> list[Path]:
@@ -80,7 +80,7 @@ def class_plot(statistics: DatasetStatistics) -> "Figure":
     axes.invert_yaxis()
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:.0%}")
     axes.grid(axis="x", color=RULE)
-    row_transform = axes.get_yaxis_transform()  # Across in parts of the axis, down in rows.
+    row_transform = axes.get_yaxis_transform()  # x in fractions of the axis, y in rows.
     for row, n in enumerate(order):
         columns_at = {1.08: f"{ours[n]:.1%}", 1.18: format_count(statistics.class_voxels[n + 1])}
         for place, text in columns_at.items():

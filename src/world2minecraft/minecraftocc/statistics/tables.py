@@ -26,8 +26,8 @@ HEAD = (
     "voxels/scene",
     "resolution",
 )
-SHOWN = 8  # Fine classes at either end of the list.
-BAR = 24  # Letters of the longest bar.
+SHOWN = 8  # Fine classes at each end of the list.
+BAR = 24  # Characters of the longest bar.
 _SPECIAL = {
     "\\": r"\textbackslash{}",
     "~": r"$\sim$",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from world2minecraft.core.classes import CLASS_NAMES
 
-# A fine class counts once it is seen by so many pixels of so many pictures.
+# A fine class is counted if at least this many pixels see it in at least this many images.
 MIN_PIXELS, MIN_PICTURES = 100, 3
 
 

@@ -36,7 +36,7 @@ META, CLASSES, INDEX, CARD, LOCK, CREW = (
 )
 SHARDS, SCENES, WORLDS = "shards", "scenes", "worlds"
 SPLITS = ("train", "test")
-# What a killed run leaves of files that were being written, and of houses.
+# Temporary files and houses that a killed build leaves.
 LEFTOVER = re.compile(
     r"\.(?:[\w.-]+\.(?:json|jsonl|md)\.\w{8}|index\.parquet\.part|house_\d+\.part)"
 )
@@ -92,7 +92,7 @@ def leftovers(folder: Path) -> list[str]:
         for place in places
         if place.is_dir()
         for path in sorted(place.iterdir())
-        if LEFTOVER.fullmatch(path.name)  # Others are somebody's own, such as .git.
+        if LEFTOVER.fullmatch(path.name)  # Other names belong to the user, such as .git.
     ]
 
 

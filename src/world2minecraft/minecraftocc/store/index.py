@@ -26,7 +26,7 @@ from world2minecraft.minecraftocc.store.shard import StoredSample, stored_sample
 COUNTS = ("occupied", "visible", "free", "in_frustum", "occluded", "unknown", "hits", "fine")
 TEXTS = ("key", "scene_id", "tour_id", "split", "shard", "region", "sha256")
 WHOLE = ("frame", "offset", "size", "image_bytes", "depth_bytes", "label_bytes", "json_bytes")
-PLACE = ("x", "y", "z", "yaw", "pitch")  # The game's, where the sample states it.
+PLACE = ("x", "y", "z", "yaw", "pitch")  # The pose in the game, if the sample states it.
 ROWS_AT_ONCE = 4096
 MAX_ROWS, MAX_INDEX_BYTES = 20_000_000, 8 << 30
 

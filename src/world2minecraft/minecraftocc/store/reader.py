@@ -27,7 +27,7 @@ from world2minecraft.minecraftocc.store.shard import StoredSample, stored_sample
 from world2minecraft.minecraftocc.types import OccSample
 
 MAX_SAMPLE_BYTES = 512 << 20
-MAX_CACHED = 2000  # Keys that a wrong one is compared with.
+MAX_CACHED = 2000  # Keys among which similar ones to an unknown key are searched.
 
 
 class OccStore:

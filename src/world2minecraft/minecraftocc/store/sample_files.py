@@ -31,8 +31,8 @@ from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels
 from world2minecraft.rendering.output.images import PER_METRE, colour_bytes, depth_numbers
 
 IMAGE_FORMATS = ("jpg", "png", "webp")
-QUALITY = 95  # Of JPEG and WebP: the eye sees no loss, and edges of blocks stay sharp.
-_UP = 2  # The filter of every row: the difference to the row above, for planes small and regular.
+QUALITY = 95  # Of JPEG and WebP, without visible loss at the edges of blocks.
+_UP = 2  # The PNG filter that stores the difference to the row above, which is small for planes.
 _GREY = 0
 FORMAT = 1
 DEPTH, LABELS, FACTS = "depth.png", "occ.npz", "json"

@@ -18,7 +18,7 @@ import re
 import tarfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from io import FileIO
 from pathlib import Path
@@ -30,13 +30,13 @@ from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputE
 from world2minecraft.minecraftocc.store.sample_files import FACTS, MAX_FACTS_BYTES, read_facts
 
 BLOCK = 512
-RECORD = 20 * BLOCK  # A tar is so many bytes, or a multiple.
-MAX_KEY_LENGTH = 90  # With ".depth.png" it is as long as the name of a ustar member may be.
+RECORD = 20 * BLOCK  # The size of a tar file is a multiple of this.
+MAX_KEY_LENGTH = 90  # With ".depth.png", this is the longest possible name of a ustar member.
 MEMBER_NAME = re.compile(r"([A-Za-z0-9_-]{1,90})\.([a-z]{2,6}(?:\.[a-z]{2,6})?)")
 _MAX_MEMBERS = 8
 _CHUNK = 1 << 20
 PART = ".part"
-PATIENCE_S = 60.0  # A worker whose builder was killed ends with its sample.
+PATIENCE_S = 60.0  # A worker whose parent was killed exits after its current sample.
 _POLL_S = 0.05
 
 
@@ -218,7 +218,7 @@ class ShardWriter:
         with _readable_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             self._stream = _open_locked(self._part)
-        if self._stream is None:  # Another process has finished it meanwhile.
+        if self._stream is None:  # Another process has finished the shard in the meantime.
             self.done = len(self.keys)
             return
         self._resume(self._stream)
@@ -245,11 +245,7 @@ class ShardWriter:
         key = self.keys[self.done]
         data = b"".join(member_bytes(f"{key}.{kind}", one) for kind, one in members.items())
         with _readable_errors(self.path):
-            try:
-                self._write(data)
-            except OSError:
-                self._cut()
-                raise
+            self._write(data)
         self._length += len(data)
         self.done += 1
 
@@ -264,12 +260,8 @@ class ShardWriter:
         if self.done != len(self.keys):
             raise ValueError(f"{self.path} contains only {self.done} of {len(self.keys)} samples")
         with _readable_errors(self.path):
-            try:
-                self._write(end_bytes(self._length))
-            except OSError:
-                self._cut()
-                raise
-            if os.name == "nt":  # There an open file keeps its name.
+            self._write(end_bytes(self._length))
+            if os.name == "nt":  # Windows cannot rename an open file.
                 self.close()
             os.replace(self._part, self.path)
             _flush_folder(self.path.parent)
@@ -293,20 +285,23 @@ class ShardWriter:
             stream.seek(self._length)
 
     def _write(self, data: bytes) -> None:
-        if self._stream is not None:
+        """Append data and flush it to disk. If this fails, what was written of it is removed."""
+        if self._stream is None:
+            return
+        try:
             left = memoryview(data)
             while left:
                 left = left[self._stream.write(left) :]
             os.fsync(self._stream.fileno())
+        except OSError:
+            self._cut(self._stream.fileno())
+            raise
 
-    def _cut(self) -> None:
-        """Remove a partially written sample, as reopening the part would do too."""
-        if self._stream is not None:
-            try:
-                os.ftruncate(self._stream.fileno(), self._length)
-                os.lseek(self._stream.fileno(), self._length, os.SEEK_SET)
-            except OSError:
-                return
+    def _cut(self, handle: int) -> None:
+        """Remove partially written data, as reopening the part would do too."""
+        with suppress(OSError):
+            os.ftruncate(handle, self._length)
+            os.lseek(handle, self._length, os.SEEK_SET)
 
 
 def _open_locked(part: Path) -> FileIO | None:

@@ -45,8 +45,8 @@ from world2minecraft.minecraftocc.store.sample_files import (
 from world2minecraft.minecraftocc.store.shard import MAX_KEY_LENGTH, ShardWriter
 from world2minecraft.minecraftocc.types import FineClass, OccSample
 
-MAX_SCENE_ID = 80  # A shard's name, with its number, has 90.
-SHARD_SAMPLES = 100  # About 100 MB at 1920x1129; a download of a shard, a unit of work.
+MAX_SCENE_ID = 80  # The name of a shard may have 90 characters, including its number.
+SHARD_SAMPLES = 100  # About 100 MB at 1920x1129.
 CONVENTIONS = {
     "cells": "labels[x, y, z] in region axes: x right, y forward, z up; 255 is unknown",
     "region": "centre of cell (i, j, k) in the room: region_to_room * (i + 0.5) * voxel_m ...",
@@ -161,7 +161,7 @@ def write_store(
         OutputError: If a file cannot be written.
     """
     target, how = Path(folder), files or SampleFiles()
-    arrow_modules()  # Before the work, not after it.
+    arrow_modules()  # A missing pyarrow is reported before any work.
     with output_folder(target, DATASET, "written", force=force):
         if (target / META).exists():
             raise ConflictError(target, "already contains a data set; choose another folder")

@@ -17,20 +17,18 @@ from world2minecraft.rendering.batch import render_batch
 from world2minecraft.rendering.scene import BlockScene
 
 HEADINGS = 24  # Fifteen degrees apart.
-PANORAMA_CAMERA = Camera(
-    24, 16, 12.0, 12.0, 12.0, 8.0
-)  # 90 degrees wide: four of them see all round.
-NEAR_M, GOOD_M = 0.6, 3.2  # No view, a good view.
-THING_WORTH = 0.8  # More for a pixel of furniture,
-CEILING_COST = 0.3  # less for one of the ceiling,
-NEAR_COST = 1.0  # less for what is before one's nose,
-LOST_WORTH = 0.05  # and for the sky and windows.
-SEEN_COST = 0.7  # Less for where views from nearby looked already: these count,
-SEEN_M, SEEN_DEG, SEEN_VIEWS = 1.2, 25.0, 400  # so near, so alike, and the last ones alone.
-KIND_WORTH = 0.9  # More for a heading of the kind that a stretch asks for.
-TURN_COST = 0.12  # Of fifteen degrees from one frame to the next,
-MAX_TURN_STEPS = 2  # and so many at most.
-SWAY_DEG = 7.0  # Free views look beside the fifteen degrees.
+PANORAMA_CAMERA = Camera(24, 16, 12.0, 12.0, 12.0, 8.0)  # 90 degrees wide.
+NEAR_M, GOOD_M = 0.6, 3.2  # Depths of a blocked view and of a good view.
+THING_WORTH = 0.8  # Bonus for a pixel of furniture.
+CEILING_COST = 0.3  # Penalty for a pixel of the ceiling.
+NEAR_COST = 1.0  # Penalty for a pixel nearer than ``NEAR_M``.
+LOST_WORTH = 0.05  # Rating of a pixel of the sky or a window.
+SEEN_COST = 0.7  # Maximum penalty for headings of earlier views nearby.
+SEEN_M, SEEN_DEG, SEEN_VIEWS = 1.2, 25.0, 400  # Scales of this penalty, and views considered.
+KIND_WORTH = 0.9  # Bonus for a heading of the kind that was chosen for this part of the walk.
+TURN_COST = 0.12  # Of turning by fifteen degrees between two frames.
+MAX_TURN_STEPS = 2  # Of fifteen degrees between two frames.
+SWAY_DEG = 7.0  # Random deviation of free views from multiples of fifteen degrees.
 AXIS, DIAGONAL, FREE = range(len(KINDS))
 
 
@@ -58,7 +56,7 @@ def rate_headings(
     worth -= CEILING_COST * (semantic == SemanticClass.CEILING)
     worth = np.where((depth_m == 0) | (semantic == SemanticClass.WINDOW), LOST_WORTH, worth)
     worth = np.where((depth_m > 0) & (depth_m < NEAR_M), -NEAR_COST, worth)
-    columns = worth.mean(axis=1).reshape(len(eyes), -1)  # Four times 24 around, from yaw -45 on.
+    columns = worth.mean(axis=1).reshape(len(eyes), -1)  # 4 x 24 columns from yaw -45 onwards.
     side = np.degrees(np.arctan((np.arange(24) + 0.5 - 12) / 12))
     yaws_deg = np.concatenate([turn + side for turn in (0, 90, 180, 270)])
     half_deg = np.degrees(np.arctan(rule.camera.width_px / 2 / rule.camera.fx_px))
@@ -125,9 +123,8 @@ def best_yaws(
     steps = (np.diff(sequence) + HEADINGS // 2) % HEADINGS - HEADINGS // 2
     yaws = (sequence[0] + np.concatenate([[0], np.cumsum(steps)])) * (360.0 / HEADINGS)
     is_exact = of_kind[kinds, sequence] & (kinds != FREE)
-    loose = gaussian_filter1d(yaws, 1.2, mode="nearest") + smooth_noise(
-        len(yaws), spacing_m, rng
-    ) * (SWAY_DEG)
+    sway = SWAY_DEG * smooth_noise(len(yaws), spacing_m, rng)
+    loose = gaussian_filter1d(yaws, 1.2, mode="nearest") + sway
     chosen = np.where(is_exact, yaws, loose)
     return (chosen + 180.0) % 360.0 - 180.0
 

@@ -35,19 +35,19 @@ from world2minecraft.minecraftocc.tours.walks import SAMPLE_M, WalkArea, plan_wa
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.views.cameras import GamePose
 
-WALK_M_S, TURN_DEG_S = 1.0, 60.0  # How fast one walks and turns between two frames.
-GAP_M, GAP_DEG = 1.2, 75.0  # A tour ends where the next good view is farther than this.
-MIN_FRAMES = 3  # Of a tour, where more are wanted.
-MAX_SPACING_M = 0.6  # Between frames, where few are wanted,
-OVERSAMPLING = 1.5  # and so many times as many are assessed.
-MAX_FRUITLESS_WALKS = 8  # A room is done when so many walks in turn find nothing new.
-EASING_FACTOR = 0.7  # Then views may be so much nearer to each other,
-PLANE_EASING = 0.05  # and show so much more of a plane,
-MAX_EASINGS = 4  # so many times.
-PITCH_MEAN_DEG, PITCH_SPREAD_DEG = 11.0, 8.0  # Furniture lies lower than the eye.
-SWAY_M = 0.04  # An eye rises and sinks so much along a walk.
-DECIMALS = 6  # Of poses: what a tour file holds is exactly what was planned.
-MIN_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried.
+WALK_M_S, TURN_DEG_S = 1.0, 60.0  # Walking and turning speed between two frames.
+GAP_M, GAP_DEG = 1.2, 75.0  # A tour ends if the next good view is farther away than this.
+MIN_FRAMES = 3  # Of a tour, if at least as many are missing.
+MAX_SPACING_M = 0.6  # Between frames.
+OVERSAMPLING = 1.5  # Assessed views per missing view.
+MAX_FRUITLESS_WALKS = 8  # Walks in a row without a new view after which a room is done.
+EASING_FACTOR = 0.7  # By which the minimum distance between views is then multiplied.
+PLANE_EASING = 0.05  # By which the maximum share of a plane is then increased.
+MAX_EASINGS = 4
+PITCH_MEAN_DEG, PITCH_SPREAD_DEG = 11.0, 8.0  # Furniture is lower than the eye.
+SWAY_M = 0.04  # Variation of the eye height along a walk.
+DECIMALS = 6  # Of poses, so that a tour file contains exactly the planned views.
+MIN_FLOOR_M2 = 1.0  # Of all rooms; with less, a slimmer body is tried.
 
 
 @dataclass(eq=False)
@@ -105,8 +105,8 @@ class RoomTour:
     taken: _ChosenViews = field(default_factory=_ChosenViews)
     tours: list[np.ndarray] = field(default_factory=list)  # [N, 6]: a pose, and seconds
     walks: int = 0
-    eased: int = 0  # How often the demands on a view were eased,
-    nearer: int = 0  # and those on the distance between views.
+    eased: int = 0  # How often the requirements for a view were relaxed,
+    nearer: int = 0  # and those for the distance between views.
 
     @property
     def count(self) -> int:
@@ -116,7 +116,7 @@ class RoomTour:
     def find(self, more: int) -> None:
         """Find ``more`` further views, or fewer if the room has no more different views.
 
-        A room without any good view eases its demands, and shows a few.
+        If a room has no good view, its requirements are relaxed and a few views are planned.
         """
         wanted, vain = self.count + more, 0
         while self.count < wanted and not self.is_done:
@@ -278,7 +278,7 @@ def _rooms(
 def _fill(tours: list[RoomTour], count: int, progress: Progress) -> None:
     """Find the views of all rooms, passing on the shares that a room cannot provide.
 
-    Where all rooms together cannot provide enough, the demands on the views are eased.
+    If all rooms together cannot provide enough, the requirements for the views are relaxed.
     """
     progress("views", 0, count)
     left, eased = count, 0

@@ -26,14 +26,14 @@ from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.procgen.sensors.navmesh import is_inside
 
 _NAME = "layout.json"
-NARROW_M = 1.1  # Rooms are parted where they are narrower than this.
-MIN_ROOM_M2 = 1.2  # What is smaller is no room of its own,
-MIN_ROOM_FLOOR_M2 = 0.4  # and a room with less floor to stand on is not toured.
-LEVEL_M = 0.3  # One tours what is so near to the room's main floor.
-WALLED_SHARE = 0.7  # Of level rays from indoors that end at something within
+NARROW_M = 1.1  # Rooms are split where they are narrower than this.
+MIN_ROOM_M2 = 1.2  # Smaller areas are not separate rooms.
+MIN_ROOM_FLOOR_M2 = 0.4  # Rooms with less walkable floor are not visited.
+LEVEL_M = 0.3  # Maximum height difference to the main floor of a room.
+WALLED_SHARE = 0.7  # Minimum share of horizontal rays indoors that hit something within FAR_M.
 FAR_M = 15.0
 RAYS = 16
-_APART = 3.0  # A metre of height counts as so many along the floor, where places go to rooms.
+_APART = 3.0  # Weight of height differences when positions are assigned to rooms.
 
 
 def find_layouts(path: str | Path) -> tuple[Layout, ...]:
@@ -89,14 +89,14 @@ def find_rooms(
     """
     if not len(graph):
         return []
-    above = int(np.ceil(2 * volume.blocks_per_metre))  # One may stand on the very top.
+    above = int(np.ceil(2 * volume.blocks_per_metre))  # A person can stand on the highest block.
     things = (volume.semantic >= SemanticClass.CHAIR) & (volume.semantic != 255)
-    # Lamps and tall cupboards part no rooms.
+    # Lamps and tall cupboards do not separate rooms.
     blocked = np.pad((solid.kinds != 0) & ~things, ((0, 0), (0, above), (0, 0)))
     cells = np.floor(graph.feet - np.array(volume.corner) + [0, 1e-6, 0]).astype(np.int64)
     roof = _roofs(blocked)[tuple(cells.T)]
     usable = _indoors(graph, blocked, cells, roof)
-    usable &= graph.headroom >= HEIGHT * graph.blocks_per_metre - 1e-6  # However slim the body is.
+    usable &= graph.headroom >= HEIGHT * graph.blocks_per_metre - 1e-6  # Also for a slim body.
     if rule.start is not None and rule.reachable_only:
         usable &= reachable(graph, graph.nearest(rule.start))
     number = _by_layouts(volume, graph, rule)
@@ -260,7 +260,7 @@ def _contents(volume: BlockVolume, cells: np.ndarray, roof: np.ndarray) -> tuple
     box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     semantic = volume.semantic[box]
     things = (semantic >= SemanticClass.CHAIR) & (semantic != 255)
-    if not volume.semantic.any():  # Nothing is labelled: kinds of blocks stand for classes.
+    if not volume.semantic.any():  # Without labels, block states are counted instead of classes.
         return min(len(np.unique(volume.states[box])) - 1, 12), 0
     return len(np.unique(semantic[things])), len(np.unique(volume.instance[box][things]))
 

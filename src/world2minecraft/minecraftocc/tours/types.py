@@ -12,7 +12,7 @@ from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.shading_parameters import DAY
 from world2minecraft.rendering.views.cameras import GamePose
 
-PAPER_SIZE, PAPER_FOV_DEG = (1920, 1129), 70.0  # Of MinecraftOcc's pictures; the FOV is vertical.
+PAPER_SIZE, PAPER_FOV_DEG = (1920, 1129), 70.0  # Of MinecraftOcc; the field of view is vertical.
 KINDS = ("axis", "diagonal", "free")
 
 

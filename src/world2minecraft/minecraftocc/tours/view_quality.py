@@ -11,16 +11,16 @@ from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.rendering.batch import render_batch
 from world2minecraft.rendering.scene import BlockScene
 
-WIDE_PX = 64  # Of the small pictures.
-NEAR_M, NEAR_SHARE = 0.5, 0.25  # Blocked: so much of the picture is nearer than this,
-CLOSE_M = 0.95  # or half of it is nearer than this.
-OUT_SHARE = 0.45  # Looks out: so much of it is window or sky.
-MIN_CLASSES, MIN_OBJECTS = 3, 0.05  # Empty: fewer classes, or a smaller share of objects,
-# or few blocks: this, and one more for each in a square metre, up to the second.
+WIDE_PX = 64  # Width of the small images.
+# A blocked view has this share of pixels nearer than NEAR_M, or half of them nearer than CLOSE_M.
+NEAR_M, NEAR_SHARE, CLOSE_M = 0.5, 0.25, 0.95
+OUT_SHARE = 0.45  # Maximum share of windows and sky.
+MIN_CLASSES, MIN_OBJECTS = 3, 0.05  # Number of classes, and share of objects.
+# Visible blocks: the first, and one more for each block in a square metre, up to the second.
 MIN_CELLS, MIN_CELLS_LIMIT = 20, 60
-LEVEL_FACTOR = 1.4  # The floor and the ceiling may take up more of a picture than a wall.
-THING_SHARE = 0.003  # Of a picture: a thing that shows less is not seen.
-MIN_BRIGHTNESS, MAX_BRIGHTNESS = 0.10, 0.97  # Of 1, the mean of the small picture.
+LEVEL_FACTOR = 1.4  # How much more of an image floor and ceiling may take up than a wall.
+THING_SHARE = 0.003  # Minimum share of the image of a visible object.
+MIN_BRIGHTNESS, MAX_BRIGHTNESS = 0.10, 0.97  # Of the mean of the small image, 0 to 1.
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,13 +20,13 @@ from world2minecraft.minecraft.physics.shortest_paths import (
 )
 from world2minecraft.minecraft.physics.walk_graph import CollisionGrid, WalkGraph
 
-STOP_M2 = 2.0  # Of floor for each stop,
-STOPS = (2, 10)  # and so many of them.
-ELBOW_M = 0.5  # One keeps so far from walls where there is room,
-NARROW_COST = 3.0  # for what is at a wall is so much farther.
+STOP_M2 = 2.0  # Floor area per stop.
+STOPS = (2, 10)  # Minimum and maximum number of stops.
+ELBOW_M = 0.5  # Preferred distance from walls.
+NARROW_COST = 3.0  # Increase of path lengths at a wall.
 SAMPLE_M = 0.05
-SMOOTH_M = 0.35  # Corners are rounded so much.
-ROUNDS = 6  # Of taking back what was rounded through something.
+SMOOTH_M = 0.35  # Radius by which corners are rounded.
+ROUNDS = 6  # Attempts to undo rounding where the path collides.
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,7 @@ def plan_walk(area: WalkArea, rng: np.random.Generator) -> np.ndarray:
 def _stops(area: WalkArea, rng: np.random.Generator) -> np.ndarray:
     """Return well-spread positions in a random connected part, preferring large parts."""
     sizes = np.bincount(area.part).astype(float)
-    sizes[sizes < max(sizes.max() / 4, 2)] = 0  # A nook that no way leads to is left out.
+    sizes[sizes < max(sizes.max() / 4, 2)] = 0  # Small parts are unreachable corners.
     if not sizes.any():
         sizes = np.bincount(area.part).astype(float)
     own = np.flatnonzero(area.part == rng.choice(len(sizes), p=sizes / sizes.sum()))

@@ -18,6 +18,7 @@ from world2minecraft.capture.readers.datasets.text_tables import (
 from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import read_bytes
+from world2minecraft.geometry.rotations import nearest_rigid
 
 LABEL_KINDS = ("label-filt", "label")  # The filtered ones have fewer slips at edges.
 NO_TABLE_NOTE = f"label images are ignored; put {LABEL_TABLE} (from the data set) next to the scene"
@@ -54,10 +55,7 @@ def axis_alignment(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | 
     is_turn = np.abs(rotation @ rotation.T - np.eye(3)).max() < 1e-3
     if not is_turn or np.linalg.det(rotation) < 0 or not np.isfinite(stated).all():
         raise CaptureError(path, "axisAlignment must contain 16 numbers, a 4x4 rigid transform")
-    left, _, right = np.linalg.svd(rotation)  # It is stated with six digits.
-    aligned = np.eye(4)
-    aligned[:3, :3], aligned[:3, 3] = left @ right, stated[:3, 3]
-    return aligned
+    return nearest_rigid(stated)  # It is stated with six digits.
 
 
 def up_vector(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
