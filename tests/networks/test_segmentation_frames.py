@@ -119,7 +119,7 @@ def nyu_arrays(count):
 def test_arrays_of_the_labelled_set_become_frames():
     classes = np.zeros(895, np.uint8)
     classes[[5, 15]] = 2, 4  # Floor and bed; the wall is 0, which is unlabelled.
-    frames = list(frames_of_nyu_arrays(nyu_arrays(4), classes, ["train"], 3))
+    frames = list(frames_of_nyu_arrays(nyu_arrays(3), classes, ["train"]))
     assert [frame.name for frame in frames] == ["0001", "0002", "0003"]
     colour, labels, _ = room_arrays(1)
     assert (frames[1].colour == colour).all()

@@ -273,7 +273,7 @@ def test_exported_file_computes_what_the_network_does(frames, exported, inputs):
 def test_mirrored_batch_is_the_mean_of_two_runs(frames):
     network = Trainer(RUN, frames).mean.eval()
     offset = torch.linspace(-1, 1, 40)
-    calibrated = CalibratedNet(network, Calibration(offset.numpy(), (2.0, 1, 1)), mirrored=True)
+    calibrated = CalibratedNet(network, Calibration(offset.numpy(), (2.0, 1, 1)))
     colour, geometry = random_inputs(48, 64)
     turned = network(colour.flip(3), mirror_geometry(geometry)).flip(3)
     logits = ((network(colour, geometry) + turned) / 2 + offset.view(-1, 1, 1)) / 2.0
@@ -282,9 +282,7 @@ def test_mirrored_batch_is_the_mean_of_two_runs(frames):
 
 
 def test_mirrored_look_is_symmetric(frames):
-    network = CalibratedNet(
-        Trainer(RUN, frames).mean, Calibration(np.zeros(40, np.float32)), mirrored=True
-    )
+    network = CalibratedNet(Trainer(RUN, frames).mean, Calibration(np.zeros(40, np.float32)))
     colour, geometry = random_inputs(48, 64)
     first = network(colour, geometry)
     second = network(colour.flip(3), mirror_geometry(geometry))

@@ -15,12 +15,13 @@ from room_frames import SHAPE, VOXEL_M
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.networks.models import make_network
 from world2minecraft.networks.onnx_export import (
+    _by_name,
     _export_traced,
     _random_inputs,
-    _run_onnx,
     compress_weights,
     export_network,
     quantize_weights,
+    run_onnx,
 )
 from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
@@ -80,10 +81,10 @@ def _slowly_rounded(model):
 
 
 def test_int8_weights_predict_as_rounded_weights_do(traced):
-    model, example = traced
-    found = _run_onnx(compress_weights(model, "int8").SerializeToString(), example)
-    wanted = _run_onnx(_slowly_rounded(model).SerializeToString(), example)
-    whole = _run_onnx(model.SerializeToString(), example)
+    model, example = traced[0], _by_name(traced[1])
+    found = run_onnx(compress_weights(model, "int8").SerializeToString(), example)
+    wanted = run_onnx(_slowly_rounded(model).SerializeToString(), example)
+    whole = run_onnx(model.SerializeToString(), example)
     assert np.abs(found - wanted).max() < 1e-4 < np.abs(found - whole).max()
 
 

@@ -1,4 +1,4 @@
-"""What training runs share that average their weights and can be resumed at any step.
+"""The base class of training runs that average their weights and can be resumed at any step.
 
 The learning rate is constant and decreases to zero in the last part of a run, so a run can be
 extended from any state before this part, or ended early with fewer steps.
@@ -41,6 +41,14 @@ class AveragedTrainer(Generic[Network]):
         run = self.run
         left = (run.steps - step) / max(run.fall * run.steps, 1)
         return run.rate * min((step + 1) / run.warm_steps, 1.0, max(left, self.min_rate))
+
+    def _minimize(self, loss: Tensor) -> None:
+        """Do a step of the optimizer with clipped gradients, and update the running mean."""
+        self.optimiser.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 5.0)
+        self.optimiser.step()
+        self._update_mean()
 
     @torch.no_grad()
     def _update_mean(self) -> None:

@@ -5,9 +5,9 @@ weights by mIoU on the validation frames), ``last.safetensors``, ``metrics.csv``
 ``tensorboard/``.
 """
 
-# Not by Lightning's ModelCheckpoint and EarlyStopping: their checkpoints are pickles, which can run
-# code when they are read, and hold no sums of losses that are not logged yet, without which a run
-# that was killed and went on would not leave the same metrics.
+# Lightning's ModelCheckpoint and EarlyStopping are not used: their checkpoints are pickles, which
+# can run code when they are read, and lack the sums of losses that are not logged yet, without
+# which a resumed run would not produce the same metrics.
 
 import math
 import time
@@ -27,7 +27,7 @@ from world2minecraft.networks.csv_logger import CsvLogger
 from world2minecraft.networks.lightning_module import OccupancyModule, learning_rate_at
 
 CHECKPOINT, WEIGHTS, LAST = "checkpoint.safetensors", "weights.safetensors", "last.safetensors"
-LOG_EVERY_STEPS = 20  # Mean losses are logged so often.
+LOG_EVERY_STEPS = 20  # Steps over which logged losses are averaged.
 
 
 @dataclass

@@ -32,7 +32,7 @@ GRIDS = {"0.16": Grid((30, 30, 18), 0.16), "0.08": Grid((60, 60, 36), 0.08)}
 SCHEDULES = ("cosine", "step", "constant")
 PRECISIONS = ("auto", "bf16", "32")
 DEPTHS = ("taught", "given", "none")
-DEFAULT_FRAMES = {"embodied": 3}  # A guess: most cells of a room are in view of so many. Others: 1.
+DEFAULT_FRAMES = {"embodied": 3}  # An estimate; 1 for all other networks.
 CLASS_WEIGHTS = ("frequency", "monoscene", "even")
 
 
@@ -114,12 +114,10 @@ class RunConfig:
     network: str
     data: tuple[DataSource, ...]
     size: str = "small"
-    # A model of transformers for pictures, hf:ID; the network's own where empty.
     backbone: str = ""
     grid: str = "0.16"
     image: tuple[int, int] = (320, 240)
     depth: str = "taught"
-    # Of a scene, at most, in one sample; 0 is the network's own: ``DEFAULT_FRAMES``.
     frames: int = 0
     steps: int = 2000
     batch: int = 4
@@ -290,10 +288,10 @@ def _value(source: str, name: str, value: Any) -> Any:
         raise DamagedFileError(source, f"image must be [width, height], got {value!r}")
     wanted = _TYPES[name]
     if wanted is str and type(value) in (int, float):
-        value = str(value)  # YAML takes 0.16 and 32 for numbers.
+        value = str(value)  # YAML parses 0.16 and 32 as numbers.
     if wanted is float and type(value) is int:
         value = float(value)
-    if wanted is float and isinstance(value, str):  # and 1e-4 for a text.
+    if wanted is float and isinstance(value, str):  # YAML parses 1e-4 as a string.
         with suppress(ValueError):
             value = float(value)
     if type(value) is not wanted:

@@ -4,8 +4,8 @@ The CSV file has a row with step, name and value for each metric. It contains no
 that was interrupted and resumed produces the same file as an uninterrupted run.
 """
 
-# Not by Lightning's CSVLogger: it removes the file of an earlier try, whose rows up to the
-# checkpoint are kept here, and writes in place, so that a kill may leave half a file.
+# Lightning's CSVLogger is not used: it deletes the file of an earlier attempt, whose rows up to the
+# checkpoint are kept here, and writes in place, so that a killed run could leave a partial file.
 
 import csv
 import io

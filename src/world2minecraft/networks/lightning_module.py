@@ -19,9 +19,9 @@ from world2minecraft.networks.config import RunConfig
 from world2minecraft.networks.data.batches import Batch
 from world2minecraft.networks.losses import LossWeights, occupancy_losses
 
-STEP_GAMMA = 0.1  # MonoScene's: a tenth of the rate
-STEP_MILESTONE = 2 / 3  # from epoch 20 of 30 on.
-SEED_STRIDE = 1_000_003  # A prime: seeds of two runs meet at no step of the same number.
+STEP_GAMMA = 0.1  # As MonoScene, a tenth of the rate
+STEP_MILESTONE = 2 / 3  # from epoch 20 of 30 onwards.
+SEED_STRIDE = 1_000_003  # Runs with different seeds never have the same seed at the same step.
 
 
 def learning_rate_at(config: RunConfig, step: int) -> float:

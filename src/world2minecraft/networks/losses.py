@@ -24,10 +24,10 @@ from world2minecraft.networks.layers.context_prior import RELATIONS
 from world2minecraft.networks.layers.depth_bins import bin_of, min_pool_depth
 from world2minecraft.networks.layers.projection import project_cells
 
-FRUSTA = 8  # Along each side of the picture.
+FRUSTA = 8  # Along each side of the image.
 MIN_SHARE = 1e-6
 COARSE_FACTOR = 4  # From the grid to its coarsest level.
-EMPTY_SHARE = 0.95  # SSCNet's: a coarse cell is empty where more than that is empty or unknown.
+EMPTY_SHARE = 0.95  # As in SSCNet, the share of empty or unknown cells above which a cell is empty.
 EMPTY_WEIGHT = 0.05  # MonoScene's weight of empty cells in the cross entropy; all others have 1.
 
 
@@ -137,30 +137,30 @@ def relations_of(labels: Tensor) -> tuple[Tensor, Tensor]:
     ]
 
 
-def coarse_labels(labels: Tensor, factor: int = COARSE_FACTOR) -> Tensor:
-    """Downsample labels with SSCNet's rule to int64, with sides rounded up.
+def coarse_labels(labels: Tensor) -> Tensor:
+    """Downsample labels by ``COARSE_FACTOR`` with SSCNet's rule to int64, with sides rounded up.
 
     If more than 95 % of a block's cells are empty or unknown, the block gets the more frequent of
     these two labels, otherwise its most frequent occupied class. Cells outside the grid are
     unknown.
     """
-    beyond = [(-int(side)) % factor for side in labels.shape[1:]]
+    beyond = [(-int(side)) % COARSE_FACTOR for side in labels.shape[1:]]
     padded = torch.nn.functional.pad(
         labels, (0, beyond[2], 0, beyond[1], 0, beyond[0]), value=UNKNOWN
     )
     kinds = torch.where(padded == UNKNOWN, CLASS_COUNT, padded)
     counts = torch.stack(
-        [_block_sums((kinds == kind).float(), factor) for kind in range(CLASS_COUNT + 1)], dim=1
+        [_block_sums((kinds == kind).float()) for kind in range(CLASS_COUNT + 1)], dim=1
     )
     empty, unknown = counts[:, 0], counts[:, CLASS_COUNT]
     best = counts[:, 1:CLASS_COUNT].argmax(dim=1) + 1
     hollow = torch.where(empty > unknown, 0, UNKNOWN)
-    return torch.where(empty + unknown > EMPTY_SHARE * factor**3, hollow, best)
+    return torch.where(empty + unknown > EMPTY_SHARE * COARSE_FACTOR**3, hollow, best)
 
 
-def _block_sums(values: Tensor, factor: int) -> Tensor:
-    sums = torch.nn.functional.avg_pool3d(values[:, None], factor)[:, 0] * factor**3
-    return torch.round(sums)
+def _block_sums(values: Tensor) -> Tensor:
+    means = torch.nn.functional.avg_pool3d(values[:, None], COARSE_FACTOR)[:, 0]
+    return torch.round(means * COARSE_FACTOR**3)
 
 
 def _mega_voxel_cells(labels: Tensor) -> Tensor:

@@ -13,6 +13,7 @@ loads the file and runs the network in float32.
 import importlib.util
 import io
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,13 +30,13 @@ from world2minecraft.networks.batch import OccInput
 from world2minecraft.reconstruction.occupancy.onnx_network import OUTPUT, NetworkFacts
 
 KINDS = ("float", "half", "int8")
-SMALL = 64  # Weights of fewer numbers are not worth a node.
-MOST = 127  # Symmetric: -128 is not used.
-# Which input of a node is weights, and which of its axes counts output channels.
+SMALL = 64  # Smaller weights are not compressed.
+MAX_INT8 = 127  # Symmetric: -128 is not used.
+# Axis of the output channels in the weights of a node, which are its second input.
 _WEIGHTS = {"Conv": 0, "ConvTranspose": 1, "MatMul": -1, "Gemm": -1}
 OPSET = 17
 MAX_DIFFERENCE = 1e-3
-TURN_DEG = 10.0  # How far the camera of the question looks down.
+TURN_DEG = 10.0  # Downward pitch of the camera of the test image.
 
 
 def compress_weights(model: Any, kind: str) -> Any:
@@ -90,9 +91,9 @@ def quantize_weights(values: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndar
     """
     others = tuple(n for n in range(values.ndim) if n != axis % values.ndim)
     largest = np.abs(values).max(axis=others)
-    scales = np.where(largest > 0, largest / np.float32(MOST), np.float32(1)).astype(np.float32)
+    scales = np.where(largest > 0, largest / np.float32(MAX_INT8), np.float32(1)).astype(np.float32)
     whole = np.rint(values / np.expand_dims(scales, others))
-    return np.clip(whole, -MOST, MOST).astype(np.int8), scales
+    return np.clip(whole, -MAX_INT8, MAX_INT8).astype(np.int8), scales
 
 
 def _axes_of_weights(graph: Any) -> dict[str, int]:
@@ -163,7 +164,6 @@ def export_network(
     facts: NetworkFacts,
     *,
     weights: str = "float",
-    seed: int = 0,
 ) -> ExportReport:
     """Write a network as an ONNX file and measure the differences of its output.
 
@@ -173,7 +173,6 @@ def export_network(
         path: Output file.
         facts: Metadata of the file, such as its grid, its image size and whether it requires depth.
         weights: Weight format: ``float``, ``half`` or ``int8``.
-        seed: Random seed for the test image.
 
     Raises:
         OutputError: If the output of the file differs too much, or if the file cannot be written.
@@ -182,7 +181,7 @@ def export_network(
     """
     _check_onnx()
 
-    example = _random_inputs(facts, np.random.default_rng(seed))
+    example = _random_inputs(facts, np.random.default_rng(0))
     trained = network.training
     network.eval()
     try:
@@ -191,16 +190,16 @@ def export_network(
             model = _export_traced(network, example, facts)
     finally:
         network.train(trained)
-    whole = _run_onnx(model.SerializeToString(), example)
+    whole = run_onnx(model.SerializeToString(), _by_name(example))
     difference = float(np.abs(whole - logits).max())
-    if not difference <= MAX_DIFFERENCE:  # Holds for what is no number too.
+    if not difference <= MAX_DIFFERENCE:  # True for NaN too.
         raise OutputError(
             path,
             f"not written: the ONNX logits differ from the network's by {difference:.3g}, "
             f"the limit is {MAX_DIFFERENCE:g}",
         )
     data = compress_weights(model, weights).SerializeToString()
-    stored = whole if weights == "float" else _run_onnx(data, example)
+    stored = whole if weights == "float" else run_onnx(data, _by_name(example))
     if not np.isfinite(stored).all():
         raise OutputError(
             path, f"not written: weights stored as {weights} produce values that are not finite"
@@ -246,10 +245,10 @@ def _export_traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -
     """Return the traced network as an ``onnx.ModelProto``."""
     import onnx  # noqa: PLC0415
 
-    given = _by_name(example)
-    written: Any = io.BytesIO()  # It takes a stream, and says that it does not.
+    given = {name: torch.from_numpy(values) for name, values in _by_name(example).items()}
+    written: Any = io.BytesIO()  # Its annotation does not allow a stream, although it takes one.
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # Of sides that become constants, as they are meant to.
+        warnings.simplefilter("ignore")  # About sides that become constants, as intended.
         torch.onnx.export(
             _Named(network, facts),
             tuple(given.values()),
@@ -264,23 +263,30 @@ def _export_traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -
     return model
 
 
-def _run_onnx(data: bytes, example: OccInput) -> np.ndarray:
+def run_onnx(data: bytes, given: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Run an ONNX model in one thread and return its first output.
+
+    Args:
+        data: Content of the file.
+        given: Arrays by name. Those that are no input of the model are ignored.
+    """
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.log_severity_level = 3
     session: Any = onnxruntime.InferenceSession(data, options, providers=["CPUExecutionProvider"])
     wanted = {entry.name for entry in session.get_inputs()}
-    given = {name: one.cpu().numpy() for name, one in _by_name(example).items() if name in wanted}
-    return np.asarray(session.run([OUTPUT], given)[0])
+    inputs = {name: values for name, values in given.items() if name in wanted}
+    return np.asarray(session.run(None, inputs)[0])
 
 
-def _by_name(example: OccInput) -> dict[str, Tensor]:
-    given = {
+def _by_name(example: OccInput) -> dict[str, np.ndarray]:
+    tensors = {
         "image": example.image,
         "intrinsics": example.intrinsics,
         "camera_to_grid": example.camera_to_grid,
+        "depth_m": example.depth_m,
     }
-    return given if example.depth_m is None else {**given, "depth_m": example.depth_m}
+    return {name: one.cpu().numpy() for name, one in tensors.items() if one is not None}
 
 
 def _random_inputs(facts: NetworkFacts, rng: np.random.Generator) -> OccInput:

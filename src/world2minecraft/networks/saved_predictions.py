@@ -19,7 +19,7 @@ from world2minecraft.core.files import npz_array_names, read_npy, read_npz
 from world2minecraft.formats.safe_pickle import read_pickle
 from world2minecraft.networks.config import GRIDS, Grid
 
-# How an array's axes lie: which of them are our x, y, z.
+# The axes of an array that correspond to x, y and z.
 ORDERS = {"xyz": (0, 1, 2), "xzy": (0, 2, 1), "yxz": (1, 0, 2)}
 KINDS = ("ours", "embodied")
 NAMES = ("labels", "pred", "prediction", "logits", "probabilities")  # Of a frame's array.

@@ -16,9 +16,9 @@ from world2minecraft.core.coordinates import apply, turn_grid
 from world2minecraft.evaluation.metrics.protocols import KnownCells, ProtocolCounts, count_scene
 from world2minecraft.evaluation.metrics.score_aggregation import FrameScore
 
-TOLERANCE_CELLS = 0.02  # So far a box's corner may be off the lattice.
+TOLERANCE_CELLS = 0.02  # Maximum distance of a box's corner from the lattice.
 TOLERANCE_DEG = 0.01
-MAX_CELLS = 40_000_000  # Of a scene; its votes take 12 bytes each.
+MAX_CELLS = 40_000_000  # Of a scene; the votes of a cell take 12 bytes.
 
 
 class SceneFrame(NamedTuple):

@@ -24,15 +24,15 @@ from world2minecraft.evaluation.metrics.protocols import (
 from world2minecraft.evaluation.metrics.score_aggregation import FrameScore, summarise
 from world2minecraft.minecraftocc.importers.embodied import SceneSet
 from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
+from world2minecraft.minecraftocc.statistics.tables import escape_latex
 from world2minecraft.networks.config import Grid
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import cells_with_masks
 from world2minecraft.networks.saved_predictions import SavedPredictions, grid_of_labels
 from world2minecraft.networks.scene_voting import SceneFrame, scene_scores
 
-_SPECIAL = {"_": r"\_", "%": r"\%", "&": r"\&", "#": r"\#", "$": r"\$", "{": r"\{", "}": r"\}"}
-SCENES = "embodied scenes"  # The scene level of ``embodied``, beside its frames.
-MEMORY = "embodied memory"  # The same of a network that fuses frames by itself.
+SCENES = "embodied scenes"  # The protocol ``embodied`` for complete scenes.
+MEMORY = "embodied memory"  # The same for networks that fuse frames themselves.
 
 
 def latex_rows(scores: dict[str, Any], name: str) -> str:
@@ -53,12 +53,8 @@ def latex_rows(scores: dict[str, Any], name: str) -> str:
         values = [micro[key] for key in ("iou", "miou", "precision", "recall")]
         values += [micro["class_iou"][label] for label in CLASS_NAMES]
         cells = " & ".join(f"{100 * value:.2f}" for value in values)
-        lines.append(f"{_escaped(f'{name} ({protocol})')} & {cells} \\\\")
+        lines.append(f"{escape_latex(f'{name} ({protocol})')} & {cells} \\\\")
     return "\n".join(lines) + "\n"
-
-
-def _escaped(text: str) -> str:
-    return "".join(_SPECIAL.get(sign, sign) for sign in text)
 
 
 class PredictedFrame(NamedTuple):

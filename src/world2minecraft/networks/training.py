@@ -58,9 +58,9 @@ from world2minecraft.networks.validation import (
 )
 
 RUN, FACTS, SCORES = "run.yaml", "run.json", "scores.json"
-LAST_SCORES = "scores_last.json"  # Of the last step's weights, where somebody asks for them.
+LAST_SCORES = "scores_last.json"  # Of the weights of the last step, if requested.
 LIGHTNING_PRECISION = {"bf16": "bf16-mixed", "32": "32-true"}
-# Settings that may change between tries: they move no result.
+# Settings that may change when a run is resumed, because they do not affect the results.
 FREE_SETTINGS = ("threads", "workers", "checkpoint_every")
 
 
@@ -128,13 +128,13 @@ def train_run(
         if config.threads:
             torch.set_num_threads(config.threads)
         data = open_run_data(config, cache, progress)
-        write_config(folder / RUN, config)  # Only of what can be trained.
+        write_config(folder / RUN, config)  # Only after the data sets could be opened.
         state = _fit(config, folder, data, resolve_device(device), progress)
         return TrainedRun(folder, state, data)
     finally:
         lock.remove()
         with suppress(OSError):
-            folder.rmdir()  # Where nothing came of it.
+            folder.rmdir()  # Only if it is empty.
 
 
 def check_folder(config: RunConfig, folder: Path) -> None:
@@ -204,7 +204,7 @@ def _fit(
             default_root_dir=folder,
         )
         trainer.fit(module, batches)
-    if trainer.interrupted:  # Lightning takes Ctrl-C for the end of a run.
+    if trainer.interrupted:  # Lightning treats Ctrl-C as the end of a run.
         raise KeyboardInterrupt
     callback.finish(module)
     _write_facts(folder, config, network, device, callback.state, time.monotonic() - began)

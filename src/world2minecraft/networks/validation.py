@@ -59,7 +59,6 @@ def predict_labels(
     config: RunConfig,
     *,
     progress: Progress = no_progress,
-    stage: str = "score",
 ) -> Iterator[np.ndarray]:
     """Predict the most likely class of each cell for frames, yielding uint8 [X, Y, Z] in order.
 
@@ -76,7 +75,7 @@ def predict_labels(
             for labels in logits.argmax(dim=1).to(torch.uint8).cpu().numpy():
                 yield labels
                 done += 1
-            progress(stage, done, len(rows))
+            progress("score", done, len(rows))
     finally:
         network.train(was_training)
 

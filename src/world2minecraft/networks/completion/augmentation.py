@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN
-from world2minecraft.networks.completion.samples import Sample, crop_input
+from world2minecraft.networks.completion.samples import Sample, crop_input, with_rows
 from world2minecraft.networks.completion.simulated_votes import simulate_votes
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
 
 CROP = (48, 48, 40)
-# How often each is left out: a room may come without colour, a frame without known walls.
+# How often each is omitted: a scan may have no colour, and a frame no known walls.
 NO_HINT, NO_VOTES, NO_COLOUR, NO_OFFSET, NO_HEIGHT, NO_FREE = 0.25, 0.45, 0.2, 0.12, 0.1, 0.05
 
 
@@ -61,7 +61,7 @@ def rotate_sample(sample: Sample, quarter_turns: int, is_mirrored: bool) -> Samp
     )
     at = np.flatnonzero(order).astype(np.int32)
     rows = order.reshape(-1)[at] - 1
-    sight = _rows(sample.sight, rows, log_odds=odds, at=at)
+    sight = with_rows(sample.sight, rows, log_odds=odds, at=at)
     if sight.offset is not None:
         offset = sight.offset.astype(np.int16)
         if is_mirrored:
@@ -96,15 +96,6 @@ def _window(sample: Sample, rng: np.random.Generator, crop: tuple[int, int, int]
     return np.array([*start, int(rng.integers(-3, 3)) + (spare[2] // 2 if spare[2] > 0 else 0)])
 
 
-def _rows(sight: Sight, rows: np.ndarray, **changes: np.ndarray) -> Sight:
-    """Return a copy of a network input with only the given rows of its occupied cells."""
-    selected = {
-        name: None if (value := getattr(sight, name)) is None else value[rows]
-        for name in ("hits", "colour", "offset", "votes", "hint")
-    }
-    return replace(sight, **selected, **changes)
-
-
 def _corrupt_input(sight: Sight, rng: np.random.Generator) -> Sight:
     """Randomly remove cells, boxes and the top from an input, and add false cells."""
     odds = sight.log_odds.copy()
@@ -121,7 +112,7 @@ def _corrupt_input(sight: Sight, rng: np.random.Generator) -> Sight:
     if rng.random() < NO_FREE:
         odds[odds < 0] = 0
     occupied = np.flatnonzero(flat[sight.at] > 0)
-    sight = _rows(sight, occupied, log_odds=odds, at=sight.at[occupied])
+    sight = with_rows(sight, occupied, log_odds=odds, at=sight.at[occupied])
     if len(sight.at) and rng.random() < 0.3:
         return _add_specks(sight, rng)
     return sight
@@ -136,7 +127,7 @@ def _add_specks(sight: Sight, rng: np.random.Generator) -> Sight:
     at = np.concatenate([sight.at, specks.astype(np.int32)])
     rows = np.concatenate([np.arange(len(sight.at)), rng.integers(0, len(sight.at), len(specks))])
     order = np.argsort(at, kind="stable")
-    return _rows(sight, rows[order], log_odds=odds, at=at[order])
+    return with_rows(sight, rows[order], log_odds=odds, at=at[order])
 
 
 def _drop_channels(sight: Sight, rng: np.random.Generator) -> Sight:

@@ -18,8 +18,8 @@ from world2minecraft.reconstruction.semantics.completion_channels import (
     VOTES,
 )
 
-TRUST = 2.0  # What a geometric label or a whole vote adds to its class before anything is learnt.
-MULTIPLE = 8  # Sides of what goes in are whole multiples of this.
+TRUST = 2.0  # Initial weight of a geometric label or a full vote for its class.
+MULTIPLE = 8  # The sides of the input must be multiples of this.
 
 
 @dataclass(frozen=True)

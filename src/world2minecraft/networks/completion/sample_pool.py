@@ -11,7 +11,7 @@ from world2minecraft.networks.completion.augmentation import augment_sample
 from world2minecraft.networks.completion.samples import Sample, read_samples
 from world2minecraft.reconstruction.semantics.completion_channels import network_input
 
-# A walk is what the program is mostly given, a single view the hardest.
+# Walks are the most frequent input of the program, single views the most difficult.
 KIND_WEIGHTS = {"walk": 0.42, "few": 0.18, "single": 0.4}
 REFRESH_EVERY_STEPS = 100  # Steps after which new files are looked for.
 

@@ -34,6 +34,7 @@ from world2minecraft.networks.completion.virtual_views import (
 )
 from world2minecraft.procgen import generate_house, generate_room
 from world2minecraft.procgen.rooms.room import Room
+from world2minecraft.procgen.sensors.navmesh import is_inside
 from world2minecraft.procgen.sensors.photo_rendering import prepare_photos
 from world2minecraft.procgen.sensors.trajectory import plan_trajectory
 from world2minecraft.reconstruction.fusion import CleaningParameters, extract_grid, remove_floaters
@@ -42,9 +43,9 @@ from world2minecraft.reconstruction.semantics.completion_labeller import hint_of
 from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 
 FIRST_SEED = 10_000
-HOUSE_SHARE = 0.06  # A house takes four times a room's time.
+HOUSE_SHARE = 0.06  # A house takes four times as long as a room.
 BOX_SHARE = 0.6
-# The rooms that people scan most come most often.
+# The kinds of rooms that people scan most are the most frequent.
 KIND_SHARES = {
     "living": 0.17,
     "bed": 0.17,
@@ -168,15 +169,20 @@ def crop_input(sight: Sight, start: np.ndarray, shape: tuple[int, int, int]) -> 
         target = tuple(slice(a, b) for a, b in zip(first - start, last - start, strict=True))
         odds[target] = sight.log_odds[source]
     cells = np.stack(np.unravel_index(sight.at, old), axis=1) - start
-    inside = ((cells >= 0) & (cells < shape)).all(axis=1)
-    at = np.ravel_multi_index(tuple(cells[inside].T), shape).astype(np.int32)
-    rows = {
-        name: None if (value := getattr(sight, name)) is None else value[inside]
-        for name in ("hits", "colour", "offset", "votes", "hint")
-    }
+    inside = np.asarray(((cells >= 0) & (cells < shape)).all(axis=1))
+    at = np.asarray(np.ravel_multi_index(tuple(cells[inside].T), shape), np.int32)
     bottom = sight.bottom_m
     bottom = None if bottom is None else bottom + float(start[2]) * sight.voxel_m
-    return replace(sight, log_odds=odds, at=at, bottom_m=bottom, **rows)
+    return replace(with_rows(sight, inside, log_odds=odds, at=at), bottom_m=bottom)
+
+
+def with_rows(sight: Sight, rows: np.ndarray, *, log_odds: np.ndarray, at: np.ndarray) -> Sight:
+    """Return a network input with other cells and only the given rows of its occupied cells."""
+    selected = {
+        name: None if (value := getattr(sight, name)) is None else value[rows]
+        for name in FIELDS[2:]
+    }
+    return replace(sight, log_odds=log_odds, at=at, **selected)
 
 
 def _box(
@@ -202,7 +208,7 @@ def _box(
     walls = apply(room_to_grid, corners + room.origin_m) / voxel_m
     low = np.minimum(seen_low, np.floor(walls.min(axis=0)).astype(np.int64))
     high = np.maximum(seen_high, np.ceil(walls.max(axis=0)).astype(np.int64))
-    # Of a house, the part around what was seen.
+    # For a house, the part around the observed cells.
     shape = np.minimum(high - low, MAX_CELLS)
     middle = (seen_low + seen_high) // 2
     low = np.clip(middle - shape // 2, low, high - shape)
@@ -235,7 +241,7 @@ def mask_rooms(
     around = ndimage.generate_binary_structure(3, 3)
     for layout in room.layouts:
         top_m = layout.floor_z_m + layout.wall_height_m
-        inside = _in_polygon(places[:, :2], layout.floor_polygon_m)
+        inside = is_inside(layout.floor_polygon_m, places[:, :2])
         inside &= (places[:, 2] > layout.floor_z_m) & (places[:, 2] < top_m)
         inside = inside.reshape(shape)
         free = (log_odds[inside] < 0).mean() if inside.any() else 0
@@ -245,7 +251,7 @@ def mask_rooms(
     return seen, other & ~seen
 
 
-def labelled_sample(evidence: FusedEvidence, kind: str = "frame") -> Sample:
+def labelled_sample(evidence: FusedEvidence) -> Sample:
     """Create the sample for a fused frame of a data set, with its labels as votes.
 
     The ground truth is the label with the most votes on observed surface, empty in observed free
@@ -259,19 +265,7 @@ def labelled_sample(evidence: FusedEvidence, kind: str = "frame") -> Sample:
         named = sight.votes.any(axis=1)
         kinds = sight.votes[named].argmax(axis=1).astype(np.uint8) + 1
         truth.reshape(-1)[sight.at[named]] = kinds
-    return Sample(sight, truth, kind, hinted=True, false_share=0.0)
-
-
-def _in_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Return whether each point [N, 2] is inside a polygon [K, 2], by the even-odd rule."""
-    inside = np.zeros(len(points), bool)
-    x, y = points.T
-    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if ay == by:
-            continue
-        between = (ay > y) != (by > y)
-        inside ^= between & (x < (bx - ax) * (y - ay) / (by - ay) + ax)
-    return inside
+    return Sample(sight, truth, "frame", hinted=True, false_share=0.0)
 
 
 def write_samples(path: Path, samples: list[Sample]) -> None:

@@ -1,4 +1,4 @@
-"""Votes for training samples, made of the true labels with the errors that votes have.
+"""Simulated votes for training samples: the true labels with realistic errors.
 
 Votes of a segmentation network are wrong for whole parts of objects, not for single cells, and it
 confuses similar classes. They are simulated with votes that the network of the program gave on real
@@ -19,8 +19,8 @@ from world2minecraft.reconstruction.semantics.completion_channels import KINDS, 
 VOTES_FILE = Path(__file__).with_name("segmenter_votes.npz")
 PART_CELLS, PATCH_CELLS, UNSEEN_CELLS = (10, 3), 2, 8  # Sides of blocks with one error.
 MAX_LABEL_ERROR = 0.35
-UNSEEN_SHARE = 0.1  # Of blocks that no voted view shows.
-NETWORK_SHARE = 0.7  # Of samples with votes of a network; the others have label images.
+UNSEEN_SHARE = 0.1  # Of blocks without votes.
+NETWORK_SHARE = 0.7  # Of samples with votes of a network; the others have votes of label images.
 
 
 @cache

@@ -23,10 +23,10 @@ from world2minecraft.networks.completion.network import CompletionNet, Completio
 from world2minecraft.networks.completion.sample_pool import REFRESH_EVERY_STEPS, SamplePool
 from world2minecraft.networks.validation import autocast
 
-# About the fourth root of how rare a class is in the samples; empty cells are the most by far.
+# About the fourth root of how rare a class is in the samples; most cells are empty.
 CLASS_WEIGHTS = (0.6, 0.9, 0.8, 0.7, 1.8, 1.9, 1.2, 1.4, 1.6, 2.6, 0.9, 1.3)
-SEEN_WEIGHT = 2.0  # Observed surface is named in every room; what lies behind is a guess.
-ASKED = 0.5  # The share of cells that is drawn: neighbours say the same, and it halves the time.
+SEEN_WEIGHT = 2.0  # Of observed surface, whose class matters more than that of hidden cells.
+ASKED = 0.5  # Share of cells that are used; neighbours are alike, and this halves the time.
 JACCARD, GEOMETRY = 1.0, 0.5
 START_SEED = 1 << 20  # Of the batch from which the norms of restored weights are set.
 Report = Callable[[int, dict[str, float], CompletionNet], None]
@@ -142,15 +142,11 @@ class Trainer(AveragedTrainer[CompletionNet]):
         for group in self.optimiser.param_groups:
             group["lr"] = self.learning_rate_at(self.step)
         rng = np.random.default_rng([self.run.seed, self.step])
-        torch.manual_seed(int(rng.integers(1 << 62)))  # Of the cells that the loss asks for.
+        torch.manual_seed(int(rng.integers(1 << 62)))  # For the choice of cells in the loss.
         cells, truth, surface = self.pool.batch(rng, self.run.batch, self.run.crop)
         self.network.train()
         with autocast("auto", cells.device):
             logits = self.network(cells)
         losses = completion_loss(logits, truth, surface)
-        self.optimiser.zero_grad(set_to_none=True)
-        torch.stack(list(losses.values())).sum().backward()
-        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 5.0)
-        self.optimiser.step()
-        self._update_mean()
+        self._minimize(torch.stack(list(losses.values())).sum())
         return {name: float(value.detach()) for name, value in losses.items()}

@@ -135,7 +135,7 @@ def _view(
     depth_m[draw_lost_pixels(noise, labels, depth_m, rng)] = 0
     depth_m *= np.float32(scale_factor(noise.frame_scale, rng) * noise.scan_scale)
     depth_m = store_depth(noise, bend_depth(depth_m, noise.bend_m, rng))
-    # A single look has no tracker: where it stands is part of the scan's misfit.
+    # A single image has no tracking error: its pose error is part of the misfit of the scan.
     stated = pose if kind == "single" else jitter_pose(noise.sensor, pose, rng)
     return View(
         name=kind,

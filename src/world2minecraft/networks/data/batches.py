@@ -256,7 +256,7 @@ def _data_loader(frames: Dataset, config: RunConfig, workers: int) -> DataLoader
         num_workers=workers,
         persistent_workers=workers > 0,
         collate_fn=FrameCollator(config.cells, config.depth),
-        # Without a generator of its own a loader draws from torch's at each start.
+        # Without its own generator, a loader draws from the global one each time it starts.
         generator=torch.Generator().manual_seed(config.seed),
     )
 

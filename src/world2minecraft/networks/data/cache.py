@@ -23,7 +23,7 @@ from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.networks.data.frames import Frame, FrameRule, make_frame
 
-VERSION = 1  # Of what lies in the folder.
+VERSION = 1  # Of the contents of the folder.
 ARRAYS = ("image", "depth", "intrinsics", "camera_to_grid", "grid_to_room", "labels", "masks")
 READY = "frames.json"  # Written last.
 MASKS = {"in_frustum": 1, "seen": 2, "free": 4}  # Bits of ``masks``.

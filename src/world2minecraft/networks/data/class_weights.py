@@ -12,8 +12,9 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.networks.config import CLASS_WEIGHTS
 
-BOUND = 1.02  # ENet's: the rarest class weighs 50 times what one of all cells would.
+BOUND = 1.02  # As in ENet, which limits weights to about 50.
 EMPTY_WEIGHT = 0.05  # MonoScene's.
 
 
@@ -46,5 +47,5 @@ def class_weights(counts: np.ndarray, kind: str) -> np.ndarray:
     elif kind == "monoscene":
         weights[0] = EMPTY_WEIGHT
     elif kind != "even":
-        raise UnknownNameError("kind of class weights", kind, ("frequency", "monoscene", "even"))
+        raise UnknownNameError("kind of class weights", kind, CLASS_WEIGHTS)
     return weights.astype(np.float32)

@@ -20,7 +20,7 @@ from world2minecraft.minecraftocc.formats.label_grids import cells_in_image
 from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.networks.config import Grid
 
-SAME_SURFACE = 0.05  # Of the depth: neighbours farther apart are of two surfaces.
+SAME_SURFACE = 0.05  # Maximum relative depth difference of neighbours on the same surface.
 
 
 @dataclass(frozen=True)

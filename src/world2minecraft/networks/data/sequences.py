@@ -14,8 +14,8 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import Frame
 
-LOOK_AHEAD_M = 2.0  # Distance of what a camera looks at: a room's middle from its wall.
-TRIES_PER_FRAME = 4  # Frames that are tried for each that is wanted.
+LOOK_AHEAD_M = 2.0  # Typical distance of what a camera looks at: from a wall to the room's centre.
+TRIES_PER_FRAME = 4  # Candidates per requested frame.
 
 
 class SequenceSampler:

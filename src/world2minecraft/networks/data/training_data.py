@@ -19,7 +19,7 @@ from world2minecraft.networks.data.class_weights import class_counts
 from world2minecraft.networks.data.frames import FrameRule
 from world2minecraft.networks.data.splits import Split, describe_counts, split_rows, take_evenly
 
-MAX_COUNTED_FRAMES = 1000  # Of each set, for the classes' frequencies; spread evenly.
+MAX_COUNTED_FRAMES = 1000  # Evenly spaced frames of each data set for the class frequencies.
 
 
 @dataclass(frozen=True)

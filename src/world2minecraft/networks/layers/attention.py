@@ -31,7 +31,7 @@ class DeformableAttention(nn.Module):
         self.weigh = nn.Linear(channels, heads * levels * points)
         self.out = nn.Linear(channels, channels)
         nn.init.zeros_(self.shift.weight)
-        nn.init.normal_(self.shift.bias, std=1.0)  # Cells: heads begin by looking elsewhere each.
+        nn.init.normal_(self.shift.bias, std=1.0)  # In cells, so that heads sample different ones.
 
     def forward(self, queries: Tensor, places: Tensor, values: Sequence[Tensor]) -> Tensor:
         """Attend to maps or volumes.

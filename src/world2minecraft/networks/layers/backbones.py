@@ -24,7 +24,7 @@ WIDTHS = {
     "tiny": BackboneWidths((8, 12, 16, 24, 32), (0, 0, 0, 0, 1), 32, 48),
     "small": BackboneWidths((16, 24, 48, 96, 128), (1, 1, 2, 2, 2), 128, 256),
     "full": BackboneWidths((32, 48, 80, 224, 2560), (1, 2, 4, 8, 4), 640, 2560),
-    # As full, without the wide top that EfficientNet-B7 has: for networks that never had it.
+    # As full, without the wide last stage of EfficientNet-B7, for networks published without it.
     "lean": BackboneWidths((32, 48, 80, 224, 640), (1, 2, 4, 8, 4), 640, 1024),
 }
 NORMS: dict[str, Norm] = {"tiny": "group", "small": "group", "full": "batch", "lean": "batch"}
@@ -80,7 +80,7 @@ def _load_model(model: str) -> Any:
     try:
         config = transformers.AutoConfig.from_pretrained(model)
         config.out_indices = _feature_channels(config)
-        # The library's own way by a name refuses folders; the class that it would take does not.
+        # AutoBackbone.from_pretrained rejects folders; the class that it selects accepts them.
         with torch.device("meta"):
             kind = type(transformers.AutoBackbone.from_config(config))
         return kind.from_pretrained(model, config=config, dtype=torch.float32, use_safetensors=True)

@@ -11,7 +11,8 @@ from world2minecraft.networks.layers.projection import CellProjection, sample_gr
 from world2minecraft.networks.layers.unet2d import ResidualBlock
 
 MAX_DEPTH_M = 10.0  # ISO's range for rooms, from 0.
-BEYOND_M = 1e6  # Stands for no depth among depths of which the least is sought.
+RESIDUAL_BLOCKS = 3  # Of the depth branch.
+BEYOND_M = 1e6  # Represents a missing depth when the minimum is computed.
 
 
 def bin_edges_m(bins: int) -> list[float]:
@@ -73,18 +74,15 @@ class DepthBranch(nn.Module):
         bins: Number of bins from 0 to 10 m.
         scale: Scale of the map.
         norm: Kind of normalization.
-        blocks: Number of residual blocks.
     """
 
-    def __init__(
-        self, given: int, inner: int, bins: int, scale: int, norm: Norm, *, blocks: int = 3
-    ):
+    def __init__(self, given: int, inner: int, bins: int, scale: int, norm: Norm):
         super().__init__()
         self.scale = scale
         self.enter = nn.Sequential(conv2d(given + 1, inner, norm), nn.ReLU())
         self.camera = nn.Sequential(nn.Linear(1, inner), nn.ReLU(), nn.Linear(inner, inner))
         self.weigh = nn.Sequential(nn.Linear(inner, inner), nn.ReLU(), nn.Linear(inner, inner))
-        self.deepen = nn.Sequential(*(ResidualBlock(inner, norm) for _ in range(blocks)))
+        self.deepen = nn.Sequential(*(ResidualBlock(inner, norm) for _ in range(RESIDUAL_BLOCKS)))
         self.say = nn.Conv2d(inner, bins, 1)
 
     def forward(self, values: Tensor, inputs: OccInput) -> Tensor:

@@ -89,7 +89,7 @@ class _GroupNormFunction(torch.autograd.Function):
     def backward(ctx: Any, *grads: Tensor) -> tuple[Tensor | None, ...]:
         """Return the gradients of the values, the weight and the bias."""
         values, weight, mean, spread = ctx.saved_tensors
-        layout = _layout(values)  # torch reads a gradient of another layout as if it had this one.
+        layout = _layout(values)  # torch would misread a gradient with another layout.
         found = torch.ops.aten.native_group_norm_backward(
             grads[0].float().contiguous(memory_format=layout), values.float(), mean.float(),
             spread.float(), weight.float(), *_sizes(values), ctx.groups, [True, True, True],

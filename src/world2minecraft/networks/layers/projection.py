@@ -20,7 +20,7 @@ from torch import Tensor
 
 from world2minecraft.networks.batch import OccInput
 
-MIN_DEPTH_M = 1e-3  # Cells nearer than that, or behind, are in no picture.
+MIN_DEPTH_M = 1e-3  # Cells nearer than this or behind the camera are outside the image.
 
 
 def sample_grid(values: Tensor, places: Tensor) -> Tensor:
@@ -33,8 +33,8 @@ def sample_grid(values: Tensor, places: Tensor) -> Tensor:
     if values.ndim == 5 and torch.onnx.is_in_onnx_export():
         return sample_corners(values, places)
     sides = torch.tensor(values.shape[2:], device=values.device, dtype=places.dtype)
-    values = values.to(places.dtype)  # Not the other way: half precision is too coarse for places.
-    # The kernel's places run from -1 to 1, with the last axis first.
+    values = values.to(places.dtype)  # Half precision is too coarse for positions.
+    # The kernel expects positions from -1 to 1, with the last axis first.
     grid = (2 * places / sides - 1).flip(-1)
     grid = grid.reshape(len(places), *([1] * (values.ndim - 3)), -1, values.ndim - 2)
     return torch.nn.functional.grid_sample(values, grid, align_corners=False).flatten(2)
@@ -44,7 +44,7 @@ def sample_corners(values: Tensor, places: Tensor) -> Tensor:
     """Sample a volume like ``sample_grid``, using only operations that are available in ONNX."""
     sides = [int(side) for side in values.shape[2:]]
     low = torch.floor(places - 0.5)
-    after = places - 0.5 - low  # [B, N, 3], the share of the later cell.
+    after = places - 0.5 - low  # [B, N, 3], the weight of the later cell.
     flat, found = values.flatten(2), None
     for corner in product((0, 1), repeat=3):
         number, weight = None, None
@@ -99,7 +99,7 @@ def cells_in_camera(inputs: OccInput) -> Tensor:
     """Return the centres of all cells in camera coordinates in metres, float32 [B, N, 3]."""
     centers = cell_centers_m(inputs.grid_shape, inputs.voxel_m, inputs.camera_to_grid)
     turn, place = inputs.camera_to_grid[:, :3, :3], inputs.camera_to_grid[:, :3, 3]
-    # A turn's inverse is its transpose.
+    # The inverse of a rotation is its transpose.
     return transform_points(centers[None] - place[:, None], turn.transpose(1, 2))
 
 

@@ -14,7 +14,7 @@ from torch import Tensor, nn
 from world2minecraft.networks.layers.normalization import Norm, conv2d
 
 STRIDES = (2, 4, 8, 16, 32)
-# What ImageNet's pictures have, so that trained backbones fit in: red, green, blue.
+# Red, green and blue of ImageNet, as pretrained backbones expect.
 MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
 
 

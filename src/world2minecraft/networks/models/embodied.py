@@ -38,8 +38,8 @@ VOTES_AT = 2
 FEATURES_AT = VOTES_AT + CLASS_COUNT
 SCALES = (1, 2, 4, 8)
 DEPTH_SCALE = 4
-MAX_LOG_ODDS = 3.0  # Of one frame, in log-odds.
-BELOW_M = 1.6  # How far under a camera its box begins: the floor under a person's eyes.
+MAX_LOG_ODDS = 3.0  # Of one frame.
+BELOW_M = 1.6  # Height of a camera above the bottom of its box, as of a person's eyes.
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ class Embodied(nn.Module):
         depth_logits = self.depth(features[DEPTH_SCALE], inputs)
         shares = torch.softmax(depth_logits, dim=1)
         before = torch.cumsum(shares, dim=1)
-        # Of each cell: how likely its pixel's surface is there, nearer, and farther.
+        # For each cell, the probability that the surface is there, nearer, and farther.
         ways = weight_by_depth(torch.stack([shares, before, 1 - before], dim=1), sight, DEPTH_SCALE)
         lifted = lift_features(features, sight, inputs.grid_shape)
         predicted = self.look(torch.cat([lifted, ways.unflatten(2, inputs.grid_shape)], dim=1))

@@ -7,7 +7,7 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.registry import Registry
 
 SIZES = ("tiny", "small", "full")
-MIN_SIDE = 8  # Cells; the coarsest level has a quarter of them, in mega-voxels of two.
+MIN_SIDE = 8  # Cells; the coarsest level has a quarter of them, and mega-voxels have two.
 
 NETWORKS = Registry(
     "network",

@@ -23,13 +23,12 @@ from world2minecraft.reconstruction.recognition.segmentation_channels import (
 )
 
 CROP = (256, 192)
-LABEL_STRIDE = 2
 SCALES = (0.72, 1.7)  # Of the image; below 0.8 the window is wider than the image.
 ASPECT, TURN_DEG, TURNED = 0.1, 5.0, 0.5
-NO_COLOUR, NO_DEPTH = 0.12, 0.15  # One of them is always there.
+NO_COLOUR, NO_DEPTH = 0.12, 0.15  # Colour and depth are never both missing.
 GREY, NOISY = 0.04, 0.3
-STORED, BENT, HOLES = 0.1, 0.5, 0.5  # How often depth keeps its steps, is bent, has holes.
-NOISE_PER_M = 0.0025  # Most noise in depth, metres at one metre; it grows with the square.
+STORED, BENT, HOLES = 0.1, 0.5, 0.5  # How often depth keeps its steps, is bent, or has holes.
+NOISE_PER_M = 0.0025  # Maximum depth noise in metres at one metre; it grows quadratically.
 BEND, SCALE_OFF = 0.01, 0.02
 UP_GIVEN, UP_SIGMA_DEG, UP_WRONG, UP_WRONG_DEG = 0.5, 1.5, 0.1, 12.0
 FLOOR_GIVEN, FLOOR_SIGMA_M, FLOOR_UNSEEN = 0.4, 0.04, 0.3

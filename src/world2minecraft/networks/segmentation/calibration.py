@@ -20,7 +20,7 @@ from world2minecraft.networks.segmentation.scores import frame_logits, sampled_l
 
 UNDONE_SHARE = 0.75  # Of the logarithm of the class weights; see docs/explanation/segmentation.md.
 INPUTS = ({"colour": True, "depth": True}, {"depth": False}, {"colour": False})
-EVERY_PX = 8  # Neighbouring pixels say the same.
+EVERY_PX = 8  # Neighbouring pixels are alike.
 TEMPERATURES = (0.3, 5.0)
 
 
@@ -46,8 +46,6 @@ def fit_calibration(
     network: SegmentationNet,
     frames: Sequence[LabelledFrame],
     weights: np.ndarray,
-    *,
-    mirrored: bool = True,
 ) -> Calibration:
     """Fit the temperatures on frames that the network was not trained on.
 
@@ -55,14 +53,13 @@ def fit_calibration(
         network: Trained network.
         frames: Labelled frames.
         weights: Class weights of the training, [40].
-        mirrored: Whether the mean with the mirrored image is taken, as the export does.
     """
     offset = undo_class_weights(weights)
     fitted = []
     for inputs in INPUTS:
         rows, truth = [], []
         for frame in frames:
-            logits = frame_logits(network, frame, mirrored=mirrored, every_px=EVERY_PX, **inputs)
+            logits = frame_logits(network, frame, mirrored=True, every_px=EVERY_PX, **inputs)
             labels = sampled_labels(frame, EVERY_PX).reshape(-1)
             seen = labels != IGNORED
             picked = logits.reshape(len(logits), -1).T[torch.from_numpy(seen)]

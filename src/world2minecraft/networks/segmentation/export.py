@@ -7,13 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 import onnx
-import onnxruntime
 import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
 from world2minecraft.core.files import write_bytes
-from world2minecraft.networks.onnx_export import compress_weights
+from world2minecraft.networks.onnx_export import compress_weights, run_onnx
 from world2minecraft.networks.segmentation.calibration import Calibration
 from world2minecraft.networks.segmentation.network import CLASSES, SegmentationNet
 from world2minecraft.networks.segmentation.scores import mirror_geometry
@@ -43,27 +42,27 @@ class SegmentationExport(NamedTuple):
 
 
 class CalibratedNet(nn.Module):
-    """A network that returns calibrated probabilities at the size of the colours."""
+    """A network that returns calibrated probabilities at the size of the colours.
+
+    They are the mean of those of the image and of its mirror image.
+    """
 
     offset: Tensor
     temperatures: Tensor
 
-    def __init__(self, network: SegmentationNet, calibration: Calibration, *, mirrored: bool):
+    def __init__(self, network: SegmentationNet, calibration: Calibration):
         super().__init__()
-        self.network, self.mirrored = network.eval(), mirrored
+        self.network = network.eval()
         self.register_buffer("offset", torch.from_numpy(calibration.offset).view(1, -1, 1, 1))
         self.register_buffer("temperatures", torch.tensor(calibration.temperatures))
 
     def forward(self, colour: Tensor, geometry: Tensor) -> Tensor:
         """Return probabilities [1, 40, H, W]."""
-        if self.mirrored:  # In one batch, so that the file holds the weights once.
-            pair = self.network(
-                torch.cat([colour, colour.flip(3)]),
-                torch.cat([geometry, mirror_geometry(geometry)]),
-            )
-            logits = (pair[:1] + pair[1:].flip(3)) / 2
-        else:
-            logits = self.network(colour, geometry)
+        # The image and its mirror image are one batch, so that the file holds the weights once.
+        pair = self.network(
+            torch.cat([colour, colour.flip(3)]), torch.cat([geometry, mirror_geometry(geometry)])
+        )
+        logits = (pair[:1] + pair[1:].flip(3)) / 2
         both, no_depth, no_colour = self.temperatures
         has_colour = colour.abs().amax() > 0
         temperature = torch.where(geometry.abs().amax() > 0, both, no_depth)
@@ -83,7 +82,6 @@ def export_segmentation(
     path: Path,
     about: dict[str, str],
     *,
-    mirrored: bool = True,
     weights: str = "half",
 ) -> SegmentationExport:
     """Write a network with its calibration as ONNX and measure the differences of its output.
@@ -93,10 +91,9 @@ def export_segmentation(
         calibration: Calibration of the network.
         path: Output file.
         about: Metadata to store in the file.
-        mirrored: Whether the mean with the mirrored image is taken, at twice the cost.
         weights: Weight format: ``float``, ``half`` or ``int8``.
     """
-    calibrated = CalibratedNet(network, calibration, mirrored=mirrored).eval()
+    calibrated = CalibratedNet(network, calibration).eval()
     model = _onnx_model(calibrated)
     onnx.helper.set_model_props(model, dict(sorted(about.items())))
     whole = model.SerializeToString()
@@ -106,8 +103,9 @@ def export_segmentation(
         given = _random_inputs(shape, np.random.default_rng(0))
         with torch.no_grad():
             wanted = calibrated(*(torch.from_numpy(one) for one in given)).numpy()
-        difference = max(difference, float(np.abs(_run(whole, given) - wanted).max()))
-        moved = max(moved, float(np.abs(_run(small, given) - wanted).mean()))
+        inputs: dict[str, np.ndarray] = dict(zip((COLOUR, GEOMETRY), given, strict=True))
+        difference = max(difference, float(np.abs(run_onnx(whole, inputs) - wanted).max()))
+        moved = max(moved, float(np.abs(run_onnx(small, inputs) - wanted).mean()))
     write_bytes(path, small)
     return SegmentationExport(difference, moved, len(small))
 
@@ -120,7 +118,7 @@ def _onnx_model(network: nn.Module) -> onnx.ModelProto:
         torch.from_numpy(one) for one in _random_inputs((240, 320), np.random.default_rng(1))
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # Of sides that become constants.
+        warnings.simplefilter("ignore")  # About sides that become constants.
         torch.onnx.export(
             network,
             given,
@@ -136,7 +134,7 @@ def _onnx_model(network: nn.Module) -> onnx.ModelProto:
             },
         )
     model = onnx.load_from_string(buffer.getvalue())
-    for number, side in enumerate((1, CLASSES)):  # Tracing does not know them.
+    for number, side in enumerate((1, CLASSES)):  # Tracing leaves them unknown.
         model.graph.output[0].type.tensor_type.shape.dim[number].dim_value = side
     return model
 
@@ -148,11 +146,3 @@ def _random_inputs(
     colour = rng.standard_normal((1, 3, *shape), np.float32)
     geometry = rng.standard_normal((1, GEOMETRY_CHANNELS, height, width), np.float32)
     return colour, geometry
-
-
-def _run(data: bytes, given: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = options.inter_op_num_threads = 1
-    options.log_severity_level = 3
-    session = onnxruntime.InferenceSession(data, options, providers=["CPUExecutionProvider"])
-    return np.asarray(session.run(None, dict(zip((COLOUR, GEOMETRY), given, strict=True)))[0])

@@ -21,7 +21,7 @@ from world2minecraft.reconstruction.recognition.segmentation_channels import (
     surface_normals,
 )
 
-IGNORED = 39  # otherprop, unlabelled or boundary: never trained and never scored.
+IGNORED = 39  # Other props, unlabelled pixels and boundaries, which are not trained or scored.
 FLOOR = 1  # Class of the floor, counted from 0 like all labels here.
 MAX_DEPTH8_M = 10.0  # Of the value 255.
 BLOCK, BLOCKS, VALIDATION_BLOCK, BLOCK_MARGIN = 50, 5, 4, 3

@@ -16,13 +16,12 @@ from world2minecraft.reconstruction.recognition.segmentation_channels import GEO
 
 CLASSES = 40
 SLOPE = 0.1
-OUTPUT_STRIDE = 4
 # Of the seven groups of blocks of an EfficientNet.
 KERNELS, STRIDES = (3, 3, 5, 3, 5, 5, 3), (1, 2, 2, 2, 1, 2, 1)
 EXPANSIONS = (1, 6, 6, 6, 6, 6, 6)
 LEVELS = ((0, 1), (2,), (3, 4), (5, 6))  # Groups that end at strides 4, 8, 16 and 32.
 NORM_EPSILON = 1e-3  # Of the published weights.
-MOST_DROPPED = 0.2  # How often training leaves out the last block.
+MAX_DROPPED = 0.2  # How often training leaves out the last block.
 
 
 @dataclass(frozen=True)
@@ -146,7 +145,7 @@ class ColourEncoder(nn.Module):
                 for number in range(size.repeats[group]):
                     stride = STRIDES[group] if number == 0 else 1
                     block = InvertedResidual(given, width, kernel, stride, expansion)
-                    block.dropped = MOST_DROPPED * done / total  # Later ones more often.
+                    block.dropped = MAX_DROPPED * done / total  # Later blocks more often.
                     level.append(block)
                     given, done = width, done + 1
             self.levels.append(level)

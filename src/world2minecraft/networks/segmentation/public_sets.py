@@ -28,7 +28,7 @@ from world2minecraft.networks.segmentation.frames import (
 CLASS_MAPPING = "classMapping40.mat"
 MAPPING_KEY, MAPPING_COUNT = "mapClass", 894
 SUN_LABELS, SUN_DEPTH, SUN_CAMERA = "seg.mat", "depth_bfx", "intrinsics.txt"
-# What SUN RGB-D's annotators called classes of NYU40.
+# Names that SUN RGB-D's annotators used for classes of NYU40.
 SYNONYMS = {
     "couch": "sofa",
     "cupboard": "cabinet",
@@ -45,17 +45,13 @@ SYNONYMS = {
 }
 
 
-def read_nyu_mat(
-    path: Path, parts: Sequence[Part], mapping: Path | None = None, limit: int | None = None
-) -> list[LabelledFrame]:
+def read_nyu_mat(path: Path, parts: Sequence[Part]) -> list[LabelledFrame]:
     """Read frames of ``nyu_depth_v2_labeled.mat``, whose numbers count from 1.
 
     Args:
-        path: The file, which is HDF5.
+        path: The file, which is HDF5. Beside it must be ``classMapping40.mat``, the published map
+            from its 894 classes to 40.
         parts: Parts of the project's split to read.
-        mapping: ``classMapping40.mat``, the published map from its 894 classes to 40. Defaults to
-            that beside the file.
-        limit: Most frames to read. Defaults to all.
 
     Raises:
         UsageError: If h5py is not installed.
@@ -65,12 +61,12 @@ def read_nyu_mat(
         import h5py  # type: ignore  # noqa: PLC0415  # Nothing else needs it.
     except ModuleNotFoundError as error:
         raise UsageError(f"{path.name} is HDF5; to read it: pip install h5py") from error
-    classes = read_class_mapping(mapping or path.parent / CLASS_MAPPING)
+    classes = read_class_mapping(path.parent / CLASS_MAPPING)
     try:
         with h5py.File(path, "r") as file:
-            return list(frames_of_nyu_arrays(file, classes, parts, limit))
+            return list(frames_of_nyu_arrays(file, classes, parts))
     except (OSError, KeyError) as error:
-        raise DamagedFileError(path, f"is not NYUv2's labelled set: {error}") from error
+        raise DamagedFileError(path, f"not NYUv2's labelled set: {error}") from error
 
 
 def read_class_mapping(path: Path) -> np.ndarray:
@@ -89,7 +85,7 @@ def read_class_mapping(path: Path) -> np.ndarray:
 
 
 def frames_of_nyu_arrays(
-    arrays: Mapping[str, Any], classes: np.ndarray, parts: Sequence[Part], limit: int | None = None
+    arrays: Mapping[str, Any], classes: np.ndarray, parts: Sequence[Part]
 ) -> Iterator[LabelledFrame]:
     """Yield frames from the arrays of the labelled set.
 
@@ -98,13 +94,10 @@ def frames_of_nyu_arrays(
             with the axes as HDF5 gives them.
         classes: NYU40 id of each class, uint8 [895], 0 where there is none.
         parts: Parts of the split to read.
-        limit: Most frames to read. Defaults to all.
     """
-    given = 0
     for index in range(len(arrays["labels"])):
-        if nyu_part(index + 1) not in parts or given == limit:
+        if nyu_part(index + 1) not in parts:
             continue
-        given += 1
         labels = _to_labels(classes[np.asarray(arrays["labels"][index]).T])
         colour = np.ascontiguousarray(np.asarray(arrays["images"][index]).T)
         depth_m = np.asarray(arrays["depths"][index], np.float32).T
@@ -186,4 +179,4 @@ def _read_mat(path: Path) -> dict[str, Any]:
     try:
         return load(str(path))
     except (ValueError, NotImplementedError, OSError) as error:
-        raise DamagedFileError(path, f"is not a MATLAB file: {error}") from error
+        raise DamagedFileError(path, f"not a MATLAB file: {error}") from error

@@ -19,7 +19,7 @@ from world2minecraft.networks.segmentation.augmentation import CROP, Example, dr
 from world2minecraft.networks.segmentation.frames import IGNORED, LabelledFrame, class_shares
 from world2minecraft.networks.segmentation.network import SegmentationNet, SegmentationSize
 
-MOST_WEIGHT = 6.0  # Of a rare class.
+MAX_WEIGHT = 6.0  # Of a rare class.
 Report = Callable[[int, float, SegmentationNet], None]
 Batch = tuple[Tensor, Tensor, Tensor]
 
@@ -70,7 +70,7 @@ def class_weights(shares: np.ndarray) -> np.ndarray:
     """
     root = np.sqrt(shares)
     weights = 1 / np.maximum(root * root.sum(), 1e-9)
-    return np.where(shares > 0, np.minimum(weights, MOST_WEIGHT), 1).astype(np.float32)
+    return np.where(shares > 0, np.minimum(weights, MAX_WEIGHT), 1).astype(np.float32)
 
 
 def segmentation_loss(logits: Tensor, labels: Tensor, weights: Tensor) -> Tensor:
@@ -203,14 +203,10 @@ class Trainer(AveragedTrainer[SegmentationNet]):
     def _training_step(self, colour: Tensor, geometry: Tensor, labels: Tensor) -> Tensor:
         for group in self.optimiser.param_groups:
             group["lr"] = self.learning_rate_at(self.step) * group["share"]
-        torch.manual_seed(self.run.seed * 1_000_003 + self.step)  # Of dropout.
+        torch.manual_seed(self.run.seed * 1_000_003 + self.step)  # For dropout.
         self.network.train()
         loss = segmentation_loss(self.network(colour, geometry), labels, self.weights)
-        self.optimiser.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 5.0)
-        self.optimiser.step()
-        self._update_mean()
+        self._minimize(loss)
         return loss.detach()
 
     def _further_state(self) -> dict[str, Tensor]:
