@@ -190,7 +190,7 @@ def _walk(
         """Return the observers of an episode, which write its trace and video."""
         place = walk_folder(request.folder, episodes.index(episode), episodes)
         found: list[Any] = [*request.observers, TraceWriter(place), *_people(agent)]
-        (place / FILM_FILE).unlink(missing_ok=True)  # Of an earlier walk.
+        (place / FILM_FILE).unlink(missing_ok=True)  # The film of an earlier walk.
         if request.video:
             films[:] = [Film(place / FILM_FILE, ground, ground.plans)]
         return [*found, *films]

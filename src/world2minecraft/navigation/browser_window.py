@@ -22,9 +22,9 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.types import Move
 
 LOOPBACK = "127.0.0.1"
-MAX_QUEUED_KEYS = 64  # Keys; what nobody reads is dropped.
-IDLE_S = 5.0  # A page that saw no frame for so long gets the last again.
-SCALE = 3  # Of a frame on the page.
+MAX_QUEUED_KEYS = 64  # Further keys are dropped.
+IDLE_S = 5.0  # Seconds without a new frame after which a page gets the last one again.
+SCALE = 3  # Magnification of frames on the page.
 _PAGE = """<!doctype html><meta charset="utf-8"><title>World2Minecraft</title>
 <style>body{{margin:1em auto;max-width:60em;font:16px sans-serif;background:#16181d;color:#eee;
 text-align:center}}img{{image-rendering:pixelated;
@@ -52,7 +52,7 @@ listen().catch(() => {{}}).finally(() => {{
   document.getElementById("keys").textContent = "The program has ended; close this page."
 }})
 </script>"""
-PATIENCE_S = 600.0  # Without a key for so long nobody is there.
+PATIENCE_S = 600.0  # Seconds without a key press after which a walk ends.
 KEYS = {
     "ArrowUp": Move.FORWARD,
     "w": Move.FORWARD,

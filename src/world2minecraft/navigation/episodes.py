@@ -18,9 +18,9 @@ from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.scores import EpisodeScore, WalkedPath, score_episode
 from world2minecraft.navigation.types import Episode, Instruction, MoveSet, Stance
 
-MIN_PATH_M, MAX_PATH_M = 1.0, 25.0  # Of the way on foot; shorter is no walk.
-MAX_HEIGHT_M = 1.2  # What hangs so high over the floor is nothing to walk to.
-TRIES = 40  # Of places for one episode.
+MIN_PATH_M, MAX_PATH_M = 1.0, 25.0  # Walking distance to the goal.
+MAX_HEIGHT_M = 1.2  # Maximum height of the underside of a goal above the floor.
+TRIES = 40  # Starts and targets that are tried for one episode.
 
 
 @dataclass(frozen=True)

@@ -2,21 +2,17 @@
 
 from world2minecraft.navigation.browser_window import PATIENCE_S, Window, wait_for_move
 from world2minecraft.navigation.moves import apply_move
+from world2minecraft.navigation.running.simulator import VIEW_FOV_DEG, VIEW_PX
 from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.types import Move
 
-VIEW_PX, VIEW_FOV_DEG = (640, 480), 79.0  # RxR's camera, as runs have it.
 
-
-def walk_freely(
-    scene: VlnScene, window: Window, *, move_set: str = "vlnce", patience_s: float = PATIENCE_S
-) -> None:
+def walk_freely(scene: VlnScene, window: Window, *, patience_s: float = PATIENCE_S) -> None:
     """Let a person walk through a scene with the keyboard. The space key returns to the start.
 
     Args:
         scene: The scene.
         window: The page that shows the view and receives the keys.
-        move_set: The name of the move set.
         patience_s: Seconds to wait for each key press.
 
     Raises:
@@ -32,7 +28,7 @@ def walk_freely(
         if move == Move.STOP:
             stance, collided = scene.start, False
         else:
-            stance, collided = apply_move(scene, stance, move, move_set, sliding=True)
+            stance, collided = apply_move(scene, stance, move, sliding=True)
 
 
 def _caption(scene: VlnScene, feet: tuple[float, float, float], collided: bool) -> str:

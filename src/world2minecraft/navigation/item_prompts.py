@@ -12,14 +12,14 @@ from typing import Literal
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.types import Item
 
-IMAGE = "<image>"  # The mark of LLaMA-Factory and EasyR1.
-LETTER_ALONE = "Answer with its letter alone."  # What ends a question that no format prompt ends.
+IMAGE = "<image>"  # The placeholder of LLaMA-Factory and EasyR1.
+LETTER_ALONE = "Answer with its letter alone."  # Ends questions without a format prompt.
 TASK_WORDS = {
     "next_view": "Which of these views do you see next?",
     "next_action": "Which action do you take next?",
 }
 _ROLE = "You walk through a Minecraft world and follow an instruction."
-# Trainers take these for pictures, tokenizers for the end of a turn, wherever they stand.
+# Trainers interpret these as images and tokenizers as the end of a turn, wherever they occur.
 _MARK = re.compile(r"<(?:image|video|audio)>|<\|[^<>|]{1,40}\|>", re.IGNORECASE)
 
 

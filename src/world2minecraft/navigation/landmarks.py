@@ -19,10 +19,10 @@ from world2minecraft.formats.object_names import NamedObject
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
 
-BESIDE_M = 1.5  # What stands nearer than this is "beside".
-MIN_SIZE_M = 0.15  # What is smaller in its two longer sides is nothing to speak of.
+BESIDE_M = 1.5  # Maximum distance of objects that are "beside" each other.
+MIN_SIZE_M = 0.15  # Minimum length of the two longer sides of a landmark.
 
-# Blocks of the game that are a thing by themselves; of others only the class is a name.
+# Names of blocks that are objects themselves; other blocks are named by their class.
 _BLOCK_NOUNS = {
     "bookshelf": "bookcase",
     "chiseled_bookshelf": "bookcase",
@@ -45,9 +45,9 @@ _BLOCK_NOUNS = {
     "loom": "loom",
     "brewing_stand": "brewing stand",
 }
-_FURNITURE = "piece of furniture"  # Of the class, which has no singular.
-UNSPECIFIC_NOUNS = (_FURNITURE, "object")  # They say nothing, whatever else is said of a thing.
-_NAME = re.compile(r"[^\W_][\w' -]*")  # Names that a sentence can contain: no marks, no lines.
+_FURNITURE = "piece of furniture"  # The singular of the class name.
+UNSPECIFIC_NOUNS = (_FURNITURE, "object")  # Names with these nouns never identify an object.
+_NAME = re.compile(r"[^\W_][\w' -]*")  # Names without punctuation that would end a sentence.
 _COLOURS = {
     "white": (235, 235, 235),
     "grey": (130, 130, 130),
@@ -226,15 +226,16 @@ def _phrase(one: Landmark, nouns: Counter, coloured: Counter, anchors: Sequence[
     if coloured[one.colour, one.noun] == 1 and not set(one.noun.split()) & set(_COLOURS):
         return f"{one.colour} {one.noun}"
     same = [other for other in anchors if other.room == one.room]
-    gaps = [float(np.linalg.norm(_gap(one, other))) for other in same]
+    gaps = [gap_between_m(one, other) for other in same]
     if gaps and min(gaps) <= BESIDE_M:
         return f"{one.noun} beside the {same[int(np.argmin(gaps))].noun}"
     return one.noun
 
 
-def _gap(one: Landmark, other: Landmark) -> np.ndarray:
-    """Return the distance between two boxes along each axis in metres."""
-    return np.maximum(0.0, np.maximum(one.low_m - other.high_m, other.low_m - one.high_m))
+def gap_between_m(one: Landmark, other: Landmark) -> float:
+    """Return the distance between the boxes of two landmarks in metres."""
+    gap = np.maximum(0.0, np.maximum(one.low_m - other.high_m, other.low_m - one.high_m))
+    return float(np.linalg.norm(gap))
 
 
 def _mode(values: np.ndarray) -> int:

@@ -21,12 +21,9 @@ from world2minecraft.minecraft.physics.walk_graph import DROP, WET
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.types import MOVE_SETS, Move, MoveSet, Stance
 
-SUBSTEP = 0.4  # Of half a body's width: how long the pieces of a way are.
-FIRST_FURNITURE, LAST_FURNITURE = (
-    5,
-    10,
-)  # The classes of furniture, from the first to the last: no ground to walk on.
-_YAW_DIGITS = 6  # Of a yaw in degrees: turns there and back give the same number.
+SUBSTEP = 0.4  # Maximum length of the pieces of a step, relative to half the width of the body.
+FIRST_FURNITURE, LAST_FURNITURE = 5, 10  # Classes of furniture, on which a body never stands.
+_YAW_DIGITS = 6  # Of a yaw in degrees, so that opposite turns cancel exactly.
 
 
 class BodySize(NamedTuple):

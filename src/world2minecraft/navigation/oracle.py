@@ -27,12 +27,12 @@ from world2minecraft.navigation.moves import (
 from world2minecraft.navigation.scene import VlnScene, distance_from_field
 from world2minecraft.navigation.types import Move, MoveSet, Stance
 
-HEURISTIC_FACTOR = 0.98  # Between places the field is too long by little: by so much at most.
+HEURISTIC_FACTOR = 0.98  # Distances between nodes are overestimated by at most two percent.
 ORACLE_VERSION = "w2m-oracle-2"
-GOAL_M = 0.25  # It stops so near to a goal: half of the least radius of success,
-GOAL_STEPS = 0.75  # or so many steps, where steps are long.
-TURN_M = 0.01  # What a turn counts: of ways of one length the straighter is taken.
-FINENESS = (3.0, 12.0)  # Places told apart along a step; the second where the first finds none.
+GOAL_M = 0.25  # Distance to a goal at which a path ends, half of the smallest success radius.
+GOAL_STEPS = 0.75  # The same distance in steps, for long steps.
+TURN_M = 0.01  # Cost of a turn, so that the straightest of several shortest paths is chosen.
+FINENESS = (3.0, 12.0)  # Positions along a step; the second value if the first finds no path.
 MAX_NODES = 400_000
 
 

@@ -30,8 +30,8 @@ TRAJECTORIES = "trajectories.jsonl"
 EPISODES = "episodes.jsonl"
 ABOUT, CARD = "dataset.json", "README.md"
 IMAGES = "images"
-SCENES_FOLDER = "scenes"  # Of a set, where its scenes were made for it.
-# What people and models add to a set between commands; not part of its list of files.
+SCENES_FOLDER = "scenes"  # Scenes that were generated for the set.
+# Files that people and models add to a set, which its list of files does not contain.
 ANNOTATIONS, REPLIES_FOLDER = "annotations.jsonl", "rewriting"
 NAVIGATION_SET = FolderKind(
     {ITEMS: ""},
@@ -44,7 +44,7 @@ MAX_LINE_BYTES = 1 << 20
 MAX_RECORDS = 1_000_000
 MAX_TEXT = 4_000  # Characters of an instruction or an option; the paper's longest has 340.
 MAX_NAME = 240
-MAX_IMAGES = 64  # That one item shows.
+MAX_IMAGES = 64  # Of one item.
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 Record = TypeVar("Record", Item, Trajectory, Episode)
@@ -125,7 +125,7 @@ def to_json_line(record: Item | Trajectory | Episode) -> str:
     try:
         line = _compact(fields, ensure_ascii=False)
         if not is_text(line):
-            # Paths hold bytes that are not UTF-8 as Python reads them; other texts are text.
+            # Only paths may contain bytes that are not UTF-8, as surrogate escapes.
             os.fsencode(str(fields.get("scene", "")))
             _compact(fields | {"scene": ""}, ensure_ascii=False).encode()
             line = _compact(fields, ensure_ascii=True)

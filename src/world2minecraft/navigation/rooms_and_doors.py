@@ -14,10 +14,10 @@ from world2minecraft.minecraft.physics.walk_graph import WalkGraph
 from world2minecraft.minecraftocc.tours.rooms import TourRoom
 from world2minecraft.procgen.sensors.navmesh import is_inside
 
-NEAR_M = 1.5  # A place farther from all rooms than this is in none.
-_APART = 3.0  # A metre of height counts as so many along the floor.
+NEAR_M = 1.5  # Maximum distance of a node from its room.
+_APART = 3.0  # Weight of height differences in this distance.
 
-# What people call the kinds of generated rooms, where the kind's own name is not the word.
+# Names of kinds of generated rooms that differ from the kind.
 ROOM_WORDS = {"bed": "bedroom", "living": "living room", "dining": "dining room"}
 
 

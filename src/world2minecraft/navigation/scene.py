@@ -49,15 +49,15 @@ from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.shading_parameters import DAY
 from world2minecraft.rendering.views.cameras import GamePose
 
-REACH_SPACINGS = 1.5  # Spacings: places so near to a body are on its own side of any wall,
-LEVEL_SIZES = 0.6  # and so near in height, in sizes of the body, are on its own floor.
-BODIES = (1.0, 0.6, 0.4)  # Of a person: one who fits is chosen; a cluttered scan has small ones.
-MIN_FLOOR_M2 = 1.0  # Of all rooms: with less a smaller body is tried.
-STOREY_M = 2.8  # What is so far over a floor, or beside it, is not of its room.
-REACH_M = 1.0  # One stands before a thing where it is no farther than this,
-RING_M = 0.25  # and about as near as one can come.
+REACH_SPACINGS = 1.5  # Spacings within which nodes are on the same side of any wall.
+LEVEL_SIZES = 0.6  # Height difference on the same floor, relative to the size of the body.
+BODIES = (1.0, 0.6, 0.4)  # Body sizes that are tried; cluttered scans need small ones.
+MIN_FLOOR_M2 = 1.0  # Of all rooms; with less, a smaller body is tried.
+STOREY_M = 2.8  # Maximum distance of an object from the floor of its room, above or beside it.
+REACH_M = 1.0  # Maximum distance of a goal position from its landmark.
+RING_M = 0.25  # Maximum difference of this distance from that of the nearest position.
 MAX_GOALS = 32
-MAX_FIELDS = 64  # Kept of those last used.
+MAX_FIELDS = 64  # Most recently used distance fields that are cached.
 
 
 class FloorTable(NamedTuple):
@@ -328,7 +328,7 @@ class VlnScene:
         over = distance_from_field(self.floor, field, *(float(value) for value in feet))
         if np.isfinite(over) or not np.isfinite(field).any():
             return float(over)
-        nearest = self.corner_graph.nearest(feet)  # Off the floor: on furniture, or in the air.
+        nearest = self.corner_graph.nearest(feet)  # The position is on furniture or in the air.
         offset = np.linalg.norm(self.corner_graph.feet[nearest] - np.asarray(feet))
         return float(field[nearest] + offset * self.metres_per_block)
 

@@ -24,7 +24,7 @@ class Move(IntEnum):
 
     STOP = 0
     FORWARD = 1
-    LEFT = 2  # Turns to the left: counter-clockwise from above.
+    LEFT = 2  # A turn on the spot, counter-clockwise from above.
     RIGHT = 3
 
 
@@ -45,7 +45,7 @@ class MoveSet:
     is_macro: bool = False
 
 
-# Of VLN-CE's R2R and RxR; a block a step (its length is the scene's); and the paper's wording.
+# VLN-CE's sets for R2R and RxR, steps of one block, and runs of moves as in the paper.
 MOVE_SETS = {
     "vlnce": MoveSet("vlnce", 0.25, 15.0),
     "rxr": MoveSet("rxr", 0.25, 30.0),

@@ -14,13 +14,11 @@ import numpy as np
 from world2minecraft.navigation.types import Move, MoveSet, Stance
 from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrap_deg
 
-EPSILON_M = 0.25  # A move: what lies nearer to a line cannot be walked otherwise.
-DISCRETIZATION_VERSION = (
-    "corners-1"  # Of how moves are made; a record says it, so that it can be made again.
-)
-SLACK_M = 0.1  # Of the end, beside half a step.
-CLOSENESS_M = (EPSILON_M, 0.1)  # A corner that is passed so near needs no turn,
-MEETING_M = 0.15  # nor does an end that is met so near.
+EPSILON_M = 0.25  # The length of a move; smaller deviations cannot be walked.
+DISCRETIZATION_VERSION = "corners-1"  # Recorded with the moves.
+SLACK_M = 0.1  # Of the end, in addition to half a step.
+CLOSENESS_M = (EPSILON_M, 0.1)  # Distance within which a corner is passed without a turn.
+MEETING_M = 0.15  # Distance within which the end is reached without a turn.
 MAX_MOVES = 500
 
 

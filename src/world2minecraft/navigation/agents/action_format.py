@@ -17,14 +17,14 @@ from world2minecraft.external_models.structured_replies import (
 from world2minecraft.navigation.types import Move
 
 MAX_MOVES = 4
-MAX_THOUGHT_CHARACTERS = 2000  # Characters that are kept.
+MAX_THOUGHT_CHARACTERS = 2000
 NAMES = {
     "FORWARD": Move.FORWARD,
     "LEFT": Move.LEFT,
     "RIGHT": Move.RIGHT,
     "STOP": Move.STOP,
 }
-# As papers and tuned models write them; NaVid, StreamVLN and Uni-NaVid among them.
+# Names used by papers and fine-tuned models, such as NaVid, StreamVLN and Uni-NaVid.
 OTHER_NAMES = {
     "MOVE_FORWARD": Move.FORWARD,
     "GO_FORWARD": Move.FORWARD,

@@ -12,9 +12,9 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.agents.types import Decision, Guide, Observation, Task
 from world2minecraft.navigation.types import Move
 
-# How often each move comes in VLN-CE's training split; its random agent draws by these.
+# Frequencies of the moves in VLN-CE's training split, which its random agent uses.
 MOVE_SHARES = {Move.STOP: 0.02, Move.FORWARD: 0.68, Move.LEFT: 0.15, Move.RIGHT: 0.15}
-NEAR_M = 0.25  # Here ``shortest`` stops: half of the least radius of success.
+NEAR_M = 0.25  # Distance at which ``shortest`` stops, half of the smallest success radius.
 
 
 class StopAgent:

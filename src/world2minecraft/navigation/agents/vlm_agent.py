@@ -23,6 +23,7 @@ from world2minecraft.navigation.agents.action_format import MAX_MOVES, step_form
 from world2minecraft.navigation.agents.types import Decision, Observation, Task
 from world2minecraft.navigation.agents.vlm_prompts import (
     MAPS,
+    MAX_PAST_MOVES,
     MapKind,
     StepPrompt,
     step_turn,
@@ -30,13 +31,12 @@ from world2minecraft.navigation.agents.vlm_prompts import (
 )
 from world2minecraft.navigation.types import Move, Stance
 
-MAX_PLACES = 12  # Of a map in words; those between are left out evenly.
-MIN_SPACING_M = 0.5  # Places nearer to the last one are the same place.
+MAX_PLACES = 12  # Positions in a text map, chosen evenly.
+MIN_SPACING_M = 0.5  # Minimum distance between two positions in a text map.
 JPEG_QUALITY = 85
-HISTORY = 3  # Pictures before the one of now, as the paper shows them.
+HISTORY = 3  # Previous images, as in the paper.
 MAX_HISTORY = 8
-MAX_PROGRESS_CHARACTERS = 400  # Characters of its own words that a model is told again.
-MAX_PAST_MOVES = 16
+MAX_PROGRESS_CHARACTERS = 400  # Characters of its progress notes that a model is shown again.
 
 
 def relative_m(start: Stance, stance: Stance, metres_per_block: float) -> tuple[float, float]:

@@ -16,7 +16,7 @@ MOVE_NAMES = {
     Move.RIGHT: "RIGHT",
     Move.STOP: "STOP",
 }
-MAX_PAST_MOVES = 16  # Last moves that are told.
+MAX_PAST_MOVES = 16  # Most recent moves in a prompt.
 PLAN_WORDS = (
     "\nA plan of the building from above. The red arrow is you and points where you look, the blue "
     "dot is where you started, the orange line is the way you took:"
@@ -33,7 +33,7 @@ class StepPrompt:
     done: tuple[tuple[Move, bool], ...] = ()
     progress: str = ""
     map_text: str = ""
-    rejected: str = ""  # why the last decision was none
+    rejected: str = ""  # why the last reply could not be used
     plan: Picture | None = None
 
 

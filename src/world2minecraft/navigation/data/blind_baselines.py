@@ -18,9 +18,9 @@ from world2minecraft.navigation.scores import Rate, rate
 from world2minecraft.navigation.types import TASKS, Item
 
 FLAG_POINTS = 0.10
-SMALL_PX = (32, 18)  # Pictures are compared so small.
+SMALL_PX = (32, 18)  # Size at which images are compared.
 MAX_PIXELS = 64_000_000
-BLIND_BASELINES = ("majority", "blind")  # These see no picture.
+BLIND_BASELINES = ("majority", "blind")  # These do not use images.
 BASELINES = ("uniform", "majority", "blind", "repeat", "nearest", "alike", "odd", "oracle")
 
 
@@ -139,7 +139,7 @@ def _answers(
         found["blind"] = _blind(train, held_out)
         found["repeat"] = [_of_text(item, str(item.extra.get("previous", ""))) for item in held_out]
     else:
-        found["blind"] = found["majority"]  # Choices without words leave nothing but the letter.
+        found["blind"] = found["majority"]  # Without texts, only the letters remain.
         small = _Thumbnails(folder)
         found["nearest"] = [_chosen(item, lambda i: _to_current(i, small)) for item in held_out]
         found["alike"] = [_chosen(item, lambda i: _to_others(i, small)) for item in held_out]

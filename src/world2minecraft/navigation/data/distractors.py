@@ -32,14 +32,14 @@ from world2minecraft.navigation.walk_discretization import StepFunction
 from world2minecraft.navigation.walk_stream import wrap_deg
 
 CHOICES = 4
-MAX_OF_A_KIND = 2  # Of one question: three steps beside would tell the right one by being other.
-MAX_TRIES = 3  # Pictures that are taken in full for one that is kept.
+MAX_OF_A_KIND = 2  # Per question; three of a kind would reveal the correct option.
+MAX_TRIES = 3  # Images rendered in full size per distractor.
 RENDERED_KINDS = ("turned", "other_move", "mirror", "beside")
 TURNS_DEG = (-180.0, -60.0, -30.0, 30.0, 60.0)
-OTHER_TURNS = (1, 2, 4)  # Moves: from as like as can be to as far as a keyframe turns.
-BESIDE_M = (0.25, 0.5, 0.75)  # From here; from the next place the middle one.
+OTHER_TURNS = (1, 2, 4)  # Moves, from the most similar view to a whole turn of a keyframe.
+BESIDE_M = (0.25, 0.5, 0.75)  # From the current position; the next one uses the middle value.
 MIRRORED_TURNS = {Move.LEFT: Move.RIGHT, Move.RIGHT: Move.LEFT}
-MIRRORED_RUNS = 3  # As many as pictures are shown.
+MIRRORED_RUNS = 3  # As many as images are shown.
 
 
 class RankBalancer:
@@ -96,7 +96,7 @@ class DistractorPicker:
         """
         looks = self._album.look([stance for _, stance in places])
         left: dict[bool, list[tuple[str, Stance]]] = {True: [], False: []}
-        for place, look in zip(places, looks, strict=True):  # Small pictures say where to go.
+        for place, look in zip(places, looks, strict=True):  # Previews preselect the candidates.
             left[picture_difference(self._now, look) < self._limit].append(place)
         slots: list[DistractorSlot] = []
         for slot in plan:

@@ -22,8 +22,8 @@ from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.runs import run_capture
 
 MAX_SCENES, MAX_SEEDS = 1_000, 1_000_000
-TRIES = 5  # Of a room in which a scan leaves no way between things.
-_FINISHED = {"room": "report.json", "house": "house.json"}  # What is written last.
+TRIES = 5  # Attempts to generate a room with a walkable path between objects.
+_FINISHED = {"room": "report.json", "house": "house.json"}  # The files that are written last.
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def make_scenes(
         raise UsageError(
             f"rooms and houses must each be 0 to {MAX_SCENES:,}, got {rooms} and {houses}"
         )
-    place, mark = Path(folder), f"_s{seed}" if seed else ""  # Seeds share no folder.
+    place, mark = Path(folder), f"_s{seed}" if seed else ""  # Each seed has its own folders.
     names = [f"{BASE_KINDS[n % len(BASE_KINDS)]}_{n + 1:02d}{mark}" for n in range(rooms)]
     orders = [_Order(str(place / name), "room", n, seed) for n, name in enumerate(names, 1)]
     orders += [
@@ -90,9 +90,9 @@ def _make(order: _Order, tick: Callable[[int], None]) -> None:
         write_house(house_of(order.seed, order.number), out, name=out.name.replace("_", " "))
     else:
         kind = BASE_KINDS[(order.number - 1) % len(BASE_KINDS)]
-        chance = order.seed * MAX_SCENES + order.number  # Rooms of two seeds differ.
+        chance = order.seed * MAX_SCENES + order.number  # Differs between the rooms of all seeds.
         for again in range(TRIES):
-            if again:  # It was made right here.
+            if again:  # Remove the previous attempt.
                 shutil.rmtree(out)
             _make_room(out, kind, chance + again * MAX_SEEDS)
             if TourPlanner(open_scene(out)).has_goals:
@@ -102,7 +102,7 @@ def _make(order: _Order, tick: Callable[[int], None]) -> None:
 
 def _make_room(out: Path, kind: str, chance: int) -> None:
     """Generate a room, scan it and reconstruct it."""
-    shutil.rmtree(out / "capture", ignore_errors=True)  # Of one that was broken off.
+    shutil.rmtree(out / "capture", ignore_errors=True)  # Left by an interrupted attempt.
     scan_room(generate_room(chance, kind=kind), out / "capture", seed=chance)
     run_capture(out / "capture", out, Parameters())
     shutil.rmtree(out / "capture")

@@ -8,35 +8,36 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.navigation.data.distractors import CHOICES
 from world2minecraft.navigation.data.picture_store import StoredPicture
 from world2minecraft.navigation.data.scene_items import WALK_VERSION, SceneItems
 from world2minecraft.navigation.data.tasks import ViewQuestion, action_item, view_item
 from world2minecraft.navigation.types import LETTERS, Item, Trajectory
 
-# Of the paper's table of instruction lengths; its table of sizes has the two rows swapped.
+# From the paper's table of instruction lengths; its table of sizes has the two rows swapped.
 PAPER_SIZE: Mapping[tuple[str, str], int] = {
     ("next_action", "base"): 769,
     ("next_view", "base"): 290,
     ("next_action", "extend"): 1351,
     ("next_view", "extend"): 1132,
 }
-# Of its table of sizes, the rows put right: how many of them it scores on.
+# Test items from its table of sizes, with the rows corrected.
 PAPER_HELD: Mapping[tuple[str, str], int] = {
     ("next_action", "base"): 175,
     ("next_view", "base"): 41,
     ("next_action", "extend"): 309,
     ("next_view", "extend"): 230,
 }
-PAPER_WALKS = {"base": 360, "extend": 600}  # Of all scenes together: with room to cut from.
+PAPER_WALKS = {"base": 360, "extend": 600}  # Of all scenes together, more than are needed.
 COMPOSITIONS = ("base", "extend", "combined")
-TRIES = 60  # Pictures of elsewhere that are looked at for one that is as like as is wanted.
+TRIES = 60  # Images from elsewhere that are compared for one distractor.
 
 
 class LetterBalancer:
     """A shuffled deck of answer letters in which all letters occur equally often."""
 
-    def __init__(self, rng: np.random.Generator, choices: int = 4):
-        self._rng, self._letters = rng, LETTERS[:choices]
+    def __init__(self, rng: np.random.Generator):
+        self._rng, self._letters = rng, LETTERS[:CHOICES]
         self._pack: list[str] = []
 
     def deal(self) -> str:

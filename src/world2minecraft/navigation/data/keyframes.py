@@ -21,11 +21,17 @@ ACTIONS = {
     Move.LEFT: "turn left",
     Move.RIGHT: "turn right",
 }
-CHUNK_MOVES = 4  # So many next moves a keyframe tells: what agents are asked for at a time.
-MAX_FORWARD_M = 1.0  # A guess: the next picture still shows what this one does.
-TURN_AROUND_DEG = 140.0  # Who turns farther turns around, by the left or by the right.
-MAX_TURN_DEG = 60.0  # Less than the width of a picture, for the same reason.
+CHUNK_MOVES = 4  # Next moves that a keyframe records, as many as agents return at a time.
+MAX_FORWARD_M = 1.0  # An estimate; consecutive images then overlap.
+TURN_AROUND_DEG = 140.0  # Wider turns are possible to either side.
+MAX_TURN_DEG = 60.0  # Less than the field of view, so that consecutive images overlap.
 NO_MOVEMENT = "no movement"
+# Limits of a valid trajectory, chosen by this project: the paper only requires "meaningful" ones.
+MIN_KEYFRAMES, MAX_KEYFRAMES = 4, 40
+MIN_PATH_M, MAX_PATH_M = 1.5, 25.0
+MIN_DISTANCE_M = 1.0  # Walking distance from start to end.
+MIN_MEAN = 8.0  # Mean grey value of an image, 0 to 255; darker images count as black.
+MIN_CHANGED_BITS = 4  # Bits, of 64, in which consecutive image hashes differ.
 
 
 @dataclass(frozen=True)
@@ -106,69 +112,36 @@ def is_turn_around(marks: Sequence[KeyframeMark], step: int, turn_deg: float) ->
     return sum(mark.run for mark in marks[first : last + 1]) * turn_deg > TURN_AROUND_DEG
 
 
-@dataclass(frozen=True)
-class ValidityRule:
-    """The limits of a valid trajectory.
-
-    The paper only requires "meaningful" trajectories, so these limits are choices of this project.
-
-    Attributes:
-        min_keyframes: The minimum number of keyframes.
-        max_keyframes: The maximum number of keyframes.
-        min_path_m: The minimum path length in metres.
-        max_path_m: The maximum path length in metres.
-        min_distance_m: The minimum walking distance from start to end in metres.
-        min_mean: The minimum mean grey value of an image, 0 to 255. Darker images count as black.
-        min_hash_bits: The minimum number of bits, of 64, in which consecutive image hashes differ.
-    """
-
-    min_keyframes: int = 4
-    max_keyframes: int = 40
-    min_path_m: float = 1.5
-    max_path_m: float = 25.0
-    min_distance_m: float = 1.0
-    min_mean: float = 8.0
-    min_hash_bits: int = 4
-
-
-def path_fault(
-    marks: Sequence[KeyframeMark], path_m: float, apart_m: float, rule: ValidityRule | None = None
-) -> str:
+def path_fault(marks: Sequence[KeyframeMark], path_m: float, apart_m: float) -> str:
     """Return why a path is not a valid trajectory, or "" if it is valid.
 
     Args:
         marks: The keyframes of the path.
         path_m: The path length in metres.
         apart_m: The walking distance from start to end in metres.
-        rule: The limits. None uses the defaults.
     """
-    how = rule or ValidityRule()
     if not any(mark.move == Move.FORWARD for mark in marks):
         return NO_MOVEMENT
-    if not how.min_path_m <= path_m <= how.max_path_m:
-        return "too short" if path_m < how.min_path_m else "too long"
-    if apart_m < how.min_distance_m:
+    if not MIN_PATH_M <= path_m <= MAX_PATH_M:
+        return "too short" if path_m < MIN_PATH_M else "too long"
+    if apart_m < MIN_DISTANCE_M:
         return "ends near its start"
-    if len(marks) < how.min_keyframes:
+    if len(marks) < MIN_KEYFRAMES:
         return "too few keyframes"
-    return "too many keyframes" if len(marks) > how.max_keyframes else ""
+    return "too many keyframes" if len(marks) > MAX_KEYFRAMES else ""
 
 
-def picture_fault(
-    means: Sequence[float], hashes: Sequence[int], rule: ValidityRule | None = None
-) -> str:
+def picture_fault(means: Sequence[float], hashes: Sequence[int]) -> str:
     """Return why the images do not form a valid trajectory, or "" if they do.
 
     Args:
         means: The mean grey value of each image, 0 to 255.
         hashes: The ``dhash`` of each image.
-        rule: The limits. None uses the defaults.
     """
-    how = rule or ValidityRule()
-    if min(means, default=0.0) < how.min_mean:
+    if min(means, default=0.0) < MIN_MEAN:
         return "black image"
     distances = [hash_distance(a, b) for a, b in pairwise(hashes)]
-    return "repeated image" if min(distances, default=64) < how.min_hash_bits else ""
+    return "repeated image" if min(distances, default=64) < MIN_CHANGED_BITS else ""
 
 
 def path_length_m(marks: Sequence[KeyframeMark], blocks_per_metre: float) -> float:

@@ -15,13 +15,13 @@ from world2minecraft.navigation.types import Stance
 from world2minecraft.navigation.walk_stream import wrap_deg
 from world2minecraft.rendering.views.cameras import camera_of
 
-SIZE, FOV_DEG = (640, 360), 70.0  # The game's view; 299 tokens of Qwen2.5-VL.
+SIZE, FOV_DEG = (640, 360), 70.0  # The view in the game, 299 tokens of Qwen2.5-VL.
 QUALITY = 90
-COARSE_PX = (32, 18)  # So small, textures are even and only things vary.
-NEAR_M, NEAR_DEG = 0.5, 20.0  # Two stances so alike show the same.
-MIN_DETAIL = 20.0  # Looked at: with less a picture shows a wall and little else.
-DUPLICATE_HASH_BITS = 4  # Bits of 64 by which two pictures are told apart at all.
-MIN_HASH_BITS = 6  # Bits of 64 by which a wrong choice differs from the right one.
+COARSE_PX = (32, 18)  # Size at which textures vanish and only objects differ.
+NEAR_M, NEAR_DEG = 0.5, 20.0  # Differences below which two stances show the same.
+MIN_DETAIL = 20.0  # Chosen by inspection; images with less detail show little but a wall.
+DUPLICATE_HASH_BITS = 4  # Bits, of 64, in which two images must differ to be distinct.
+MIN_HASH_BITS = 6  # Bits, of 64, in which a distractor differs from the correct option.
 
 
 def vln_camera(width_px: int = SIZE[0], height_px: int = SIZE[1]) -> Camera:

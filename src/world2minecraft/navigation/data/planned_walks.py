@@ -20,16 +20,16 @@ from world2minecraft.navigation.walk_stream import StreamFrame, wrap_deg
 
 EVERY_S = 0.2
 SPEED_M_S, TURN_DEG_S = 1.0, 90.0
-PAUSE_S = 2.4  # Longer than what cuts a stream.
-ASIDE_DEG = (50.0, 125.0)  # From the way, where one looks before leaving,
-SPOKEN_DEG = 35.0  # and a turn at the end that counts.
-AHEAD_M = 0.6  # One looks to where one will be.
-ELBOW_M, NARROW_COST = 0.5, 3.0  # One keeps so far from walls; at a wall a metre counts four.
+PAUSE_S = 2.4  # Longer than a pause at which a stream is cut.
+ASIDE_DEG = (50.0, 125.0)  # Angle between the path and the view before a leg begins.
+SPOKEN_DEG = 35.0  # Minimum angle of a turn that instructions mention.
+AHEAD_M = 0.6  # Distance along the path to which a walker looks.
+ELBOW_M, NARROW_COST = 0.5, 3.0  # Preferred distance from walls, and relative cost at a wall.
 STOPS = 8  # Of a tour.
-MIN_LEG_M = 1.6  # Nearer things are no next stop.
-MAX_HEIGHT_M = 1.2  # What hangs so high over the floor is nothing to find one's way by,
-MIN_SIDE_M = 0.4  # and what is smaller is no goal.
-PULL_M = 0.2  # A way is straightened where that leaves so much room.
+MIN_LEG_M = 1.6  # Minimum distance to the next stop.
+MAX_HEIGHT_M = 1.2  # Maximum height of the underside of a landmark above the floor.
+MIN_SIDE_M = 0.4  # Minimum size of a goal.
+PULL_M = 0.2  # Free space that a straightened path must keep.
 
 
 @dataclass(frozen=True)

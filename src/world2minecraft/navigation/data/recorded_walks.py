@@ -20,9 +20,9 @@ from world2minecraft.navigation.walk_stream import StreamFrame, assign_even_time
 from world2minecraft.rendering.views.pose_file import read_tour
 
 At = Literal["feet", "eye"]
-EVERY_S = 0.2  # Between lines that say no time,
-DECISION_S = 0.5  # and between an agent's decisions: a metre at most.
-ASIDE_M, HIGH_M = 0.4, 0.75  # A place of the floor is so near to where feet were said to be.
+EVERY_S = 0.2  # Between lines without a time.
+DECISION_S = 0.5  # Between the decisions of an agent, which are at most one metre apart.
+ASIDE_M, HIGH_M = 0.4, 0.75  # Maximum horizontal and vertical distance of the feet to the floor.
 
 
 def parse_at(text: str) -> At:

@@ -36,7 +36,7 @@ from world2minecraft.navigation.records import (
 )
 from world2minecraft.navigation.types import Episode, Instruction, Item, Trajectory
 
-ORDER = ("human", "llm", "template")  # Whose words are asked by, where there are any.
+ORDER = ("human", "llm", "template")  # Preferred sources of instructions.
 NO_REPLY, NO_BUDGET = "no reply", "no budget left"
 
 

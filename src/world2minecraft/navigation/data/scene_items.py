@@ -54,9 +54,9 @@ WalkCallback = Callable[[int], None]
 """Called with the number of additional walks."""
 
 WALK_VERSION = f"{DISCRETIZATION_VERSION}+{ORACLE_VERSION}"
-PREVIEW_PX = (64, 36)  # Of pictures that are only to tell how like they are.
+PREVIEW_PX = (64, 36)  # Of images that are only compared.
 MAX_RECORDED_WALKS = 100_000  # Walks of one scene.
-MAX_TOURS = 60  # A scene that gives too little in so many gives no more.
+MAX_TOURS = 60  # Planned tours of a scene.
 
 
 @dataclass(frozen=True)
@@ -92,9 +92,9 @@ class SceneItems:
     scene_id: str
     composition: str
     metres_per_block: float
-    names: tuple[str, ...] = ()  # of its landmarks
+    names: tuple[str, ...] = ()  # of the landmarks
     trajectories: list[Trajectory] = field(default_factory=list)
-    spoken: dict[str, Instruction] = field(default_factory=dict)  # the one that items ask by
+    spoken: dict[str, Instruction] = field(default_factory=dict)  # the instruction of the items
     pictures: dict[str, list[StoredPicture]] = field(default_factory=dict)
     views: list[ViewQuestion] = field(default_factory=list)
     actions: dict[str, list[int]] = field(default_factory=dict)

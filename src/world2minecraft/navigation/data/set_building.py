@@ -63,8 +63,8 @@ from world2minecraft.navigation.records import (
 from world2minecraft.navigation.scene import open_scene
 from world2minecraft.navigation.types import Item
 
-WALKS_PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
-RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.
+WALKS_PER_SCENE = {"base": 30, "extend": 110}  # Trajectories for a set of the paper's size.
+RECONSTRUCTED = ("room.npz", "placements.json")  # Files of a run folder.
 
 
 @dataclass(frozen=True)

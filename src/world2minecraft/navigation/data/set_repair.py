@@ -49,7 +49,7 @@ from world2minecraft.navigation.records import (
 from world2minecraft.navigation.scene import open_scene
 from world2minecraft.navigation.types import Stance
 
-MEASURED = "run.json"  # Of a generated scene: its times, which no second run repeats.
+MEASURED = "run.json"  # The times of a generated scene, which differ between runs.
 BUILD_RULE = TypeAdapter(BuildRule)
 
 

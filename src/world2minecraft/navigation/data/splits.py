@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.types import Item, Trajectory
 
-UNSEEN_SHARE = 0.2  # Of the scenes of each composition: the paper's test share of items is 0.21.
+UNSEEN_SHARE = 0.2  # Of the scenes of each composition; the paper's test set has 21 % of the items.
 SEEN_SHARE = 0.1  # Of the tours of the other scenes.
-PAPER_SHARE = 0.23  # Of the walks: of its items the paper holds out 14 to 23 %, part by part.
+PAPER_SHARE = 0.23  # Of the walks; the paper holds out 14 to 23 % of the items of each part.
 
 
 def scene_splits(
@@ -49,20 +49,17 @@ def scene_splits(
     return {name: splits[name] for name in compositions}
 
 
-def split_of_tour(
-    tour_id: str, scene_split: str, seed: int = 0, seen_share: float = SEEN_SHARE
-) -> str:
+def split_of_tour(tour_id: str, scene_split: str, seed: int = 0) -> str:
     """Return a tour's split: that of its scene, or val_seen for some training tours.
 
     Args:
         tour_id: The ID of the tour.
         scene_split: The split of the scene.
         seed: The seed of the hash.
-        seen_share: The share of training tours to assign to val_seen.
     """
     if scene_split != "train":
         return scene_split
-    return "val_seen" if _sum(seed, f"tour {tour_id}") / 2**64 < seen_share else "train"
+    return "val_seen" if _sum(seed, f"tour {tour_id}") / 2**64 < SEEN_SHARE else "train"
 
 
 def paper_splits(trajectories: Sequence[Trajectory], seed: int = 0) -> dict[str, str]:

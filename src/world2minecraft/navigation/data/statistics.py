@@ -21,7 +21,7 @@ from world2minecraft.navigation.data.blind_baselines import BaselineRow
 from world2minecraft.navigation.data.splits import Leaks
 from world2minecraft.navigation.types import SPLITS, TASKS, Item
 
-# Of the paper's table "Statistical Summary of Instruction Lengths", in characters.
+# From the paper's table "Statistical Summary of Instruction Lengths", in characters.
 PAPER_LENGTHS = {
     ("next_action", "base"): (769, 79.01, 32.87, 15, 57.0, 78.0, 96.0, 187),
     ("next_action", "extend"): (1351, 171.37, 67.10, 62, 117.0, 156.0, 232.0, 334),
@@ -32,7 +32,7 @@ PAPER_LENGTHS = {
 }
 PARTS = ("base", "extend", "combined")
 _TITLES = {"next_view": "Next-View", "next_action": "Next-Action"}
-SIZE_IN, DPI, BIN = (10.76, 5.56), 100, 20  # A bar for so many characters.
+SIZE_IN, DPI, BIN = (10.76, 5.56), 100, 20  # A bin covers 20 characters.
 COLOUR = "#5684b4"
 
 
@@ -73,13 +73,13 @@ class SetStatistics:
     words: dict[tuple[str, str], Lengths]
     splits: dict[tuple[str, str], Counter[str]]
     letters: dict[str, Counter[str]]  # by task
-    letter_p: dict[str, float]  # how likely letters so uneven are by chance
-    actions: Counter[str]  # right answers of Next-Action
-    kinds: Counter[str]  # of wrong pictures
+    letter_p: dict[str, float]  # p-value of uniformly distributed letters, by task
+    actions: Counter[str]  # correct answers of Next-Action
+    kinds: Counter[str]  # of distractors
     grades: Counter[str]
-    ranks: Counter[str]  # wrong pictures that are nearer to the present one than the right one
+    ranks: Counter[str]  # distractors that resemble the current view more than the correct option
     levels: Counter[str]  # of instructions, by item
-    scenes: dict[str, int]  # how many, by part
+    scenes: dict[str, int]  # number of scenes by part
 
 
 def compute_statistics(items: Sequence[Item]) -> SetStatistics:
@@ -249,7 +249,5 @@ def write_histograms(items: Sequence[Item], path: str | Path) -> None:
 def _lengths(items: Sequence[Item], task: str, part: str) -> list[int]:
     """Return the instruction lengths of a task and a part of the items."""
     return [
-        len(item.instruction.text)
-        for item in items
-        if item.task == task and part in ("combined", item.composition)
+        len(item.instruction.text) for item in items if item.task == task and _is_of(item, part)
     ]

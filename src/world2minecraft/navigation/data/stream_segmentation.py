@@ -5,63 +5,38 @@ of reference points in the game at player size, in metres of the room.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrap_deg
 
-
-@dataclass(frozen=True)
-class SegmentationRule:
-    """The limits at which a walk ends.
-
-    The values are estimates that were checked on simulated walks: a sprint is 5.6 m/s.
-
-    Attributes:
-        gap_s: The maximum time between frames. A longer gap means missing frames.
-        fastest_m_s: The maximum speed. A higher one means flying.
-        jump_m: The maximum distance between frames. A longer one means teleporting.
-        pause_s: The minimum duration of a pause that ends a walk.
-        still_m: The maximum movement during a pause, in metres.
-        still_deg: The maximum rotation during a pause, in degrees.
-        look_deg: The minimum rotation of looking around, which ends a walk.
-        look_m: The maximum movement while looking around, in metres.
-        pitch_deg: The maximum pitch up or down. Frames beyond it are dropped.
-    """
-
-    gap_s: float = 1.0
-    fastest_m_s: float = 8.0
-    jump_m: float = 1.5
-    pause_s: float = 2.0
-    still_m: float = 0.1
-    still_deg: float = 5.0
-    look_deg: float = 300.0
-    look_m: float = 0.5
-    pitch_deg: float = 60.0
+# Limits at which a walk ends: estimates that were checked on simulated walks.
+MAX_GAP_S = 1.0  # Longer times between frames mean missing frames.
+MAX_SPEED_M_S = 8.0  # Higher speeds mean flying; a sprint is 5.6 m/s.
+MAX_JUMP_M = 1.5  # Longer distances between frames mean teleporting.
+PAUSE_S = 2.0  # Minimum duration of a pause that ends a walk.
+STILL_M, STILL_DEG = 0.1, 5.0  # Maximum movement and rotation during a pause.
+LOOK_DEG, LOOK_M = 300.0, 0.5  # Minimum rotation and maximum movement of looking around.
+MAX_PITCH_DEG = 60.0  # Frames that look farther up or down are dropped.
 
 
 def split_into_walks(
-    frames: Sequence[StreamFrame], blocks_per_metre: float, rule: SegmentationRule | None = None
+    frames: Sequence[StreamFrame], blocks_per_metre: float
 ) -> list[list[StreamFrame]]:
     """Split a stream into walks, dropping frames that look steeply up or down.
 
     Args:
         frames: The frames sorted by time, one tour after another.
         blocks_per_metre: The scale of the world.
-        rule: The limits. None uses the defaults.
     """
-    how = rule or SegmentationRule()
-    level = [frame for frame in frames if abs(frame.stance.pitch_deg) <= how.pitch_deg]
+    level = [frame for frame in frames if abs(frame.stance.pitch_deg) <= MAX_PITCH_DEG]
     segments = []
-    for run in _unbroken(level, blocks_per_metre, how):
-        segments += _between_stops(run, blocks_per_metre, how)
+    for run in _unbroken(level, blocks_per_metre):
+        segments += _between_stops(run, blocks_per_metre)
     return [segment for segment in segments if len(segment) >= 2]
 
 
-def _unbroken(
-    frames: Sequence[StreamFrame], blocks_per_metre: float, rule: SegmentationRule
-) -> list[list[StreamFrame]]:
+def _unbroken(frames: Sequence[StreamFrame], blocks_per_metre: float) -> list[list[StreamFrame]]:
     """Split where the position, time, tour or scene jumps."""
     if not frames:
         return []
@@ -72,9 +47,9 @@ def _unbroken(
         before = frames[n]
         breaks = (
             (frame.scene_id, frame.tour_id) != (before.scene_id, before.tour_id)
-            or not 0 < passed_s[n] <= rule.gap_s
-            or away_m[n] > rule.jump_m
-            or away_m[n] > rule.fastest_m_s * passed_s[n]
+            or not 0 < passed_s[n] <= MAX_GAP_S
+            or away_m[n] > MAX_JUMP_M
+            or away_m[n] > MAX_SPEED_M_S * passed_s[n]
         )
         if breaks:
             runs.append([])
@@ -82,9 +57,7 @@ def _unbroken(
     return runs
 
 
-def _between_stops(
-    run: list[StreamFrame], blocks_per_metre: float, rule: SegmentationRule
-) -> list[list[StreamFrame]]:
+def _between_stops(run: list[StreamFrame], blocks_per_metre: float) -> list[list[StreamFrame]]:
     """Split at pauses and at places of looking around. A walk ends when such a stop begins."""
     places = feet_m(run, blocks_per_metre)[:, [0, 2]]
     times = np.array([frame.t_s for frame in run])
@@ -92,7 +65,7 @@ def _between_stops(
     turned = np.concatenate([[0], np.cumsum(np.abs(wrap_deg(np.diff(yaws))))])
     segments, begin, n = [], 0, 0
     while n < len(run):
-        end = _stop_from(n, places, times, turned, rule)
+        end = _stop_from(n, places, times, turned)
         if end is None:
             n += 1
             continue
@@ -103,17 +76,15 @@ def _between_stops(
     return segments
 
 
-def _stop_from(
-    first: int, places: np.ndarray, times: np.ndarray, turned: np.ndarray, rule: SegmentationRule
-) -> int | None:
+def _stop_from(first: int, places: np.ndarray, times: np.ndarray, turned: np.ndarray) -> int | None:
     """Return the last frame of a stop that begins at a frame, or None."""
-    still = _stay(first, places, rule.still_m)
-    calm_deg = turned[first] + rule.still_deg
+    still = _stay(first, places, STILL_M)
+    calm_deg = turned[first] + STILL_DEG
     steady = first + int(np.searchsorted(turned[first : still + 1], calm_deg, "right"))
-    if times[steady - 1] - times[first] >= rule.pause_s:
+    if times[steady - 1] - times[first] >= PAUSE_S:
         return steady - 1
-    around = _stay(first, places, rule.look_m)
-    return around if turned[around] - turned[first] >= rule.look_deg else None
+    around = _stay(first, places, LOOK_M)
+    return around if turned[around] - turned[first] >= LOOK_DEG else None
 
 
 def _stay(first: int, places: np.ndarray, radius_m: float) -> int:

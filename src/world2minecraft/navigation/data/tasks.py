@@ -41,22 +41,19 @@ from world2minecraft.navigation.data.picture_store import (
 )
 from world2minecraft.navigation.types import LETTERS, Instruction, Item, Move, Option, Trajectory
 
-HISTORY = 3  # Pictures that are shown; the last is the current one.
-# What is taken for a question, and what serves where nothing is; of a grade.
+HISTORY = 3  # Images that are shown; the last is the current one.
+# Kinds of rendered distractors, and the kinds used where none can be rendered, by grade.
 RENDERED_OF = {"easy": (), "medium": ("turned", "beside"), "hard": RENDERED_KINDS}
 FOUND_OF = {
     "easy": ("elsewhere", "elsewhere", "other_scene"),
     "medium": ("elsewhere", "temporal", "elsewhere"),
     "hard": ("temporal", "temporal", "elsewhere"),
 }
-MAX_FAR = {"easy": 0, "medium": 1, "hard": 3}  # Taken ones that are less like the present picture.
+# Rendered distractors that resemble the current view less than the correct option, by grade.
+MAX_FAR = {"easy": 0, "medium": 1, "hard": 3}
 GRADES = tuple(RENDERED_OF)
-GRADE_SHARES = (
-    0.1,
-    0.45,
-    0.45,
-)  # In easy ones the nearest is mostly right.
-TEMPORAL_OFFSETS = (2, 3, 4, -3, -4)  # From the current one: other times of a walk, not shown yet.
+GRADE_SHARES = (0.1, 0.45, 0.45)  # In easy questions, the most similar image is mostly correct.
+TEMPORAL_OFFSETS = (2, 3, 4, -3, -4)  # From the current keyframe to images that are not shown.
 
 
 def action_steps(
@@ -185,7 +182,7 @@ def view_question(
     shuffled = [places[n] for n in rng.permutation(len(places))]
     plan = [DistractorSlot(kind, n < count) for n, kind in enumerate(FOUND_OF[grade])]
     slots = DistractorPicker(album, pictures[step], right).filled(plan, shuffled, MAX_FAR[grade])
-    if grade != "easy":  # Where no such picture could be taken another will do.
+    if grade != "easy":  # Without a suitable rendered image, any other one is accepted.
         slots = [slot if slot.picture else replace(slot, nearer=False) for slot in slots]
     ranks.came(sum(slot.nearer for slot in slots))
     return ViewQuestion(trajectory_id, step, grade, tuple(slots))

@@ -29,10 +29,10 @@ from world2minecraft.navigation.walk_discretization import (
 )
 from world2minecraft.navigation.walk_stream import StreamFrame
 
-PREVIEW_PX = (96, 54)  # A picture for counting what is in it.
-MIN_SHARE = 0.006  # Of a picture: what is smaller is not seen.
-MIN_TURN_DEG = 30.0  # A smaller turn is a correction that no picture tells.
-MAX_TARGET_M = 1.0  # On foot: what a text names at its end is no farther from the end.
+PREVIEW_PX = (96, 54)  # Of images in which visible landmarks are counted.
+MIN_SHARE = 0.006  # Minimum share of the image of a visible landmark.
+MIN_TURN_DEG = 30.0  # Smaller turns are corrections that the images do not reveal.
+MAX_TARGET_M = 1.0  # Maximum walking distance from the end to the landmark named there.
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Candidate:
     way: Route
     instructions: tuple[Instruction, ...]
     path_length_m: float
-    clear: tuple[int, ...]  # keyframes whose next action an instruction tells
+    clear: tuple[int, ...]  # keyframes whose next action follows from the instruction
 
 
 class TrajectoryBuilder:
@@ -82,7 +82,7 @@ class TrajectoryBuilder:
             one = self._candidate(segment, number, target)
             if not isinstance(one, str):
                 made.append(one)
-            elif one != NO_MOVEMENT:  # Turning on the spot is no walk.
+            elif one != NO_MOVEMENT:  # Turning on the spot is not counted as a walk.
                 self.refusals[one] += 1
         return made
 

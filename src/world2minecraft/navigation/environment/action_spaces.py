@@ -12,8 +12,8 @@ from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.types import Move, MoveSet, Stance
 
 KEYS = ("forward", "back", "left", "right", "jump", "sneak", "sprint")
-MAX_RUN = 12  # Moves of one run: 3 m of steps, or half a turn.
-MAX_TURN_DEG = 45.0  # Of the mouse in a tick.
+MAX_RUN = 12  # Moves of one run: 3 m, or half a turn.
+MAX_TURN_DEG = 45.0  # By the mouse in one tick.
 
 
 class ActionController(Protocol):

@@ -31,8 +31,8 @@ from world2minecraft.navigation.types import Episode, MoveSet, Stance, check_rea
 
 ACTIONS = ("discrete", "continuous")
 DEFAULT_MAX_STEPS = {"discrete": 500, "continuous": 5_000}  # Habitat's 500; 250 s of the game.
-SUCCESS_M = 1.0  # The usual 3 m is as far as a whole room is wide.
-SUCCESS_REWARD, STEP_REWARD = 2.5, -0.01  # As in Habitat's navigation; and each metre nearer is 1.
+SUCCESS_M = 1.0  # The usual 3 m is as large as a whole room.
+SUCCESS_REWARD, STEP_REWARD = 2.5, -0.01  # As in Habitat; each metre closer to the goal gives 1.
 
 
 class VlnEnv(gymnasium.Env):
@@ -246,7 +246,7 @@ def warn_of_former_id(former: str, current: str) -> None:
     warnings.warn(
         f"the environment ID {former} is deprecated; use {current}",
         DeprecationWarning,
-        stacklevel=4,  # This function, __init__, gymnasium.make, and who called it.
+        stacklevel=4,  # This function, __init__, gymnasium.make and its caller.
     )
 
 

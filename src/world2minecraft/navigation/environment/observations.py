@@ -16,10 +16,10 @@ from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.shading_parameters import DAY
 
 SENSORS = ("rgb", "depth", "semantic", "instance", "pose", "instruction")
-DEFAULT_SENSORS = ("rgb", "pose")  # A text is a space that Stable-Baselines3 cannot train on.
+DEFAULT_SENSORS = ("rgb", "pose")  # Stable-Baselines3 does not support text spaces.
 FORMER_SENSORS = ("rgb", "pose", "instruction")  # The default of version 0.1.
-FAR_M = 1_000.0  # Depths beyond are cut; where a ray meets nothing depth is 0.
-MIN_TEXT_LENGTH = 512  # Characters of an instruction, or those of the longest there is.
+FAR_M = 1_000.0  # Maximum depth; the depth is 0 if a ray hits nothing.
+MIN_TEXT_LENGTH = 512  # Minimum size of the text space, in characters.
 MAX_SIDE_PX = 4_096
 _RENDERED = {"rgb": "colour", "depth": "depth", "semantic": "semantic", "instance": "instance"}
 

@@ -43,7 +43,7 @@ from world2minecraft.navigation.types import Item
 
 PROMPT_TOKENS, RESPONSE_TOKENS = 4096, 1024  # The paper's.
 GPUS = 8  # The paper's node.
-ROWS_A_GROUP = 256  # Of parquet: embedded pictures of so many rows are in memory at once.
+ROWS_A_GROUP = 256  # Rows per Parquet row group, whose embedded images are in memory at once.
 
 
 def max_prompt_tokens(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> int:
@@ -142,7 +142,7 @@ def _write_recipe(
     rows, gpus, file = len(part.items), rule.gpus or GPUS, f"{part.stem}_grpo.yaml"
     try:
         plan = grpo_plan(rows, gpus)
-    except UsageError as error:  # The other parts may well do.
+    except UsageError as error:  # The other parts may have enough rows.
         return ExportedFile(
             part.name, rows, notes=(f"{part.name}: no recipe was written, because {error}",)
         )

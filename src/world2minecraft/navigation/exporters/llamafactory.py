@@ -113,7 +113,7 @@ def row_of(item: Item) -> dict[str, Any]:
             {"role": "assistant", "content": question.answer},
         ],
         "images": list(question.images),
-        "id": item.item_id,  # The converter passes over what it does not know.
+        "id": item.item_id,  # The converter ignores unknown columns.
     }
 
 

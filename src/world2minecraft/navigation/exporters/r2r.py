@@ -23,7 +23,7 @@ from world2minecraft.core.files import write_json
 from world2minecraft.navigation.exporters.options import ExportedFile
 from world2minecraft.navigation.types import SPLITS, Keyframe, Trajectory
 
-EYE_M = 1.5  # What R2R says is the height of a camera; its evaluation does not read it.
+EYE_M = 1.5  # Height of a camera in R2R, whose evaluation does not use it.
 _Place = tuple[float, float, float]
 
 

@@ -20,14 +20,14 @@ from world2minecraft.navigation.exporters.trl import write_trl
 from world2minecraft.navigation.exporters.vlnce import write_vlnce
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
 
-# How long rows are, and what writes them.
+# The functions that measure and write the rows of a format.
 TRAINERS = {
     "llamafactory": (llamafactory.max_row_tokens, llamafactory.write_llamafactory),
     "easyr1": (easyr1.max_prompt_tokens, easyr1.write_easyr1),
     "trl": (llamafactory.max_row_tokens, write_trl),
 }
 FORMATS = (*TRAINERS, "vlnce", "r2r")
-RECORD = "handoff.json"  # What was chosen, in the folder's root.
+RECORD = "handoff.json"  # The options of the export, in the root of the folder.
 TITLES = {
     "llamafactory": "MinecraftVLN for LLaMA-Factory",
     "easyr1": "MinecraftVLN for EasyR1",

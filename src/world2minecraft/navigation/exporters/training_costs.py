@@ -15,13 +15,13 @@ from world2minecraft.navigation.exporters.pictures import SetPictures
 from world2minecraft.navigation.item_prompts import IMAGE, Question
 from world2minecraft.navigation.types import Item
 
-# Of the paper's tables.
+# From the paper's tables.
 SFT_EPOCHS, SFT_BATCH, SFT_ACCUMULATED = 5, 1, 2
 GRPO_EPOCHS, GRPO_BATCH, GRPO_ROLLOUTS = 30, 128, 5
 PIXELS_A_TOKEN_SIDE = 28
-MIN_PIXELS = 56 * 56  # Qwen2.5-VL's own processor enlarges pictures that have fewer,
-MAX_PIXELS = 14 * 14 * 4 * 1280  # and shrinks those that have more; the trainer's limit is lower.
-CHAT_TOKENS = 64  # A system prompt, roles and the ends of turns: 30 by the model's own template.
+MIN_PIXELS = 56 * 56  # Qwen2.5-VL's own processor enlarges smaller images
+MAX_PIXELS = 14 * 14 * 4 * 1280  # and shrinks larger ones; the trainer's limit is lower.
+CHAT_TOKENS = 64  # For system prompt, roles and ends of turns, 30 in the model's own template.
 
 
 @dataclass(frozen=True)

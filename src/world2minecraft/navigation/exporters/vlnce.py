@@ -30,9 +30,9 @@ from world2minecraft.navigation.types import SPLITS, Episode, Move, Stance
 
 SCENE_FILE = "scene.json"
 PAD, UNKNOWN = "<pad>", "<unk>"
-TOKENS = 200  # Of VLN-CE's own episodes.
-GOAL_RADIUS_M = 3.0  # Its success distance.
-SPARSE_M = 2.0  # Between two points of a reference path, about as far apart as R2R's are.
+TOKENS = 200  # As in VLN-CE's own episodes.
+GOAL_RADIUS_M = 3.0  # VLN-CE's success distance.
+SPARSE_M = 2.0  # Distance between the points of a reference path, about that of R2R.
 
 
 def block_to_habitat(scene: str, set_folder: Path, metres_per_block: float) -> np.ndarray:

@@ -25,7 +25,7 @@ from world2minecraft.navigation.types import LEVELS, Instruction
 
 _NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 SLIGHT_DEG, SHARP_DEG = 55.0, 125.0
-STEPS_M = (0.9, 2.3)  # Less is a step, up to here are a few steps; farther is told in metres.
+STEPS_M = (0.9, 2.3)  # Lengths up to "a step" and "a few steps"; longer ones are in metres.
 MAX_PASSED = 2
 
 

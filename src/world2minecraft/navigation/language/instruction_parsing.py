@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-# A side that is told of a thing, or a "right" that is none.
+# The side of an object, or a "right" that is not a direction.
 _NO_TURN = re.compile(
     r"\b(?:on|to|at|along|by)\s+(?:your|the|its|his|her)\s+(?:immediate\s+|far\s+)?(?:left|right)\b"
     r"(?:[\s-]+(?:hand[\s-]+)?side)?|\bright\s+(?:away|now|before|after|in\s+front|next|there|up)\b"

@@ -2,9 +2,7 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from world2minecraft.navigation.landmarks import BESIDE_M, Landmark
+from world2minecraft.navigation.landmarks import BESIDE_M, Landmark, gap_between_m
 
 
 def unambiguous_landmarks(landmarks: Sequence[Landmark]) -> list[Landmark]:
@@ -36,12 +34,11 @@ def matching_landmarks(phrase: str, landmarks: Sequence[Landmark]) -> list[Landm
     if not anchor:
         return found
     anchors = matching_landmarks(anchor, landmarks)
-    return [one for one in found if any(_is_beside(one, other) for other in anchors)]
-
-
-def _is_beside(one: Landmark, other: Landmark) -> bool:
-    gap = np.maximum(0.0, np.maximum(one.low_m - other.high_m, other.low_m - one.high_m))
-    return one is not other and float(np.linalg.norm(gap)) <= BESIDE_M
+    return [
+        one
+        for one in found
+        if any(one is not other and gap_between_m(one, other) <= BESIDE_M for other in anchors)
+    ]
 
 
 def _matches_noun(words: Sequence[str], landmark: Landmark) -> bool:

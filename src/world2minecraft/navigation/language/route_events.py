@@ -15,16 +15,16 @@ from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.walk_discretization import simplify_path
 from world2minecraft.navigation.walk_stream import wrap_deg
 
-CORNER_M = 0.3  # What lies nearer to a straight line is walked straight.
-SHORT_M = 0.7  # A shorter stretch between two turns is a part of the next.
-TURN_DEG = 35.0  # A smaller turn is not spoken of.
-CORNER_AT_M = 0.6  # Moves turn so near to where a turn is told of.
-AHEAD_DEG = 15.0  # What is walked towards lies so far from the heading at most,
-FAR_M = 7.0  # and so far away.
-SIDE_M = (0.1, 1.8)  # What is passed lies so far from the line walked.
-AT_M = 1.0  # A turn is "at" what is so near.
-STOP_M = 1.3  # One stops in front of what is so near,
-FRONT_DEG = 35.0  # and before one's eyes.
+CORNER_M = 0.3  # Maximum distance of a straight path from a line.
+SHORT_M = 0.7  # Shorter segments between two turns are merged with the next.
+TURN_DEG = 35.0  # Minimum angle of a turn that is mentioned.
+CORNER_AT_M = 0.6  # Maximum distance between a turn of the moves and a turn of the route.
+AHEAD_DEG = 15.0  # Maximum angle between the heading and a landmark ahead.
+FAR_M = 7.0  # Maximum distance of a landmark ahead.
+SIDE_M = (0.1, 1.8)  # Distances of passed landmarks from the path.
+AT_M = 1.0  # Maximum distance of the landmark at a turn.
+STOP_M = 1.3  # Maximum distance of the landmark at the end.
+FRONT_DEG = 35.0  # Maximum angle of a landmark in front of the walker at the end.
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def describe_route(walk: ObservedWalk, landmarks: Sequence[Landmark], target: st
             it. Otherwise the nearest visible landmark does.
     """
     corners = _merge_corners(walk.places_m, list(simplify_path(walk.places_m, CORNER_M)))
-    yaws = np.unwrap(walk.yaws_deg, period=360.0)  # Who turns left by 190 degrees turns left.
+    yaws = np.unwrap(walk.yaws_deg, period=360.0)  # A left turn of 190 degrees remains a left turn.
     stretches, before, used = [], float(yaws[0]), set[str]()
     for first, last in _pairs(corners):
         heading = _heading(walk.places_m[first], walk.places_m[last])

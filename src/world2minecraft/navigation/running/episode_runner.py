@@ -18,7 +18,7 @@ from world2minecraft.navigation.types import Episode, Move, Stance, check_reacha
 
 MAX_SILENT_DECISIONS = 3  # Decisions without moves in a row that end a walk.
 ENDS = ("stopped", "out of steps", "gave up")
-_DARK = np.zeros((1, 1, 3), np.uint8)  # What the blind are shown.
+_DARK = np.zeros((1, 1, 3), np.uint8)  # The image for blind agents.
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from scipy.ndimage import gaussian_filter1d
 from world2minecraft.navigation.agents.types import Decision, Observation
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 from world2minecraft.navigation.running.episode_runner import EpisodeWalk
-from world2minecraft.navigation.running.floor_map import PlanMap
+from world2minecraft.navigation.running.floor_map import PlanMap, printable
 from world2minecraft.navigation.running.simulator import SceneSimulator
 from world2minecraft.navigation.scene import camera_of
 from world2minecraft.navigation.types import Episode, Move, Stance
@@ -26,12 +26,12 @@ SIZE_PX, FOV_DEG = (960, 540), 79.0  # The horizontal field of view of agents.
 RATE_HZ = 20.0
 WALK_S, TURN_S, WAIT_S = 0.3, 0.25, 0.15  # A step, a turn, and a move that changes nothing.
 EASE_S = 0.12  # Standard deviation of the smoothing in time.
-HOLD_S = 2.0  # The first and the last frame stay,
-LOOK_S, LOOK_M = 1.0, 3.0  # and the camera turns to a goal that is so near.
+HOLD_S = 2.0  # Duration of the first and the last frame.
+LOOK_S, LOOK_M = 1.0, 3.0  # Time of the final turn to a goal, and its maximum distance.
 MAX_PITCH_DEG = 40.0
 PLAN_PX, EDGE_PX = 190, 12
 INK, PAPER, BAD = (24, 26, 30), (248, 247, 244), (255, 130, 120)
-VEIL = (18, 20, 24, 165)  # Behind texts.
+VEIL = (18, 20, 24, 165)  # Background of texts.
 TEXT_PX, SMALL_PX = 21, 15
 
 
@@ -231,11 +231,6 @@ def wrap_text(
             lines[-1] = _truncate(f"{lines[-1]} ...", font, width_px)
             return lines
     return [*lines, line] if line else lines
-
-
-def printable(text: str) -> str:
-    """Collapse white space, and replace characters that the font lacks with question marks."""
-    return "".join(mark if " " <= mark <= "ÿ" else "?" for mark in " ".join(text.split()))
 
 
 def _truncate(

@@ -15,11 +15,11 @@ from world2minecraft.rendering.preview import plan_view
 WAY, HERE, GOAL, BEGIN = (235, 90, 20), (200, 20, 30), (20, 130, 60), (40, 80, 200)
 PAPER = (244, 243, 240)
 SIDE_PX = 320
-MARGIN_M = 1.0  # Around the floor: walls, and furniture along them.
-FINE = 2  # A plan is drawn so many times larger and then made small.
+MARGIN_M = 1.0  # Around the floor, for walls and furniture along them.
+FINE = 2  # Supersampling factor.
 
 
-def floor_plans(scene: VlnScene, size_px: int = SIDE_PX) -> "PlanMap":
+def floor_plans(scene: VlnScene) -> "PlanMap":
     """Return the maps of a scene, cropped to the area around its walkable floor.
 
     Without cropping, a large garden would take up most of the map.
@@ -27,7 +27,7 @@ def floor_plans(scene: VlnScene, size_px: int = SIDE_PX) -> "PlanMap":
     floor = scene.graph.feet[scene.main_places][:, [0, 2]]
     margin = MARGIN_M * scene.blocks_per_metre
     (x0, z0), (x1, z1) = floor.min(axis=0) - margin, floor.max(axis=0) + margin
-    return PlanMap(scene.volume, size_px, (float(x0), float(z0), float(x1), float(z1)))
+    return PlanMap(scene.volume, SIDE_PX, (float(x0), float(z0), float(x1), float(z1)))
 
 
 class PlanMap:
@@ -142,11 +142,16 @@ def _label(
 ) -> None:
     """Write a text above a point, or below it at the upper edge, within the map."""
     font = ImageFont.load_default(round(radius * 4.4))
-    shown = "".join(mark if " " <= mark <= "ÿ" else "?" for mark in text)[:24]
+    shown = printable(text)[:24]
     width, height = font.getlength(shown), radius * 5.2
     left = min(max(at[0] - width / 2, 4.0), max(side_px - width - 4, 4.0))
     top = at[1] - radius - height if at[1] > radius + height else at[1] + radius
     draw.text((left, top), shown, GOAL, font, stroke_width=3, stroke_fill=(255, 255, 255))
+
+
+def printable(text: str) -> str:
+    """Collapse white space, and replace characters that the font lacks with question marks."""
+    return "".join(mark if " " <= mark <= "ÿ" else "?" for mark in " ".join(text.split()))
 
 
 def _arrow(

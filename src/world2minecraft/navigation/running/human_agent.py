@@ -16,7 +16,7 @@ from world2minecraft.navigation.types import Episode, Move, Stance
 if TYPE_CHECKING:
     from world2minecraft.navigation.running.episode_runner import EpisodeWalk
 
-VIEW_WIDTH_PX = 320  # Times the window's scale.
+VIEW_WIDTH_PX = 320  # Before magnification by the page.
 
 
 class HumanAgent:

@@ -22,7 +22,7 @@ from world2minecraft.navigation.types import SPLITS, TASKS, Item
 
 COMPOSITIONS = ("base", "extend", "combined")
 ANSWERS_FILE, RESULT_FILE = "answers.jsonl", "result.json"
-MAX_FAILED = 5  # In a row; each was asked several times.
+MAX_FAILED = 5  # Items in a row, each of which was queried several times.
 TRAININGS = ("none", "sft", "rft", "baseline")
 CHOICES = (*SPLITS, "test", "all")
 

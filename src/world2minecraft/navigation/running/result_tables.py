@@ -12,6 +12,7 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_json
+from world2minecraft.minecraftocc.statistics.tables import align_columns
 from world2minecraft.navigation.agents.registry import REFERENCE_AGENTS
 from world2minecraft.navigation.running.item_evaluation import COMPOSITIONS, RESULT_FILE, TRAININGS
 from world2minecraft.navigation.scores import RADII_M, paired_p
@@ -121,15 +122,7 @@ def format_text(table: Table) -> str:
     """
     if not table:
         raise UsageError("a table needs at least one row")
-    widths = [max(len(row[n]) for row in table) for n in range(len(table[0]))]
-    lines = [
-        "  ".join(
-            cell.ljust(width) if n == 0 else cell.rjust(width)
-            for n, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in table
-    ]
-    return "\n".join(lines)
+    return "\n".join(align_columns(table))
 
 
 def format_markdown(table: Table) -> str:

@@ -17,7 +17,7 @@ from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.types import Episode, Instruction, Stance
 
 MAX_INSTRUCTION = 4000
-# Other classes, such as furniture and object, do not say what a thing is.
+# Other classes, such as furniture and object, do not identify the kind of an object.
 NAMED_CLASSES = frozenset(
     {
         SemanticClass.CHAIR,
@@ -27,8 +27,8 @@ NAMED_CLASSES = frozenset(
         SemanticClass.TVS,
     }
 )
-MIN_START_M = 2.0  # Walking distance from the start to the goal: a walk begins elsewhere.
-YAW_STEP_DEG = 15.0  # A turn of most sets of moves.
+MIN_START_M = 2.0  # Minimum walking distance from the default start to the goal.
+YAW_STEP_DEG = 15.0  # The turn angle of most move sets.
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ def phrases_of(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
         names.setdefault(one.name.lower(), []).append(one)
         nouns.setdefault(one.noun.lower(), []).append(one)
         entry = vocabulary.find(one.noun) or vocabulary.of_template(one.design)
-        # The class of objects has the labels of hundreds of things, which this one need not be.
+        # The entry "object" has hundreds of labels, most of which do not fit this object.
         if entry is not None and one.noun not in UNSPECIFIC_NOUNS:
             for word in (entry.name, *entry.labels):
                 words_of.setdefault(word, []).append(one)

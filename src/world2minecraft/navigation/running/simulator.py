@@ -14,7 +14,7 @@ from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.types import Episode, Move, MoveSet, Stance
 
 VIEW_PX = (640, 480)
-VIEW_FOV_DEG = 79.0  # Horizontal: RxR's camera, of this size too.
+VIEW_FOV_DEG = 79.0  # Horizontal; size and field of view are those of RxR's camera.
 
 
 class Simulator(Protocol):

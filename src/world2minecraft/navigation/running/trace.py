@@ -9,7 +9,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +30,6 @@ class TraceWriter:
 
     def __init__(self, folder: Path):
         self.folder = folder
-        self._stream: TextIO | None = None
         self._number = 0
 
     def on_begin(self, episode: Episode, agent: str) -> None:
@@ -42,8 +41,8 @@ class TraceWriter:
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             for old in (self.folder / VIEWS_FOLDER).glob("[0-9]*.jpg"):
-                old.unlink()  # Of a longer walk that was kept here before.
-            self._stream = (self.folder / TRACE_FILE).open("w", encoding="utf-8")
+                old.unlink()  # Left by a longer walk.
+            (self.folder / TRACE_FILE).unlink(missing_ok=True)
         except OSError as error:
             raise OutputError(
                 self.folder, f"cannot be written ({error.strerror or error})"
@@ -92,7 +91,7 @@ class TraceWriter:
         """Ignore the stance, because decisions contain it."""
 
     def on_end(self, walk: EpisodeWalk) -> None:
-        """Write the score, and close the file."""
+        """Write the score."""
         self._line(
             {
                 "end": walk.end,
@@ -103,16 +102,12 @@ class TraceWriter:
                 "score": score_json(walk),
             }
         )
-        if self._stream is not None:
-            self._stream.close()
-            self._stream = None
 
     def _line(self, value: dict[str, Any]) -> None:
-        if self._stream is None:
-            return
+        """Append a line. The file is not left open, since an interrupted walk has no end."""
         try:
-            self._stream.write(json.dumps(value, allow_nan=False) + "\n")
-            self._stream.flush()
+            with (self.folder / TRACE_FILE).open("a", encoding="utf-8") as stream:
+                stream.write(json.dumps(value, allow_nan=False) + "\n")
         except OSError as error:
             reason = f"cannot be written ({error.strerror or error})"
             raise OutputError(self.folder / TRACE_FILE, reason) from error

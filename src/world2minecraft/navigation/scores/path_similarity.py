@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 
-THRESHOLD_M = 3.0  # Of both scores, as they were published; a distance that counts as near.
+THRESHOLD_M = 3.0  # The published distance threshold of both scores.
 
 
 def path_length_m(points_m: np.ndarray) -> float:

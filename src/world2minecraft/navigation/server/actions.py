@@ -13,13 +13,13 @@ from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.server.player import ServerPlayer
 from world2minecraft.navigation.types import Move, MoveSet, Stance
 
-MAX_SNEAKING_TICKS = 9  # Ticks: with as many, most lengths are met to a hundredth.
+MAX_SNEAKING_TICKS = 9  # Enough to match most lengths to within 0.01 blocks.
 MAX_BLOCKS = 16.0
 _FLAT = BoxWorld([[-99, -1, -99, 99, 0, 99]])
 _WALK = Keys(forward=True)
 _SNEAK = Keys(forward=True, sneak=True)
-_REST = 12  # Ticks, at most, until one who lets go stands.
-MIN_STEP_SHARE = 0.9  # Of a step: who came less far met something.
+_REST = 12  # Maximum number of ticks until a player without keys stands still.
+MIN_STEP_SHARE = 0.9  # A step that covers less has collided.
 
 
 def forward_keys(length: float, yaw_deg: float) -> list[Keys]:

@@ -54,8 +54,9 @@ def install() -> Path:
     command = [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund"]
     try:
         done = subprocess.run(
-            command, cwd=folder, check=False, capture_output=True, text=True, timeout=LIMIT_S
-        )
+            command, cwd=folder, check=False, capture_output=True, timeout=LIMIT_S,
+            encoding="utf-8", errors="replace",
+        )  # fmt: skip
     except subprocess.TimeoutExpired as error:
         raise ServerError(f"npm did not finish within {LIMIT_S:g} s; run {_HOW} again") from error
     if done.returncode:
@@ -75,7 +76,7 @@ def node() -> str:
     if found is None:
         raise UsageError(f"Node.js not found; install version {MIN_NODE} or newer")
     version_text = subprocess.run(
-        [found, "--version"], check=False, capture_output=True, text=True, timeout=30
+        [found, "--version"], check=False, capture_output=True, encoding="utf-8", timeout=30
     ).stdout
     version = re.match(r"v(\d+)\.", version_text)
     if version is None or int(version[1]) < MIN_NODE:

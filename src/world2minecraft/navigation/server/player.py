@@ -30,20 +30,20 @@ from world2minecraft.navigation.server.streamed_blocks import (
     state_of,
 )
 
-MAX_LINE = 8 << 20  # Bytes: the blocks of a chunk column take up to 1 MB.
-MAX_WAITING = 16  # Lines that nobody asked for.
-MAX_MESSAGE = 500  # Characters of an error of the other side.
-_LAST_WORDS = 2_000  # Bytes of what it wrote to stderr.
+MAX_LINE = 8 << 20  # Bytes; the blocks of a chunk column take up to 1 MB.
+MAX_WAITING = 16  # Unread lines.
+MAX_MESSAGE = 500  # Characters of an error message of the player process.
+_LAST_WORDS = 2_000  # Bytes of its last output to stderr.
 PORT = 25565
 DEFAULT_NAME = "w2m_walker"
 JOIN_S = 45.0
-MOVE_S = 5.0  # Until a server has done what /tp says.
-STREAM_S = 10.0  # Until a chunk that is near has come.
+MOVE_S = 5.0  # Until the server has executed /tp.
+STREAM_S = 10.0  # Until a nearby chunk has been received.
 SLACK_S = 10.0
-MAX_TICKS = 400  # In one question, as body.mjs has it.
+MAX_TICKS = 400  # In one request, as in body.mjs.
 PLACE_TRIES = 4
 SETTLE_TICKS = 80  # A fall of 20 blocks takes 40.
-NEAR = 0.05  # Blocks: where /tp leads to.
+NEAR = 0.05  # Blocks; maximum distance from the target of /tp.
 _KEYS = ("forward", "back", "left", "right", "jump", "sneak", "sprint")
 _ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%]+\]|[A-Za-z0-9.-]+)(?::(?P<port>[0-9]{1,5}))?")
 _PLAYER = re.compile(r"[A-Za-z0-9_]{3,16}")
@@ -157,7 +157,7 @@ class JsonLineProcess:
             while line := stream.readline(MAX_LINE):
                 self._lines.put(line, timeout=60)
         except (OSError, ValueError, queue.Full):
-            pass  # It was closed, or says what nobody asked for.
+            pass  # The stream was closed, or the process sends unrequested lines.
         try:
             self._lines.put(None, timeout=60)
         except queue.Full:
@@ -252,7 +252,7 @@ class ServerPlayer:
             self.corrections = 0
             self.settle(yaw_deg)
             if not self.corrections and _horizontal_distance(self.body.position, feet) <= NEAR:
-                return self.body  # A busy server may still move one to its spawn after joining.
+                return self.body  # A busy server may move the player to its spawn after joining.
         x, _, z = self.body.position
         raise ServerError(
             f"the server moved the player away from the requested position, to {x:.1f} {z:.1f}"

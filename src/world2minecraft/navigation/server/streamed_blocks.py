@@ -17,7 +17,7 @@ from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.versions import game_version, game_versions
 
 MAX_CELLS = 1 << 24  # 256 x 256 blocks and 256 high.
-MAX_PALETTE = 1 << 15  # The game has 26,000 states or so.
+MAX_PALETTE = 1 << 15  # The game has about 26,000 states.
 CHUNK = 16
 AIRS = ("minecraft:cave_air", "minecraft:void_air")
 

@@ -27,8 +27,8 @@ from world2minecraft.navigation.types import Move, MoveSet, Stance
 from world2minecraft.rendering.editable_scene import EditableScene
 from world2minecraft.rendering.scene import BlockScene
 
-AROUND, UNDER, ABOVE = 32, 8, 24  # Blocks around the player that are read where no box is named.
-EDGE = 2  # Around a scene.
+AROUND, UNDER, ABOVE = 32, 8, 24  # Blocks around the player that are read without a box.
+EDGE = 2  # Additional blocks around a scene.
 
 
 class ServerScene(VlnScene):
@@ -112,7 +112,7 @@ def open_server_scene(
             _scaled(trim_air(volume), blocks_per_metre or 1.0), "server", Path(where)
         )
     else:
-        path = Path(str(labels))  # What is walked here can be walked there again, without a server.
+        path = Path(str(labels))  # Walks can then be repeated there, without a server.
         scene = read_scene(folder)
         start = PlayerStart(*scene.spawn, scene.spawn_yaw_deg)
         source = BuildSource(_labelled(volume, folder, where), "server", path, start, folder)
