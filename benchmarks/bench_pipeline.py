@@ -1,6 +1,5 @@
 """The main job against its budgets: fusion, building, the warm pipeline and the first run."""
 
-import os
 import subprocess
 import sys
 import tempfile
@@ -11,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.check_tsdf import integrate
+from benchmarks.clean_runs import user_environment
 from benchmarks.rows import Row
 from world2minecraft.construction import build_volume, write_build
 from world2minecraft.core.types import OccupancyGrid
@@ -21,8 +21,6 @@ from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredict
 
 FRAMES = 40
 REPEATS = 3
-# What developers set and users do not: with the second, all modules are compiled at each start.
-NOT_A_USERS = ("NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE")
 
 
 def run() -> list[Row]:
@@ -127,11 +125,10 @@ def reconstruct(words: list[str], out: Path, environment: dict[str, str]) -> tup
         "import resource, sys; from world2minecraft.cli import run; code = run(sys.argv[1:]);"
         "print('PEAK', resource.getrusage(resource.RUSAGE_SELF).ru_maxrss); sys.exit(code)"
     )
-    cleared = {name: value for name, value in os.environ.items() if name not in NOT_A_USERS}
     begun = time.perf_counter()
     done = subprocess.run(
         [sys.executable, "-c", code, *words, str(out)],
-        env=cleared | environment,
+        env=user_environment() | environment,
         check=True,
         capture_output=True,
         text=True,

@@ -19,12 +19,11 @@ import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from benchmarks.clean_runs import ROOT, earlier_sources, environment_of
 from world2minecraft.core.files import write_json
 
-ROOT = Path(__file__).resolve().parents[1]
 CALL = "import sys; from world2minecraft.cli import run; sys.exit(run(sys.argv[1:]))"
 FORMER = ("--semantics", "none", "--set", "repair.enabled=no")
-NOT_A_USERS = ("NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE")
 
 
 @dataclass(frozen=True)
@@ -44,19 +43,13 @@ class Cost:
 
 def measure(source: Path, cache: Path, capture: Path, options: tuple[str, ...], cores: int) -> Cost:
     """Run ``w2m reconstruct`` of a source tree apart, on so many cores."""
-    kept = {name: value for name, value in os.environ.items() if name not in NOT_A_USERS}
-    environment = kept | {
-        "PYTHONPATH": str(source),
-        "NUMBA_CACHE_DIR": str(cache),
-        "W2M_CACHE_DIR": str(cache),
-    }
     allowed = sorted(os.sched_getaffinity(0))[:cores]
     with tempfile.TemporaryDirectory() as folder:
         words = ["reconstruct", str(capture), "--out", f"{folder}/run", *options]
         begun = time.perf_counter()
         process = subprocess.Popen(
             [sys.executable, "-c", CALL, *words],
-            env=environment,
+            env=environment_of(source, cache),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
@@ -103,15 +96,10 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         base, capture = Path(folder), options.capture.resolve()
-        subprocess.run(
-            ["git", "-C", ROOT, "worktree", "add", "--detach", base / "former", options.commit],
-            check=True,
-            capture_output=True,
-        )
-        try:
+        with earlier_sources(options.commit, base / "former") as former:
             if options.repeat_frames > 1:
                 capture = lengthened(capture, options.repeat_frames, base / "capture")
-            former, now = base / "former" / "src", ROOT / "src"
+            now = ROOT / "src"
             cores = len(os.sched_getaffinity(0))
             rows = {
                 options.commit: (former, base / "a", capture, (), cores),
@@ -125,9 +113,6 @@ def main() -> None:
                     cost = measure(*row)
                     if turn:  # The first compiles the kernels.
                         costs[name].append(cost)
-        finally:
-            words = ["git", "-C", ROOT, "worktree", "remove", "--force", base / "former"]
-            subprocess.run(words, check=False)
     found = {name: least(of) for name, of in costs.items()}
     before, same, new, alone = found.values()
     for name, cost in found.items():

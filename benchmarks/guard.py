@@ -10,18 +10,16 @@ more than ``--limit`` times as long; jobs under ``MIN_S`` only print their ratio
 
 import argparse
 import json
-import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from benchmarks.clean_runs import ROOT, earlier_sources, environment_of
 from world2minecraft.procgen import generate_room, scan_room
 
-ROOT = Path(__file__).resolve().parents[1]
 FRAMES, SIZE = 12, (320, 240)
 MIN_S = 0.05  # Less is within the noise of the clock and of caches.
-NOT_A_USERS = ("NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE")
 JOBS = """
 import json, sys, time
 from pathlib import Path
@@ -66,16 +64,10 @@ print("FOUND", json.dumps(found))
 
 def costs_of(source: Path, cache: Path, scan: Path) -> dict[str, float]:
     """Return the CPU seconds of each job of a source tree."""
-    kept = {name: value for name, value in os.environ.items() if name not in NOT_A_USERS}
-    environment = kept | {
-        "PYTHONPATH": str(source),
-        "NUMBA_CACHE_DIR": str(cache),
-        "W2M_CACHE_DIR": str(cache),
-    }
     with tempfile.TemporaryDirectory() as out:
         done = subprocess.run(
             [sys.executable, "-c", JOBS, str(scan), out],
-            env=environment,
+            env=environment_of(source, cache),
             check=False,
             capture_output=True,
             text=True,
@@ -94,22 +86,16 @@ def main() -> int:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         base = Path(folder)
-        former = base / "former"
-        add = ["git", "-C", str(ROOT), "worktree", "add", "--detach", str(former), options.commit]
-        subprocess.run(add, check=True, capture_output=True)
-        try:
+        with earlier_sources(options.commit, base / "former") as former:
             room = generate_room(3, kind="dining")
             scan_room(room, base / "scan", frames=FRAMES, width=SIZE[0], height=SIZE[1])
-            trees = {"before": former / "src", "now": ROOT / "src"}
+            trees = {"before": former, "now": ROOT / "src"}
             rounds: dict[str, list[dict[str, float]]] = {name: [] for name in trees}
             for turn in range(options.repeats + 1):
                 for name, source in trees.items():
                     found = costs_of(source, base / f"cache-{name}", base / "scan")
                     if turn:  # The first compiles the kernels.
                         rounds[name].append(found)
-        finally:
-            remove = ["git", "-C", str(ROOT), "worktree", "remove", "--force", str(former)]
-            subprocess.run(remove, check=False)
     return report(rounds["before"], rounds["now"], options.limit)
 
 
