@@ -66,7 +66,7 @@ def read_nyu_mat(path: Path, parts: Sequence[Part]) -> list[LabelledFrame]:
         with h5py.File(path, "r") as file:
             return list(frames_of_nyu_arrays(file, classes, parts))
     except (OSError, KeyError) as error:
-        raise DamagedFileError(path, f"not NYUv2's labelled set: {error}") from error
+        raise DamagedFileError(path, f"is not NYUv2's labelled set: {error}") from error
 
 
 def read_class_mapping(path: Path) -> np.ndarray:
@@ -179,4 +179,4 @@ def _read_mat(path: Path) -> dict[str, Any]:
     try:
         return load(str(path))
     except (ValueError, NotImplementedError, OSError) as error:
-        raise DamagedFileError(path, f"not a MATLAB file: {error}") from error
+        raise DamagedFileError(path, f"is not a MATLAB file: {error}") from error

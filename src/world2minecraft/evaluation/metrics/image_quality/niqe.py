@@ -229,7 +229,7 @@ def read_mat(path: Path, name: str) -> NiqeModel:
     except DamagedFileError:
         raise
     except Exception as error:  # scipy raises whatever the bytes lead it to.
-        reason = f"not a MATLAB file that scipy can read ({error})"
+        reason = f"is not a MATLAB file that scipy can read ({error})"
         raise DamagedFileError(path, reason) from error
     wanted = " or ".join(" and ".join(pair) for pair in MEAN_AND_COVARIANCE)
     held = ", ".join(sorted(sizes)) or "nothing"
