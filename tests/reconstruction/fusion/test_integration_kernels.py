@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import PointEvidence, Scan
 from world2minecraft.reconstruction.fusion import EvidenceMap, FusionParameters, fuse_views
-from world2minecraft.reconstruction.fusion.integration import face_normals, to_cells
+from world2minecraft.reconstruction.fusion.integration import (
+    FIRST_CELLS,
+    ViewPlace,
+    ViewPoints,
+    sum_cells,
+    to_cells,
+)
+from world2minecraft.reconstruction.fusion.voxel_blocks import Blocks
 
 PARAMETERS = FusionParameters(min_share=0.2)
 
@@ -171,13 +178,82 @@ def test_points_are_carried_by_the_transform_and_bounded():
     np.testing.assert_allclose([low, high], [cells.min(axis=0), cells.max(axis=0)], rtol=1e-6)
 
 
+def summed(points: ViewPoints, place: ViewPlace):
+    """The sums of points in the first 256 cells of each axis, with the cells by number."""
+    blocks = Blocks()
+    blocks.reserve_box(np.zeros(3, np.int64), np.full(3, 256), place.voxel_m)
+    owner, places, sums = sum_cells(points, place, blocks.by_cell, blocks.mark, 1)
+    return owner, places, sums
+
+
 @pytest.mark.parametrize("count", [1, 4])
 def test_normals_are_turned_and_default_to_the_camera(count):
-    points = np.zeros((count, 3), np.float32)
     normals = np.array([[1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, 0]], np.float32)[:count]
-    turn = rotation_about_z(90)[:3, :3]
-    camera = np.array([0.0, 0.0, 5.0])
+    turn = np.ascontiguousarray(rotation_about_z(90)[:3, :3])
+    place = ViewPlace(np.array([9.5, 9.5, 99.0]), turn, 0.1, 0.08)
     expected = np.array([[0, 1, 0], [1, 0, 0], [0, 0, 1], [0, 0, 1]])[:count]
-    np.testing.assert_allclose(face_normals(points, normals, camera, turn), expected, atol=1e-6)
-    none = face_normals(points, normals[:0], camera, turn)
-    np.testing.assert_allclose(none, [[0, 0, 1]] * count, atol=1e-6)
+    for given_normals, wanted in ((normals, expected), (normals[:0], [[0, 0, 1]] * count)):
+        cells = np.full((count, 3), 9.5, np.float32)
+        weight, nothing = np.ones(count, np.float32), np.zeros(0, np.float32)
+        points = ViewPoints(cells, given_normals, weight, nothing, np.zeros((0, 3), np.uint8))
+        _, _, sums = summed(points, place)
+        np.testing.assert_allclose(sums.faces[0, :, 4:7].sum(axis=0), np.sum(wanted, 0), atol=1e-6)
+
+
+def walk(seed: int, count: int, spread: float) -> ViewPoints:
+    """Points along a random walk that share normals for a while, some of them without one."""
+    random = np.random.default_rng(seed)
+    steps = random.normal(0, spread, (count, 3)).cumsum(axis=0)
+    normals = np.repeat(random.normal(size=(-(-count // 4), 3)), 4, axis=0)[:count]
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals[random.random(count) < 0.1] = 0
+    return ViewPoints(
+        (8 + (steps + 120) % 240).astype(np.float32),
+        normals.astype(np.float32),
+        random.uniform(1e-4, 1e-3, count).astype(np.float32),
+        random.uniform(0, 1, count).astype(np.float32),
+        random.integers(0, 256, (count, 3)).astype(np.uint8),
+    )
+
+
+def slow_sums(points: ViewPoints, place: ViewPlace):
+    """The sums of each cell, point by point, and the cell of each point."""
+    sums, owner = {}, []
+    for n, at in enumerate(points.cells.astype(float)):
+        normal = place.turn @ points.normals[n]
+        if not normal.any():
+            normal = (place.camera - at) / np.linalg.norm(place.camera - at)
+        cell = tuple(np.floor(at - normal * place.nudge).astype(int))
+        side = np.abs(normal).argmax()
+        face = 2 * side + (normal[side] > 0)
+        sums.setdefault(cell, []).append((n, face, at, normal))
+        owner.append(sums[cell][0][0])
+    first = {members[0][0]: s for s, members in enumerate(sums.values())}
+    return sums, [first[n] for n in owner]
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 10_000), st.sampled_from([(3, 0.02), (200, 0.05), (200, 0.4), (1300, 60.0)]))
+def test_the_sums_of_a_view_equal_the_slow_reading(seed, size):
+    """Also for more cells than there is memory for at first."""
+    points = walk(seed, *size)
+    turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    place = ViewPlace(np.array([3.0, 5.0, 7.0]), np.ascontiguousarray(turn), 0.125, 0.08)
+    owner, places, sums = summed(points, place)
+    expected, expected_owner = slow_sums(points, place)
+    assert len(places) == len(expected) == len(set(places.tolist()))
+    assert len(expected) > FIRST_CELLS or size[0] < 1000
+    np.testing.assert_array_equal(owner, expected_owner)
+    for s, (cell, members) in enumerate(expected.items()):
+        rows = [n for n, *_ in members]
+        assert sums.hits[s] == len(rows)
+        np.testing.assert_array_equal(sums.colour[s], points.colour[rows].astype(int).sum(axis=0))
+        np.testing.assert_allclose(sums.area[s], points.weight[rows].sum(), rtol=1e-5)
+        np.testing.assert_allclose(sums.trust[s], points.trust[rows].mean(), rtol=1e-5)
+        np.testing.assert_allclose(sums.target[s], points.cells[rows].sum(axis=0), rtol=1e-5)
+        faces = np.zeros((6, 8))
+        for _, face, at, normal in members:
+            away_m = np.linalg.norm(at - place.camera) * place.voxel_m
+            offset_m = (at - np.array(cell) - 0.5) * place.voxel_m
+            faces[face] += [1, *offset_m, *normal, away_m]
+        np.testing.assert_allclose(sums.faces[s], faces, rtol=1e-5, atol=1e-5)

@@ -19,14 +19,13 @@ from world2minecraft.core.parallel import read_ahead
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import FusedEvidence, GridEvidence, PointEvidence, Scan
 from world2minecraft.reconstruction.fusion.integration import (
+    ViewPlace,
+    ViewPoints,
     ViewRules,
-    add_colours,
     add_hits,
     add_labels,
     add_votes,
     carve_free_space,
-    face_normals,
-    number_cells,
     places_of,
     sum_cells,
     to_cells,
@@ -148,25 +147,26 @@ class EvidenceMap:
             np.floor(np.maximum(high, camera)).astype(np.int64) + 1 + REACH_CELLS,
             voxel_m,
         )
-        given = _NO_NORMALS if evidence.normals is None else evidence.normals
-        normals = face_normals(points, given, camera, self.scan_to_room[:3, :3])
-        nudge = self.parameters.nudge_m / voxel_m
-        owner, cells, places = number_cells(
-            points, normals, nudge, blocks.by_cell, blocks.mark, self._base
+        nothing = _NO_VECTORS, _NO_NUMBERS, _NO_COLOURS
+        given = evidence.normals, evidence.trust, evidence.colour
+        normals, trust, colour = (
+            empty if values is None else values
+            for values, empty in zip(given, nothing, strict=True)
         )
-        trust = _NO_TRUST if evidence.trust is None else evidence.trust
-        sums = sum_cells(points, normals, evidence.weight, trust, camera, owner, cells, voxel_m)
-        blocks.reserve_records(len(cells))
+        view = ViewPoints(points, normals, evidence.weight, trust, colour)
+        turn = np.ascontiguousarray(self.scan_to_room[:3, :3])
+        place = ViewPlace(camera, turn, self.parameters.nudge_m / voxel_m, voxel_m)
+        owner, places, sums = sum_cells(view, place, blocks.by_cell, blocks.mark, self._base)
+        blocks.reserve_records(len(places))
         taken = add_hits(places, sums, rules, blocks.used, blocks.cells, blocks.records)
-        self._add_attributes(evidence, np.where(taken, blocks.record[places], 0)[owner])
+        if evidence.labels is not None or evidence.votes is not None:
+            self._add_votes(evidence, np.where(taken, blocks.record[places], 0)[owner])
         carve_free_space(camera, sums, rules, blocks.by_cell, blocks.cells, self._base)
-        self._base += len(cells) + 1
+        self._base += len(places) + 1
 
-    def _add_attributes(self, evidence: PointEvidence, rows: np.ndarray) -> None:
-        """Add colours and votes of points to their records, int32 [N], 0 for none."""
+    def _add_votes(self, evidence: PointEvidence, rows: np.ndarray) -> None:
+        """Add the votes of points to their records, int32 [N], 0 for none."""
         blocks = self.blocks
-        if evidence.colour is not None:
-            add_colours(evidence.colour, rows, blocks.colour_sum)
         if evidence.labels is not None:
             add_labels(evidence.labels, rows, blocks.votes)
         if evidence.votes is not None:
@@ -247,5 +247,6 @@ def fuse_views(
     return map_.fused()
 
 
-_NO_NORMALS = np.zeros((0, 3), np.float32)
-_NO_TRUST = np.zeros(0, np.float32)
+_NO_VECTORS = np.zeros((0, 3), np.float32)
+_NO_NUMBERS = np.zeros(0, np.float32)
+_NO_COLOURS = np.zeros((0, 3), np.uint8)

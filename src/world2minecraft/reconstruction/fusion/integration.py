@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.core.jit import njit
+from world2minecraft.core.jit import inlined, lean, njit
 from world2minecraft.reconstruction.fusion.voxel_blocks import (
     BLOCK_CELLS,
     FACE_SUMS,
@@ -21,6 +21,11 @@ from world2minecraft.reconstruction.fusion.voxel_blocks import (
     CellArrays,
     RecordArrays,
 )
+
+FIRST_CELLS = 1024  # Memory for the cells of a view grows from here.
+_NO_RUN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0)
+_ZERO = (0.0, 0.0, 0.0)
+_NO_NORMAL = (np.float32(0), np.float32(0), np.float32(0))
 
 
 class ViewRules(NamedTuple):
@@ -50,26 +55,47 @@ class CellSums(NamedTuple):
     # metres, of normals and of distances in metres.
     faces: np.ndarray  # float64 [M, 6, 8]
     trust: np.ndarray  # float64 [M], the mean trust of the points, 1 where none is given
+    colour: np.ndarray  # int64 [M, 3], of the points; 0 where none is given
+
+
+class ViewPoints(NamedTuple):
+    """The points of one view; arrays that a view does not have are empty."""
+
+    cells: np.ndarray  # float32 [N, 3], in cells of the room
+    normals: np.ndarray  # float32 [N, 3], in the scan; (0, 0, 0) where unknown
+    weight: np.ndarray  # float32 [N], the area that each point represents, in square metres
+    trust: np.ndarray  # float32 [N], the confidence of each point
+    colour: np.ndarray  # uint8 [N, 3]
+
+
+class ViewPlace(NamedTuple):
+    """Where a view stands in the room, and how its points are assigned to cells."""
+
+    camera: np.ndarray  # float64 [3], the camera's position in cells of the room
+    turn: np.ndarray  # float64 [3, 3], the rotation from the scan to the room
+    nudge: float  # Distance in cells by which points are moved behind the surface into the matter.
+    voxel_m: float
 
 
 @njit
 def to_cells(points_m, scan_to_cells):
     """Transform points float32 [N, 3] by a 3x4 matrix and return them with their bounds."""
-    count = len(points_m)
-    cells = np.empty((count, 3), np.float32)
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for n in range(count):
-        for axis in range(3):
-            value = scan_to_cells[axis, 3]
-            for other in range(3):
-                value += scan_to_cells[axis, other] * points_m[n, other]
-            cells[n, axis] = value
-            low[axis] = min(low[axis], value)
-            high[axis] = max(high[axis], value)
-    return cells, low, high
+    m = scan_to_cells
+    cells = np.empty((len(points_m), 3), np.float32)
+    low_x, low_y, low_z = np.inf, np.inf, np.inf
+    high_x, high_y, high_z = -np.inf, -np.inf, -np.inf
+    for n in range(len(points_m)):
+        a, b, c = points_m[n, 0], points_m[n, 1], points_m[n, 2]
+        x = m[0, 3] + m[0, 0] * a + m[0, 1] * b + m[0, 2] * c
+        y = m[1, 3] + m[1, 0] * a + m[1, 1] * b + m[1, 2] * c
+        z = m[2, 3] + m[2, 0] * a + m[2, 1] * b + m[2, 2] * c
+        cells[n, 0], cells[n, 1], cells[n, 2] = x, y, z
+        low_x, low_y, low_z = min(low_x, x), min(low_y, y), min(low_z, z)
+        high_x, high_y, high_z = max(high_x, x), max(high_y, y), max(high_z, z)
+    return cells, np.array([low_x, low_y, low_z]), np.array([high_x, high_y, high_z])
 
 
-@njit
+@lean
 def place_of(i, j, k, blocks: BlockTable):
     """Return the index of cell (i, j, k) in the flat arrays, allocating its block if required."""
     low = blocks.low
@@ -92,105 +118,203 @@ def places_of(cells, blocks: BlockTable):
     return places
 
 
-@njit
-def face_normals(points, normals, camera, turn):
-    """Return unit normals in the room, float32 [N, 3]; missing normals point to the camera."""
-    result = np.empty((len(points), 3), np.float32)
-    given = len(normals) > 0
-    for n in range(len(points)):
-        if given and (normals[n, 0] != 0 or normals[n, 1] != 0 or normals[n, 2] != 0):
-            for axis in range(3):
-                value = 0.0
-                for other in range(3):
-                    value += turn[axis, other] * normals[n, other]
-                result[n, axis] = value
-            continue
-        length = 1e-6
-        for axis in range(3):
-            length += (points[n, axis] - camera[axis]) ** 2
-        for axis in range(3):
-            result[n, axis] = (camera[axis] - points[n, axis]) / np.sqrt(length)
-    return result
+@inlined
+def _is_new_normal(n, normals):
+    """Return whether the normal of a point differs from that of the point before."""
+    if len(normals) == 0:
+        return True
+    a, b, c = normals[n, 0], normals[n, 1], normals[n, 2]
+    is_missing = a == 0 and b == 0 and c == 0
+    is_same = a == normals[n - 1, 0] and b == normals[n - 1, 1] and c == normals[n - 1, 2]
+    return is_missing or not is_same
+
+
+@inlined
+def _room_normal(n, x, y, z, normals, place: ViewPlace):
+    """Return the unit normal of a point in the room; a missing one points to the camera."""
+    if len(normals) > 0:
+        a, b, c = normals[n, 0], normals[n, 1], normals[n, 2]
+        if a != 0 or b != 0 or c != 0:
+            t = place.turn
+            return (
+                np.float32(t[0, 0] * a + t[0, 1] * b + t[0, 2] * c),
+                np.float32(t[1, 0] * a + t[1, 1] * b + t[1, 2] * c),
+                np.float32(t[2, 0] * a + t[2, 1] * b + t[2, 2] * c),
+            )
+    a, b, c = place.camera[0] - x, place.camera[1] - y, place.camera[2] - z
+    length = np.sqrt(1e-6 + a * a + b * b + c * c)
+    return np.float32(a / length), np.float32(b / length), np.float32(c / length)
+
+
+@inlined
+def _plus(total, count, vector):
+    """Return the sum of a vector and ``count`` times another."""
+    return (
+        total[0] + count * vector[0],
+        total[1] + count * vector[1],
+        total[2] + count * vector[2],
+    )
+
+
+@inlined
+def _facing_side(x, y, z):
+    """Return the side, 0 to 5, that a normal mostly faces."""
+    most, value = (1, y) if abs(y) > abs(x) else (0, x)
+    if abs(z) > abs(value):
+        most, value = 2, z
+    return 2 * most + (1 if value > 0 else 0)
 
 
 @njit
-def number_cells(points, normals, nudge, blocks: BlockTable, mark, base):
-    """Number the cells in which a view saw surface.
+def _no_sums(count):
+    """Return sums of so many cells, all of them 0."""
+    return CellSums(
+        np.zeros(count, np.int64),
+        np.zeros(count, np.float64),
+        np.zeros((count, 3), np.float64),
+        np.zeros((count, FACES, FACE_SUMS), np.float64),
+        np.zeros(count, np.float64),
+        np.zeros((count, 3), np.int64),
+    )
+
+
+@njit
+def _more_sums(sums: CellSums):
+    """Return the sums with room for twice as many cells."""
+    count = len(sums.hits)
+    more = _no_sums(2 * count)
+    more.hits[:count], more.area[:count], more.target[:count] = sums.hits, sums.area, sums.target
+    more.faces[:count], more.trust[:count] = sums.faces, sums.trust
+    more.colour[:count] = sums.colour
+    return more
+
+
+@njit
+def _first_sums(sums: CellSums, count):
+    """Return the sums of the first cells."""
+    return CellSums(
+        sums.hits[:count],
+        sums.area[:count],
+        sums.target[:count],
+        sums.faces[:count],
+        sums.trust[:count],
+        sums.colour[:count],
+    )
+
+
+@inlined
+def _add_run(sums: CellSums, s, side, points, run, offset, normal_sum, voxel_m):
+    """Add the sums of a run of points of one cell that face one side."""
+    x, y, z, away, area, trust, red, green, blue = run
+    sums.hits[s] += points
+    sums.area[s] += area
+    sums.trust[s] += trust
+    target, colour, faces = sums.target, sums.colour, sums.faces
+    target[s, 0], target[s, 1] = target[s, 0] + x, target[s, 1] + y
+    target[s, 2] += z
+    colour[s, 0], colour[s, 1] = colour[s, 0] + red, colour[s, 1] + green
+    colour[s, 2] += blue
+    faces[s, side, 0] += points
+    faces[s, side, 1], faces[s, side, 2], faces[s, side, 3] = offset
+    faces[s, side, 4] += normal_sum[0]
+    faces[s, side, 5] += normal_sum[1]
+    faces[s, side, 6] += normal_sum[2]
+    faces[s, side, 7] += away * voxel_m
+
+
+@inlined
+def _longer_run(run, n, points: ViewPoints, camera):
+    """Return the sums of a run of points with another point."""
+    sum_x, sum_y, sum_z, away, area, trust, red, green, blue = run
+    x, y, z = points.cells[n, 0], points.cells[n, 1], points.cells[n, 2]
+    a, b, c = x - camera[0], y - camera[1], z - camera[2]
+    if len(points.colour) > 0:
+        red += np.int64(points.colour[n, 0])
+        green += np.int64(points.colour[n, 1])
+        blue += np.int64(points.colour[n, 2])
+    if len(points.trust) > 0:
+        trust += points.trust[n]
+    away += np.sqrt(a * a + b * b + c * c)
+    area += points.weight[n]
+    return sum_x + x, sum_y + y, sum_z + z, away, area, trust, red, green, blue
+
+
+@njit
+def sum_cells(points: ViewPoints, place: ViewPlace, blocks: BlockTable, mark, base):
+    """Number the cells in which a view saw surface and sum its points in each of them.
 
     Args:
-        points: Points in cells of the room, float32 [N, 3].
-        normals: Normals towards the camera, float32 [N, 3].
-        nudge: Distance in cells by which points are moved behind the surface into the matter.
+        points: Points of the view.
+        place: Place of the view.
         blocks: Table of the cell blocks.
         mark: State of each cell, int64 [C]; see the module docstring.
         base: Base number of the view in ``mark``.
 
     Returns:
-        ``owner``, the cell number of each point, int32 [N]; ``cells``, int64 [M, 3]; and
-        ``places``, the indices of the cells in the flat arrays, int64 [M].
+        ``owner``, the cell number of each point, int32 [N]; ``places``, the indices of the cells
+        in the flat arrays, int64 [M]; and the ``CellSums``.
     """
-    owner = np.empty(len(points), np.int32)
-    cells = np.empty((len(points), 3), np.int64)
-    places = np.empty(len(points), np.int64)
-    count, last = 0, -1
-    for n in range(len(points)):
-        i = int(np.floor(points[n, 0] - normals[n, 0] * nudge))
-        j = int(np.floor(points[n, 1] - normals[n, 1] * nudge))
-        k = int(np.floor(points[n, 2] - normals[n, 2] * nudge))
-        # Neighbouring pixels mostly lie in one cell.
-        if last < 0 or cells[last, 0] != i or cells[last, 1] != j or cells[last, 2] != k:
-            place = place_of(i, j, k, blocks)
-            if mark[place] <= base:
-                mark[place] = base + 1 + count
-                cells[count] = i, j, k
-                places[count] = place
-                count += 1
-            last = mark[place] - base - 1
-        owner[n] = last
-    return owner, cells[:count], places[:count]
+    owner = np.empty(len(points.cells), np.int32)
+    places, sums = np.empty(FIRST_CELLS, np.int64), _no_sums(FIRST_CELLS)
+    done, count = 0, 0
+    while True:
+        done, count = _sum_points(
+            points, place, blocks, mark, base, owner, places, sums, done, count
+        )
+        if done == len(owner):
+            break
+        places, sums = np.concatenate((places, places)), _more_sums(sums)
+    for s in range(count):
+        sums.trust[s] = sums.trust[s] / sums.hits[s] if len(points.trust) > 0 else 1.0
+    return owner, places[:count], _first_sums(sums, count)
 
 
-@njit
-def sum_cells(points, normals, weight, trust, camera, owner, cells, voxel_m):
-    """Compute the ``CellSums`` of a view.
+@lean
+def _sum_points(points, place, blocks, mark, base, owner, places, sums, done, count):
+    """Sum the points from ``done`` on, as long as there is memory for their cells.
 
-    Args:
-        points: Points in cells of the room, float32 [N, 3].
-        normals: Normals towards the camera, float32 [N, 3].
-        weight: Area that each point represents, float32 [N].
-        trust: Confidence of each point, float32 [N], or an empty array.
-        camera: Camera position in cells of the room, float64 [3].
-        owner: Cell number of each point from ``number_cells``, int32 [N].
-        cells: Cells from ``number_cells``, int64 [M, 3].
-        voxel_m: Cell size in metres.
+    Neighbouring points mostly lie in one cell, face one side and have one normal. The sums of such
+    a run are held in variables. Returns the number of points done and the number of cells.
     """
-    count = np.zeros(len(cells), np.int64)
-    sure = np.zeros(len(cells), np.float64)
-    area = np.zeros(len(cells), np.float64)
-    target = np.zeros((len(cells), 3), np.float64)
-    faces = np.zeros((len(cells), FACES, FACE_SUMS), np.float64)
-    for n in range(len(points)):
-        s = owner[n]
-        count[s] += 1
-        sure[s] += trust[n] if len(trust) else 1.0
-        area[s] += weight[n]
-        side = 0
-        for axis in range(1, 3):
-            if abs(normals[n, axis]) > abs(normals[n, side]):
-                side = axis
-        f = 2 * side + (1 if normals[n, side] > 0 else 0)
-        faces[s, f, 0] += 1
-        square = 0.0
-        for axis in range(3):
-            target[s, axis] += points[n, axis]
-            faces[s, f, 1 + axis] += (points[n, axis] - cells[s, axis] - 0.5) * voxel_m
-            faces[s, f, 4 + axis] += normals[n, axis]
-            away = points[n, axis] - camera[axis]
-            square += away * away
-        faces[s, f, 7] += np.sqrt(square) * voxel_m
-    for s in range(len(cells)):
-        sure[s] /= max(count[s], 1)
-    return CellSums(count, area, target, faces, sure)
+    s, f, at, offset, run, normal_sum = -1, -1, _ZERO, _ZERO, _NO_RUN, _ZERO
+    normal, behind, side, turned, begun = _NO_NORMAL, _ZERO, 0, done, done
+    first = done
+    while done < len(owner):
+        x, y, z = points.cells[done, 0], points.cells[done, 1], points.cells[done, 2]
+        if done == first or _is_new_normal(done, points.normals):
+            normal_sum, turned = _plus(normal_sum, done - turned, normal), done
+            normal = _room_normal(done, x, y, z, points.normals, place)
+            behind = normal[0] * place.nudge, normal[1] * place.nudge, normal[2] * place.nudge
+            side = _facing_side(normal[0], normal[1], normal[2])
+        here = np.floor(x - behind[0]), np.floor(y - behind[1]), np.floor(z - behind[2])
+        moved = s < 0 or here[0] != at[0] or here[1] != at[1] or here[2] != at[2]
+        if moved or side != f:
+            if s >= 0:
+                normal_sum = _plus(normal_sum, done - turned, normal)
+                _add_run(sums, s, f, done - begun, run, offset, normal_sum, place.voxel_m)
+            run, normal_sum, f, begun, turned = _NO_RUN, _ZERO, side, done, done
+            if moved:
+                index = place_of(int(here[0]), int(here[1]), int(here[2]), blocks)
+                if mark[index] <= base:
+                    if count == len(places):
+                        return done, count
+                    mark[index] = base + 1 + count
+                    places[count] = index
+                    count += 1
+                s, at = mark[index] - base - 1, here
+            offset = sums.faces[s, f, 1], sums.faces[s, f, 2], sums.faces[s, f, 3]
+        owner[done] = s
+        offset = (
+            offset[0] + (x - at[0] - 0.5) * place.voxel_m,
+            offset[1] + (y - at[1] - 0.5) * place.voxel_m,
+            offset[2] + (z - at[2] - 0.5) * place.voxel_m,
+        )
+        run = _longer_run(run, done, points, place.camera)
+        done += 1
+    if s >= 0:
+        normal_sum = _plus(normal_sum, done - turned, normal)
+        _add_run(sums, s, f, done - begun, run, offset, normal_sum, place.voxel_m)
+    return done, count
 
 
 @njit
@@ -225,6 +349,8 @@ def add_hits(
             record[place] = used[1]
         row = record[place]
         records.hits[row] += count[s]
+        for channel in range(3):
+            records.colour_sum[row, channel] += sums.colour[s, channel]
         for f in range(FACES):
             points = faces[s, f, 0]
             if points == 0:
@@ -241,15 +367,6 @@ def add_hits(
                 records.faces[row, f, m] += w * faces[s, f, m] / points
             records.faces[row, f, 7] += w * sigma
     return taken
-
-
-@njit
-def add_colours(colour, rows, colour_sum):
-    """Add the colours uint8 [N, 3] of points to their records, int32 [N]; record 0 is ignored."""
-    for n in range(len(colour)):
-        if rows[n] > 0:
-            for channel in range(3):
-                colour_sum[rows[n], channel] += colour[n, channel]
 
 
 @njit
@@ -276,7 +393,7 @@ def add_votes(shares, of_point, rows, votes):
                 votes[rows[n], label] += shares[of_point[n], label]
 
 
-@njit
+@lean
 def carve_free_space(
     camera, sums: CellSums, rules: ViewRules, blocks: BlockTable, cells: CellArrays, base
 ):
@@ -295,41 +412,60 @@ def carve_free_space(
     """
     for s in range(len(sums.hits)):
         if sums.hits[s] >= rules.min_points and sums.trust[s] >= 0.5:
-            _carve_ray(camera, sums.target[s] / sums.hits[s], rules, blocks, cells, base)
+            _carve_ray(camera, _mean_point(sums, s), rules, blocks, cells, base)
 
 
-@njit
+@inlined
+def _mean_point(sums: CellSums, s):
+    """Return the mean point of a cell as a tuple."""
+    hits, target = sums.hits[s], sums.target
+    return target[s, 0] / hits, target[s, 1] / hits, target[s, 2] / hits
+
+
+@lean
 def _carve_ray(camera, target, rules: ViewRules, blocks: BlockTable, cells: CellArrays, base):
     """Lower the log-odds along the ray from the camera to a surface point.
 
     A cell counts as crossed if the middle of the ray's segment inside it is closer to the camera
     than the clearance in front of the point. Cells with surface in this view are not changed.
     """
-    way = target - camera
-    length = np.sqrt((way * way).sum())
+    x, y, z = target[0] - camera[0], target[1] - camera[1], target[2] - camera[2]
+    length = np.sqrt(x * x + y * y + z * z)
     end = length - rules.clear_cells - rules.clear_growth * length
     if end <= 0:
         return
-    way /= length
-    cell, step = np.empty(3, np.int64), np.empty(3, np.int64)
-    at, gap = np.empty(3), np.empty(3)
-    for axis in range(3):
-        cell[axis] = int(np.floor(camera[axis]))
-        step[axis] = 1 if way[axis] > 0 else -1
-        gap[axis] = np.inf if way[axis] == 0 else abs(1.0 / way[axis])
-        edge = cell[axis] + (1 if way[axis] > 0 else 0)
-        at[axis] = np.inf if way[axis] == 0 else (edge - camera[axis]) / way[axis]
+    i, step_i, at_i, gap_i = _first_edge(camera[0], x / length)
+    j, step_j, at_j, gap_j = _first_edge(camera[1], y / length)
+    k, step_k, at_k, gap_k = _first_edge(camera[2], z / length)
     entry = 0.0
     while entry < end:
-        axis = 0 if at[0] <= at[1] and at[0] <= at[2] else (1 if at[1] <= at[2] else 2)
-        leave = at[axis]
+        leave = min(at_i, at_j, at_k)
         if (entry + leave) / 2 < end:
-            place = place_of(cell[0], cell[1], cell[2], blocks)
+            place = place_of(i, j, k, blocks)
             if cells.mark[place] < base:
                 cells.log_odds[place] = max(
                     -rules.limit_log_odds, cells.log_odds[place] + rules.free_log_odds
                 )
                 cells.mark[place] = base
-        cell[axis] += step[axis]
-        at[axis] += gap[axis]
+        # Written without branches: which edge comes first cannot be predicted.
+        is_i = at_i == leave
+        is_j = at_j == leave and not is_i
+        is_k = not (is_i or is_j)
+        i, at_i = (i + step_i if is_i else i), (at_i + gap_i if is_i else at_i)
+        j, at_j = (j + step_j if is_j else j), (at_j + gap_j if is_j else at_j)
+        k, at_k = (k + step_k if is_k else k), (at_k + gap_k if is_k else at_k)
         entry = leave
+
+
+@inlined
+def _first_edge(start, way):
+    """Return the cell of a coordinate, the step of a ray along it, and its edges on the ray.
+
+    The last two are the distance to the first edge and that between edges, infinite where the ray
+    does not move along this axis.
+    """
+    cell = int(np.floor(start))
+    if way == 0:
+        return cell, -1, np.inf, np.inf
+    edge = cell + (1 if way > 0 else 0)
+    return cell, 1 if way > 0 else -1, (edge - start) / way, abs(1.0 / way)

@@ -13,10 +13,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from world2minecraft.core.coordinates import apply, invert_rigid
-from world2minecraft.core.jit import njit
+from world2minecraft.core.jit import inlined, lean, njit
 from world2minecraft.core.parallel import read_ahead
 from world2minecraft.core.types import Camera, PointEvidence, Scan, View
-from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
+from world2minecraft.geometry.unprojection import pixel_rays, project
 from world2minecraft.reconstruction.naming.name_votes import NameVoteMap
 
 SQUARES_WIDE = 160  # 4 px at 640: the mean of 16 pixels, and 16 px from side to side.
@@ -29,46 +29,60 @@ MAX_DEPTH_M = 6.0  # Consumer depth cameras err by over 6 cm beyond; a room rare
 ALONE_MAX_DEPTH_M = 10.0
 
 
-def facing_of_depth(
-    depth_m: np.ndarray, camera: Camera, camera_to_frame: np.ndarray, pixels: np.ndarray
-) -> np.ndarray:
-    """Return unit normals towards the camera, float32 [N, 3]; (0, 0, 0) without a normal.
+class SurfacePoints(NamedTuple):
+    """The surface points of a depth image."""
+
+    points_m: np.ndarray  # float32 [N, 3]
+    normals: np.ndarray  # float32 [N, 3], unit vectors towards the camera; (0, 0, 0) if unknown
+    weight: np.ndarray  # float32 [N], the area of each pixel in square metres
+    pixels: np.ndarray  # int32 [N], increasing indices of the flattened image
+
+
+def lift_depth(
+    depth_m: np.ndarray, camera: Camera, camera_to_frame: np.ndarray, limit_m: float
+) -> SurfacePoints:
+    """Return the surface points of a depth image in the target frame of a pose.
 
     Args:
         depth_m: Depth along the optical axis in metres, float32 [H, W]; 0 is missing.
         camera: Intrinsics of the depth camera.
-        camera_to_frame: 4x4 pose of the depth camera; the normals are in its target frame.
-        pixels: Flat indices of the requested pixels, int32 [N].
+        camera_to_frame: 4x4 pose of the depth camera.
+        limit_m: Depth in metres beyond which pixels are ignored.
     """
     side = max(1, round(camera.width_px / SQUARES_WIDE))
-    means = _square_means(depth_m, pixel_rays(camera), side)
-    turn = np.ascontiguousarray(camera_to_frame[:3, :3], np.float64)
-    return _spread(_normals(means), turn, pixels, camera.width_px, side)
+    rays, pose = pixel_rays(camera), camera_to_frame.astype(np.float64)
+    limit = np.float32(limit_m)
+    normals = _normals(_square_means(depth_m, rays, side, limit), pose)
+    pixel_area = np.float32(camera.fx_px * camera.fy_px)
+    return SurfacePoints(*_lift(depth_m, rays, pose, normals, side, limit, pixel_area))
 
 
 @njit
-def _square_means(depth_m, rays, side):
+def _square_means(depth_m, rays, side, limit):
     """Return the mean point of each square, float32 [h, w, 3]; z is 0 at surface jumps."""
     high, wide = -(-depth_m.shape[0] // side), -(-depth_m.shape[1] // side)
     means = np.zeros((high, wide, 3), np.float32)
     for i in range(high):
         for j in range(wide):
-            count, x, y, total, near, far = 0, 0.0, 0.0, 0.0, np.inf, 0.0
+            count, x, y, total = 0, 0.0, 0.0, 0.0
+            near, far = np.float32(np.inf), np.float32(0)
             for v in range(i * side, min((i + 1) * side, depth_m.shape[0])):
                 for u in range(j * side, min((j + 1) * side, depth_m.shape[1])):
                     z = depth_m[v, u]
-                    if z > 0:
+                    if 0 < z <= limit:
                         count += 1
                         x += rays[v, u, 0] * z
                         y += rays[v, u, 1] * z
                         total += z
                         near, far = min(near, z), max(far, z)
-            if 2 * count >= side * side and far - near < 2.5 * JUMP_SHARE * near:
-                means[i, j] = x / count, y / count, total / count
+            is_whole = np.float64(far) - near < 2.5 * JUMP_SHARE * near
+            if 2 * count >= side * side and is_whole:
+                means[i, j, 0], means[i, j, 1] = x / count, y / count
+                means[i, j, 2] = total / count
     return means
 
 
-@njit
+@inlined
 def _reach(means, i, j, down, across):
     """Return the number of squares, at most REACH, over which the surface continues."""
     steps = 0
@@ -84,9 +98,16 @@ def _reach(means, i, j, down, across):
 
 
 @njit
-def _normals(means):
-    """Return unit normals towards the camera, float32 [h, w, 3]."""
+def _normals(means, pose):
+    """Return the unit normal of each square, turned by a pose, float32 [h, w, 3]."""
     result = np.zeros(means.shape, np.float32)
+    _fill_normals(means, pose, result)
+    return result
+
+
+@lean
+def _fill_normals(means, pose, result):
+    """Write the normals of the squares that have one, towards the camera and then turned."""
     for i in range(means.shape[0]):
         for j in range(means.shape[1]):
             if means[i, j, 2] == 0:
@@ -95,38 +116,74 @@ def _normals(means):
             left, right = _reach(means, i, j, 0, -1), _reach(means, i, j, 0, 1)
             if up + down == 0 or left + right == 0:
                 continue
-            a = means[i + down, j] - means[i - up, j]
-            b = means[i, j + right] - means[i, j - left]
-            x = a[1] * b[2] - a[2] * b[1]
-            y = a[2] * b[0] - a[0] * b[2]
-            z = a[0] * b[1] - a[1] * b[0]
+            x, y, z = _cross(
+                _between(means, i - up, j, i + down, j), _between(means, i, j - left, i, j + right)
+            )
             length = np.sqrt(x * x + y * y + z * z)
             if length < 1e-12:
                 continue
             if x * means[i, j, 0] + y * means[i, j, 1] + z * means[i, j, 2] > 0:
                 length = -length
-            result[i, j] = x / length, y / length, z / length
-    return result
+            x, y, z = np.float32(x / length), np.float32(y / length), np.float32(z / length)
+            for axis in range(3):
+                result[i, j, axis] = pose[axis, 0] * x + pose[axis, 1] * y + pose[axis, 2] * z
+
+
+@inlined
+def _between(means, i, j, k, m):
+    """Return the vector from the mean point of square (i, j) to that of square (k, m)."""
+    return (
+        means[k, m, 0] - means[i, j, 0],
+        means[k, m, 1] - means[i, j, 1],
+        means[k, m, 2] - means[i, j, 2],
+    )
+
+
+@inlined
+def _cross(a, b):
+    """Return the cross product of two vectors."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
 
 
 @njit
-def _spread(normals, turn, pixels, width_px, side):
-    """Return the rotated normal of the square of each pixel."""
-    turned = np.zeros(normals.shape, np.float32)
-    for i in range(normals.shape[0]):
+def _lift(depth_m, rays, pose, normals, side, limit, pixel_area):
+    """Return the points, normals, weights and pixels of ``SurfacePoints``."""
+    count = depth_m.size
+    points, facing = np.empty((count, 3), np.float32), np.empty((count, 3), np.float32)
+    weight, pixels = np.empty(count, np.float32), np.empty(count, np.int32)
+    found = _lift_pixels(
+        depth_m, rays, pose, normals, side, (limit, pixel_area), points, facing, weight, pixels
+    )
+    return points[:found], facing[:found], weight[:found], pixels[:found]
+
+
+@lean
+def _lift_pixels(depth_m, rays, pose, normals, side, values, points, facing, weight, pixels):
+    """Fill the arrays of ``SurfacePoints`` and return the number of points."""
+    limit, pixel_area = values
+    n = 0
+    for v in range(depth_m.shape[0]):
+        i = v // side
         for j in range(normals.shape[1]):
-            for axis in range(3):
-                value = 0.0
-                for other in range(3):
-                    value += turn[axis, other] * normals[i, j, other]
-                turned[i, j, axis] = value
-    result = np.empty((len(pixels), 3), np.float32)
-    for n in range(len(pixels)):
-        v = pixels[n] // width_px
-        i, j = v // side, (pixels[n] - v * width_px) // side
-        for axis in range(3):
-            result[n, axis] = turned[i, j, axis]
-    return result
+            a, b, c = normals[i, j, 0], normals[i, j, 1], normals[i, j, 2]
+            for u in range(j * side, min((j + 1) * side, depth_m.shape[1])):
+                z = depth_m[v, u]
+                if not 0 < z <= limit:
+                    continue
+                x, y = rays[v, u, 0] * z, rays[v, u, 1] * z
+                for axis in range(3):
+                    points[n, axis] = (
+                        pose[axis, 0] * x + pose[axis, 1] * y + pose[axis, 2] * z + pose[axis, 3]
+                    )
+                facing[n, 0], facing[n, 1], facing[n, 2] = a, b, c
+                weight[n] = z * z / pixel_area
+                pixels[n] = v * depth_m.shape[1] + u
+                n += 1
+    return n
 
 
 class PointVotes(NamedTuple):
@@ -222,10 +279,8 @@ class DepthPredictor:
         if camera is None or depth_m is None:
             raise ValueError(f"view {view.name} has no depth map")
         limit_m = self.max_depth_m or (ALONE_MAX_DEPTH_M if alone else MAX_DEPTH_M)
-        near_m = np.where(depth_m <= limit_m, depth_m, np.float32(0))
         camera_to_scan = view.depth_camera_to_scan
-        points_m, pixels = unproject_depth(near_m, camera, camera_to_scan)
-        depths = near_m.reshape(-1)[pixels]
+        points_m, normals, weight, pixels = lift_depth(depth_m, camera, camera_to_scan, limit_m)
         colour_px = _colour_pixels(view, points_m, pixels)
         colour, labels = _look_up(view, colour_px)
         if view.label_ids is not None and colour_px is not None and scan_to_room is not None:
@@ -238,9 +293,9 @@ class DepthPredictor:
             view=view.name,
             camera_m=camera_to_scan[:3, 3],
             points_m=points_m,
-            weight=depths * depths / np.float32(camera.fx_px * camera.fy_px),
+            weight=weight,
             colour=colour,
-            normals=facing_of_depth(near_m, camera, camera_to_scan, pixels),
+            normals=normals,
             labels=labels,
             trust=_trust(view, pixels),
             votes=None if votes is None else votes.shares.astype(np.float16),
@@ -277,7 +332,7 @@ def _colour_pixels(view: View, points_m: np.ndarray, pixels: np.ndarray) -> np.n
     if view.colour is None or view.colour_camera is None or view.depth_camera is None:
         return None
     if np.array_equal(view.depth_to_colour, np.eye(4)):
-        return _shared_place_map(view.depth_camera, view.colour_camera)[pixels]
+        return _taken(_shared_place_map(view.depth_camera, view.colour_camera), pixels)
     in_camera_m = apply(invert_rigid(view.camera_to_scan), points_m.astype(np.float64))
     return _nearest_pixels(project(in_camera_m, view.colour_camera), view.colour_camera)
 
@@ -291,12 +346,21 @@ def _look_up(view: View, colour_px: np.ndarray | None):
 
 
 @njit
+def _taken(values, rows):
+    """Return the rows of an array [P], which numpy copies slower."""
+    result = np.empty(len(rows), values.dtype)
+    for n in range(len(rows)):
+        result[n] = values[rows[n]]
+    return result
+
+
+@njit
 def _gather(values, rows):
-    """Return the rows of an array [P, 3], which numpy copies five times slower."""
+    """Return the rows of an array [P, 3], which numpy copies slower."""
     result = np.empty((len(rows), 3), values.dtype)
     for n in range(len(rows)):
-        for channel in range(3):
-            result[n, channel] = values[rows[n], channel]
+        row = rows[n]
+        result[n, 0], result[n, 1], result[n, 2] = values[row, 0], values[row, 1], values[row, 2]
     return result
 
 
