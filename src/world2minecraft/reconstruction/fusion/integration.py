@@ -439,7 +439,8 @@ def _carve_ray(camera, target, rules: ViewRules, blocks: BlockTable, cells: Cell
     k, step_k, at_k, gap_k = _first_edge(camera[2], z / length)
     entry = 0.0
     while entry < end:
-        leave = min(at_i, at_j, at_k)
+        is_i, is_j = at_i <= at_j and at_i <= at_k, at_j <= at_k
+        leave = at_i if is_i else (at_j if is_j else at_k)
         if (entry + leave) / 2 < end:
             place = place_of(i, j, k, blocks)
             if cells.mark[place] < base:
@@ -447,13 +448,12 @@ def _carve_ray(camera, target, rules: ViewRules, blocks: BlockTable, cells: Cell
                     -rules.limit_log_odds, cells.log_odds[place] + rules.free_log_odds
                 )
                 cells.mark[place] = base
-        # Written without branches: which edge comes first cannot be predicted.
-        is_i = at_i == leave
-        is_j = at_j == leave and not is_i
-        is_k = not (is_i or is_j)
-        i, at_i = (i + step_i if is_i else i), (at_i + gap_i if is_i else at_i)
-        j, at_j = (j + step_j if is_j else j), (at_j + gap_j if is_j else at_j)
-        k, at_k = (k + step_k if is_k else k), (at_k + gap_k if is_k else at_k)
+        if is_i:
+            i, at_i = i + step_i, at_i + gap_i
+        elif is_j:
+            j, at_j = j + step_j, at_j + gap_j
+        else:
+            k, at_k = k + step_k, at_k + gap_k
         entry = leave
 
 
