@@ -23,7 +23,6 @@ from world2minecraft.reconstruction.fusion.voxel_blocks import (
 )
 
 FIRST_CELLS = 1024  # Memory for the cells of a view grows from here.
-_NO_RUN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0)
 _ZERO = (0.0, 0.0, 0.0)
 _NO_NORMAL = (np.float32(0), np.float32(0), np.float32(0))
 
@@ -203,40 +202,43 @@ def _first_sums(sums: CellSums, count):
 
 
 @inlined
-def _add_run(sums: CellSums, s, side, points, run, offset, normal_sum, voxel_m):
-    """Add the sums of a run of points of one cell that face one side."""
-    x, y, z, away, area, trust, red, green, blue = run
-    sums.hits[s] += points
+def _add_run(run, points: ViewPoints, normal_sum, at, place: ViewPlace, sums: CellSums):
+    """Add a run of points of one cell that face one side: first, end, cell number and side."""
+    first, end, s, f = run
+    target, colour, faces = sums.target, sums.colour, sums.faces
+    x, y, z, away, area, trust = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    off_x, off_y, off_z = faces[s, f, 1], faces[s, f, 2], faces[s, f, 3]
+    for n in range(first, end):
+        a, b, c = points.cells[n, 0], points.cells[n, 1], points.cells[n, 2]
+        x, y, z = x + a, y + b, z + c
+        off_x += (a - at[0] - 0.5) * place.voxel_m
+        off_y += (b - at[1] - 0.5) * place.voxel_m
+        off_z += (c - at[2] - 0.5) * place.voxel_m
+        i, j, k = a - place.camera[0], b - place.camera[1], c - place.camera[2]
+        away += np.sqrt(i * i + j * j + k * k)
+        area += points.weight[n]
+    if len(points.trust) > 0:
+        for n in range(first, end):
+            trust += points.trust[n]
+    if len(points.colour) > 0:
+        red, green, blue = 0, 0, 0
+        for n in range(first, end):
+            red += np.int64(points.colour[n, 0])
+            green += np.int64(points.colour[n, 1])
+            blue += np.int64(points.colour[n, 2])
+        colour[s, 0], colour[s, 1] = colour[s, 0] + red, colour[s, 1] + green
+        colour[s, 2] += blue
+    sums.hits[s] += end - first
     sums.area[s] += area
     sums.trust[s] += trust
-    target, colour, faces = sums.target, sums.colour, sums.faces
     target[s, 0], target[s, 1] = target[s, 0] + x, target[s, 1] + y
     target[s, 2] += z
-    colour[s, 0], colour[s, 1] = colour[s, 0] + red, colour[s, 1] + green
-    colour[s, 2] += blue
-    faces[s, side, 0] += points
-    faces[s, side, 1], faces[s, side, 2], faces[s, side, 3] = offset
-    faces[s, side, 4] += normal_sum[0]
-    faces[s, side, 5] += normal_sum[1]
-    faces[s, side, 6] += normal_sum[2]
-    faces[s, side, 7] += away * voxel_m
-
-
-@inlined
-def _longer_run(run, n, points: ViewPoints, camera):
-    """Return the sums of a run of points with another point."""
-    sum_x, sum_y, sum_z, away, area, trust, red, green, blue = run
-    x, y, z = points.cells[n, 0], points.cells[n, 1], points.cells[n, 2]
-    a, b, c = x - camera[0], y - camera[1], z - camera[2]
-    if len(points.colour) > 0:
-        red += np.int64(points.colour[n, 0])
-        green += np.int64(points.colour[n, 1])
-        blue += np.int64(points.colour[n, 2])
-    if len(points.trust) > 0:
-        trust += points.trust[n]
-    away += np.sqrt(a * a + b * b + c * c)
-    area += points.weight[n]
-    return sum_x + x, sum_y + y, sum_z + z, away, area, trust, red, green, blue
+    faces[s, f, 0] += end - first
+    faces[s, f, 1], faces[s, f, 2], faces[s, f, 3] = off_x, off_y, off_z
+    faces[s, f, 4] += normal_sum[0]
+    faces[s, f, 5] += normal_sum[1]
+    faces[s, f, 6] += normal_sum[2]
+    faces[s, f, 7] += away * place.voxel_m
 
 
 @njit
@@ -273,10 +275,10 @@ def sum_cells(points: ViewPoints, place: ViewPlace, blocks: BlockTable, mark, ba
 def _sum_points(points, place, blocks, mark, base, owner, places, sums, done, count):
     """Sum the points from ``done`` on, as long as there is memory for their cells.
 
-    Neighbouring points mostly lie in one cell, face one side and have one normal. The sums of such
-    a run are held in variables. Returns the number of points done and the number of cells.
+    Neighbouring points mostly lie in one cell and face one side, and many share a normal. Such a
+    run is added at once. Returns the number of points done and the number of cells.
     """
-    s, f, at, offset, run, normal_sum = -1, -1, _ZERO, _ZERO, _NO_RUN, _ZERO
+    s, f, at, normal_sum = -1, -1, _ZERO, _ZERO
     normal, behind, side, turned, begun = _NO_NORMAL, _ZERO, 0, done, done
     first = done
     while done < len(owner):
@@ -291,8 +293,8 @@ def _sum_points(points, place, blocks, mark, base, owner, places, sums, done, co
         if moved or side != f:
             if s >= 0:
                 normal_sum = _plus(normal_sum, done - turned, normal)
-                _add_run(sums, s, f, done - begun, run, offset, normal_sum, place.voxel_m)
-            run, normal_sum, f, begun, turned = _NO_RUN, _ZERO, side, done, done
+                _add_run((begun, done, s, f), points, normal_sum, at, place, sums)
+            normal_sum, f, begun, turned = _ZERO, side, done, done
             if moved:
                 index = place_of(int(here[0]), int(here[1]), int(here[2]), blocks)
                 if mark[index] <= base:
@@ -302,18 +304,11 @@ def _sum_points(points, place, blocks, mark, base, owner, places, sums, done, co
                     places[count] = index
                     count += 1
                 s, at = mark[index] - base - 1, here
-            offset = sums.faces[s, f, 1], sums.faces[s, f, 2], sums.faces[s, f, 3]
         owner[done] = s
-        offset = (
-            offset[0] + (x - at[0] - 0.5) * place.voxel_m,
-            offset[1] + (y - at[1] - 0.5) * place.voxel_m,
-            offset[2] + (z - at[2] - 0.5) * place.voxel_m,
-        )
-        run = _longer_run(run, done, points, place.camera)
         done += 1
     if s >= 0:
         normal_sum = _plus(normal_sum, done - turned, normal)
-        _add_run(sums, s, f, done - begun, run, offset, normal_sum, place.voxel_m)
+        _add_run((begun, done, s, f), points, normal_sum, at, place, sums)
     return done, count
 
 
