@@ -99,7 +99,7 @@ def rival_of(views: Sequence[View], voxel_m: float, open3d: ModuleType) -> Calla
     frames = [
         (
             vision.Image(core.Tensor(np.ascontiguousarray(view.depth_m))),
-            vision.Image(core.Tensor(view.colour.astype(np.float32) / 255)),
+            vision.Image(core.Tensor(np.asarray(view.colour, np.float32) / 255)),
             core.Tensor(intrinsics(view.depth_camera)),
             core.Tensor(intrinsics(view.colour_camera)),
             core.Tensor(np.linalg.inv(view.depth_camera_to_scan)),
