@@ -56,7 +56,8 @@ def _run(
         read_colour(known)
     if start == "report":
         as_before = resume_parameters(out, start, STAGES, chosen).parameters
-        scan = read_registered(prepare_and_open(capture, out, as_before, labels, progress), out)
+        opened = prepare_and_open(capture, out, as_before, labels, progress, registered=True)
+        scan = read_registered(opened, out)
     else:
         scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
     return write_report(out, scan, truth=truth, progress=progress)

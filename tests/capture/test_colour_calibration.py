@@ -1,5 +1,6 @@
 """The colour camera is found where it is another, and left alone where it is the same."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 from PIL import Image
 
 from world2minecraft.capture import open_scan
-from world2minecraft.capture.calibration import estimate_colour_camera
+from world2minecraft.capture.calibration import corrected_camera, estimate_colour_camera
 from world2minecraft.core.types import Camera, View
+from world2minecraft.formats.scan_record import write_scan
 
 DEPTH = Camera(320, 240, 270.0, 270.0, 160.0, 120.0)
 
@@ -39,7 +41,7 @@ def test_another_lens_is_found(box_room, scale, shift):
     assert found.scale == pytest.approx(scale, abs=0.011)
     assert found.shift_x_px == pytest.approx(shift, abs=2)
     assert found.shift_y_px == pytest.approx(0, abs=1.5)
-    applied = found.applied(DEPTH)
+    applied = corrected_camera(DEPTH, found.correction)
     assert applied.fx_px == pytest.approx(270 * found.scale)
     assert applied.cx_px == pytest.approx(160 + found.shift_x_px)
 
@@ -67,6 +69,21 @@ def test_the_real_kitchen_has_its_known_colour_camera(shared_data):
     assert any("colour camera is estimated from edges" in note for note in scan.notes)
     stated = open_scan(shared_data / "redkitchen_rgbd", options={"colour_camera": "stated"})
     assert next(iter(stated.views)).colour_camera.fx_px == 585
+
+
+def test_a_recorded_scan_is_opened_without_estimating(shared_data, tmp_path, monkeypatch):
+    kitchen = shared_data / "redkitchen_rgbd"
+    first = open_scan(kitchen)
+    write_scan(tmp_path / "scan.json", first)
+    module = sys.modules["world2minecraft.capture.open_scan"]
+    monkeypatch.setattr(module, "align", None)
+    monkeypatch.setattr(module, "estimate_colour_camera", None)
+    again = open_scan(kitchen, recorded=tmp_path / "scan.json")
+    assert again.colour_correction == first.colour_correction != (1, 0, 0)
+    assert again.notes == first.notes and again.frame_sigmas == first.frame_sigmas
+    assert np.array_equal(again.scan_to_room, first.scan_to_room)
+    one, other = next(iter(first.views)), next(iter(again.views))
+    assert one.colour_camera == other.colour_camera and one.depth_camera == other.depth_camera
 
 
 def test_a_synthetic_living_room_of_others_stays_as_stated(shared_data):

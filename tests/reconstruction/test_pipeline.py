@@ -123,6 +123,16 @@ def test_from_build_keeps_what_came_before(out, capture, tmp_path, capsys):
     }
 
 
+def test_later_stages_use_the_recorded_alignment(out, capture, tmp_path, monkeypatch):
+    shutil.copytree(out, tmp_path / "again")
+    before = digests(out)
+    monkeypatch.setattr(sys.modules["world2minecraft.capture.open_scan"], "align", None)
+    words = ["reconstruct", str(capture), "--out", str(tmp_path / "again"), "--from"]
+    for stage in ("label", "report"):
+        assert w2m([*words, stage]) == 0
+        assert digests(tmp_path / "again") == before
+
+
 def test_from_tells_the_settings_of_the_stages_that_it_keeps(out, capture, tmp_path, capsys):
     shutil.copytree(out, tmp_path / "again")
     words = ["reconstruct", str(capture), "--out", str(tmp_path / "again"), "--from"]

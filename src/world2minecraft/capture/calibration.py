@@ -51,15 +51,22 @@ class ColourCameraEstimate:
     gain: float
     clear: bool
 
-    def applied(self, camera: Camera) -> Camera:
-        """Return the stated camera corrected by the estimate."""
-        return replace(
-            camera,
-            fx_px=camera.fx_px * self.scale,
-            fy_px=camera.fy_px * self.scale,
-            cx_px=camera.cx_px + self.shift_x_px,
-            cy_px=camera.cy_px + self.shift_y_px,
-        )
+    @property
+    def correction(self) -> tuple[float, float, float]:
+        """The factor and the shifts as ``Scan.colour_correction``."""
+        return float(self.scale), float(self.shift_x_px), float(self.shift_y_px)
+
+
+def corrected_camera(camera: Camera, correction: tuple[float, float, float]) -> Camera:
+    """Return a stated colour camera with a ``Scan.colour_correction`` applied."""
+    scale, right_px, down_px = correction
+    return replace(
+        camera,
+        fx_px=camera.fx_px * scale,
+        fy_px=camera.fy_px * scale,
+        cx_px=camera.cx_px + right_px,
+        cy_px=camera.cy_px + down_px,
+    )
 
 
 @dataclass(frozen=True)

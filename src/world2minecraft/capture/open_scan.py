@@ -6,17 +6,19 @@ from dataclasses import replace
 from pathlib import Path
 
 from world2minecraft.capture.alignment.room_frame import Alignment, ImplausibleRoomError, align
-from world2minecraft.capture.calibration import estimate_colour_camera
+from world2minecraft.capture.calibration import corrected_camera, estimate_colour_camera
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.validation import ValidatedCapture, evenly_spaced, validate_capture
 from world2minecraft.capture.view_stream import CaptureViews, without_colour
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
+from world2minecraft.formats.scan_record import read_alignment
 
 ALIGNMENT_FRAMES = 24  # With all 40 frames of the kitchen, its floor moved by under 2 mm.
 CALIBRATION_FRAMES = 12  # Ten gave the kitchen's focal length to 0.3 %, whichever ten.
 MAX_CELLS = 40_000_000  # A grid of 400 x 400 x 250; its evidence takes about 2.5 GB.
+NO_CORRECTION = (1.0, 0.0, 0.0)
 STAGE = "scan"
 PROGRESS_STEPS = 100
 
@@ -28,6 +30,7 @@ def open_scan(
     labels: Path | None = None,
     progress: Progress = no_progress,
     options: Mapping[str, str] | None = None,
+    recorded: Path | None = None,
 ) -> Scan:
     """Open a capture: detect its format, validate its frames and align its room.
 
@@ -39,9 +42,12 @@ def open_scan(
         progress: Callback for the progress of the stage ``scan``.
         options: Capture options such as ``depth_unit``, ``every`` and ``colour_camera``; see
             ``ScanOptions``.
+        recorded: ``scan.json`` of an earlier run, whose alignment, notes and correction of the
+            colour camera are used instead of being estimated.
 
     Raises:
         CaptureError: If the capture cannot be used.
+        DamagedFileError: If ``recorded`` does not contain a valid alignment.
         LimitError: If an image is too large.
         UsageError: If an option is not valid.
     """
@@ -61,13 +67,22 @@ def open_scan(
             f"contains no {lacks}; use w2m reconstruct, which computes them from the images",
         )
     stream = CaptureViews(validated.frames, validated.encoding, validated.capture.full_trust)
-    notes = list(validated.notes)
+    notes, correction = list(validated.notes), NO_CORRECTION
+    earlier = read_alignment(recorded) if recorded is not None else None
     if validated.capture.one_matrix and chosen.colour_camera == "auto":
         progress(STAGE, 40, PROGRESS_STEPS, "estimating the colour camera")
-        stream, found = _estimate_colour_camera(stream)
-        notes.append(found)
-    progress(STAGE, 60, PROGRESS_STEPS, "estimating gravity and walls")
-    alignment = _align(validated, stream)
+        if earlier is not None and earlier.colour_correction is not None:
+            correction = earlier.colour_correction
+        else:
+            correction, found = _estimate_colour_camera(stream)
+            notes.append(found)
+        stream = _with_colour_camera(stream, correction)
+    if earlier is not None:
+        notes = []  # They are among the recorded ones.
+        alignment = Alignment(*earlier[:4])
+    else:
+        progress(STAGE, 60, PROGRESS_STEPS, "estimating gravity and walls")
+        alignment = _align(validated, stream)
     check_cell_count(alignment, voxel_m)
     progress(STAGE, PROGRESS_STEPS, PROGRESS_STEPS)
     return Scan(
@@ -84,25 +99,22 @@ def open_scan(
         world_up=validated.capture.world_up,
         frame_sigmas=alignment.sigmas,
         source_to_scan=validated.capture.source_to_scan,
+        colour_correction=correction,
     )
 
 
-def _estimate_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
-    """Return the stream with the estimated colour camera if the estimate is clear, and a note."""
+def _estimate_colour_camera(stream: CaptureViews) -> tuple[tuple[float, float, float], str]:
+    """Return the correction of the colour camera, if the estimate is clear, and a note."""
     both = [frame for frame in stream.frames if frame.depth_path and frame.colour_path]
     estimate = estimate_colour_camera(stream.read(evenly_spaced(both, CALIBRATION_FRAMES)))
     if estimate is None:
-        return stream, (
+        return NO_CORRECTION, (
             "too few depth edges to check the colour camera; using the stated intrinsics"
         )
     if not estimate.clear:
-        return stream, "depth edges match colour edges; using the stated intrinsics for colour"
-    frames = tuple(
-        replace(frame, colour_camera=estimate.applied(frame.colour_camera))
-        if frame.colour_camera
-        else frame
-        for frame in stream.frames
-    )
+        return NO_CORRECTION, (
+            "depth edges match colour edges; using the stated intrinsics for colour"
+        )
     stated = next(frame.colour_camera for frame in both if frame.colour_camera)
     note = (
         f"the colour camera is estimated from edges: focal length {estimate.scale:.3f} "
@@ -110,7 +122,22 @@ def _estimate_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
         f"({estimate.shift_x_px:+.1f}, {estimate.shift_y_px:+.1f}) px; held-out frames "
         f"match {estimate.gain:.1f} times better"
     )
-    return CaptureViews(frames, stream.encoding, stream.full_trust), note
+    return estimate.correction, note
+
+
+def _with_colour_camera(
+    stream: CaptureViews, correction: tuple[float, float, float]
+) -> CaptureViews:
+    """Return a stream whose colour cameras are corrected."""
+    if correction == NO_CORRECTION:
+        return stream
+    frames = tuple(
+        replace(frame, colour_camera=corrected_camera(frame.colour_camera, correction))
+        if frame.colour_camera
+        else frame
+        for frame in stream.frames
+    )
+    return CaptureViews(frames, stream.encoding, stream.full_trust)
 
 
 def _align(validated: ValidatedCapture, stream: CaptureViews) -> Alignment:

@@ -7,7 +7,7 @@ scan, applied on the left of the frame's pose; ``depth_scale`` float64 [F], a fa
 from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -58,6 +58,7 @@ def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | N
             "scan_to_room": scan.scan_to_room.tolist(),
             "source_to_scan": scan.source_to_scan.tolist(),
             "room_size_m": scan.room_size_m.tolist(),
+            "colour_correction": list(scan.colour_correction),
             "frame_sigmas": None if scan.frame_sigmas is None else asdict(scan.frame_sigmas),
             "frames_used": list(scan.frames_used),
             "frames_skipped": [{"frame": n, "reason": r} for n, r in scan.frames_skipped],
@@ -148,8 +149,26 @@ def read_depth_kind(path: str | Path) -> str:
     return str(found.get("depth_kind", "sensor"))
 
 
-def with_recorded_alignment(scan: Scan, path: str | Path) -> Scan:
-    """Return a scan with the alignment and the notes recorded in a ``scan.json``.
+class RecordedAlignment(NamedTuple):
+    """What opening and registering a capture determined, as recorded in a ``scan.json``.
+
+    Attributes:
+        scan_to_room: Transform to the room frame, float64 [4, 4].
+        room_size_m: Size of the room in metres, float64 [3].
+        notes: Remarks of all stages up to fusion.
+        sigmas: Uncertainty of the frame, or None.
+        colour_correction: ``Scan.colour_correction``; None in files of version 0.1.
+    """
+
+    scan_to_room: np.ndarray
+    room_size_m: np.ndarray
+    notes: tuple[str, ...]
+    sigmas: FrameSigmas | None
+    colour_correction: tuple[float, float, float] | None
+
+
+def read_alignment(path: str | Path) -> RecordedAlignment:
+    """Read the alignment recorded in a ``scan.json``.
 
     Raises:
         InputError: If the file does not exist.
@@ -157,17 +176,46 @@ def with_recorded_alignment(scan: Scan, path: str | Path) -> Scan:
     """
     try:
         found = read_json(path)
-        return replace(
-            scan,
-            scan_to_room=np.array(found["scan_to_room"], np.float64),
-            room_size_m=read_room_size(path),
-            notes=tuple(str(note) for note in found["notes"]),
-            frame_sigmas=_frame_sigmas(found.get("frame_sigmas")),
+        return RecordedAlignment(
+            np.array(found["scan_to_room"], np.float64),
+            read_room_size(path),
+            tuple(str(note) for note in found["notes"]),
+            _frame_sigmas(found.get("frame_sigmas")),
+            _colour_correction(found.get("colour_correction")),
         )
     except MALFORMED as error:
         raise DamagedFileError(
             path, f"does not contain a valid room alignment ({error})"
         ) from error
+
+
+def with_recorded_alignment(scan: Scan, path: str | Path) -> Scan:
+    """Return a scan with the alignment and the notes recorded in a ``scan.json``.
+
+    Raises the exceptions of ``read_alignment``.
+    """
+    found = read_alignment(path)
+    try:
+        return replace(
+            scan,
+            scan_to_room=found.scan_to_room,
+            room_size_m=found.room_size_m,
+            notes=found.notes,
+            frame_sigmas=found.sigmas,
+        )
+    except MALFORMED as error:
+        raise DamagedFileError(
+            path, f"does not contain a valid room alignment ({error})"
+        ) from error
+
+
+def _colour_correction(stated: Any) -> tuple[float, float, float] | None:
+    if stated is None:
+        return None
+    scale, right, down = checks.floats("colour_correction", stated, (3,)).tolist()
+    if scale <= 0:
+        raise ValueError(f"the factor of colour_correction must be above 0, got {scale}")
+    return scale, right, down
 
 
 def _frame_sigmas(stated: Any) -> FrameSigmas | None:

@@ -85,10 +85,11 @@ def reconstruct(
     run = RunFolder(out, STAGES, start)
     resumed = resume_parameters(out, start, STAGES, parameters or Parameters())
     chosen = resumed.parameters
-    early = start is None or STAGES.index(start) <= STAGES.index("fuse")
-    network = _predictor(chosen) if early else None
+    first = 0 if start is None else STAGES.index(start)
+    network = _predictor(chosen) if first <= STAGES.index("fuse") else None
+    registered = first > STAGES.index("register")
     with run.timed("scan"):
-        scan = prepare_and_open(capture, out, chosen, labels, progress)
+        scan = prepare_and_open(capture, out, chosen, labels, progress, registered=registered)
     stated = manifest(capture, labels, chosen, out)
     run.begin(resume_manifest(out, start, stated, resumed))
     if run.needs("scan"):

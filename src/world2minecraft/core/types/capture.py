@@ -171,7 +171,9 @@ class Scan:
     ``world_up`` is a unit vector in the scan frame if the capture records the up direction.
     ``frame_sigmas`` is None if the capture states the room frame. ``source_to_scan`` transforms the
     coordinates of the capture's files to the scan frame: a shift for georeferenced poses, also a
-    change of axes and a scale for meshes.
+    change of axes and a scale for meshes. ``colour_correction`` is the factor of the stated focal
+    length of the colour camera and the shifts of its principal point in pixels, to the right and
+    downward.
     """
 
     views: ViewStream
@@ -188,6 +190,7 @@ class Scan:
     world_up: np.ndarray | None = None
     frame_sigmas: FrameSigmas | None = None
     source_to_scan: np.ndarray = field(default_factory=lambda: IDENTITY)
+    colour_correction: tuple[float, float, float] = (1.0, 0.0, 0.0)
 
     def __post_init__(self):
         put = object.__setattr__

@@ -222,15 +222,25 @@ def prepare_and_open(
     chosen: Parameters,
     labels: Path | None = None,
     progress: Progress = no_progress,
+    *,
+    registered: bool = False,
 ) -> Scan:
     """Open a capture, computing missing poses and depth in ``out`` first.
+
+    If it was ``registered`` in ``out`` before, the recorded alignment is used.
 
     Raises the exceptions of ``prepare_capture`` and ``open_scan``.
     """
     complete = prepare_capture(capture, out, chosen, progress)
     options = chosen.capture if complete == capture else {}  # Else they were heeded already.
+    recorded = out / "scan.json"
     scan = open_scan(
-        complete, voxel_m=chosen.voxel_m, labels=labels, progress=progress, options=options
+        complete,
+        voxel_m=chosen.voxel_m,
+        labels=labels,
+        progress=progress,
+        options=options,
+        recorded=recorded if registered and recorded.is_file() else None,
     )
     return replace(scan, name=scene_name(capture))
 
