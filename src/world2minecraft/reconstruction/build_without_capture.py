@@ -69,7 +69,7 @@ def rebuild(
 
 
 def blocks_of(
-    source: Path, parameters: Parameters, progress: Progress = no_progress
+    source: Path, parameters: Parameters, progress: Progress = no_progress, classes: str = ""
 ) -> BlockVolume:
     """Return the blocks that ``rebuild`` would write, or the blocks that ``source`` contains.
 
@@ -78,10 +78,14 @@ def blocks_of(
             returned unchanged, whatever the parameters.
         parameters: Parameters of the build.
         progress: Callback for progress.
+        classes: Class set of an occupancy grid with other ids than ours.
 
     Raises:
         InputError: If ``source`` cannot be read.
+        UsageError: If classes are given for another source than an occupancy grid.
     """
+    if classes and (source.is_dir() or is_block_file(source)):
+        raise UsageError(f"classes requires an occupancy grid, which {source} is not")
     if is_block_file(source):
         return read_blocks(source)
     if source.is_dir():
@@ -91,7 +95,7 @@ def blocks_of(
         source = source / "room.npz"
     with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
         folder = Path(scratch)
-        _write_grid(folder, source)
+        _write_grid(folder, source, classes)
         for stage in FROM_GRID[:-1]:
             run_stage(stage, folder, parameters, progress)
         return built_volume(folder, parameters)
