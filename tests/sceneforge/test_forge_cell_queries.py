@@ -140,6 +140,7 @@ def test_what_cannot_be_compared_is_said(editor, tmp_path):
         "the scene",
         "../out.npz": "'../out.npz' is outside the scene's folder; copy the file into it",
         "/etc/passwd": "'/etc/passwd' is outside the scene's folder; copy the file into it",
+        "a\0.npz": "invalid file name 'a\\x00.npz'",
     }
     for path, text in said.items():
         with pytest.raises(UsageError) as refusal:

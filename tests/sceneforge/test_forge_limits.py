@@ -55,6 +55,7 @@ BAD = [
     (command(class_id=-float("inf")), "invalid JSON: -Infinity is not allowed in JSON"),
     ("[" * 31, "invalid JSON: "),
     ("9" * 5000, "invalid JSON: "),
+    (command(verb="\ud800"), "invalid JSON: "),
     ('{"op": "set_cells"}', "set_cells: "),
     (command(class_id="8e400"), "set_cells: class_id"),
     (command(cells=[[0, 10**30]]), "cells must be [start, length] pairs of integers"),

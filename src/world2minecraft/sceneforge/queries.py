@@ -50,11 +50,12 @@ from world2minecraft.sceneforge.comparison import (
     read_truth,
 )
 from world2minecraft.sceneforge.scene_sources import OpenedScene
+from world2minecraft.sceneforge.wire_format import counts_json
 
 OPENED, TRUTH = "opened", "truth"
 DECIMALS = 4
 OFFERED = 5
-MIN_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.
+MIN_DOUBT = 0.3  # Less doubtful places are not listed.
 MAX_PLACES = 200
 
 
@@ -196,9 +197,12 @@ def file_within(folder: Path, path: str) -> Path:
     """Return the path of a file in a folder or below it.
 
     Raises:
-        UsageError: If the path leads out of the folder.
+        UsageError: If the path leads out of the folder or contains a null character.
     """
-    place = (folder / path).resolve()
+    try:
+        place = (folder / path).resolve()
+    except ValueError as error:  # A null character.
+        raise UsageError(f"invalid file name {path[:80]!r}") from error
     if not place.is_relative_to(folder.resolve()):
         raise UsageError(f"{path[:80]!r} is outside the scene's folder; copy the file into it")
     return place
@@ -346,7 +350,7 @@ class Counts(Query):
 
     def answer(self, scene: QueriedScene) -> Any:
         """Return ``{"cells": [number for each class id], "objects": number}``."""
-        counts = scene.draft.counts[:12].tolist()
+        counts = counts_json(scene.draft.counts)
         return {"cells": counts, "objects": len(scene.draft.objects)}
 
 

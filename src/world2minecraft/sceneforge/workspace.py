@@ -223,7 +223,7 @@ class Workspace:
             UsageError: If the capture has no room yet.
         """
         kind, _, index = number.partition("-")
-        if kind == "recent" and index.isdecimal():
+        if kind == "recent" and index.isdecimal() and len(index) < 10:
             recent = self.recent()
             if int(index) >= len(recent):
                 known = (f"recent-{n}" for n in range(len(recent)))

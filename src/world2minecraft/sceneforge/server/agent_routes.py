@@ -10,16 +10,18 @@
 import asyncio
 from typing import Any
 
-import numpy as np
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
-from world2minecraft.core.errors import UsageError
-from world2minecraft.sceneforge.agent_walks import Vector, WalkingModels
+from world2minecraft.sceneforge.agent_walks import WalkingModels
 from world2minecraft.sceneforge.build_preview import BuildOptions
 from world2minecraft.sceneforge.server.build_preview_routes import builds_of, check_sentence
-from world2minecraft.sceneforge.server.request_parsing import read_json_object
+from world2minecraft.sceneforge.server.request_parsing import (
+    parse_point,
+    parse_scale,
+    read_json_object,
+)
 
 
 def routes() -> list[BaseRoute]:
@@ -50,8 +52,11 @@ class AgentTurns:
             InputError: If there is no floor to stand on.
         """
         agent, sentence = str(fields.get("agent", "")), check_sentence(fields.get("to", ""))
-        feet_m, look_m = _vector(fields, "feet_m"), _vector(fields, "look_m")
-        guide = await builds_of(request).guide(BuildOptions(_scale(fields)))
+        feet_m, look_m = (
+            parse_point(name, fields.get(name), "[1.5, 2, 0]") for name in ("feet_m", "look_m")
+        )
+        scale = parse_scale(fields.get("blocks_per_metre", 4), int | float)
+        guide = await builds_of(request).guide(BuildOptions(scale))
         async with self._turn:
             return await asyncio.to_thread(
                 self.models.begin, guide, agent, sentence, feet_m, look_m
@@ -85,21 +90,3 @@ async def _step(request: Request) -> Response:
 
 def _turns(request: Request) -> AgentTurns:
     return request.app.state.agent_turns
-
-
-def _scale(fields: dict[str, Any]) -> float:
-    size = fields.get("blocks_per_metre", 4)
-    if not isinstance(size, int | float):
-        raise UsageError(f"blocks_per_metre must be a number such as 4, got {size!r}")
-    return float(size)
-
-
-def _vector(fields: dict[str, Any], name: str) -> Vector:
-    value = fields.get(name)
-    try:
-        x, y, z = (float(number) for number in value)  # type: ignore[union-attr]
-    except (TypeError, ValueError) as error:
-        raise UsageError(f"{name} must be three numbers, such as [1.5, 2, 0]") from error
-    if not np.isfinite([x, y, z]).all():
-        raise UsageError(f"{name} must be three finite numbers, such as [1.5, 2, 0]")
-    return x, y, z

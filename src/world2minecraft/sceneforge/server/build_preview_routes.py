@@ -3,7 +3,7 @@
 =======================  =====================================================================
 ``GET /api/build``       the mesh of a build
 ``GET /api/collision``   what stops a walker in a build, or in the voxels
-``GET /api/way``         the way to a thing: ``to`` is what was typed, ``feet_m`` the place
+``GET /api/way``         the way to an object: ``to`` is the typed text, ``feet_m`` the start
 =======================  =====================================================================
 
 Builds are made by a thread, one at a time, while the scene can still be edited. The last few builds
@@ -33,13 +33,14 @@ from world2minecraft.sceneforge.block_arrays import collision_arrays
 from world2minecraft.sceneforge.build_preview import BlockBuild, BuildOptions, SceneSnapshot
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.jobs.jobs import JobState, describe_error
+from world2minecraft.sceneforge.server.request_parsing import parse_point, parse_scale
 from world2minecraft.sceneforge.session import Session
 from world2minecraft.sceneforge.walk_guide import Feet, WalkGuide
 
 MAGIC = b"W2MC"
 MAX_CACHED = 6  # Packed answers; a room has about a megabyte each.
 MAX_SENTENCE = 200
-NOTIFY_AFTER_S = 1.0  # What is ready by then needs no word.
+NOTIFY_AFTER_S = 1.0  # Faster builds are not announced.
 
 
 def build_collision(build: BlockBuild) -> bytes:
@@ -224,15 +225,10 @@ async def _collision(request: Request) -> Response:
 async def _way(request: Request) -> Response:
     query = request.query_params
     sentence = check_sentence(query.get("to", ""))
-    try:
-        x, y, z = (float(value) for value in query.get("feet_m", "").split(","))
-    except ValueError as error:
-        raise UsageError("feet_m must be three numbers, such as 1.5,2,0") from error
-    if not np.isfinite([x, y, z]).all():
-        raise UsageError("feet_m must be three finite numbers, such as 1.5,2,0")
+    feet_m = parse_point("feet_m", query.get("feet_m", "").split(","), "1.5,2,0")
     # Entities have no blocks of their own: furniture stands where its blocks would.
     options = replace(_options(request), style="blocks")
-    return JSONResponse(await builds_of(request).way(sentence, (x, y, z), options))
+    return JSONResponse(await builds_of(request).way(sentence, feet_m, options))
 
 
 def check_sentence(text: Any) -> str:
@@ -262,11 +258,7 @@ def _options(request: Request) -> BuildOptions:
         UsageError: If an option is invalid.
     """
     query = request.query_params
-    text = query.get("blocks_per_metre", "4")
-    try:
-        size = float(text)
-    except ValueError as error:
-        raise UsageError(f"blocks_per_metre must be a number such as 4, got {text!r}") from error
+    size = parse_scale(query.get("blocks_per_metre", "4"), str)
     return BuildOptions(size, query.get("style", "blocks"))
 
 

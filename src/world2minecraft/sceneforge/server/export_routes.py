@@ -13,6 +13,7 @@ POST /api/build/server           ``{address, password, at, turns, air, ...}``: s
 """
 
 import asyncio
+import re
 import secrets
 from pathlib import Path
 from typing import Any
@@ -35,7 +36,8 @@ from world2minecraft.sceneforge.server.start_routes import DEFAULT_SCALE, SCALES
 from world2minecraft.sceneforge.workspace import Workspace
 
 CHOICES = ("blocks_per_metre", "style", "mc_version")
-MAX_COORDINATE = 30_000_000  # The game's own end of the world.
+EXPORT_ID = re.compile(r"[0-9a-f]{16}")
+MAX_COORDINATE = 30_000_000  # The world border of the game.
 STAGE_SECONDS = {"build": 3.0, "write": 1.0}
 
 
@@ -107,7 +109,7 @@ async def _file(request: Request) -> Response:
 
 
 def _is_export(folder: Path, number: str) -> bool:
-    return number.isalnum() and folder.is_dir()
+    return EXPORT_ID.fullmatch(number) is not None and folder.is_dir()
 
 
 async def _install(request: Request) -> Response:
@@ -141,7 +143,7 @@ def require_this_machine(request: Request) -> None:
     """Check that a request comes from a browser on this machine: folders are its user's.
 
     Raises:
-        UsageError: It comes from another machine.
+        UsageError: If it comes from another machine.
     """
     host = request.client.host if request.client else ""
     if host not in ("127.0.0.1", "::1"):

@@ -22,6 +22,7 @@ MAX_DRAINED_BYTES = 32 << 20  # Larger bodies are refused unread, at the price o
 MAX_DRAIN_S = 20.0
 UPLOADS = "/api/upload"  # Paths that begin so take files.
 STRINGS = re.compile(rb'"(?:[^"\\]|\\.)*"', re.DOTALL)
+SURROGATES = re.compile(rb"\\u[dD][89a-fA-F]|\xed[\xa0-\xbf]")  # Halves of a character.
 
 
 class TooLargeError(Exception):
@@ -104,7 +105,8 @@ def parse_json(data: bytes | str) -> Any:
 
     Raises:
         UsageError: If the text is not valid JSON, contains NaN or infinity, is larger than
-            ``MAX_JSON_BYTES``, or is nested more than ``MAX_JSON_DEPTH`` levels deep.
+            ``MAX_JSON_BYTES``, is nested more than ``MAX_JSON_DEPTH`` levels deep, or contains a
+            surrogate without its pair, which no answer could repeat.
     """
     raw = data.encode("utf-8", "surrogatepass") if isinstance(data, str) else data
     if len(raw) > MAX_JSON_BYTES:
@@ -112,7 +114,10 @@ def parse_json(data: bytes | str) -> Any:
     if _depth(raw) > MAX_JSON_DEPTH:
         raise UsageError(f"the JSON is nested more than {MAX_JSON_DEPTH} levels deep")
     try:
-        return json.loads(raw, parse_constant=_no_constant)
+        value = json.loads(raw, parse_constant=_no_constant)
+        if SURROGATES.search(raw):
+            json.dumps(value, ensure_ascii=False).encode()
+        return value
     except (ValueError, RecursionError) as error:
         raise UsageError(f"invalid JSON: {error}") from error
 

@@ -215,7 +215,7 @@ def check_choice(body: dict[str, Any]) -> dict[str, Any]:
         raise UsageError(f"unknown option {strange[0][:40]!r}; options: {', '.join(known)}")
     try:
         parameters_of_choice(body)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise UsageError(f"an option has the wrong type: {error}") from error
     return body
 
