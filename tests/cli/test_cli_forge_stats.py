@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run
-from world2minecraft.sceneforge.document.effort_log import read_effort
+from world2minecraft.sceneforge.document.effort_log import EffortLog, read_effort
 from world2minecraft.sceneforge.editor import Editor
 
 
@@ -106,3 +106,10 @@ def test_damaged_lines_of_a_log_are_skipped(tmp_path):
     text = "\n".join(map(json.dumps, lines)) + "\n{"
     (tmp_path / "effort.jsonl").write_text(text)
     assert read_effort(tmp_path) == lines[:2]
+
+
+def test_a_log_goes_on_after_a_damaged_line(tmp_path):
+    good = {"step": "do", "time_s": 5.0, "cells": 2, "rev": 3, "kind": "paint", "counts_as": "add"}
+    damaged = {"step": "active", "time_s": 6.0, "rev": "x"}
+    (tmp_path / "effort.jsonl").write_text(f"{json.dumps(good)}\n{json.dumps(damaged)}\n")
+    assert EffortLog(tmp_path).last_rev == 3

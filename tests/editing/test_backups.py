@@ -226,6 +226,17 @@ def test_a_manifest_from_elsewhere_names_no_other_file(world, name):
         list_steps(world)
 
 
+@pytest.mark.parametrize("field", [{"mode": "x"}, {"mode": 0o4755}, {"time_ns": 1 << 70}])
+def test_a_manifest_has_no_other_modes_and_times(world, field):
+    commit_step(world, FILES, "a test")
+    path = world / "w2m_undo/0001/manifest.json"
+    raw = backups.read_json(path)
+    raw["files"][0] |= field
+    backups.write_json(path, raw)
+    with pytest.raises(DamagedFileError, match="is not a valid manifest"):
+        list_steps(world)
+
+
 def test_a_link_out_of_the_world_is_not_followed(world, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (world / "entities").symlink_to(tmp_path / "elsewhere")

@@ -13,7 +13,7 @@ from forge_serving import client, served
 from scipy.spatial import cKDTree
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.errors import InputError, UnknownNameError
+from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
 from world2minecraft.formats.run_arrays import read_evidence, read_room
 from world2minecraft.sceneforge.live_layers import (
     STAGES,
@@ -112,6 +112,15 @@ def test_unknown_and_unfinished_layers_say_so(tmp_path):
     for layer in STAGES:
         with pytest.raises(InputError):
             layer_bytes(tmp_path, layer)
+
+
+def test_damaged_files_of_a_run_are_no_layers(tmp_path):
+    (tmp_path / "manifest.json").write_text('{"finished": 5}')
+    assert finished_layers(tmp_path, 0.0) == []
+    for text in ("[]", '{"cameras": [[1, 2]]}', '{"cameras": "x"}'):
+        (tmp_path / "scan.json").write_text(text)
+        with pytest.raises(DamagedFileError, match="invalid cameras"):
+            layer_bytes(tmp_path, "cameras")
 
 
 def test_the_page_is_served_the_layers_of_a_job(small_run, tmp_path):

@@ -322,6 +322,8 @@ def _read_step(folder: Path) -> Step:
         step = Step(folder, str(raw["state"]), str(raw["what"]), files, tuple(raw["made"]))
         for entry in files:
             _check_path(step.world, entry.path, path)
+            if entry.mode & ~0o777 or abs(entry.time_ns) >> 63:
+                raise ValueError(f"invalid permissions or time of {entry.path}")
         for name in step.made:
             if name not in ("region", "entities", "datapacks") and not re.fullmatch(
                 r"dimensions(/minecraft(/overworld(/(region|entities))?)?)?", name

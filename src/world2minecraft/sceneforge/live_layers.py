@@ -22,7 +22,12 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.errors import InputError, UnknownNameError
+from world2minecraft.core.errors import (
+    MALFORMED,
+    DamagedFileError,
+    InputError,
+    UnknownNameError,
+)
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.evaluation.report.finished_run import read_built
@@ -56,23 +61,22 @@ def finished_layers(run: Path, since_s: float) -> list[str]:
         if place.stat().st_mtime < since_s:
             return []
         finished = read_json(place)["finished"]
+        return [layer for layer, stage in STAGES.items() if stage in finished]
     except (OSError, InputError, KeyError, TypeError):
         return []
-    return [layer for layer, stage in STAGES.items() if stage in finished]
 
 
 def layer_bytes(run: Path, layer: str) -> bytes:
     """Return a layer of a run folder as a packet.
 
     Raises:
-        UnknownNameError: There is no layer of this name.
-        InputError: Its stage is not finished, or its file is damaged.
+        UnknownNameError: If there is no layer of this name.
+        InputError: If its stage is not finished, or its file is damaged.
     """
     if layer not in STAGES:
         raise UnknownNameError("layer", layer, STAGES)
     if layer == "cameras":
-        rays = np.array(read_json(run / "scan.json").get("cameras", []), np.float32)
-        return pack_arrays(MAGIC, {}, {"rays": rays.reshape(-1, 6)})
+        return pack_arrays(MAGIC, {}, {"rays": _camera_rays(run / "scan.json")})
     if layer == "points":
         return pack_arrays(MAGIC, {}, _surface_points(run))
     if layer == "cells":
@@ -82,6 +86,14 @@ def layer_bytes(run: Path, layer: str) -> bytes:
     volume = read_built(run / "build")
     scale = 1 / float(np.linalg.norm(volume.block_to_room[:3, 0]))
     return BlockBuild(0, BuildOptions(scale), volume).mesh_bytes()
+
+
+def _camera_rays(path: Path) -> np.ndarray:
+    """Return the camera positions and viewing directions of a ``scan.json``, float32 [N, 6]."""
+    try:
+        return np.array(read_json(path).get("cameras", []), np.float32).reshape(-1, 6)
+    except MALFORMED as error:
+        raise DamagedFileError(path, f"contains invalid cameras ({error})") from error
 
 
 def _surface_points(run: Path) -> dict[str, np.ndarray]:

@@ -161,7 +161,7 @@ def test_golden_refusals():
         "object 2 (table) is on one side of the plane; move the plane into its cells"
     )
     assert refusal(op="split_object", id=LAMP, parts=2) == (
-        "object 3 (object) is on one side of the plane; move the plane into its cells"
+        "object 3 (object) has too few cells to split"
     )
     assert refusal(op="split_object", id=TABLE) == (
         "split_object: split_object: Value error, specify either parts or plane, not "

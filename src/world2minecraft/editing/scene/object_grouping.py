@@ -10,9 +10,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid, Operation, SceneObject
 from world2minecraft.editing.scene.cell_patch import Patch
 from world2minecraft.editing.scene.command import Command, Tools
-from world2minecraft.editing.scene.furniture_commands import (
-    ObjectClass,
-)
+from world2minecraft.editing.scene.furniture_commands import ObjectClass
 from world2minecraft.editing.scene.object_boxes import (
     describe_object,
     free_object_id,
@@ -21,11 +19,7 @@ from world2minecraft.editing.scene.object_boxes import (
 )
 from world2minecraft.editing.scene.object_conversion import instance_of, object_of
 from world2minecraft.editing.scene.object_naming import with_class, with_name_of
-from world2minecraft.editing.scene.object_transforms import (
-    Id,
-    Ids,
-    Metre,
-)
+from world2minecraft.editing.scene.object_transforms import Id, Ids, Metre
 from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 ROUNDS = 50  # Maximum iterations for two to eight clusters; most need ten.
@@ -87,6 +81,8 @@ class SplitObject(Command):
         cells = draft.cells_of(one.id)
         sides = self._sides(draft, cells)
         groups = _largest_first(cells, sides)
+        if len(groups) < 2 and self.plane is None:
+            raise UsageError(f"{describe_object(one)} has too few cells to split")
         if len(groups) < 2:
             raise UsageError(
                 f"{describe_object(one)} is on one side of the plane; move the plane into its cells"

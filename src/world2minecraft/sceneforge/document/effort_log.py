@@ -14,8 +14,9 @@ from world2minecraft.core.types import Operation
 
 EFFORT_FILE = "effort.jsonl"
 MAX_EFFORT_BYTES = 256 << 20  # About two million lines.
-ACTIVE_EVERY_S = 1.0  # Signs of life between two steps are kept this far apart.
-STEPS = ("open", "do", "undo", "redo", "active")
+ACTIVE_EVERY_S = 1.0  # Minimum interval of recorded activity signals.
+REVISIONS = ("do", "undo", "redo")  # Steps that have a revision.
+STEPS = ("open", *REVISIONS, "active")
 
 
 class EffortLog:
@@ -34,7 +35,9 @@ class EffortLog:
         if self.path.exists():
             data = read_bytes(self.path, MAX_EFFORT_BYTES)
             self._end = data.rfind(b"\n") + 1
-            self.last_rev = max((e.get("rev", 0) for e in _events(data[: self._end])), default=0)
+            self.last_rev = max(
+                (e["rev"] for e in _events(data[: self._end]) if e["step"] in REVISIONS), default=0
+            )
 
     def opened(self, time_s: float) -> None:
         """Record that a session starts."""
@@ -98,7 +101,7 @@ def _events(data: bytes) -> list[dict[str, Any]]:
             if event["step"] not in STEPS:
                 continue
             event["time_s"] = float(event["time_s"])
-            if event["step"] in ("do", "undo", "redo"):
+            if event["step"] in REVISIONS:
                 event["cells"], event["rev"] = int(event["cells"]), int(event["rev"])
                 event["kind"], event["counts_as"] = str(event["kind"]), str(event["counts_as"])
                 if event.get("class_id") is not None:
