@@ -8,6 +8,7 @@ from forge_serving import client, served
 from tests.external_models.scripted_server import scripted
 
 from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.external_models.chat_transport import ENDPOINTS
 from world2minecraft.navigation.agents.types import Decision
 from world2minecraft.navigation.types import Move
 from world2minecraft.sceneforge.agent_walks import MAX_CALLS, MAX_USD, AgentWalk, WalkAgents
@@ -104,14 +105,17 @@ def test_a_walk_begins_on_the_floor(guide):
         AgentWalk(guide, Script(), "lamp", (1.4, 0.7, 30.0), LOOK_M)
 
 
-def test_models_are_those_with_a_key_and_the_chosen_one():
-    keys = {"GEMINI_API_KEY": "k", "OPENAI_API_KEY": "  "}
-    assert WalkAgents.configured(environment=keys).names == ("gemini",)
-    chosen = WalkAgents.configured("openai:gpt-4.1-mini", 1, environment=keys)
+def test_models_are_those_with_a_key_and_the_chosen_one(monkeypatch):
+    for one in ENDPOINTS.values():
+        monkeypatch.delenv(one.key_name, raising=False)
+    monkeypatch.setenv("GEMINI_API_KEY", "k")
+    monkeypatch.setenv("OPENAI_API_KEY", "  ")
+    assert WalkAgents.configured().names == ("gemini",)
+    chosen = WalkAgents.configured("openai:gpt-4.1-mini", 1)
     assert chosen == WalkAgents(("openai:gpt-4.1-mini", "gemini"), 1)
-    assert WalkAgents.configured("gemini", environment=keys).names == ("gemini",)
+    assert WalkAgents.configured("gemini").names == ("gemini",)
     with pytest.raises(UsageError, match="no model server is named 'gemni'"):
-        WalkAgents.configured("gemni", environment={})
+        WalkAgents.configured("gemni")
     with pytest.raises(UsageError, match="--max-usd must be 0 or more"):
         WalkAgents(max_usd=float("nan"))
 
@@ -152,6 +156,8 @@ def test_a_model_walks_over_http_until_it_stops(tmp_path):
             ({"to": 3}, "to must be 1 to 200 characters"),
             ({"feet_m": [1, "x", 2]}, "feet_m must be three numbers"),
             ({"look_m": None}, "look_m must be three numbers"),
+            ({"feet_m": [10**400, 0, 0]}, "feet_m must be three numbers"),
+            ({"blocks_per_metre": 10**400}, "blocks_per_metre must be a number"),
             ({"blocks_per_metre": "4"}, "blocks_per_metre must be a number"),
         ):
             answer = post("walk", **({"agent": model.url, **place} | wrong))

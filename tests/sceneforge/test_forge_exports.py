@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import zipfile
+from pathlib import Path
 
 import nbtlib
 import numpy as np
@@ -15,12 +16,14 @@ from world2minecraft.core.files import read_json
 from world2minecraft.formats.paper_json import read_occ_json
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.formats.volume_formats import read_volume, writable_format_names
+from world2minecraft.minecraft.worlds.launchers import Game
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.reconstruction.file_stages import built_volume
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.export_options import (
     export_forms,
     stats_csv,
+    worlds_of,
     write_data,
     write_snapshot,
 )
@@ -184,7 +187,7 @@ def test_wrong_wishes_begin_nothing(script, path, told, words):
     assert script.jobs.states() == []
 
 
-@pytest.mark.parametrize("number", ["x", "a-b", "0" * 16])
+@pytest.mark.parametrize("number", ["x", "a-b", "0" * 16, "a" * 400])
 def test_files_that_are_not_there_are_no_files(script, number):
     assert script.get(f"/api/exports/files/{number}").status_code in (400, 404)
 
@@ -196,6 +199,14 @@ def test_a_file_that_is_being_made_is_no_mistake_of_ours(script):
         400,
         "export 'abc' not found; export the scene again",
     )
+
+
+def test_a_saves_folder_that_cannot_be_read_has_no_worlds(tmp_path, monkeypatch):
+    def refused(path):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "iterdir", refused)
+    assert worlds_of([Game("a", tmp_path, None)]) == {}
 
 
 def test_a_server_that_is_not_there_says_so(script):

@@ -5,7 +5,6 @@ for one decision after another, so a walk ends when nobody watches it.
 """
 
 import os
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -49,19 +48,16 @@ class WalkAgents:
             raise UsageError(f"--max-usd must be 0 or more, got {self.max_usd}")
 
     @staticmethod
-    def configured(
-        chosen: str = "",
-        max_usd: float | None = None,
-        environment: Mapping[str, str] | None = None,
-    ) -> "WalkAgents":
+    def configured(chosen: str = "", max_usd: float | None = None) -> "WalkAgents":
         """Return the chosen model, and the cloud services whose API keys are set.
 
         Raises:
             UsageError: If the name or the limit is invalid.
             UnknownNameError: If the name is unknown.
         """
-        known = os.environ if environment is None else environment
-        keyed = [name for name, one in ENDPOINTS.items() if known.get(one.key_name, "").strip()]
+        keyed = [
+            name for name, one in ENDPOINTS.items() if os.environ.get(one.key_name, "").strip()
+        ]
         first = [chosen] if chosen else []
         return WalkAgents((*first, *(name for name in keyed if name != chosen)), max_usd)
 
@@ -189,12 +185,10 @@ class WalkingModels:
 
     Args:
         agents: The models that may walk.
-        open_model: The function that opens one; ``WalkAgents.open`` by default.
     """
 
-    def __init__(self, agents: WalkAgents, open_model: Callable[[str], ChatModel] | None = None):
+    def __init__(self, agents: WalkAgents):
         self.agents = agents
-        self._open = open_model or agents.open
         self._models: dict[str, ChatModel] = {}
         self._walk: tuple[int, str, AgentWalk] | None = None
         self._number = 0
@@ -204,7 +198,7 @@ class WalkingModels:
     ) -> int:
         """Begin a walk, which ends the one before it, and return its number."""
         if name not in self._models:
-            self._models[name] = self._open(name)
+            self._models[name] = self.agents.open(name)
         agent = VlmAgent(self._models[name])
         self._number += 1
         self._walk = (self._number, name, AgentWalk(guide, agent, sentence, feet_m, look_m))

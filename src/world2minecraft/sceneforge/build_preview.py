@@ -103,13 +103,6 @@ class BlockBuild:
         return cls(scene.rev, options, repair_volume(volume)[0])
 
     @cached_property
-    def grid_to_room(self) -> np.ndarray:
-        """The transform from cells of the volume to room metres, float64 [4, 4]."""
-        moved = np.eye(4)
-        moved[:3, 3] = self.volume.corner
-        return self.volume.block_to_room @ moved
-
-    @cached_property
     def start(self) -> tuple[tuple[float, float, float], float]:
         """The start of a walk: the feet position in cells of the volume, and Minecraft's yaw."""
         spawn = find_spawn(self.volume)
@@ -137,7 +130,7 @@ class BlockBuild:
         return {
             "rev": self.rev,
             "blocks_per_metre": self.options.blocks_per_metre,
-            "grid_to_room": self.grid_to_room.ravel().tolist(),
+            "grid_to_room": self.volume.grid_to_room.ravel().tolist(),
             "feet": list(feet),
             "yaw_deg": yaw_deg,
         }

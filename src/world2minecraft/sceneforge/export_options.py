@@ -11,6 +11,7 @@ import os
 import shutil
 import sys
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,13 +20,13 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES, display_name
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.files import write_text
-from world2minecraft.editing.scene import instances_of, placements_of
+from world2minecraft.editing.scene import placements_of
 from world2minecraft.formats.objects_and_placements import write_objects, write_placements
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.formats.volume_formats import writable_format_names
 from world2minecraft.minecraft.worlds.launchers import Game, find_games
-from world2minecraft.reconstruction.instances.supports import with_supports
+from world2minecraft.sceneforge.document.saving import supported_instances, write_run_files
 from world2minecraft.sceneforge.editor import Editor
 
 DATA_FILES = {
@@ -75,12 +76,7 @@ def write_snapshot(editor: Editor, folder: Path) -> None:
     Raises:
         OutputError: If the folder cannot be written.
     """
-    grid, objects = editor.read(lambda: (editor.draft.grid(), tuple(editor.draft.objects.values())))
-    folder.mkdir(parents=True, exist_ok=True)
-    instances = with_supports(instances_of(objects, grid.instance), grid)
-    write_room(folder / "room.npz", grid, editor.opened.scan_to_room)
-    write_objects(folder / "objects.json", instances)
-    write_placements(folder / "placements.json", placements_of(objects))
+    write_run_files(folder, editor.read(editor.document.state))
     for name in COPIED:
         if (editor.opened.folder / name).is_file():
             shutil.copyfile(editor.opened.folder / name, folder / name)
@@ -93,18 +89,17 @@ def write_data(editor: Editor, form: str, folder: Path) -> Path:
         OutputError: If the folder cannot be written.
     """
     path = folder / DATA_FILES[form]
-    grid, objects = editor.read(lambda: (editor.draft.grid(), tuple(editor.draft.objects.values())))
-    instances = with_supports(instances_of(objects, grid.instance), grid)
+    state = editor.read(editor.document.state)
     if form == "npz":
-        write_room(path, grid, editor.opened.scan_to_room)
+        write_room(path, state.grid, state.scan_to_room)
     elif form == "occ":
-        write_occ_json(path, grid)
+        write_occ_json(path, state.grid)
     elif form == "centers":
-        write_centers_json(path, instances)
+        write_centers_json(path, supported_instances(state))
     elif form == "objects":
-        write_objects(path, instances)
+        write_objects(path, supported_instances(state))
     elif form == "placements":
-        write_placements(path, placements_of(objects))
+        write_placements(path, placements_of(state.objects))
     else:
         write_text(path, stats_csv(editor))
     return path
@@ -138,10 +133,10 @@ def worlds_of(games: Iterable[Game]) -> dict[str, tuple[Game, Path]]:
     """Return the worlds in the saves folders of installations: installation and folder by id."""
     found = {}
     for game in games:
-        folders = sorted(game.saves.iterdir()) if game.saves.is_dir() else []
-        for folder in folders:
-            if (folder / "level.dat").is_file() and not folder.is_symlink():
-                found[id_of(folder)] = (game, folder)
+        with suppress(OSError):  # Worlds of other users may not be readable.
+            for folder in sorted(game.saves.iterdir()):
+                if (folder / "level.dat").is_file() and not folder.is_symlink():
+                    found[id_of(folder)] = (game, folder)
     return found
 
 

@@ -1,6 +1,5 @@
 """The classes in the photos of a run, predicted on demand and drawn over the photos."""
 
-import io
 import threading
 from collections import OrderedDict
 
@@ -9,7 +8,8 @@ from PIL import Image
 
 from world2minecraft.capture.depth_images import read_depth
 from world2minecraft.capture.images import read_colour
-from world2minecraft.core.errors import InputError, UnknownNameError
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import image_bytes
 from world2minecraft.core.types import View
 from world2minecraft.geometry.undistort import undistort_image
 from world2minecraft.reconstruction.recognition.label_images import (
@@ -19,10 +19,9 @@ from world2minecraft.reconstruction.recognition.label_images import (
     write_class_names,
 )
 from world2minecraft.reconstruction.recognition.segmentation import SegmentationModel
-from world2minecraft.sceneforge.run_photos import PlacedPhoto, RunPhotos
+from world2minecraft.sceneforge.run_photos import QUALITY, PlacedPhoto, RunPhotos
 
 MAX_CACHED = 24  # Images of about 200 kB.
-QUALITY = 84
 
 
 class PhotoClasses:
@@ -44,12 +43,10 @@ class PhotoClasses:
             UnknownNameError: If no photo has this number.
             InputError: If the photo has no colours or cannot be decoded.
         """
-        photos = self.photos.photos
-        if not 0 <= number < len(photos):
-            raise UnknownNameError("photo", str(number), map(str, range(min(3, len(photos)))))
+        photo = self.photos.photo(number)
         with self._lock:
             if number not in self._made:
-                self._made[number] = self._draw(photos[number])
+                self._made[number] = self._draw(photo)
                 if len(self._made) > MAX_CACHED:
                     self._made.popitem(last=False)
             self._made.move_to_end(number)
@@ -61,9 +58,7 @@ class PhotoClasses:
         ids = segment_view(self.model, view, up=up, camera_height_m=height_m)
         image = Image.fromarray(blend_classes(np.asarray(view.colour), ids))
         write_class_names(image, ids)
-        stream = io.BytesIO()
-        image.save(stream, "JPEG", quality=QUALITY)
-        return stream.getvalue()
+        return image_bytes(image, "JPEG", quality=QUALITY)
 
     def _view(self, photo: PlacedPhoto) -> View:
         """Return the undistorted photo with the depth of its frame as a view."""

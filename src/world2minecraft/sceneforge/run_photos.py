@@ -5,7 +5,6 @@ point, so that a view of the room from the same pose and with the same vertical 
 matches the photo exactly. Images are decoded on demand.
 """
 
-import io
 import threading
 from collections import OrderedDict
 from dataclasses import dataclass, field
@@ -19,13 +18,14 @@ from world2minecraft.capture.depth_images import DepthEncoding, read_depth
 from world2minecraft.capture.images import read_colour, read_small
 from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.files import image_bytes
 from world2minecraft.core.types import Camera
 from world2minecraft.evaluation.report.placed_frames import judge_capture_of, placed_frames, used_by
 from world2minecraft.evaluation.scoring.used_frames import computed
 from world2minecraft.geometry.undistort import undistort_image
 
 MAX_SIDE_PX, SMALL_PX = 1280, 200
-CACHE_BYTES = 48 << 20  # Cache of decoded images: some hundred.
+CACHE_BYTES = 48 << 20  # Cache of a few hundred decoded images.
 QUALITY = 84
 
 
@@ -64,6 +64,16 @@ class RunPhotos:
         """Return the descriptions of all photos for the page, in order."""
         return [photo.as_json(number) for number, photo in enumerate(self.photos)]
 
+    def photo(self, number: int) -> PlacedPhoto:
+        """Return a photo by its number.
+
+        Raises:
+            UnknownNameError: If no photo has this number.
+        """
+        if not 0 <= number < len(self.photos):
+            raise UnknownNameError("photo", str(number), map(str, range(min(3, len(self.photos)))))
+        return self.photos[number]
+
     def jpeg(self, number: int, small: bool) -> bytes:
         """Return the undistorted photo or its thumbnail as JPEG.
 
@@ -71,12 +81,12 @@ class RunPhotos:
             UnknownNameError: If no photo has this number.
             InputError: If the photo cannot be decoded.
         """
-        if not 0 <= number < len(self.photos):
-            raise UnknownNameError("photo", str(number), map(str, range(min(3, len(self.photos)))))
+        photo = self.photo(number)
         with self._lock:
             key = (number, small)
             if key not in self._made:
-                self._keep(key, _jpeg(self._pixels(self.photos[number], small)))
+                image = Image.fromarray(self._pixels(photo, small))
+                self._keep(key, image_bytes(image, "JPEG", quality=QUALITY))
             self._made.move_to_end(key)
             return self._made[key]
 
@@ -180,9 +190,3 @@ def _depth_picture(frame: FrameFiles, encoding: DepthEncoding, longest_px: int) 
     image = Image.fromarray(grey).convert("RGB")
     image.thumbnail((longest_px, longest_px))
     return np.array(image, np.uint8)
-
-
-def _jpeg(pixels: np.ndarray) -> bytes:
-    stream = io.BytesIO()
-    Image.fromarray(pixels).save(stream, "JPEG", quality=QUALITY)
-    return stream.getvalue()

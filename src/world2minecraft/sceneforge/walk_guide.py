@@ -20,11 +20,12 @@ from world2minecraft.minecraftocc.scene_sources import SceneSource
 from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.running.sentence_goals import landmarks_named, phrases_of
 from world2minecraft.navigation.scene import VlnScene
+from world2minecraft.navigation.scores.path_similarity import path_length_m
 
 MAX_OFFERED = 4
-MAX_CANDIDATES = 8  # Things of one name whose ways are compared.
+MAX_CANDIDATES = 8  # Objects of one name whose paths are compared.
 PLAIN_TEMPLATES = ("box",)  # They stand for anything.
-LIKE = 0.6  # Least similarity of a name that may have been meant.
+LIKE = 0.6  # Minimum similarity of a suggested name.
 REACH_M = 2.5  # From a body off the floor, such as on a table, to the floor; height counts twice.
 Feet = tuple[float, float, float]
 _SMALL_TALK = re.compile(
@@ -107,13 +108,13 @@ class WalkGuide:
             return {"thing": None, "subject": subject, "near": near}
         feet = apply(invert(self.scene.volume.block_to_room), np.array([feet_m], np.float64))[0]
         ways = [self._way(one, feet) for one in found]
-        away = [np.inf if way is None else _length(way) for way in ways]
+        away = [np.inf if way is None else path_length_m(way) for way in ways]
         best = int(np.argmin(away))
         way, one = ways[best], found[best]
         return {
             "thing": {"id": one.number, "name": one.name, "center_m": _rounded(one.center_m)},
             "of": len(found),
-            "away_m": None if way is None else round(_length(way), 2),
+            "away_m": None if way is None else round(path_length_m(way), 2),
             "corners_m": None if way is None else _rounded(way),
         }
 
@@ -174,10 +175,6 @@ def names_like(subject: str, landmarks: Sequence[Landmark]) -> list[str]:
         landmarks, key=lambda one: (not one.is_unambiguous, one.name.count(" "), one.name)
     )
     return list(dict.fromkeys(near or [one.name for one in plain]))[:MAX_OFFERED]
-
-
-def _length(way: np.ndarray) -> float:
-    return float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
 
 
 def _rounded(values: np.ndarray) -> Any:

@@ -82,3 +82,10 @@ class BlockVolume:
     def blocks_per_metre(self) -> float:
         """The number of blocks per metre of the room."""
         return float(1 / np.linalg.norm(self.block_to_room[:3, 0]))
+
+    @property
+    def grid_to_room(self) -> np.ndarray:
+        """The transform from cells of the volume to room metres, float64 [4, 4]."""
+        moved = np.eye(4)
+        moved[:3, 3] = self.corner
+        return self.block_to_room @ moved

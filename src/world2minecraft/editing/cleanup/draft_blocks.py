@@ -34,9 +34,9 @@ def object_blocks(draft: Draft) -> np.ndarray:
     return np.isin(draft.semantic, OBJECT_CLASSES) & visible_blocks(draft)
 
 
-def metres_to_blocks(draft: Draft, metres: float, least: int = 1) -> int:
-    """Convert a length in metres to whole blocks, at least ``least``."""
-    return max(least, round(metres * draft.start.blocks_per_metre))
+def metres_to_blocks(draft: Draft, metres: float) -> int:
+    """Convert a length in metres to whole blocks, at least 1."""
+    return max(1, round(metres * draft.start.blocks_per_metre))
 
 
 def max_crumb_blocks(draft: Draft) -> float:

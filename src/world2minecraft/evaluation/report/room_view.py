@@ -30,8 +30,6 @@ def room_view(
         camera_to_room: The pose from which most is visible, 4x4; the view starts on its side.
     """
     mesh = mesh_of(volume)
-    moved = np.eye(4)
-    moved[:3, 3] = volume.corner
     forward = camera_to_room[:3, 2]
     facts = {
         "title": TITLE,
@@ -39,7 +37,7 @@ def room_view(
         "unit": COMPACT_UNIT,
         "clear_from": mesh.clear_from,
         "texture_px": mesh.atlas.side_px,
-        "grid_to_room": (volume.block_to_room @ moved).ravel().tolist(),
+        "grid_to_room": volume.grid_to_room.ravel().tolist(),
         "azimuth": float(np.arctan2(-forward[1], -forward[0])),
         "can_walk": False,
         "things": sorted(things, key=lambda row: (row["name"], row["id"])),

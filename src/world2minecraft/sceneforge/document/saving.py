@@ -15,6 +15,7 @@ from typing import Any
 
 from world2minecraft.core.errors import MALFORMED, ConflictError, InputError
 from world2minecraft.core.files import read_json, write_bytes, write_json
+from world2minecraft.core.types import ObjectInstance
 from world2minecraft.core.whole_reads import changing
 from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.formats.objects_and_placements import write_objects, write_placements
@@ -34,12 +35,27 @@ def write_scene_files(folder: Path, state: State) -> None:
     Raises:
         OutputError: If a file cannot be written.
     """
-    instances = with_supports(instances_of(state.objects, state.grid.instance), state.grid)
+    instances = write_run_files(folder, state)
+    write_occ_json(folder / "occ.json", state.grid)
+    write_centers_json(folder / "centers.json", instances)
+
+
+def write_run_files(folder: Path, state: State) -> tuple[ObjectInstance, ...]:
+    """Write the three files of a scene that builds read, and return its objects.
+
+    Raises:
+        OutputError: If a file cannot be written.
+    """
+    instances = supported_instances(state)
     write_room(folder / "room.npz", state.grid, state.scan_to_room)
     write_objects(folder / "objects.json", instances)
     write_placements(folder / "placements.json", placements_of(state.objects))
-    write_occ_json(folder / "occ.json", state.grid)
-    write_centers_json(folder / "centers.json", instances)
+    return instances
+
+
+def supported_instances(state: State) -> tuple[ObjectInstance, ...]:
+    """Return the objects of a scene with what each of them stands on."""
+    return with_supports(instances_of(state.objects, state.grid.instance), state.grid)
 
 
 def sha256(path: Path) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import image_bytes
 from world2minecraft.evaluation.scoring.used_frames import computed
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.sceneforge.run_photos import (
@@ -103,6 +104,4 @@ def _small(taken: RunPhotos, number: int, longest_px: int, quality: int) -> byte
     with Image.open(io.BytesIO(taken.jpeg(number, small=False))) as image:
         pixels = image.convert("RGB")
     pixels.thumbnail((longest_px, longest_px))
-    stream = io.BytesIO()
-    pixels.save(stream, "JPEG", quality=quality, optimize=True, progressive=True)
-    return stream.getvalue()
+    return image_bytes(pixels, "JPEG", quality=quality, optimize=True, progressive=True)

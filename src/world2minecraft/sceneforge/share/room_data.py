@@ -80,13 +80,6 @@ class SharedRoom:
         return cls(source, heading, scene.volume, scene.landmarks, scene)
 
     @cached_property
-    def grid_to_room(self) -> np.ndarray:
-        """The transform from cells of the volume to room metres, float64 [4, 4]."""
-        moved = np.eye(4)
-        moved[:3, 3] = self.volume.corner
-        return self.volume.block_to_room @ moved
-
-    @cached_property
     def start(self) -> tuple[tuple[float, float, float], float]:
         """The start of a walk: the feet in cells of the volume, and Minecraft's yaw in degrees."""
         if self.scene is None:
@@ -110,7 +103,7 @@ class SharedRoom:
             "unit": COMPACT_UNIT,
             "clear_from": mesh.clear_from,
             "texture_px": mesh.atlas.side_px,
-            "grid_to_room": self.grid_to_room.ravel().tolist(),
+            "grid_to_room": self.volume.grid_to_room.ravel().tolist(),
             "azimuth": _best_azimuth(self.volume),
             "can_walk": self.scene is not None,
             "things": self._things(),
@@ -130,7 +123,7 @@ class SharedRoom:
         header = {
             "rev": 0,
             "blocks_per_metre": self.volume.blocks_per_metre * body,  # Of the walker's size.
-            "grid_to_room": self.grid_to_room.ravel().tolist(),
+            "grid_to_room": self.volume.grid_to_room.ravel().tolist(),
             "feet": list(place),
             "yaw_deg": yaw_deg,
         }
