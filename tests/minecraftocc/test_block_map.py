@@ -400,6 +400,7 @@ BAD = {
     "entities",
     "about: x": "the block map has no name; add a line such as name: mine",
     "{name: m, extends: lyu}": "extends must be one of nyu, paper, got 'lyu'",
+    "{name: m, extends: [nyu]}": "extends must be one of nyu, paper, got ['nyu']",
     "{name: m, blocks: {stone: rock}}": "block stone must be one of empty, ceiling, "
     "floor, wall, window, chair, bed, sofa, table, tvs, furn, objs; got 'rock'",
     "{name: m, kinds: {k: [a]}}": "kind k has no rules; add an entry for k under rules",
