@@ -37,7 +37,7 @@ class GameFolders:
         """Remember a chosen folder and return the id of its installation.
 
         Raises:
-            UsageError: It is not the folder of a game. The message says which folder is.
+            UsageError: If it is not the folder of a game. The message says which folder is.
         """
         saves = saves_folder(Path(folder))
         if saves is None:
@@ -86,7 +86,7 @@ def list_folder(text: str) -> dict[str, Any]:
         order; ``is_game``, whether the folder can be chosen.
 
     Raises:
-        UsageError: The path is not a folder that can be read.
+        UsageError: If the path is not a folder that can be read.
     """
     try:
         place = (Path(text).expanduser() if text else Path.home()).resolve()

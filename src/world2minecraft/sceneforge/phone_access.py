@@ -21,8 +21,8 @@ TOKEN_BYTES = 16  # 22 characters: the code stays coarse enough for any camera.
 SESSION_BYTES = 32
 CODE_LIFE_S = 600.0
 SESSION_LIFE_S = 12 * 3600.0
-MAX_WRONG = 5  # Wrong tokens of one address ...
-WRONG_WINDOW_S = 60.0  # ... within so many seconds.
+MAX_WRONG = 5  # Wrong tokens of one address within ``WRONG_WINDOW_S``.
+WRONG_WINDOW_S = 60.0
 MAX_ADDRESSES = 1000  # Addresses whose wrong tokens are remembered.
 ON_BLACK = "\x1b[38;5;231;48;5;16m{}\x1b[0m"  # Scanners want dark on light, whatever the terminal.
 
@@ -37,7 +37,7 @@ class TooManyTriesError(World2MinecraftError):
 
 @dataclass
 class Phone:
-    """A phone that is let in: the time until which, and the ids of its captures in order."""
+    """A phone with access: when its session ends, and the ids of its captures in order."""
 
     until_s: float
     captures: list[str] = field(default_factory=list)

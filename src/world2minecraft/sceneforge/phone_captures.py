@@ -28,7 +28,7 @@ from world2minecraft.sceneforge.workspace import Workspace
 PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png", ".webp", *HEIF_SUFFIXES)
 MAX_PHOTOS = 600  # More than anyone takes of a room by hand.
 MAX_CAPTURES = 20  # Captures of one phone.
-VIDEO_FRAMES = 60  # What is guessed until the survey has counted them.
+VIDEO_FRAMES = 60  # Assumed until the survey has counted them.
 LOOK_S, SHARE_S = 4.0, 4.0
 LIBRARIES = ("av", "pillow_heif", "pycolmap")  # For videos, photos of iPhones, and poses.
 

@@ -28,7 +28,7 @@ from world2minecraft.sceneforge.wire_format import PROTOCOL, counts_json, object
 
 MAX_RUNS = 20_000  # As JSON 0.5 MB; of more, the page gets the whole volume again.
 QUICK = frozenset({"set_cells", "move_object", "turn_objects", "delete_objects", "set_template"})
-QUICK_CELLS = 1 << 20  # In a larger grid the thread does these too.
+QUICK_CELLS = 1 << 20  # In a larger grid, a thread runs these too.
 NO_ROOM = "no room is open; choose one on the start page"
 LOG = logging.getLogger(__name__)
 
@@ -257,7 +257,7 @@ class Session:
     async def active(self, actor: str = "") -> None:
         """Record that a person is at work, so that the effort log can exclude idle time."""
         if self.editor is not None:
-            await asyncio.to_thread(self.editor.active, actor)  # It waits where a question is on.
+            await asyncio.to_thread(self.editor.active, actor)  # It writes a file.
 
     def hello(self) -> dict[str, Any]:
         """Return the first message for a tab, which also tells it to reload the scene."""
@@ -297,7 +297,7 @@ class Session:
         return await self._done(operation)
 
     async def _done(self, operation: Operation) -> dict[str, Any]:
-        await asyncio.sleep(0)  # The change that waits is told before the answer.
+        await asyncio.sleep(0)  # The queued change is sent before the answer.
         return {
             "rev": self.rev,
             "kind": operation.kind,
@@ -331,7 +331,7 @@ def _plan(document: Editor, command: Command) -> Operation:
 
 def _volume(document: Editor, what: str, zipped: bool) -> tuple[int, bytes]:
     rev, volume = document.read(lambda: (document.rev, copy_volume(document.draft, what)))
-    raw = volume.as_bytes()  # Only copying it holds up an edit.
+    raw = volume.as_bytes()  # Edits wait only for the copy.
     if not zipped:
         return rev, raw
     packer = zlib.compressobj(1, zlib.DEFLATED, 31)

@@ -33,7 +33,7 @@ MAX_SPELLED = 4  # Longer arrays of one length are arrays like any other.
 def main(words: Sequence[str]) -> int:
     """Write the file, or with ``--check`` return 1 if it is not up to date."""
     if "--check" in words:
-        return int(not TARGET.is_file() or TARGET.read_text() != typescript())
+        return int(not TARGET.is_file() or TARGET.read_text("utf-8") != typescript())
     write_text(TARGET, typescript())
     return 0
 

@@ -39,16 +39,16 @@ MAX_FILES = 20_000  # Ten minutes of frames with depth and confidence.
 MAX_DEPTH = 12
 MAX_PART_BYTES = 200
 MAX_PATH_BYTES = 400
-# What no file may be named on Windows, and what means something else than a name there.
+# Names and characters that Windows does not allow in file names.
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _FORBIDDEN = re.compile(r'[<>:"|?*\x00-\x1f\x7f]')
-IGNORED = frozenset({".ds_store", "thumbs.db", "desktop.ini"})  # What systems leave in folders.
+IGNORED = frozenset({".ds_store", "thumbs.db", "desktop.ini"})  # Files of operating systems.
 MAX_UPLOAD_BYTES = 4 << 30
-SPARE_BYTES = 256 << 20  # What a run of the capture writes, with room to breathe.
+SPARE_BYTES = 256 << 20  # Space for the run of a capture, with a margin.
 CAPTURE, SURVEY, PICTURE = "capture.json", "survey.json", "survey.png"
 RUN, UPLOAD = "run", "upload"
 _ID = re.compile(r"[a-z0-9-]{1,64}")
-_RECEIVING: set[Path] = set()  # The files that bytes come to now, in this process.
+_RECEIVING: set[Path] = set()  # The files that this process is receiving.
 
 
 @dataclass(frozen=True)

@@ -27,16 +27,16 @@ from world2minecraft.editing.cleanup.gaps import close_gap, full_block_of
 from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.minecraft.visual_shapes import visual_boxes
 
-GAP = 1 / 8  # Blocks: shapes nearer than this touch for the eye. A fence's bar is 1/8 thick.
-# Half of the 26 neighbours: the others are these, seen from the other side.
+GAP = 1 / 8  # In blocks: shapes nearer than this count as touching. A fence bar is as thick.
+# Half of the 26 neighbours. The others are the same pairs in reverse.
 SIDES = (-1, 0, 1)
 STEPS = tuple(step for step in product(SIDES, SIDES, SIDES) if step > (0, 0, 0))
-CARRIER_M2 = 0.5  # A piece of structure of this area carries, though it holds to nothing itself.
-JOIN_M = 0.5  # A part is joined to its own object over no wider gap,
-STEP_M = 0.5  # and moved aside by no more.
-CORD_M = 1.25  # A cord is no longer than this.
-ROUNDS = 8  # What stood on something that is moved floats then, and is repaired next;
-GENTLE_ROUNDS = 4  # what is not repaired by now never will be.
+CARRIER_M2 = 0.5  # A piece of structure of this area is supported, even if it is unconnected.
+JOIN_M = 0.5  # The widest gap over which a part is joined to its own object.
+STEP_M = 0.5  # The longest move of a part down or sideways to a support.
+CORD_M = 1.25  # The longest chain.
+ROUNDS = 8  # A repair may leave other blocks floating, which the next round repairs.
+GENTLE_ROUNDS = 4  # The rounds after these only remove.
 CORD = "minecraft:chain[axis=y,waterlogged=false]"
 STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
 DOWN, UP = np.array([0, -1, 0]), np.array([0, 1, 0])

@@ -15,7 +15,7 @@ from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 DOWN = np.array([0, -1, 0])
 PLATE = 0.26  # Maximum height of a plate, such as a trapdoor or carpet, in blocks.
-SUNK_SHARE = 0.25  # A thing takes at most this share of the blocks of what it sinks into.
+SUNK_SHARE = 0.25  # An object replaces at most this share of the blocks of another one.
 
 
 def close_gap(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:

@@ -62,7 +62,7 @@ def _fill(draft: Draft, cells: np.ndarray, rim: np.ndarray, axis: int) -> None:
     counts = {int(kind): int((classes == kind).sum()) for kind in wanted}
     kind = max(counts, key=lambda one: counts[one])
     if counts[kind] * 2 < len(rim):
-        return  # Not a hole of this shell: a niche between others.
+        return  # A niche between other surfaces, not a hole in this one.
     of_kind = rim[classes == kind]
     numbers = draft.states[tuple(of_kind.T)]
     state = draft.palette[np.bincount(numbers).argmax()]

@@ -18,9 +18,9 @@ from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 
-CUT_SHARE = 0.25  # A piece of at most this share of its object is what was cut off.
-# Objects of one piece. Tables and cupboards may go on beyond what stands in or before them, and
-# small objects may be heaps of several.
+CUT_SHARE = 0.25  # A piece of at most this share of its object counts as cut off.
+# Objects of one piece. Tables and cupboards may continue behind an object in front of them, and
+# small objects may be piles of several.
 WHOLE = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA)
 
 

@@ -26,8 +26,8 @@ from world2minecraft.minecraft.rules.connections import update_connections
 from world2minecraft.minecraft.rules.stability import find_unstable
 
 EXACT_BLOCKS_PER_METRE = 8.0  # Above it, cells are copied as they are.
-ROUNDS = 4  # A repair may uncover what another rule is for.
-STEADY_ROUNDS = 8  # What stood on something that is taken away goes next.
+ROUNDS = 4  # A repair may reveal a fault that another rule repairs.
+STEADY_ROUNDS = 8  # A removal may leave other blocks unstable.
 
 
 def stabilize(draft: Draft) -> None:

@@ -20,17 +20,17 @@ from world2minecraft.editing.scene.repair import find_floaters
 from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.geometry.connected_components import label_components
 
-LOW_IOU = 0.5  # Under this the furniture and the cells have less in common than not.
-TIE = 0.03  # Nearer than this, noise decides between two.
-UNSURE = 0.5  # The confidence under which a cell is rather wrong than right.
-UNSURE_CELLS = 30  # About 0.2 square metres at 0.08 m; fewer are the edges of things.
-CRUMB_CELLS = 8  # A cube of 16 cm: the smallest thing that the finder calls an object.
-FLOATING, UNSUPPORTED, CRUMB = 0.97, 0.85, 0.4  # How doubtful these are, beside 1 - IoU.
-NO_TEMPLATE, COMPLETED_DOUBT = 0.45, 0.3  # Often right, and soon looked at.
-# Of objects that fit as well in another turn a third was wrong, of those that another piece fits
-# as well a tenth, of those without doubt 7 % (ten tuning rooms).
+LOW_IOU = 0.5  # Below it, furniture and cells have less than half of their union in common.
+TIE = 0.03  # Smaller differences of IoU are noise.
+UNSURE = 0.5  # Below this confidence, a cell is probably wrong.
+UNSURE_CELLS = 30  # About 0.2 square metres at 0.08 m; smaller groups are edges of objects.
+CRUMB_CELLS = 8  # A cube of 16 cm: the smallest object that is detected.
+FLOATING, UNSUPPORTED, CRUMB = 0.97, 0.85, 0.4  # On the scale of 1 - IoU.
+NO_TEMPLATE, COMPLETED_DOUBT = 0.45, 0.3  # Often right, and quick to check.
+# In ten tuning rooms, a third of the objects that fit as well in another rotation were wrong, a
+# tenth of those that another template fits as well, and 7 % of the others.
 TURN_DOUBT, TIE_DOUBT = 0.6, 0.32
-STANDING = (5, 6, 7, 8)  # Chairs, beds, sofas and tables stand; other things may hang.
+STANDING = (5, 6, 7, 8)  # Chairs, beds, sofas and tables stand; other objects may hang.
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +92,7 @@ def _of_furniture(one: SceneObject, placed: Placement) -> Iterator[Diagnostic]:
         why = f"{name}: template {template_words(placed.template)} has low IoU {share}"
         yield Diagnostic("low_iou", why, 1 - placed.iou, at_m, one.id)
     rivals = [o for o in placed.alternatives if _is_other(placed, o) and placed.iou - o.iou < TIE]
-    # Which way a thing looks matters more than which of two like pieces it is.
+    # The direction of an object matters more than which of two similar templates it has.
     rivals.sort(key=lambda other: (other.quarter_turns == placed.quarter_turns, -other.iou))
     if not rivals:
         return

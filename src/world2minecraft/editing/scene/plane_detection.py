@@ -21,12 +21,12 @@ from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticCla
 from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.geometry.connected_components import label_components
 
-FLOOR_M2 = 1.0  # Less is a step or a landing's edge.
+FLOOR_M2 = 1.0  # A smaller area is a step or the edge of a landing.
 WALL_M2 = 0.5  # As the smallest wall that stage 4 calls one.
-# A cell is flat where most of so large a square around it, in cells, is of the sheet.
+# Sides in cells of the square around a cell, most of which must be masked for the cell to be flat.
 FLAT_WALL, FLAT_LEVEL = 9, 13  # A pillar is a wall; a strip of a sloped ceiling is no ceiling.
-DOORWAY_M = 1.2  # No wider gap lies within one wall, or between it and the wall that it meets.
-REACH_M = 2.2  # A wall that ends this near to a floor or a ceiling goes on: behind a wardrobe.
+DOORWAY_M = 1.2  # The widest gap within a wall, or between two walls that meet.
+REACH_M = 2.2  # A wall that ends this near a floor or a ceiling continues to it, hidden.
 WALL_CLASSES = (SemanticClass.WALL, SemanticClass.WINDOW)
 
 
@@ -77,7 +77,7 @@ def find_planes(draft: SceneDraft) -> list[Plane]:
 def _levels(draft: SceneDraft, class_id: SemanticClass) -> list[Plane]:
     """Return the floors or the ceilings."""
     mask = np.moveaxis(draft.labels == class_id, 2, 0)
-    # Its face to the room alone: what is solid above a slope is no stack of ceilings.
+    # Only the face towards the room: solid cells above a slope are not several ceilings.
     inward = -1 if class_id == SemanticClass.FLOOR else 1
     mask &= ~np.roll(mask, inward, axis=0)
     counts = (mask & _is_flat(mask, FLAT_LEVEL)).sum(axis=(1, 2))
@@ -140,7 +140,7 @@ def _regions(mask: np.ndarray, flat: np.ndarray, least: float) -> list[Region]:
     for number, box in enumerate(ndimage.find_objects(parts, count), 1):
         if (parts[box] == number).sum() < least:
             continue
-        # Its rim is not flat: it goes on to the last cell of the sheet nearby.
+        # The rim of a region is not flat: extend it to the last cell of the sheet nearby.
         margin = FLAT_WALL // 2
         start = [max(side.start - margin, 0) for side in box]
         near = mask[start[0] : box[0].stop + margin, start[1] : box[1].stop + margin]

@@ -55,14 +55,14 @@ from world2minecraft.editing.scene.voxel_commands import (
 )
 from world2minecraft.geometry.connected_components import label_components
 
-# A football. In ten tuning rooms 13 pieces floated, 12 of them things that are truly there and had
-# lost their hold: so one looks before deleting, and does not begin with large ones.
+# About a football. In ten tuning rooms 13 pieces floated, and 12 of them were real objects that had
+# lost their support, so larger pieces are not offered for deletion by default.
 MAX_CELLS = 30
 HOLE_M2 = 0.25  # A square of half a metre, as for blocks; a cat flap or a chute is no larger.
 HIDDEN_M2 = 4.0  # No piece of furniture is larger.
 PILLAR_CELLS = 3  # A column with so many wall cells bounds the floor.
 FLAT_FACES = 4  # Number of other faces of a cell within a sheet.
-PIT = 17  # Of 26: one below a flat surface. An inner edge, as of seat and back, has 15 and stays.
+PIT = 17  # Of 26 neighbours: a pit in a flat surface. An inner edge has 15 and is kept.
 
 
 @dataclass(frozen=True, eq=False)

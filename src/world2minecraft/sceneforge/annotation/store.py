@@ -36,7 +36,6 @@ class AnnotationStore:
     Args:
         folder: Folder of the data set, with ``trajectories.jsonl`` and the images it refers to.
         out: Annotation file to write. None writes ``annotations.jsonl`` in the folder.
-
         force: Whether to replace an annotation file that was not written by this class.
 
     Raises:
@@ -159,7 +158,7 @@ class AnnotationStore:
             "level": level,
         }
         with self._lock, self._file_lock():
-            self._lines = self._read()  # Another page may have added to it.
+            self._lines = self._read()  # Another page may have added a line.
             if line not in self._lines:
                 self._lines = [*self._lines, line]
                 write_text(self.out, self._text())

@@ -52,7 +52,7 @@ from world2minecraft.sceneforge.document.snapshots import (
 from world2minecraft.sceneforge.scene_sources import OpenedScene, read_source
 
 SNAPSHOT_STEPS, SNAPSHOT_S = 200, 60.0
-HISTORY_BYTES = 256 << 20  # What undo reaches takes at most so much of the disk, packed.
+HISTORY_BYTES = 256 << 20  # Maximum size on disk of the edits that can be undone.
 MAX_SNAPSHOTS = 2
 
 

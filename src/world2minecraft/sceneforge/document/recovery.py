@@ -129,7 +129,7 @@ def copy_damaged(path: Path) -> Path:
     aside = next(path for path in names if not path.exists())
     try:
         try:
-            os.link(path, aside)  # It takes no room, which a full disk has not.
+            os.link(path, aside)  # A link needs no space, even on a full disk.
         except OSError:
             shutil.copyfile(path, aside)
     except OSError as error:

@@ -14,7 +14,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.jobs.jobs import CancelledError, JobProgress, Jobs
 
-# What takes seconds of millions of cells, and what it is called meanwhile.
+# Queries and commands that take seconds on millions of cells, with the titles of their jobs.
 TITLES = {
     "floaters": "Finding floaters",
     "holes": "Finding holes",
@@ -23,7 +23,7 @@ TITLES = {
     "remove_floaters": "Deleting floaters",
     "fill_holes": "Filling holes",
 }
-# The words of these jobs in the page; ``scene`` alone where a plan does not say how far it is.
+# The stages of these jobs. A plan that reports no progress has only ``scene``.
 STAGES = ("scene", "planes", "pieces", "doubts")
 
 Value = TypeVar("Value")

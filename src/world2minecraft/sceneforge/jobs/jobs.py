@@ -20,7 +20,7 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.sceneforge.jobs.time_left import TimeLeft
 
-MIN_INTERVAL_S = 0.1  # More states a second are seen by nobody.
+MIN_INTERVAL_S = 0.1  # Between two messages of one stage.
 MAX_ENDED_JOBS = 50  # Ended jobs that are remembered, for tabs that come later.
 MAX_RUNNING = 4
 
@@ -236,7 +236,7 @@ class _Job:
             ended(last)
         except CancelledError:
             last = replace(self.state, state="cancelled", note="", left_s=None)
-        except Exception as error:  # Whatever it is, the job says so and ends.
+        except Exception as error:  # The job reports any error and ends.
             last = replace(self.state, state="failed", note=describe_error(error), left_s=None)
         if self._cancelled.is_set() and last.state == "failed":
             last = replace(last, state="cancelled", note="")

@@ -19,7 +19,7 @@ from world2minecraft.core.errors import WorkerError, World2MinecraftError
 from world2minecraft.sceneforge.jobs.jobs import JobFunction, JobProgress
 
 WORKER = (sys.executable, "-m", "world2minecraft.sceneforge.jobs.worker")
-GRACE_S = 3.0  # A process that was asked to end has so long.
+GRACE_S = 3.0  # Time for a process to exit after SIGTERM.
 ON_WINDOWS = sys.platform == "win32"
 
 
@@ -56,7 +56,7 @@ def start_worker(task: str, needs: Mapping[str, Any]) -> "subprocess.Popen[bytes
         stderr=subprocess.DEVNULL,
         start_new_session=not ON_WINDOWS,
     )
-    with suppress(OSError):  # One that died at once is told by its end.
+    with suppress(OSError):  # ``_relay`` reports a process that exited at once.
         _pipe(process.stdin).write(json.dumps([task, needs]).encode() + b"\n")
         _pipe(process.stdin).flush()
     return process

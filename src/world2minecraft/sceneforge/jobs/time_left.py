@@ -13,7 +13,7 @@ LATER_S = {"label": 0.5, "find": 0.5, "furnish": 1.0, "repair": 3.0, "build": 2.
 SENSED_FRAME_S = {"scan": 0.04, "register": 0.06, "fuse": 0.04}
 PICTURE_S = {"photos": 0.05, "poses": 0.7, "shrink": 0.05, "stereo": 0.65}
 DEMO_FRAMES = 40
-PRIOR_S = 4.0  # For so long the usual lengths weigh as much as the clock.
+PRIOR_S = 4.0  # The weight of the typical durations, in seconds of measurement.
 
 
 def reconstruct_stage_seconds(survey: Mapping[str, Any] | None) -> dict[str, float]:

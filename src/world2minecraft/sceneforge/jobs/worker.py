@@ -42,7 +42,7 @@ def run_task(task: str, needs: dict[str, Any], progress: Progress) -> dict[str, 
     """Run a task and return its last output line, with the result or the error."""
     try:
         return {"result": TASKS.load(task)(progress=progress, **needs)}
-    except Exception as error:  # Whatever it is, it is said as one line.
+    except Exception as error:  # Any error is reported as one line.
         return {"error": describe_error(error)}
 
 

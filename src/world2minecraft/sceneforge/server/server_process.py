@@ -76,7 +76,7 @@ class PageServer:
             lifespan="off",
             server_header=False,
             ws_max_size=MAX_JSON_BYTES,
-            ws_per_message_deflate=False,  # So nothing that comes in can unfold.
+            ws_per_message_deflate=False,  # No message can grow when it is unpacked.
             timeout_graceful_shutdown=STOPPING_S,
             limit_concurrency=max_connections,
             ssl_certfile=None if tls is None else tls[0],
