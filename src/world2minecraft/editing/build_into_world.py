@@ -18,7 +18,7 @@ from world2minecraft.editing.file_backups import (
     Step,
     commit_step,
     discard_step,
-    list_steps,
+    last_step,
     previous_data_packs,
     recover,
 )
@@ -124,10 +124,8 @@ def remove_build(world: Path) -> BuildOutcome:
     """
     with session_lock(world):
         recovered = len(recover(world))
-        steps = list_steps(world)
-        if not steps:
-            raise UsageError(f"{world}: no build by World2Minecraft to undo")
-        edit = edit_of_step(steps[-1])
+        last = last_step(world)
+        edit = edit_of_step(last)
         low, high = edit.cells.min(axis=0), edit.cells.max(axis=0) + 1
         corner = (int(low[0]), int(low[1]), int(low[2]))
         box = read_world_box(world, corner, (high - low).tolist())
@@ -144,9 +142,9 @@ def remove_build(world: Path) -> BuildOutcome:
         found = WorldEntities(world, box.low, box.states.shape, box.data_version)
         gone, come = edit.after.entities, edit.before.entities
         files = box.changed_files(after, data) | found.changed_files(gone, come)
-        files |= previous_data_packs(steps[-1])
+        files |= previous_data_packs(last)
         step = commit_step(world, files, "undone block by block")
-        for old in (steps[-1], step):
+        for old in (last, step):
             if old is not None:
                 discard_step(old)
     return BuildOutcome(step, int(same.sum()), len(gone), int((~same).sum()), recovered)

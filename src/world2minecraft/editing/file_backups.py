@@ -99,6 +99,19 @@ def list_steps(world: Path) -> list[Step]:
     return [_read_step(folder) for folder in folders]
 
 
+def last_step(world: Path) -> Step:
+    """Return the last step that can be undone.
+
+    Raises:
+        UsageError: If there is no step to undo.
+        DamagedFileError: If a manifest is invalid or names files that no step may change.
+    """
+    steps = list_steps(world)
+    if not steps:
+        raise UsageError(f"{world}: no build by World2Minecraft to undo")
+    return steps[-1]
+
+
 def commit_step(
     world: Path,
     files: Mapping[str, bytes | None],
@@ -226,18 +239,16 @@ def revert_last_step(world: Path, force: bool = False) -> Step:
             recover(world)
         if cut_off:
             return cut_off[-1]
-        steps = list_steps(world)
-        if not steps:
-            raise UsageError(f"{world}: no build by World2Minecraft to undo")
-        changed = changed_since(steps[-1])
+        step = last_step(world)
+        changed = changed_since(step)
         if changed and not force:
             reason = (
                 f"{changed[0]} has changed since the build; pass blocks (--blocks) to undo only "
                 "the build"
             )
             raise ConflictError(world, f"{reason}, or force (--force) to restore the old files")
-        revert_step(steps[-1])
-        return steps[-1]
+        revert_step(step)
+        return step
 
 
 def discard_step(step: Step) -> None:

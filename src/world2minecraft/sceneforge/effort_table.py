@@ -62,7 +62,7 @@ def automatic_s(source: Path) -> float | None:
         return None
 
 
-def stats_json(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> dict[str, Any]:
+def stats_json(efforts: Sequence[Effort], scratch: Sequence[Effort]) -> dict[str, Any]:
     """Return all scenes, their means, the means from scratch and the paper's values as JSON."""
     return {
         "scenes": [{**asdict(one), "total_s": one.total_s} for one in efforts],
@@ -90,7 +90,7 @@ def stats_csv(efforts: Iterable[Effort]) -> str:
     return text.getvalue()
 
 
-def stats_text(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str:
+def stats_text(efforts: Sequence[Effort], scratch: Sequence[Effort]) -> str:
     """Return the table of means as plain text, beside the values of the paper."""
     ours, nothing = mean_row(efforts), mean_row(scratch)
     scenes = "1 scene" if len(efforts) == 1 else f"{len(efforts)} scenes"
@@ -111,7 +111,7 @@ def stats_text(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str
     return "\n".join(lines)
 
 
-def stats_latex(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str:
+def stats_latex(efforts: Sequence[Effort], scratch: Sequence[Effort]) -> str:
     """Return the table of means in the LaTeX layout of the paper."""
     ours, nothing = mean_row(efforts), mean_row(scratch)
     lines = [

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, seeds
 
 from world2minecraft.core.errors import UsageError
@@ -81,16 +80,16 @@ def test_a_component_is_what_a_flood_reaches(seed):
     assert fast == slow_component(draft.labels, cell)
 
 
-@given(seeds, st.booleans())
-def test_parts_are_apart_and_hold_together(seed, corners):
+@given(seeds)
+def test_parts_are_apart_and_hold_together(seed):
     mask = np.random.default_rng(seed).random((4, 4, 4)) < 0.3
     cells = np.argwhere(mask)
-    parts = connected_parts(cells, corners=corners)
+    parts = connected_parts(cells)
     assert sorted(np.concatenate([*parts, np.zeros(0, int)]).tolist()) == list(range(len(cells)))
     for one in parts:
         for other in parts:
             gap = np.abs(cells[one][:, None] - cells[other][None])
-            near = gap.max(axis=2) == 1 if corners else gap.sum(axis=2) == 1
+            near = gap.sum(axis=2) == 1
             assert near.any() == (one is other and len(one) > 1)
 
 

@@ -21,10 +21,10 @@ def box_of(cells: np.ndarray, shape: tuple[int, ...], margin: int = 0) -> tuple[
     return low, (x, y, z)
 
 
-def connected_parts(cells: np.ndarray, *, corners: bool = False) -> list[np.ndarray]:
-    """Return the connected parts of cells int [N, 3] as row indices int [M], ordered by first cell.
+def connected_parts(cells: np.ndarray) -> list[np.ndarray]:
+    """Return the parts of cells int [N, 3] connected by faces, as row indices int [M] each.
 
-    Cells are connected by faces, or also by edges and corners if ``corners`` is True.
+    The parts are ordered by their first cells.
     """
     if not len(cells):
         return []
@@ -32,7 +32,7 @@ def connected_parts(cells: np.ndarray, *, corners: bool = False) -> list[np.ndar
     mask = np.zeros(tuple(high - low + 1), bool)
     at = tuple((cells - low).T)
     mask[at] = True
-    numbers = label_components(mask, corners=corners)[0][at]
+    numbers = label_components(mask, corners=False)[0][at]
     order = np.argsort(numbers, kind="stable")
     breaks = np.flatnonzero(np.diff(numbers[order])) + 1
     return np.split(order, breaks)

@@ -44,7 +44,6 @@ class Plane:
     layer: int
     low: tuple[int, int]
     high: tuple[int, int]
-    area_cells: int
     meets: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
 
     @property
@@ -87,7 +86,7 @@ def _levels(draft: SceneDraft, class_id: SemanticClass) -> list[Plane]:
         layer = int(counts.argmax())
         name = class_id.name.lower() + (f":{len(found) + 1}" if found else "")
         whole = (draft.shape[0], draft.shape[1])
-        found.append(Plane(name, int(class_id), 2, layer, (0, 0), whole, int(counts[layer])))
+        found.append(Plane(name, int(class_id), 2, layer, (0, 0), whole))
         counts[max(layer - 1, 0) : layer + 2] = 0
     return found
 
@@ -102,9 +101,9 @@ def _walls(draft: SceneDraft, levels: list[Plane]) -> list[Plane]:
         while sizes.size and sizes.max() >= least:
             layer = int(sizes.argmax())
             regions = _merge_regions(_regions(mask[layer], flat[layer], least), draft.voxel_m)
-            for low, high, area in regions:
+            for low, high in regions:
                 flat[max(layer - 1, 0) : layer + 2, low[0] : high[0], low[1] : high[1]] = False
-                found.append(Plane("", int(SemanticClass.WALL), axis, layer, low, high, area))
+                found.append(Plane("", int(SemanticClass.WALL), axis, layer, low, high))
             flat[layer] = False
             near = slice(max(layer - 1, 0), layer + 2)
             sizes[near] = flat[near].sum(axis=(1, 2))
@@ -130,11 +129,11 @@ def _is_face(labels: np.ndarray) -> np.ndarray:
     return other[:-2] | other[2:]
 
 
-Region = tuple[tuple[int, int], tuple[int, int], int]
+Region = tuple[tuple[int, int], tuple[int, int]]
 
 
 def _regions(mask: np.ndarray, flat: np.ndarray, least: float) -> list[Region]:
-    """Return the bounds and the area of each large flat region of a layer, bool [A, B]."""
+    """Return the bounds of each large flat region of a layer, bool [A, B]."""
     parts, count = label_components(flat)
     found = []
     for number, box in enumerate(ndimage.find_objects(parts, count), 1):
@@ -146,23 +145,22 @@ def _regions(mask: np.ndarray, flat: np.ndarray, least: float) -> list[Region]:
         near = mask[start[0] : box[0].stop + margin, start[1] : box[1].stop + margin]
         at = np.argwhere(near) + start
         low, high = at.min(axis=0), at.max(axis=0) + 1
-        found.append(((int(low[0]), int(low[1])), (int(high[0]), int(high[1])), len(at)))
+        found.append(((int(low[0]), int(low[1])), (int(high[0]), int(high[1]))))
     return found
 
 
 def _merge_regions(regions: list[Region], voxel_m: float) -> list[Region]:
     """Join adjacent regions with common heights, which a doorway separates."""
     joined: list[Region] = []
-    for low, high, area in sorted(regions):
+    for low, high in sorted(regions):
         if joined:
-            before, end, size = joined[-1]
+            before, end = joined[-1]
             shared = min(end[1], high[1]) - max(before[1], low[1])
             if low[0] - end[0] <= DOORWAY_M / voxel_m and shared > 0:
                 low = (before[0], min(before[1], low[1]))  # noqa: PLW2901
                 high = (max(end[0], high[0]), max(end[1], high[1]))  # noqa: PLW2901
                 joined.pop()
-                area += size  # noqa: PLW2901
-        joined.append((low, high, area))
+        joined.append((low, high))
     return joined
 
 
