@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.rows import Row
-from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.scene_sources import demo_room
 
 FIGURES = {"density_kernel": 3, "density_threshold": 0.2, "cluster_radius": 2.0}
 SLIDER_MS = 50.0  # A slider that is dragged shows its answer twenty times a second.

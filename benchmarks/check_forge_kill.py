@@ -27,9 +27,9 @@ import numpy as np
 from world2minecraft.core.types import GridCells, Operation
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.object_conversion import object_key
-from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.document import document as document_module
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.scene_sources import demo_room
 
 MOST_S = 0.4  # From the first acknowledged step to the kill: tens of steps.
 

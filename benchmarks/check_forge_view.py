@@ -253,8 +253,8 @@ def demo_rows(browser: Any, pictures: Path | None) -> Iterator[dict[str, Any]]:
     Software GL compiles what it draws shadows, icons and letters with for the first page that has
     any: half a second, which no later page of that browser waits for.
     """
-    from world2minecraft.sceneforge.demo_room_source import demo_room
     from world2minecraft.sceneforge.editor import Editor
+    from world2minecraft.sceneforge.scene_sources import demo_room
     from world2minecraft.sceneforge.server.server_process import ForgeServer
 
     with tempfile.TemporaryDirectory() as folder:

@@ -11,8 +11,8 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Page, ViewportSize, sync_playwright
 
-from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.scene_sources import demo_room
 from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 TARGET = Path(__file__).parents[1] / "docs/images/forge.png"

@@ -13,8 +13,8 @@ from world2minecraft.navigation.agents.types import Decision
 from world2minecraft.navigation.types import Move
 from world2minecraft.sceneforge.agent_walks import MAX_CALLS, MAX_USD, AgentWalk, WalkAgents
 from world2minecraft.sceneforge.build_preview import BlockBuild, BuildOptions, SceneSnapshot
-from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.scene_sources import demo_room
 from world2minecraft.sceneforge.walk_guide import WalkGuide
 
 FEET_M, LOOK_M, LAMP = (1.4, 0.7, 0.0), (0.0, 1.0, 0.0), 16

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from forge_serving import served
 
-from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.scene_sources import demo_room
 from world2minecraft.sceneforge.server import agent_routes, export_routes
 from world2minecraft.sceneforge.server import start_routes as start
 from world2minecraft.sceneforge.server.app import routes

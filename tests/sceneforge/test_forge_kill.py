@@ -6,8 +6,8 @@ import random
 import pytest
 from benchmarks.check_forge_kill import forked, killed
 
-from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.scene_sources import demo_room
 
 KILLS = 8
 

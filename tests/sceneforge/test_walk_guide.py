@@ -5,8 +5,8 @@ import pytest
 from forge_serving import client, served
 
 from world2minecraft.sceneforge.build_preview import BlockBuild, BuildOptions, SceneSnapshot
-from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.scene_sources import demo_room
 from world2minecraft.sceneforge.walk_guide import WalkGuide, names_like, subject_of
 
 LAMP, SOFA, FEET_M = 16, 2, (1.4, 0.7, 0.0)

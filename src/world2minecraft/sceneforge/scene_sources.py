@@ -162,6 +162,15 @@ def read_source(source: Path | None, out: Path | None = None) -> OpenedScene:
     return opened if out is None else replace(opened, folder=out.absolute(), is_run=False)
 
 
+def demo_room(folder: Path | None = None) -> OpenedScene:
+    """Return the demo room, which ``save`` would write to ``folder``.
+
+    It is a living room as reconstructed by ``w2m demo``, with the floaters, holes and doubtful
+    objects of a real run. ``python tools/make_demo_room.py`` regenerates its files.
+    """
+    return read_source(None, folder)
+
+
 def read_source_rooms(source: Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
     """Return the rooms that furniture must stay within, or none if the source has no rooms."""
     try:

@@ -13,9 +13,8 @@ from pathlib import Path
 import pytest
 from forge_driving import Driver, opened_page
 
-from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.scene_sources import OpenedScene
+from world2minecraft.sceneforge.scene_sources import OpenedScene, demo_room
 from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 TESTS = Path(__file__).resolve().parents[2]
