@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from forge_documents import SHAPE, Clock, edit, held, same_files, write_run
 
-from world2minecraft.core.errors import ConflictError, OutputError, UsageError
+from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError, UsageError
 from world2minecraft.core.locks import Lock
 from world2minecraft.sceneforge.document import document as document_module
 from world2minecraft.sceneforge.document.snapshots import read_state
@@ -372,6 +372,15 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path, pattern):
     (tmp_path / "out.forge").write_text("a file")
     with pytest.raises(OutputError, match="out.forge: cannot be created"):
         Editor.open(pattern, out=tmp_path / "out")
+
+
+def test_placements_of_another_class_than_their_object_are_refused(run):
+    place = run / "placements.json"
+    rows = json.loads(place.read_text())
+    rows[0]["class"] = "sofa" if rows[0]["class"] != "sofa" else "bed"
+    place.write_text(json.dumps(rows))
+    with pytest.raises(DamagedFileError, match="placements.json: does not match objects.json"):
+        Editor.open(run)
 
 
 def test_the_shape_of_the_scene_is_kept(run):

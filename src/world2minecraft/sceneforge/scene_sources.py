@@ -18,7 +18,7 @@ from scipy.spatial import KDTree
 
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply, cell_centers_m
-from world2minecraft.core.errors import InputError, LimitError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
 from world2minecraft.core.whole_reads import read_whole
 from world2minecraft.editing.scene import objects_of
@@ -195,7 +195,12 @@ def _read_run_files(folder: Path) -> OpenedScene:
         instances = read_objects(folder / "objects.json", grid)
         is_furnished = (folder / "placements.json").is_file()
         placed = read_placements(folder / "placements.json") if is_furnished else ()
-        objects = objects_of(instances, placed)
+        try:
+            objects = objects_of(instances, placed)
+        except ValueError as error:
+            raise DamagedFileError(
+                folder / "placements.json", f"does not match objects.json: {error}"
+            ) from error
     else:
         grid, objects = detect_objects(grid, rooms)
     fields = (folder.name, folder, inputs, grid, scan_to_room, objects, rooms)
