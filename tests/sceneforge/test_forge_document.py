@@ -374,7 +374,7 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path, pattern):
         Editor.open(pattern, out=tmp_path / "out")
 
 
-def test_placements_of_another_class_than_their_object_are_refused(run):
+def test_placements_of_another_class_are_refused(run):
     place = run / "placements.json"
     rows = json.loads(place.read_text())
     rows[0]["class"] = "sofa" if rows[0]["class"] != "sofa" else "bed"
