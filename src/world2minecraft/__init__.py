@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from world2minecraft.api import *  # noqa: F403
     from world2minecraft.core import errors as errors
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 register_with_gymnasium()  # As soon as Gymnasium is imported, which this does not do.
 former_imports.install()
