@@ -157,11 +157,7 @@ def test_bands_and_batches_of_any_size_change_nothing(slot_bytes, monkeypatch):
     scene, poses = many(count=3)
     gpu = gpu_of(scene)
     whole = list(gpu.render_many(CAMERA, poses, outputs=EVERYTHING))
-    cut = slots.plan_submissions
-    monkeypatch.setattr(
-        "world2minecraft.rendering.gpu.renderer.plan_submissions",
-        lambda ask, pictures: cut(ask, pictures, slot_bytes),
-    )
+    monkeypatch.setattr(slots, "SLOT_BYTES", slot_bytes)
     for one, other in zip(gpu.render_many(CAMERA, poses, outputs=EVERYTHING), whole, strict=True):
         assert np.array_equal(one.colour, other.colour)
         assert np.array_equal(one.opaque_depth_m, other.opaque_depth_m)
