@@ -13,7 +13,7 @@ from world2minecraft.capture.view_stream import CaptureViews, without_colour
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
-from world2minecraft.formats.scan_record import read_alignment
+from world2minecraft.formats.scan_record import RecordedAlignment, read_alignment
 
 ALIGNMENT_FRAMES = 24  # With all 40 frames of the kitchen, its floor moved by under 2 mm.
 CALIBRATION_FRAMES = 12  # Ten gave the kitchen's focal length to 0.3 %, whichever ten.
@@ -70,16 +70,16 @@ def open_scan(
     notes, correction = list(validated.notes), NO_CORRECTION
     earlier = read_alignment(recorded) if recorded is not None else None
     if validated.capture.one_matrix and chosen.colour_camera == "auto":
-        progress(STAGE, 40, PROGRESS_STEPS, "estimating the colour camera")
         if earlier is not None and earlier.colour_correction is not None:
             correction = earlier.colour_correction
         else:
+            progress(STAGE, 40, PROGRESS_STEPS, "estimating the colour camera")
             correction, found = _estimate_colour_camera(stream)
             notes.append(found)
         stream = _with_colour_camera(stream, correction)
     if earlier is not None:
         notes = []  # They are among the recorded ones.
-        alignment = Alignment(*earlier[:4])
+        alignment = _recorded_frame(earlier)
     else:
         progress(STAGE, 60, PROGRESS_STEPS, "estimating gravity and walls")
         alignment = _align(validated, stream)
@@ -138,6 +138,10 @@ def _with_colour_camera(
         for frame in stream.frames
     )
     return CaptureViews(frames, stream.encoding, stream.full_trust)
+
+
+def _recorded_frame(earlier: RecordedAlignment) -> Alignment:
+    return Alignment(earlier.scan_to_room, earlier.room_size_m, earlier.notes, earlier.sigmas)
 
 
 def _align(validated: ValidatedCapture, stream: CaptureViews) -> Alignment:

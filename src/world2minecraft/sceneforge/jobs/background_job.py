@@ -53,10 +53,11 @@ async def run_in_background(
     answer: asyncio.Future[Value] = loop.create_future()
 
     def settle(act: Callable[[Any], None], value: Any) -> None:
-        if not answer.done():  # Whoever asked may be gone.
+        if not answer.done():  # The request may have ended.
             act(value)
 
     def run(report: JobProgress) -> None:
+        """Work on the copy, and settle the answer with the result or the error."""
         try:
             report("scene", 0, 0)
             copy.progress = report

@@ -232,6 +232,7 @@ def with_headers(scope: Scope, send: Send, headers: Iterable[tuple[bytes, bytes]
     always = [*headers, NO_STORE] if _never_kept(scope["path"]) else [*headers]
 
     async def adding(message: Message) -> None:
+        """Send a message, with the headers added to the start of a response."""
         if message["type"] == "http.response.start":
             own = [(name.lower(), value) for name, value in message.get("headers", [])]
             boxed = any(

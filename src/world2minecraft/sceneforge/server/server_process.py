@@ -172,6 +172,7 @@ class PhoneServer(PageServer):
         made: list[PhoneAccess] = []
 
         def build(token: str, port: int) -> ASGIApp:
+            """Return the app of the editor for a token and a port."""
             made.append(PhoneAccess(page_url("http" if tls is None else "https", host, port)))
             return phone_app(made[0], workspace)
 
